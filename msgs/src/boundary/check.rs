@@ -1,0 +1,152 @@
+//! The checks themselves.
+
+use super::BoundaryError;
+use crate::geometry_msgs::Vector3;
+use crate::msg::SymmetricTensor;
+use crate::std_msgs::Header;
+use grains::{Anisotropy, SymTensor, Vec3};
+
+/// Names of the components in Voigt order.
+pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// Frame of every header of ours.
+const FRAME: &str = "cell";
+
+/// Checks fields of the message it names.
+#[derive(Clone, Copy)]
+pub(super) struct Check(pub(super) &'static str);
+
+type Checked<T> = Result<T, BoundaryError>;
+
+impl Check {
+    pub(super) fn that(self, good: bool, field: &str, value: f64, requirement: &'static str) -> Checked<f64> {
+        if good {
+            return Ok(value);
+        }
+        Err(BoundaryError::Value { message: self.0, field: field.to_owned(), value, requirement })
+    }
+
+    pub(super) fn finite(self, field: &str, value: f64) -> Checked<f64> {
+        self.that(value.is_finite(), field, value, "finite")
+    }
+
+    pub(super) fn positive(self, field: &str, value: f64) -> Checked<f64> {
+        self.that(value.is_finite() && value > 0.0, field, value, "finite and more than 0")
+    }
+
+    pub(super) fn not_negative(self, field: &str, value: f64) -> Checked<f64> {
+        self.that(value.is_finite() && value >= 0.0, field, value, "finite and 0 or more")
+    }
+
+    pub(super) fn share(self, field: &str, value: f64) -> Checked<f64> {
+        self.that((0.0..=1.0).contains(&value), field, value, "between 0 and 1")
+    }
+
+    /// A quantity for which 0 stands for unknown.
+    pub(super) fn known(self, field: &str, value: f64) -> Checked<Option<f64>> {
+        Ok(Some(self.not_negative(field, value)?).filter(|v| *v > 0.0))
+    }
+
+    pub(super) fn code(self, field: &str, value: u8, allowed: &'static str) -> BoundaryError {
+        BoundaryError::Code { message: self.0, field: field.to_owned(), value, allowed }
+    }
+
+    pub(super) fn length(
+        self,
+        field: &'static str,
+        found: usize,
+        expected: usize,
+        reason: &'static str,
+    ) -> Checked<()> {
+        if found == expected {
+            return Ok(());
+        }
+        Err(BoundaryError::Length { message: self.0, field, found, expected, reason })
+    }
+
+    pub(super) fn header(self, header: &Header) -> Checked<()> {
+        let nanosec = header.stamp.nanosec;
+        let good = nanosec < 1_000_000_000;
+        self.that(good, "header.stamp.nanosec", f64::from(nanosec), "less than 1e9").map(drop)
+    }
+
+    pub(super) fn all_finite(self, field: &str, values: &[f64]) -> Checked<()> {
+        match values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
+            Some((index, value)) => self.finite(&format!("{field}[{index}]"), *value).map(drop),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn six(self, field: &str, values: &[f64; 6]) -> Checked<[f64; 6]> {
+        match (0..6).find(|i| !values[*i].is_finite()) {
+            Some(i) => self.finite(&component(field, i), values[i]).map(|_| *values),
+            None => Ok(*values),
+        }
+    }
+
+    pub(super) fn tensor(self, field: &str, t: &SymmetricTensor) -> Checked<SymTensor> {
+        let values = [t.xx, t.yy, t.zz, t.yz, t.xz, t.xy];
+        match (0..6).find(|i| !values[*i].is_finite()) {
+            Some(i) => self.finite(&format!("{field}.{}", VOIGT[i]), values[i]).map(|_| SymTensor::default()),
+            None => Ok(SymTensor::from_voigt(values)),
+        }
+    }
+
+    /// A unit vector; `None` if it is zero.
+    pub(super) fn direction(self, field: &str, v: &Vector3) -> Checked<Option<Vec3>> {
+        let vector = Vec3::new(v.x, v.y, v.z);
+        if vector == Vec3::zeros() {
+            return Ok(None);
+        }
+        let norm = vector.norm();
+        self.that((norm - 1.0).abs() < 1e-6, &format!("|{field}|"), norm, "1, or 0 if unknown")?;
+        Ok(Some(vector))
+    }
+
+    /// One of the three ratios γ/Δ: known or not, and its value.
+    pub(super) fn ratio(self, field: &str, (known, value): (bool, f64)) -> Checked<Option<f64>> {
+        if known { self.finite(field, value).map(Some) } else { Ok(None) }
+    }
+
+    /// A 3×3 covariance, row-major; `None` if it is all zero.
+    pub(super) fn covariance(self, field: &str, c: &[f64; 9]) -> Checked<Option<[f64; 9]>> {
+        self.all_finite(field, c)?;
+        if c.iter().all(|v| *v == 0.0) {
+            return Ok(None);
+        }
+        for i in 0..3 {
+            self.not_negative(&format!("{field}[{}]", 4 * i), c[4 * i])?;
+            for j in 0..i {
+                let (lower, upper) = (c[3 * i + j], c[3 * j + i]);
+                let bound = (c[4 * i] * c[4 * j]).sqrt();
+                // 1e-9: rounding of whoever made it, far below any uncertainty of an uncertainty.
+                let good = (lower - upper).abs() <= 1e-9 * bound && lower.abs() <= bound * (1.0 + 1e-9);
+                let name = format!("{field}[{}]", 3 * i + j);
+                self.that(good, &name, lower, "symmetric and at most 1 as a correlation")?;
+            }
+        }
+        Ok(Some(*c))
+    }
+}
+
+/// `rate[2] (zz)`.
+pub(super) fn component(field: &str, index: usize) -> String {
+    format!("{field}[{index}] ({})", VOIGT[index])
+}
+
+pub(super) fn header(stamp: crate::builtin_interfaces::Time) -> Header {
+    Header { stamp, frame_id: FRAME.to_owned() }
+}
+
+pub(super) fn tensor_message(t: &SymTensor) -> SymmetricTensor {
+    SymmetricTensor { xx: t.xx, yy: t.yy, zz: t.zz, yz: t.yz, xz: t.xz, xy: t.xy }
+}
+
+pub(super) fn vector_message(v: &Vec3) -> Vector3 {
+    Vector3 { x: v.x, y: v.y, z: v.z }
+}
+
+/// The three ratios as on the wire: total, elastic, contact.
+pub(super) fn ratios(g: &Anisotropy) -> [(bool, f64); 3] {
+    [g.total, g.elastic, g.contact].map(|v| (v.is_some(), v.unwrap_or(0.0)))
+}

@@ -1,0 +1,66 @@
+//! Messages to and from the kernels' types. A decoded message is not a state: everything received is checked here,
+//! once, and what fails is refused with an error that names field, value and requirement. What goes out passes the same
+//! checks, so that no node publishes what another would refuse.
+
+mod check;
+mod fabric;
+mod microstructure;
+mod moduli;
+mod packing;
+mod run_state;
+mod strain_rate;
+mod stress;
+
+pub use fabric::fabric_message;
+pub use microstructure::{EstimateReading, EstimateStatus, Inferred, Interval, MicrostructureReading};
+pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
+pub use packing::packing_message;
+pub use run_state::{RunStateReading, RunStatus};
+pub use strain_rate::StrainRateAnswer;
+pub use stress::StressRequest;
+
+/// Why a message, or what should become one, is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BoundaryError {
+    /// A number is not finite or out of its range.
+    #[error("{message}.{field} = {value:?} is refused: it must be {requirement}")]
+    Value {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the field, with index or component.
+        field: String,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// A code that is none of the message's constants.
+    #[error("{message}.{field} = {value} is refused: it must be one of {allowed}")]
+    Code {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the field, with index or component.
+        field: String,
+        /// The value found.
+        value: u8,
+        /// The constants.
+        allowed: &'static str,
+    },
+    /// An array of the wrong length.
+    #[error("{message}.{field} has {found} entries and is refused: it must have {expected} ({reason})")]
+    Length {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// Entries it has.
+        found: usize,
+        /// Entries it must have.
+        expected: usize,
+        /// Why.
+        reason: &'static str,
+    },
+    /// Numbers that make no packing.
+    #[error("Packing is refused: {0}")]
+    Packing(#[from] grains::PackingError),
+}

@@ -1,0 +1,224 @@
+//! `Moduli`: stiffness, and what an inversion needs beside it.
+
+use super::BoundaryError;
+use super::check::{Check, ratios, vector_message};
+use crate::builtin_interfaces::Time;
+use crate::msg;
+use crate::std_msgs::Header;
+use grains::{Anisotropy, Fabric, Material, Moduli, Stiffness, Vec3};
+
+const CHECK: Check = Check("Moduli");
+
+/// How moduli were obtained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModuliMethod {
+    /// Relaxed frozen network, solved.
+    FrozenNetwork,
+    /// Every grain moves with the mean deformation.
+    Affine,
+    /// Small strains imposed on a simulation.
+    Probe,
+    /// From wave speeds.
+    Acoustic,
+}
+
+/// Moduli as an inversion takes them: checked, and with `None` for what the sender did not know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModuliReading {
+    /// Stamp of the source.
+    pub stamp: Time,
+    /// Step of the packing measured.
+    pub source_step: u64,
+    /// How they were obtained.
+    pub method: ModuliMethod,
+    /// Number of grains.
+    pub grains: Option<u32>,
+    /// Shear modulus in the plane of isotropy, Pa.
+    pub g12: f64,
+    /// Shear modulus along e3, Pa.
+    pub g13: f64,
+    /// Voigt bulk modulus Θ, Pa.
+    pub theta: f64,
+    /// Reuss bulk modulus, Pa.
+    pub theta_reuss: Option<f64>,
+    /// Projected C11, Pa.
+    pub c11: Option<f64>,
+    /// C33, Pa.
+    pub c33: Option<f64>,
+    /// Projected C13, Pa.
+    pub c13: Option<f64>,
+    /// Full stiffness.
+    pub stiffness: Option<Stiffness>,
+    /// Affine stiffness.
+    pub affine: Option<Stiffness>,
+    /// Covariance of (g12, g13, Θ), row-major, Pa².
+    pub covariance: Option<[f64; 9]>,
+    /// Confining pressure, Pa, 0 or more.
+    pub pressure: f64,
+    /// Solid fraction φ, more than 0.
+    pub solid_fraction: f64,
+    /// Unit axis of symmetry found.
+    pub axis: Option<Vec3>,
+    /// The three ratios γ/Δ.
+    pub gamma_over_delta: Anisotropy,
+    /// Measured coordination number k.
+    pub k: Option<f64>,
+    /// Measured coordination number without rattlers.
+    pub z: Option<f64>,
+    /// Measured fabric anisotropy ε; known if `k` is.
+    pub eps: Option<f64>,
+    /// Material of the grains.
+    pub material: Material,
+}
+
+/// The message of the moduli of a packing by the frozen network; `header` and `source_step` are those of the packing.
+/// `pressure` in Pa. Standard deviations are left unknown: one packing has none.
+pub fn moduli_message(
+    header: Header,
+    source_step: u64,
+    fabric: &Fabric,
+    moduli: &Moduli,
+    pressure: f64,
+    solid_fraction: f64,
+    material: &Material,
+) -> Result<msg::Moduli, BoundaryError> {
+    let projected = moduli.stiffness.transverse_isotropy();
+    let [total, elastic, contact] = ratios(&fabric.anisotropy);
+    let message = msg::Moduli {
+        header,
+        source_step,
+        method: msg::Moduli::METHOD_FROZEN_NETWORK,
+        grains: fabric.grains,
+        stiffness: moduli.stiffness.row_major(),
+        stiffness_stddev: [0.0; 36],
+        stiffness_affine: moduli.affine.row_major(),
+        g12: projected.g12,
+        g13: projected.g13,
+        theta: moduli.stiffness.bulk_voigt(),
+        theta_reuss: moduli.stiffness.bulk_reuss().unwrap_or(0.0),
+        covariance: [0.0; 9],
+        pressure,
+        solid_fraction,
+        axis: vector_message(&fabric.axis),
+        gamma_over_delta_total_known: total.0,
+        gamma_over_delta_total: total.1,
+        gamma_over_delta_elastic_known: elastic.0,
+        gamma_over_delta_elastic: elastic.1,
+        gamma_over_delta_contact_known: contact.0,
+        gamma_over_delta_contact: contact.1,
+        k: fabric.k,
+        z: fabric.z,
+        eps: fabric.eps,
+        grain_shear_modulus: material.shear_modulus,
+        grain_poisson_ratio: material.poisson_ratio,
+        grain_density: material.density,
+        residual: moduli.residual,
+        iterations: moduli.iterations,
+    };
+    ModuliReading::try_from(&message)?;
+    Ok(message)
+}
+
+impl TryFrom<&msg::Moduli> for ModuliReading {
+    type Error = BoundaryError;
+
+    fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
+        CHECK.header(&m.header)?;
+        let stiffness = known_stiffness("stiffness", &m.stiffness)?;
+        let projected = stiffness.map(|c| c.transverse_isotropy());
+        for (i, stddev) in m.stiffness_stddev.iter().enumerate() {
+            CHECK.not_negative(&format!("stiffness_stddev[{i}]"), *stddev)?;
+        }
+        CHECK.not_negative("residual", m.residual)?;
+        let k = CHECK.known("k", m.k)?;
+        Ok(Self {
+            stamp: m.header.stamp,
+            source_step: m.source_step,
+            method: method(m.method)?,
+            grains: Some(m.grains).filter(|n| *n > 0),
+            g12: CHECK.finite("g12", m.g12)?,
+            g13: CHECK.finite("g13", m.g13)?,
+            theta: CHECK.finite("theta", m.theta)?,
+            theta_reuss: Some(CHECK.finite("theta_reuss", m.theta_reuss)?).filter(|v| *v != 0.0),
+            c11: projected.map(|t| t.c11),
+            c33: projected.map(|t| t.c33),
+            c13: projected.map(|t| t.c13),
+            stiffness,
+            affine: known_stiffness("stiffness_affine", &m.stiffness_affine)?,
+            covariance: CHECK.covariance("covariance", &m.covariance)?,
+            pressure: CHECK.not_negative("pressure", m.pressure)?,
+            solid_fraction: CHECK.positive("solid_fraction", m.solid_fraction)?,
+            axis: CHECK.direction("axis", &m.axis)?,
+            gamma_over_delta: anisotropy(m)?,
+            k,
+            z: CHECK.known("z", m.z)?,
+            eps: match k {
+                Some(_) => Some(CHECK.finite("eps", m.eps)?),
+                None => None,
+            },
+            material: material(m)?,
+        })
+    }
+}
+
+/// The kernels' moduli, of a message that knows both stiffnesses.
+impl TryFrom<&msg::Moduli> for Moduli {
+    type Error = BoundaryError;
+
+    fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
+        let reading = ModuliReading::try_from(m)?;
+        let missing = |field: &str| BoundaryError::Value {
+            message: "Moduli",
+            field: field.to_owned(),
+            value: 0.0,
+            requirement: "known: the message holds only zeros there",
+        };
+        Ok(Self {
+            stiffness: reading.stiffness.ok_or_else(|| missing("stiffness"))?,
+            affine: reading.affine.ok_or_else(|| missing("stiffness_affine"))?,
+            residual: m.residual,
+            iterations: m.iterations,
+        })
+    }
+}
+
+fn known_stiffness(field: &str, values: &[f64; 36]) -> Result<Option<Stiffness>, BoundaryError> {
+    CHECK.all_finite(field, values)?;
+    let known = values.iter().any(|v| *v != 0.0);
+    Ok(known.then(|| Stiffness::from_row_major(values)))
+}
+
+fn method(code: u8) -> Result<ModuliMethod, BoundaryError> {
+    match code {
+        msg::Moduli::METHOD_FROZEN_NETWORK => Ok(ModuliMethod::FrozenNetwork),
+        msg::Moduli::METHOD_AFFINE => Ok(ModuliMethod::Affine),
+        msg::Moduli::METHOD_PROBE => Ok(ModuliMethod::Probe),
+        msg::Moduli::METHOD_ACOUSTIC => Ok(ModuliMethod::Acoustic),
+        other => Err(CHECK.code("method", other, "0 (frozen network), 1 (affine), 2 (probe), 3 (acoustic)")),
+    }
+}
+
+fn anisotropy(m: &msg::Moduli) -> Result<Anisotropy, BoundaryError> {
+    let total = (m.gamma_over_delta_total_known, m.gamma_over_delta_total);
+    let elastic = (m.gamma_over_delta_elastic_known, m.gamma_over_delta_elastic);
+    let contact = (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact);
+    Ok(Anisotropy {
+        total: CHECK.ratio("gamma_over_delta_total", total)?,
+        elastic: CHECK.ratio("gamma_over_delta_elastic", elastic)?,
+        contact: CHECK.ratio("gamma_over_delta_contact", contact)?,
+    })
+}
+
+fn material(m: &msg::Moduli) -> Result<Material, BoundaryError> {
+    let (name, poisson_ratio) = ("grain_poisson_ratio", m.grain_poisson_ratio);
+    Ok(Material {
+        shear_modulus: CHECK.positive("grain_shear_modulus", m.grain_shear_modulus)?,
+        poisson_ratio: CHECK.that(
+            (0.0..=0.5).contains(&poisson_ratio),
+            name,
+            poisson_ratio,
+            "between 0 and 0.5",
+        )?,
+        density: CHECK.positive("grain_density", m.grain_density)?,
+    })
+}

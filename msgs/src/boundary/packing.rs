@@ -1,0 +1,121 @@
+//! `Packing`: the complete mechanical state.
+
+use super::BoundaryError;
+use super::check::{Check, header};
+use crate::{msg, stamp};
+use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
+
+const CHECK: Check = Check("Packing");
+
+/// The message of a packing, bit for bit. `scene` names the scene, `run_state` is what only a resumed run needs. The
+/// packing is taken to be a validated one.
+pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> msg::Packing {
+    let contacts = &packing.contacts;
+    msg::Packing {
+        header: header(stamp(packing.time)),
+        step: packing.step,
+        time: packing.time,
+        cell: row_major(packing.cell.matrix()),
+        deformation: row_major(&packing.deformation),
+        id: packing.ids.clone(),
+        radius: packing.radii.clone(),
+        position: interleaved(packing.positions.iter()),
+        velocity: interleaved(packing.velocities.iter()),
+        angular_velocity: interleaved(packing.spins.iter()),
+        contact_pair: contacts.iter().flat_map(|c| [c.i, c.j]).collect(),
+        contact_image: contacts.iter().flat_map(|c| c.image).collect(),
+        contact_overlap: contacts.iter().map(|c| c.overlap).collect(),
+        contact_normal: interleaved(contacts.iter().map(|c| &c.normal)),
+        contact_normal_force: contacts.iter().map(|c| c.normal_force).collect(),
+        contact_tangential_force: interleaved(contacts.iter().map(|c| &c.tangential_force)),
+        shear_modulus: packing.material.shear_modulus,
+        poisson_ratio: packing.material.poisson_ratio,
+        density: packing.material.density,
+        friction: packing.friction,
+        time_step: packing.time_step,
+        run_state,
+        scene: scene.to_owned(),
+    }
+}
+
+impl TryFrom<&msg::Packing> for Packing {
+    type Error = BoundaryError;
+
+    fn try_from(m: &msg::Packing) -> Result<Self, BoundaryError> {
+        CHECK.header(&m.header)?;
+        CHECK.all_finite("cell", &m.cell)?;
+        let matrix = Mat3::from_row_slice(&m.cell);
+        let Some(cell) = Cell::new(matrix) else {
+            let volume = matrix.determinant();
+            return Err(BoundaryError::Value {
+                message: "Packing",
+                field: "cell (volume)".to_owned(),
+                value: volume,
+                requirement: "the volume of a right-handed cell, finite and more than 0",
+            });
+        };
+        let packing = Packing {
+            step: m.step,
+            time: m.time,
+            cell,
+            deformation: Mat3::from_row_slice(&m.deformation),
+            ids: m.id.clone(),
+            radii: m.radius.clone(),
+            positions: triples("position", &m.position, m.radius.len(), THREE_A_GRAIN)?,
+            velocities: triples("velocity", &m.velocity, m.radius.len(), THREE_A_GRAIN)?,
+            spins: triples("angular_velocity", &m.angular_velocity, m.radius.len(), THREE_A_GRAIN)?,
+            contacts: contacts(m)?,
+            material: Material {
+                shear_modulus: m.shear_modulus,
+                poisson_ratio: m.poisson_ratio,
+                density: m.density,
+            },
+            friction: m.friction,
+            time_step: m.time_step,
+        };
+        Ok(packing.validated()?)
+    }
+}
+
+const THREE_A_GRAIN: &str = "three a grain, as many grains as radii";
+const ONE_A_CONTACT: &str = "one a contact, as many contacts as overlaps";
+const TWO_A_CONTACT: &str = "two a contact, as many contacts as overlaps";
+const THREE_A_CONTACT: &str = "three a contact, as many contacts as overlaps";
+
+fn contacts(m: &msg::Packing) -> Result<Vec<Contact>, BoundaryError> {
+    let count = m.contact_overlap.len();
+    CHECK.length("contact_pair", m.contact_pair.len(), 2 * count, TWO_A_CONTACT)?;
+    CHECK.length("contact_image", m.contact_image.len(), 3 * count, THREE_A_CONTACT)?;
+    CHECK.length("contact_normal_force", m.contact_normal_force.len(), count, ONE_A_CONTACT)?;
+    let normals = triples("contact_normal", &m.contact_normal, count, THREE_A_CONTACT)?;
+    let tangential =
+        triples("contact_tangential_force", &m.contact_tangential_force, count, THREE_A_CONTACT)?;
+    let contact = |c: usize| Contact {
+        i: m.contact_pair[2 * c],
+        j: m.contact_pair[2 * c + 1],
+        image: [m.contact_image[3 * c], m.contact_image[3 * c + 1], m.contact_image[3 * c + 2]],
+        overlap: m.contact_overlap[c],
+        normal: normals[c],
+        normal_force: m.contact_normal_force[c],
+        tangential_force: tangential[c],
+    };
+    Ok((0..count).map(contact).collect())
+}
+
+fn triples(
+    field: &'static str,
+    values: &[f64],
+    count: usize,
+    reason: &'static str,
+) -> Result<Vec<Vec3>, BoundaryError> {
+    CHECK.length(field, values.len(), 3 * count, reason)?;
+    Ok(values.chunks_exact(3).map(Vec3::from_column_slice).collect())
+}
+
+fn interleaved<'a>(vectors: impl Iterator<Item = &'a Vec3>) -> Vec<f64> {
+    vectors.flat_map(|v| [v.x, v.y, v.z]).collect()
+}
+
+fn row_major(m: &Mat3) -> [f64; 9] {
+    std::array::from_fn(|k| m[(k / 3, k % 3)])
+}

@@ -1,0 +1,23 @@
+// Generated from std/geometry_msgs/msg/Vector3.msg by examples/generate; not edited by hand.
+
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// The standard message `geometry_msgs/msg/Vector3`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Vector3 {
+    /// `float64 x`.
+    pub x: f64,
+    /// `float64 y`.
+    pub y: f64,
+    /// `float64 z`.
+    pub z: f64,
+}
+
+impl Message for Vector3 {
+    const PACKAGE: &'static str = "geometry_msgs";
+    const NAME: &'static str = "Vector3";
+    const TYPE: &'static str = "geometry_msgs/msg/Vector3";
+    const HASH: &'static str = "RIHS01_cc12fe83e4c02719f1ce8070bfd14aecd40f75a96696a67a2a1f37f7dbb0765d";
+    const DEFINITION: &'static str = definition!("std/geometry_msgs/msg/Vector3.msg");
+}

@@ -1,0 +1,32 @@
+// Generated from msg/Microstructure.msg by examples/generate; not edited by hand.
+
+use crate::generated::grainlab_msgs::Estimate;
+use crate::generated::std_msgs::Header;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// What the moduli, or the wave speeds, say about the packing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Microstructure {
+    /// copied from the Moduli or WaveSpeeds used
+    pub header: Header,
+    /// copied from the Moduli or WaveSpeeds used
+    pub source_step: u64,
+    /// topic the data came from
+    pub source: String,
+    /// one per model, fixed order within a run
+    pub estimates: Vec<Estimate>,
+}
+
+impl Message for Microstructure {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "Microstructure";
+    const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
+    const HASH: &'static str = "RIHS01_9fa9f1bc4cd9fea30f1eda8ce1f39741d8672b7383a61b8cbd051b79ce2baa80";
+    const DEFINITION: &'static str = definition!(
+        "msg/Microstructure.msg",
+        "grainlab_msgs/Estimate" => "msg/Estimate.msg",
+        "std_msgs/Header" => "std/std_msgs/msg/Header.msg",
+        "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",
+    );
+}

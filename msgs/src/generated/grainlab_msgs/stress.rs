@@ -1,0 +1,82 @@
+// Generated from msg/Stress.msg by examples/generate; not edited by hand.
+
+use crate::generated::grainlab_msgs::SymmetricTensor;
+use crate::generated::std_msgs::Header;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// One request of the lockstep: everything a servo needs to answer, and nothing it must remember.
+/// Voigt order xx yy zz yz xz xy, tensor components.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stress {
+    /// stamp: 1e9 s + simulated time; frame: cell
+    pub header: Header,
+    /// counts requests from 0; answered by StrainRate.sequence
+    pub sequence: u64,
+    /// solver steps done
+    pub step: u64,
+    /// index into the loading path
+    pub phase: u32,
+    /// Pa, compression positive, Love-Weber over contacts
+    pub stress: SymmetricTensor,
+    /// Pa, largest |s_ij - s_ji| before symmetrising
+    pub asymmetry: f64,
+    /// one of MODE_\* for each component
+    pub mode: [u8; 6],
+    /// Pa or 1/s by mode, 0 where held
+    pub setpoint: [f64; 6],
+    /// 1/s, strain rate in force, extension positive
+    pub rate: [f64; 6],
+    /// 1/s, largest magnitude of a component of the answer
+    pub rate_limit: f64,
+    /// one of LAW_\*
+    pub law: u8,
+    /// 1/(Pa s), of Eq. 1 per control period; 0 for LAW_SCALED
+    pub gain: f64,
+    /// share of the rate forgotten each control period; 0 for LAW_SCALED
+    pub leak: f64,
+    /// s, of the scaled law; 0 for LAW_INTEGRAL
+    pub response_time: f64,
+    /// Pa, affine tangent stiffness C_iiii (xx yy zz) and C_ijij (yz xz xy) of the present contacts
+    pub tangent: SymmetricTensor,
+    /// s, simulated time until the next request
+    pub control_interval: f64,
+    /// logarithmic, extension positive, since the reference state
+    pub strain: SymmetricTensor,
+    /// Dimensionless.
+    pub solid_fraction: f64,
+    /// k: 2 contacts / grains
+    pub coordination: f64,
+    /// mean net force of non-rattlers / mean contact force; 0 without contacts
+    pub unbalanced_force_ratio: f64,
+}
+
+impl Stress {
+    /// no strain of this component
+    pub const MODE_HELD: u8 = 0;
+
+    /// setpoint in Pa, compression positive
+    pub const MODE_STRESS: u8 = 1;
+
+    /// setpoint in 1/s, extension positive
+    pub const MODE_STRAIN_RATE: u8 = 2;
+
+    /// rate = (stress - setpoint) / (tangent response_time)
+    pub const LAW_SCALED: u8 = 0;
+
+    /// Eq. 1: rate = (1 - leak) rate + gain (stress - setpoint)
+    pub const LAW_INTEGRAL: u8 = 1;
+}
+
+impl Message for Stress {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "Stress";
+    const TYPE: &'static str = "grainlab_msgs/msg/Stress";
+    const HASH: &'static str = "RIHS01_9364b43d15d5b1c74c7c7656b340449e349a58d2acfc6bf5507970b8ecdf53eb";
+    const DEFINITION: &'static str = definition!(
+        "msg/Stress.msg",
+        "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",
+        "std_msgs/Header" => "std/std_msgs/msg/Header.msg",
+        "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",
+    );
+}

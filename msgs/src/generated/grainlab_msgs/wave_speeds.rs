@@ -1,0 +1,46 @@
+// Generated from msg/WaveSpeeds.msg by examples/generate; not edited by hand.
+
+use crate::generated::geometry_msgs::Vector3;
+use crate::generated::grainlab_msgs::WaveSpeed;
+use crate::generated::std_msgs::Header;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// What an acoustic instrument, real or virtual, hands to the inversion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaveSpeeds {
+    /// copied from the Packing probed, or the instrument's time
+    pub header: Header,
+    /// step of the Packing probed, 0 = not from a simulation
+    pub source_step: u64,
+    /// kg/m3, of the mass that moves with the wave
+    pub density: f64,
+    /// kg/m3, 0 = unknown
+    pub density_stddev: f64,
+    /// Pa, confining, compression positive
+    pub pressure: f64,
+    /// 0 = unknown
+    pub solid_fraction: f64,
+    /// symmetry axis, zero = unknown
+    pub axis: Vector3,
+    /// Pa
+    pub grain_shear_modulus: f64,
+    /// Dimensionless.
+    pub grain_poisson_ratio: f64,
+    /// one per mode and direction
+    pub speeds: Vec<WaveSpeed>,
+}
+
+impl Message for WaveSpeeds {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "WaveSpeeds";
+    const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
+    const HASH: &'static str = "RIHS01_d785193bd0e82913d35da98b44711be71d19c471f9eaa9497c9f4cdc2ad74238";
+    const DEFINITION: &'static str = definition!(
+        "msg/WaveSpeeds.msg",
+        "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",
+        "grainlab_msgs/WaveSpeed" => "msg/WaveSpeed.msg",
+        "std_msgs/Header" => "std/std_msgs/msg/Header.msg",
+        "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",
+    );
+}

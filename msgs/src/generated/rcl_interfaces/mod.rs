@@ -1,0 +1,5 @@
+//! Messages of `rcl_interfaces`.
+
+mod log;
+
+pub use log::Log;

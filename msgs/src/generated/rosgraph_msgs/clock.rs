@@ -1,0 +1,23 @@
+// Generated from std/rosgraph_msgs/msg/Clock.msg by examples/generate; not edited by hand.
+
+use crate::generated::builtin_interfaces::Time;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// The standard message `rosgraph_msgs/msg/Clock`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// `builtin_interfaces/Time clock`.
+    pub clock: Time,
+}
+
+impl Message for Clock {
+    const PACKAGE: &'static str = "rosgraph_msgs";
+    const NAME: &'static str = "Clock";
+    const TYPE: &'static str = "rosgraph_msgs/msg/Clock";
+    const HASH: &'static str = "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564";
+    const DEFINITION: &'static str = definition!(
+        "std/rosgraph_msgs/msg/Clock.msg",
+        "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",
+    );
+}

@@ -1,0 +1,5 @@
+//! Messages of `rosgraph_msgs`.
+
+mod clock;
+
+pub use clock::Clock;

@@ -1,0 +1,25 @@
+// Generated from std/std_msgs/msg/Header.msg by examples/generate; not edited by hand.
+
+use crate::generated::builtin_interfaces::Time;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// The standard message `std_msgs/msg/Header`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// `builtin_interfaces/Time stamp`.
+    pub stamp: Time,
+    /// `string frame_id`.
+    pub frame_id: String,
+}
+
+impl Message for Header {
+    const PACKAGE: &'static str = "std_msgs";
+    const NAME: &'static str = "Header";
+    const TYPE: &'static str = "std_msgs/msg/Header";
+    const HASH: &'static str = "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01";
+    const DEFINITION: &'static str = definition!(
+        "std/std_msgs/msg/Header.msg",
+        "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",
+    );
+}

@@ -1,0 +1,5 @@
+//! Messages of `std_msgs`.
+
+mod header;
+
+pub use header::Header;

@@ -1,0 +1,26 @@
+//! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and the
+//! boundary to the kernels' types.
+//!
+//! - [`msg`] and the packages of standard messages beside it: types generated from the message files
+//! - [`message`]: what every type knows about itself, and [`TypeInfo`], the same as a value
+//! - [`cdr`]: bytes on the wire
+//! - [`topics`]: the one table of topics, types and QoS
+//! - [`clock`]: simulated time as a ROS stamp
+//! - [`boundary`]: messages to and from the kernels' types; everything received is checked here, once
+
+pub mod boundary;
+pub mod cdr;
+pub mod clock;
+mod fixed_array;
+mod generated;
+pub mod message;
+pub mod topics;
+
+pub use cdr::{DecodeError, from_cdr, to_cdr};
+pub use clock::{simulated_seconds, stamp};
+pub use generated::grainlab_msgs as msg;
+pub use generated::{
+    builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, std_msgs, tf2_msgs,
+};
+pub use message::{Message, TypeInfo};
+pub use topics::{Qos, TOPICS, Topic};

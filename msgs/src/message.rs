@@ -1,0 +1,76 @@
+//! What every message type knows about itself.
+
+use serde::{Serialize, de::DeserializeOwned};
+
+/// A ROS 2 message type.
+pub trait Message: Serialize + DeserializeOwned + Send + 'static {
+    /// Package, for example `grainlab_msgs`.
+    const PACKAGE: &'static str;
+    /// Name within the package, for example `Stress`.
+    const NAME: &'static str;
+    /// Full ROS name, for example `grainlab_msgs/msg/Stress`.
+    const TYPE: &'static str;
+    /// Type hash (REP-2016), `RIHS01_` and 64 hexadecimal digits.
+    const HASH: &'static str;
+    /// Schema text as rosbag2 writes it: the message file, then every message file it needs.
+    const DEFINITION: &'static str;
+}
+
+/// What a [`Message`] knows, as a value: for programs that handle types by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TypeInfo {
+    /// [`Message::PACKAGE`].
+    pub package: &'static str,
+    /// [`Message::NAME`].
+    pub name: &'static str,
+    /// [`Message::TYPE`].
+    pub type_name: &'static str,
+    /// [`Message::HASH`].
+    pub hash: &'static str,
+    /// [`Message::DEFINITION`].
+    pub definition: &'static str,
+}
+
+impl TypeInfo {
+    /// Of the type `T`.
+    pub const fn of<T: Message>() -> Self {
+        Self {
+            package: T::PACKAGE,
+            name: T::NAME,
+            type_name: T::TYPE,
+            hash: T::HASH,
+            definition: T::DEFINITION,
+        }
+    }
+
+    /// The type with this full ROS name, if it is one of ours or of the standard ones that we use.
+    ///
+    /// ```
+    /// let clock = grainlab_msgs::TypeInfo::by_name("rosgraph_msgs/msg/Clock").unwrap();
+    /// assert!(clock.hash.starts_with("RIHS01_692f7a66"));
+    /// ```
+    pub fn by_name(type_name: &str) -> Option<&'static Self> {
+        Self::all().iter().find(|t| t.type_name == type_name)
+    }
+
+    /// Every type known here, sorted by name.
+    pub const fn all() -> &'static [Self] {
+        crate::generated::TYPES
+    }
+}
+
+/// Puts a schema text together from message files: rosbag2 separates them by 80 equals signs.
+macro_rules! definition {
+    ($root:literal $(, $name:literal => $path:literal)* $(,)?) => {
+        concat!(
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $root)),
+            $(
+                "\n================================================================================\nMSG: ",
+                $name,
+                "\n",
+                include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $path)),
+            )*
+        )
+    };
+}
+pub(crate) use definition;

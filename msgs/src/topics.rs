@@ -1,0 +1,258 @@
+//! The contract: every topic of the laboratory, its type, its QoS and who writes it. Nothing else names a topic.
+
+use crate::message::TypeInfo;
+use crate::{diagnostic_msgs, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs};
+
+/// One row of the contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Topic {
+    /// Name: ours are relative, so that a namespace applies to them; the standard ones are absolute.
+    pub name: &'static str,
+    /// Type, schema text and hash.
+    pub info: TypeInfo,
+    /// What the writer offers.
+    pub qos: Qos,
+    /// Node that writes it.
+    pub writer: &'static str,
+    /// Whether every recorded byte is a function of scene and seed: no wall clock, no counter of a process.
+    pub reproducible: bool,
+    /// What it carries, in a line.
+    pub summary: &'static str,
+}
+
+/// Quality of service that a writer offers. History is always keep last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Qos {
+    /// Reliable, else best effort.
+    pub reliable: bool,
+    /// Samples kept for a reader.
+    pub depth: u32,
+    /// Transient local (a late reader gets the last samples), else volatile.
+    pub transient_local: bool,
+}
+
+impl Qos {
+    /// Streams of which nothing may be lost.
+    pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };
+    /// States of which the latest is what counts.
+    pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
+    /// ROS 2's for `/clock`.
+    pub const CLOCK: Self = Self { reliable: false, depth: 1, transient_local: false };
+    /// ROS 2's for `/rosout`.
+    pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
+
+    /// The profile as rosbag2 writes it into a channel's `offered_qos_profiles` and, as a string, into metadata.yaml: a
+    /// list with one map, numbers for words, so that every distribution reads it. No newline at the end.
+    pub fn offered_qos_profiles(&self) -> String {
+        let reliability = if self.reliable { 1 } else { 2 };
+        let durability = if self.transient_local { 1 } else { 2 };
+        // Seconds and nanoseconds of what ROS 2 means by infinite: 2^63 - 1 ns.
+        let infinite = "\n    sec: 9223372036\n    nsec: 854775807";
+        format!(
+            "- history: 1\n  depth: {depth}\n  reliability: {reliability}\n  durability: {durability}\n  \
+             deadline:{infinite}\n  lifespan:{infinite}\n  liveliness: 1\n  liveliness_lease_duration:{infinite}\n  \
+             avoid_ros_namespace_conventions: false",
+            depth = self.depth
+        )
+    }
+}
+
+impl Topic {
+    /// The row of a topic, by its name with or without the leading slash. A namespace in front of one of our names does
+    /// not hide it; the standard topics have none.
+    ///
+    /// ```
+    /// use grainlab_msgs::Topic;
+    /// assert_eq!(Topic::by_name("/lab_3/stress").unwrap().info.type_name, "grainlab_msgs/msg/Stress");
+    /// assert!(Topic::by_name("/lab_3/clock").is_none());
+    /// ```
+    pub fn by_name(name: &str) -> Option<&'static Self> {
+        let last = name.rsplit('/').next().unwrap_or(name);
+        TOPICS.iter().find(|t| match t.name.strip_prefix('/') {
+            Some(absolute) => name.strip_prefix('/').unwrap_or(name) == absolute,
+            None => t.name == last,
+        })
+    }
+
+    /// The name a recording shows without namespace: `/stress`.
+    pub fn absolute_name(&self) -> String {
+        format!("/{}", self.name.trim_start_matches('/'))
+    }
+}
+
+/// The servo's question: one request of the lockstep.
+pub const STRESS: Topic = Topic {
+    name: "stress",
+    info: TypeInfo::of::<msg::Stress>(),
+    qos: Qos::STREAM,
+    writer: "dem_simulator",
+    reproducible: true,
+    summary: "one request of the lockstep: stress, setpoints, clamps, tangent stiffness",
+};
+
+/// The servo's answer.
+pub const STRAIN_RATE: Topic = Topic {
+    name: "strain_rate",
+    info: TypeInfo::of::<msg::StrainRate>(),
+    qos: Qos::STREAM,
+    writer: "servo_controller",
+    reproducible: true,
+    summary: "the answer to one request: six strain rates",
+};
+
+/// The complete mechanical state.
+pub const PACKING: Topic = Topic {
+    name: "packing",
+    info: TypeInfo::of::<msg::Packing>(),
+    qos: Qos::LATCHED,
+    writer: "dem_simulator",
+    reproducible: true,
+    summary: "the complete mechanical state: grains, contacts, loading path",
+};
+
+/// Structure of a packing.
+pub const FABRIC: Topic = Topic {
+    name: "fabric",
+    info: TypeInfo::of::<msg::Fabric>(),
+    qos: Qos::LATCHED,
+    writer: "fabric_analyzer",
+    reproducible: true,
+    summary: "coordination, rattlers, fabric tensors",
+};
+
+/// Stiffness of a packing.
+pub const MODULI: Topic = Topic {
+    name: "moduli",
+    info: TypeInfo::of::<msg::Moduli>(),
+    qos: Qos::LATCHED,
+    writer: "fabric_analyzer",
+    reproducible: true,
+    summary: "stiffness and what an inversion needs beside it",
+};
+
+/// Wave speeds, real or virtual.
+pub const WAVE_SPEEDS: Topic = Topic {
+    name: "wave_speeds",
+    info: TypeInfo::of::<msg::WaveSpeeds>(),
+    qos: Qos::LATCHED,
+    writer: "acoustic_probe",
+    reproducible: true,
+    summary: "wave speeds by direction and polarisation; an instrument may write them, too",
+};
+
+/// Traces behind the wave speeds.
+pub const WAVEFORM: Topic = Topic {
+    name: "waveform",
+    info: TypeInfo::of::<msg::Waveform>(),
+    qos: Qos::LATCHED,
+    writer: "acoustic_probe",
+    reproducible: true,
+    summary: "the traces behind the wave speeds",
+};
+
+/// What was inferred.
+pub const MICROSTRUCTURE: Topic = Topic {
+    name: "microstructure",
+    info: TypeInfo::of::<msg::Microstructure>(),
+    qos: Qos::LATCHED,
+    writer: "emt_inversion",
+    reproducible: true,
+    summary: "inferred microstructure, one estimate a model",
+};
+
+/// Where the run stands.
+pub const RUN_STATE: Topic = Topic {
+    name: "run_state",
+    info: TypeInfo::of::<msg::RunState>(),
+    qos: Qos::LATCHED,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "phase, progress, finished, step of the last packing",
+};
+
+/// Simulated time, for tools; nothing in the laboratory waits for it.
+pub const CLOCK: Topic = Topic {
+    name: "/clock",
+    info: TypeInfo::of::<rosgraph_msgs::Clock>(),
+    qos: Qos::CLOCK,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "simulated time, at most 100 Hz of wall time",
+};
+
+/// Logs.
+pub const ROSOUT: Topic = Topic {
+    name: "/rosout",
+    info: TypeInfo::of::<rcl_interfaces::Log>(),
+    qos: Qos::ROSOUT,
+    writer: "every node",
+    reproducible: false,
+    summary: "logs",
+};
+
+/// Health. Deeper than ROS 2's 10, so that a recording misses nothing.
+pub const DIAGNOSTICS: Topic = Topic {
+    name: "/diagnostics",
+    info: TypeInfo::of::<diagnostic_msgs::DiagnosticArray>(),
+    qos: Qos::STREAM,
+    writer: "every node",
+    reproducible: false,
+    summary: "health and counters of every node",
+};
+
+/// Frames.
+pub const TF_STATIC: Topic = Topic {
+    name: "/tf_static",
+    info: TypeInfo::of::<tf2_msgs::TFMessage>(),
+    qos: Qos::LATCHED,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "the frame of the cell, for viewers",
+};
+
+/// Every topic of the contract.
+pub const TOPICS: &[Topic] = &[
+    STRESS,
+    STRAIN_RATE,
+    PACKING,
+    FABRIC,
+    MODULI,
+    WAVE_SPEEDS,
+    WAVEFORM,
+    MICROSTRUCTURE,
+    RUN_STATE,
+    CLOCK,
+    ROSOUT,
+    DIAGNOSTICS,
+    TF_STATIC,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_only_ours_are_relative() {
+        for (i, t) in TOPICS.iter().enumerate() {
+            assert!(TOPICS[..i].iter().all(|other| other.name != t.name), "{}", t.name);
+            assert_eq!(t.name.starts_with('/'), t.info.package != "grainlab_msgs", "{}", t.name);
+            assert_eq!(Topic::by_name(t.name), Some(t));
+            assert_eq!(Topic::by_name(&t.absolute_name()), Some(t));
+            assert_eq!(TypeInfo::by_name(t.info.type_name), Some(&t.info));
+        }
+        assert_eq!(Topic::by_name("stresses"), None);
+        assert_eq!(Topic::by_name(""), None);
+    }
+
+    #[test]
+    fn profiles_are_written_as_rosbag2_writes_them() {
+        let expected = "- history: 1\n  depth: 10\n  reliability: 1\n  durability: 2\n  deadline:\n    sec: \
+            9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: 1\n  \
+            liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: \
+            false";
+        let qos = Qos { reliable: true, depth: 10, transient_local: false };
+        assert_eq!(qos.offered_qos_profiles(), expected);
+        let latched = Qos { reliable: false, depth: 1, transient_local: true }.offered_qos_profiles();
+        assert!(latched.contains("depth: 1\n  reliability: 2\n  durability: 1\n"), "{latched}");
+    }
+}

@@ -1,0 +1,34 @@
+//! A list of every type, for tests that go through them all; `golden.rs` proves it complete.
+
+/// Calls the macro `$check` with each type.
+macro_rules! for_every_type {
+    ($check:ident) => {
+        $check!(grainlab_msgs::builtin_interfaces::Duration);
+        $check!(grainlab_msgs::builtin_interfaces::Time);
+        $check!(grainlab_msgs::diagnostic_msgs::DiagnosticArray);
+        $check!(grainlab_msgs::diagnostic_msgs::DiagnosticStatus);
+        $check!(grainlab_msgs::diagnostic_msgs::KeyValue);
+        $check!(grainlab_msgs::geometry_msgs::Point);
+        $check!(grainlab_msgs::geometry_msgs::Quaternion);
+        $check!(grainlab_msgs::geometry_msgs::Transform);
+        $check!(grainlab_msgs::geometry_msgs::TransformStamped);
+        $check!(grainlab_msgs::geometry_msgs::Vector3);
+        $check!(grainlab_msgs::msg::Estimate);
+        $check!(grainlab_msgs::msg::Fabric);
+        $check!(grainlab_msgs::msg::Microstructure);
+        $check!(grainlab_msgs::msg::Moduli);
+        $check!(grainlab_msgs::msg::Packing);
+        $check!(grainlab_msgs::msg::RunState);
+        $check!(grainlab_msgs::msg::StrainRate);
+        $check!(grainlab_msgs::msg::Stress);
+        $check!(grainlab_msgs::msg::SymmetricTensor);
+        $check!(grainlab_msgs::msg::WaveSpeed);
+        $check!(grainlab_msgs::msg::WaveSpeeds);
+        $check!(grainlab_msgs::msg::Waveform);
+        $check!(grainlab_msgs::rcl_interfaces::Log);
+        $check!(grainlab_msgs::rosgraph_msgs::Clock);
+        $check!(grainlab_msgs::std_msgs::Header);
+        $check!(grainlab_msgs::tf2_msgs::TFMessage);
+    };
+}
+pub(crate) use for_every_type;

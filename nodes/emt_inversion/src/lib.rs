@@ -1,0 +1,1 @@
+//! The inversion node: turns moduli into microstructure.

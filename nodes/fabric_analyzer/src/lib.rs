@@ -1,0 +1,1 @@
+//! The analyzer node: turns packings into fabric and moduli.

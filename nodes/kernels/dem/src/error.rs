@@ -1,0 +1,76 @@
+//! What can go wrong in the engine.
+
+/// Why a simulation cannot start or go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DemError {
+    /// A grain moved too far in one step, or its state is not finite.
+    #[error(
+        "unstable at step {step}: grain {grain} moves at {speed:e} m/s, more than a tenth of its radius in one step of \
+         {time_step:e} s{cause}; lower numerics.time_step_safety or the strain rates"
+    )]
+    Unstable {
+        /// Solver step.
+        step: u64,
+        /// Persistent id of the grain.
+        grain: u32,
+        /// Its speed, m/s; not finite if the state is lost.
+        speed: f64,
+        /// Time step, s.
+        time_step: f64,
+        /// The contact that pushed it, if one stands out.
+        cause: String,
+    },
+    /// Two grains overlap far beyond the validity of Hertz's law.
+    #[error(
+        "at step {step} grains {first} and {second} overlap by {overlap:e} m, more than a tenth of a diameter; \
+         lower the strain rates, the stress targets or the gas speed"
+    )]
+    Overlap {
+        /// Solver step.
+        step: u64,
+        /// Persistent id.
+        first: u32,
+        /// Persistent id.
+        second: u32,
+        /// Full overlap, m.
+        overlap: f64,
+    },
+    /// The cell degenerated.
+    #[error("the cell lost its volume at step {step}: the strain path leads nowhere")]
+    Cell {
+        /// Solver step.
+        step: u64,
+    },
+    /// A grain travelled too many cell lengths for image numbers to hold.
+    #[error("grain {grain} travelled more than 100 cell lengths; shorten the gas phase or lower its speed")]
+    Image {
+        /// Persistent id.
+        grain: u32,
+    },
+    /// The grains do not fit at the solid fraction asked for.
+    #[error(
+        "could not place grain {placed} of {grains} at random at a solid fraction of {solid_fraction}; lower initial_solid_fraction"
+    )]
+    Placement {
+        /// Grains placed so far.
+        placed: u32,
+        /// Grains asked for.
+        grains: u32,
+        /// Solid fraction asked for.
+        solid_fraction: f64,
+    },
+    /// A strain rate that cannot be obeyed.
+    #[error("strain rate component {component} is {value}; it must be finite")]
+    Rate {
+        /// Voigt component name.
+        component: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The path failed.
+    #[error(transparent)]
+    Path(#[from] scene::PathError),
+    /// A saved state does not belong to this scene or version.
+    #[error("cannot resume: {0}")]
+    Resume(String),
+}

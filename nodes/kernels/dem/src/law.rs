@@ -1,0 +1,138 @@
+//! The contact law: Hertz normal force, Mindlin tangential force with history, Coulomb limit, viscous damping.
+//!
+//! This scalar form is the specification; faster forms are tested against it.
+
+use grains::{Material, Vec3};
+
+/// Coefficients of the contact law for one phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    /// 2 E*, Pa: k_n = this × √(R* δ).
+    pub normal: f64,
+    /// 8 G*, Pa: k_t = this × √(R* δ).
+    pub tangential: f64,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Damping, share of critical.
+    pub damping: f64,
+}
+
+/// Geometry and motion of one contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Unit vector from `i` to `j`.
+    pub normal: Vec3,
+    /// Distance of the centres, m.
+    pub distance: f64,
+    /// Full overlap, m, positive.
+    pub overlap: f64,
+    /// Overlap one step ago, m; 0 for a new contact.
+    pub previous_overlap: f64,
+    /// Effective radius R*, m.
+    pub r_eff: f64,
+    /// Effective mass m_i m_j/(m_i + m_j), kg.
+    pub m_eff: f64,
+    /// Velocity of the centre of `j` relative to `i`, affine part included, m/s.
+    pub relative: Vec3,
+    /// a_i ω_i + a_j ω_j with levers a = R − δ/2, m/s.
+    pub rolling: Vec3,
+    /// (ω_i + ω_j)/2 along the normal, rad/s: the twist that carries the tangential force along.
+    pub twist: f64,
+}
+
+/// Forces of one contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forces {
+    /// Normal force, damping included, N, positive in compression, never attractive.
+    pub normal: f64,
+    /// Tangential force on `i`, damping included, N.
+    pub tangential: Vec3,
+    /// Elastic part of the tangential force on `i`, N: the history.
+    pub history: Vec3,
+}
+
+impl Law {
+    /// Coefficients for grains of `material`.
+    pub fn new(material: &Material, friction: f64, damping: f64) -> Self {
+        Self {
+            normal: 2.0 * material.effective_young(),
+            tangential: 8.0 * material.effective_shear(),
+            friction,
+            damping,
+        }
+    }
+
+    /// Normal force (elastic, total) of a contact, N.
+    #[inline(always)]
+    fn normal_force(&self, t: &Touch, root: f64, approach: f64) -> (f64, f64, f64) {
+        // F = (4/3) E* √(R*) δ^{3/2} = (2/3) k_n δ
+        let k_n = self.normal * root;
+        let elastic = 2.0 / 3.0 * k_n * t.overlap;
+        let dashpot = if self.damping > 0.0 { 2.0 * self.damping * (t.m_eff * k_n).sqrt() } else { 0.0 };
+        (elastic, (elastic + dashpot * approach).max(0.0), dashpot)
+    }
+
+    /// A contact without friction.
+    #[inline(always)]
+    pub fn frictionless(&self, t: &Touch) -> f64 {
+        let root = (t.r_eff * t.overlap).sqrt();
+        self.normal_force(t, root, -t.relative.dot(&t.normal)).1
+    }
+
+    /// A contact with friction, its history brought forward by `dt` (s) where `ADVANCE`, else taken as it is.
+    ///
+    /// `SLIDING` applies the Coulomb limit; `RESCALED` scales the history down with the stiffness on unloading.
+    #[inline(always)]
+    pub fn frictional<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
+        &self,
+        t: &Touch,
+        history: Vec3,
+        dt: f64,
+    ) -> Forces {
+        let n = t.normal;
+        let along = t.relative.dot(&n);
+        let across = t.relative - n * along;
+        let slip = across - t.rolling.cross(&n);
+        let root = (t.r_eff * t.overlap).sqrt();
+        let (elastic, normal, dashpot) = self.normal_force(t, root, -along);
+        let mut f = history;
+        let mut slides = false;
+        if ADVANCE {
+            f = carried(f, t, &across, dt);
+            if RESCALED && t.overlap < t.previous_overlap {
+                f *= (t.overlap / t.previous_overlap).sqrt();
+            }
+            f += slip * (self.tangential * root * dt);
+        }
+        if SLIDING {
+            let limit = self.friction * elastic;
+            let size2 = f.norm_squared();
+            if size2 > limit * limit {
+                slides = true;
+                if ADVANCE {
+                    f *= limit / size2.sqrt();
+                }
+            } else if !ADVANCE {
+                slides = size2 >= limit * limit * (1.0 - 1e-12);
+            }
+        }
+        let mut tangential = f;
+        if dashpot > 0.0 && !slides {
+            tangential += slip * (dashpot * (self.tangential / self.normal).sqrt());
+        }
+        Forces { normal, tangential, history: f }
+    }
+}
+
+/// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.
+///
+/// With m the mean of the old and new normal, f − (f·n) m is that rotation; m is n less half of the normal's change.
+/// Norm and perpendicularity are kept to third order in the angle of one step (1e-7 rad at most in practice).
+#[inline(always)]
+fn carried(f: Vec3, t: &Touch, across: &Vec3, dt: f64) -> Vec3 {
+    let n = t.normal;
+    let mean = n - across * (0.5 * dt / t.distance);
+    let f = f - mean * f.dot(&n);
+    let angle = t.twist * dt;
+    f * (1.0 - 0.5 * angle * angle) + n.cross(&f) * angle
+}

@@ -1,0 +1,29 @@
+//! The particle engine: frictional Hertz–Mindlin spheres in a deforming periodic cell.
+//!
+//! - [`simulation`]: a scene run along its loading path, one request and one answer at a time
+//! - [`engine`]: stepping grains at a given strain rate
+//! - [`law`]: the contact law, the specification of every faster form
+//! - [`gas`]: placing grains at random and agitating them
+//! - [`observe`]: stress, tangent stiffness and balance of the present contacts
+//!
+//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), so nothing depends on
+//! when a neighbour list was rebuilt, and a state saved and loaded goes on bit for bit.
+
+pub mod engine;
+pub mod error;
+pub mod gas;
+mod integrate;
+pub mod law;
+mod neighbours;
+pub mod observe;
+mod pairs;
+mod pass;
+mod run_state;
+pub mod simulation;
+mod state;
+mod time_step;
+
+pub use engine::{Engine, Setting};
+pub use error::DemError;
+pub use observe::Snapshot;
+pub use simulation::{Advanced, Request, Simulation};

@@ -1,0 +1,291 @@
+//! A scene run along its loading path, one request and one answer at a time.
+
+use crate::engine::{Engine, Setting};
+use crate::error::DemError;
+use crate::gas;
+use crate::observe::Snapshot;
+use crate::run_state::RunState;
+use grains::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
+use scene::{Observation, PathEvent, PathState, Phase, PhaseKind, Scene};
+
+/// Solver steps between two copies of the state that a failing run is taken back to.
+const KEEP_INTERVAL: u64 = 100;
+
+/// A run: owns scene, path, engine and clock, and moves only when it is answered.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    scene: Scene,
+    engine: Engine,
+    path: PathState,
+    sequence: u64,
+    packings: u64,
+    /// Deformation gradient since the reference state; the identity before there is one.
+    deformation: Mat3,
+    phase_deformation: Mat3,
+    has_reference: bool,
+    seen: Snapshot,
+    kept: Box<Option<Simulation>>,
+}
+
+/// What the run asks: everything a servo needs to answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// Counts requests from 0.
+    pub sequence: u64,
+    /// Solver steps done.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time: f64,
+    /// Index of the phase under way.
+    pub phase: u32,
+    /// What the contacts say.
+    pub snapshot: Snapshot,
+    /// What is imposed on each component.
+    pub controls: [ComponentControl; 6],
+    /// Strain rate in force, Voigt order, 1/s.
+    pub rate: [f64; 6],
+    /// Largest magnitude of a component that the phase allows, 1/s.
+    pub rate_limit: f64,
+    /// Control law of the phase.
+    pub law: ServoLaw,
+    /// Simulated time until the next request, s.
+    pub control_interval: f64,
+    /// Logarithmic strain since the reference state.
+    pub strain: SymTensor,
+}
+
+/// What an answer led to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advanced {
+    /// Name of the phase that ended, if one did.
+    pub ended: Option<String>,
+    /// The packing is due for publication.
+    pub packing_due: bool,
+    /// The path is done.
+    pub finished: bool,
+}
+
+impl Simulation {
+    /// The beginning of a scene: grains placed at random and agitated.
+    pub fn new(scene: Scene) -> Result<Self, DemError> {
+        let (fraction, speed) = match scene.phases.first().map(|p| &p.kind) {
+            Some(PhaseKind::Gas { initial_solid_fraction, speed, .. }) => (*initial_solid_fraction, *speed),
+            _ => return Err(DemError::Resume("the path does not begin with a gas phase".into())),
+        };
+        let gas = gas::place(scene.grains, scene.diameter, fraction, speed, scene.seed)?;
+        let radii = vec![0.5 * scene.diameter; scene.grains as usize];
+        let setting = setting(&scene, &scene.phases[0]);
+        let mut engine = Engine::new(gas.cell, scene.material, radii, &gas.positions, setting);
+        engine.set_velocities(&gas.velocities);
+        engine.prepare()?;
+        let seen = engine.snapshot()?;
+        Ok(Self {
+            scene,
+            engine,
+            path: PathState::START,
+            sequence: 0,
+            packings: 0,
+            deformation: Mat3::identity(),
+            phase_deformation: Mat3::identity(),
+            has_reference: false,
+            seen,
+            kept: Box::new(None),
+        })
+    }
+
+    /// Goes on from a packing and the run state it was published with.
+    pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, DemError> {
+        let saved = RunState::decode(run_state)?;
+        if saved.seed != scene.seed || saved.phases != scene.phases.len() as u64 {
+            return Err(DemError::Resume("the packing belongs to another scene or seed".into()));
+        }
+        let phase = scene.phases.get(saved.path.phase).or(scene.phases.last());
+        let phase = phase.ok_or(DemError::Resume("the scene has no phases".into()))?;
+        let mut engine = Engine::from_packing(packing, setting(&scene, phase));
+        engine.state.time = saved.time;
+        engine.set_rate(&saved.rate)?;
+        engine.prepare()?;
+        let seen = engine.snapshot()?;
+        Ok(Self {
+            engine,
+            path: saved.path,
+            sequence: saved.sequence,
+            packings: saved.packings,
+            deformation: packing.deformation,
+            phase_deformation: saved.phase_deformation,
+            has_reference: saved.has_reference,
+            seen,
+            kept: Box::new(None),
+            scene,
+        })
+    }
+
+    /// The scene being run.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Where the run stands.
+    pub fn path(&self) -> &PathState {
+        &self.path
+    }
+
+    /// Whether the path is done.
+    pub fn finished(&self) -> bool {
+        self.path.phase >= self.scene.phases.len()
+    }
+
+    /// Packings that were due so far.
+    pub fn packings(&self) -> u64 {
+        self.packings
+    }
+
+    /// The engine, read only.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// The present request; `None` once the path is done.
+    pub fn request(&self) -> Option<Request> {
+        let phase = self.path.phase(&self.scene)?;
+        let fixed = ServoLaw::Scaled { response_time: 1.0 };
+        let (law, rate_limit) = match phase.kind {
+            PhaseKind::Servo { law, rate_limit, .. } => (law, rate_limit),
+            PhaseKind::Gas { rate, .. } => (fixed, rate.abs()),
+            PhaseKind::Strain { rate } => (fixed, rate.iter().fold(0.0f64, |a, r| a.max(r.abs()))),
+            PhaseKind::Relax => (fixed, 0.0),
+        };
+        Some(Request {
+            sequence: self.sequence,
+            step: self.engine.steps(),
+            time: self.engine.time(),
+            phase: self.path.phase as u32,
+            snapshot: self.seen,
+            controls: phase.controls(),
+            rate: self.engine.rate(),
+            // A limit must be positive; a phase that imposes nothing allows anything.
+            rate_limit: if rate_limit > 0.0 { rate_limit } else { 1.0 },
+            law,
+            control_interval: self.engine.time_step() * f64::from(phase.control_period),
+            strain: logarithmic_strain(&self.deformation),
+        })
+    }
+
+    /// Obeys one answer: strains at `rate` (Voigt order, 1/s) for one control period. On failure the run is back at the
+    /// last state kept, at most [`KEEP_INTERVAL`] steps ago.
+    pub fn answer(&mut self, rate: &[f64; 6]) -> Result<Advanced, DemError> {
+        let none = Advanced { ended: None, packing_due: false, finished: self.finished() };
+        let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };
+        let period = phase.control_period;
+        self.engine.set_rate(rate)?;
+        self.keep();
+        match self.advance(period) {
+            Ok(advanced) => Ok(advanced),
+            Err(e) => {
+                if let Some(kept) = self.kept.take() {
+                    *self = kept;
+                }
+                Err(e)
+            }
+        }
+    }
+
+    fn advance(&mut self, period: u32) -> Result<Advanced, DemError> {
+        for _ in 0..period {
+            let stretch = self.engine.step()?;
+            self.phase_deformation = stretch * self.phase_deformation;
+            if self.has_reference {
+                self.deformation = stretch * self.deformation;
+            }
+        }
+        self.seen = self.engine.snapshot()?;
+        self.sequence += 1;
+        let seen = Observation {
+            time: self.engine.time(),
+            stress: self.seen.stress.tensor,
+            strain: logarithmic_strain(&self.phase_deformation),
+            solid_fraction: self.seen.solid_fraction,
+            unbalanced: self.seen.unbalanced,
+            speed: self.engine.speed(),
+        };
+        let before = self.path.phase;
+        match self.path.observe(&self.scene, &seen)? {
+            PathEvent::Stay => Ok(Advanced { ended: None, packing_due: false, finished: false }),
+            PathEvent::PhaseEnded { reference, publish, finished } => {
+                self.begin_phase(reference);
+                self.packings += u64::from(publish);
+                let ended = Some(self.scene.phases[before].name.clone());
+                Ok(Advanced { ended, packing_due: publish, finished })
+            }
+        }
+    }
+
+    fn begin_phase(&mut self, reference: bool) {
+        self.phase_deformation = Mat3::identity();
+        if reference {
+            self.has_reference = true;
+            self.deformation = Mat3::identity();
+        }
+        if let Some(phase) = self.path.phase(&self.scene) {
+            self.engine.set(setting(&self.scene, phase));
+            self.engine.renew_time_step();
+        }
+    }
+
+    /// The mechanical state.
+    pub fn packing(&self) -> Packing {
+        self.engine.packing(self.deformation)
+    }
+
+    /// The rest of the state, to go with the packing: [`Simulation::resume`] takes both.
+    pub fn run_state(&self) -> Vec<u8> {
+        RunState {
+            sequence: self.sequence,
+            packings: self.packings,
+            path: self.path,
+            time: self.engine.time(),
+            rate: self.engine.rate(),
+            phase_deformation: self.phase_deformation,
+            has_reference: self.has_reference,
+            seed: self.scene.seed,
+            phases: self.scene.phases.len() as u64,
+        }
+        .encode()
+    }
+
+    fn keep(&mut self) {
+        let due = match self.kept.as_ref() {
+            Some(k) => self.engine.steps() - k.engine.steps() >= KEEP_INTERVAL,
+            None => true,
+        };
+        if due {
+            *self.kept = None;
+            let copy = self.clone();
+            *self.kept = Some(copy);
+        }
+    }
+}
+
+fn setting(scene: &Scene, phase: &Phase) -> Setting {
+    Setting {
+        friction: phase.friction,
+        damping: phase.damping,
+        drag: phase.drag,
+        spin_drag: phase.spin_drag,
+        tangential: scene.numerics.tangential,
+        time_step_safety: scene.numerics.time_step_safety,
+        skin: scene.numerics.skin * scene.diameter,
+        speed_cap: match phase.kind {
+            PhaseKind::Gas { speed, .. } => Some(speed),
+            _ => None,
+        },
+    }
+}
+
+/// ln V of F = V R, positive in extension.
+fn logarithmic_strain(f: &Mat3) -> SymTensor {
+    let left = (f * f.transpose()).symmetric_eigen();
+    let logs = left.eigenvalues.map(|v| 0.5 * v.ln());
+    let q = left.eigenvectors;
+    SymTensor::symmetric_part(&(q * Mat3::from_diagonal(&logs) * q.transpose()))
+}

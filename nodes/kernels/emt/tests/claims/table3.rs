@@ -1,0 +1,47 @@
+//! The sixteen states of the paper's Table III, with the moduli that its k, k̂ and ε imply.
+
+use emt::{Gamma, Observation, Structure};
+
+/// One state.
+pub(crate) struct Row {
+    /// Sample and pressure, for messages.
+    pub(crate) label: String,
+    /// γ/Δ of Table II.
+    pub(crate) g: f64,
+    /// What Table III says.
+    pub(crate) structure: Structure,
+    pressure: f64,
+    g12: f64,
+    g13: f64,
+    theta: f64,
+    theta_printed: f64,
+}
+
+impl Row {
+    /// The moduli that imply this row under the model of this name.
+    pub(crate) fn observation(&self, model: &str) -> Observation {
+        let theta = if model == "ratio" { self.theta } else { self.theta_printed };
+        Observation::new(self.g12, self.g13, theta, self.pressure, Gamma::given(self.g))
+    }
+}
+
+/// All of them, in the order of the table.
+pub(crate) fn rows() -> Vec<Row> {
+    include_str!("../../../../../tests/golden/table3.csv").lines().skip(1).map(row).collect()
+}
+
+fn row(line: &str) -> Row {
+    let (sample, numbers) = line.split_once(',').unwrap();
+    let v: Vec<f64> = numbers.split(',').map(|n| n.parse().unwrap()).collect();
+    let [p_kpa, g, g12, g13, theta, theta_printed, k, k_hat, eps] = v[..] else { panic!("{line}") };
+    Row {
+        label: format!("{sample} at {p_kpa} kPa"),
+        g,
+        structure: Structure { k, k_hat, eps },
+        pressure: 1.0e3 * p_kpa,
+        g12,
+        g13,
+        theta,
+        theta_printed,
+    }
+}

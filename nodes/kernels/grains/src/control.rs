@@ -1,0 +1,29 @@
+//! What a loading path asks of each strain component, and the law that answers.
+
+/// What is imposed on one component of the strain rate (Voigt order xx, yy, zz, yz, xz, xy, tensor components).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ComponentControl {
+    /// No strain.
+    Held,
+    /// The servo drives this stress component to the setpoint, Pa, positive in compression.
+    Stress(f64),
+    /// This strain rate, 1/s, positive in extension.
+    StrainRate(f64),
+}
+
+/// How a stress error becomes a strain rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ServoLaw {
+    /// Rate = (σ − σ*)/(K τ): the error divided by the present tangent stiffness and by the response time τ.
+    Scaled {
+        /// Response time τ, s; at least ten sound crossings of the cell.
+        response_time: f64,
+    },
+    /// Eq. 1: rate ← (1 − leak)·rate + gain·(σ − σ*), once each control period.
+    Integral {
+        /// Gain g, 1/(Pa·s).
+        gain: f64,
+        /// Share of the rate forgotten each control period, in [0, 1]; 0 is Eq. 1 to the letter.
+        leak: f64,
+    },
+}

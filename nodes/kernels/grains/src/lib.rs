@@ -1,0 +1,31 @@
+//! Grains, cells, contacts and the quantities measured on them: the vocabulary that every kernel shares.
+//!
+//! SI units and `f64` throughout. Stress is positive in compression; strain (logarithmic) and its rate are
+//! positive in extension. Voigt order is xx, yy, zz, yz, xz, xy with engineering shear in stiffnesses.
+//! `e3 = z` is the axis of a scene.
+//!
+//! - [`tensor`]: small vectors and tensors
+//! - [`cell`]: the periodic cell
+//! - [`material`]: the grain's material and the contact stiffnesses that follow from it (Eqs. 8 and 9)
+//! - [`packing`]: grains, cell and contact network at one instant
+//! - [`stress`]: the one definition of stress
+//! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
+//! - [`control`]: what a loading path asks of each strain component, and the law that answers
+//! - [`results`]: what the kernels report
+
+pub mod cell;
+pub mod control;
+pub mod material;
+pub mod packing;
+pub mod results;
+pub mod stiffness;
+pub mod stress;
+pub mod tensor;
+
+pub use cell::Cell;
+pub use control::{ComponentControl, ServoLaw};
+pub use material::Material;
+pub use packing::{Contact, Packing, PackingError};
+pub use results::{Anisotropy, Fabric, Moduli};
+pub use stiffness::{Stiffness, TransverseIsotropy};
+pub use tensor::{Mat3, SymTensor, Vec3};

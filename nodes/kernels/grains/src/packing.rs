@@ -1,0 +1,290 @@
+//! Grains, cell and contact network at one instant.
+
+use crate::cell::Cell;
+use crate::material::{Material, effective_radius};
+use crate::tensor::{Mat3, Vec3};
+
+/// One contact between two grains, or between a grain and a periodic image (its own, too).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Index of the first grain.
+    pub i: u32,
+    /// Index of the second grain, `j ≥ i`.
+    pub j: u32,
+    /// Cell vectors added to the position of `j` to find the image that is touched.
+    pub image: [i8; 3],
+    /// Full overlap R_i + R_j − |l|, m, positive.
+    pub overlap: f64,
+    /// Unit vector from `i` to the image of `j`.
+    pub normal: Vec3,
+    /// Elastic normal force, N, positive in compression.
+    pub normal_force: f64,
+    /// Tangential force on `i`, N, perpendicular to [`Contact::normal`].
+    pub tangential_force: Vec3,
+}
+
+/// A packing of spheres: the mechanical state that is measured, displayed and resumed.
+///
+/// Built by [`Packing::validated`], which is what makes the fields safe to use as they are: `n = radii.len()` in every
+/// per-grain vector, everything finite, indices in range, contacts sorted by `(i, j, image)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packing {
+    /// Solver steps done.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time: f64,
+    /// The periodic cell.
+    pub cell: Cell,
+    /// Deformation gradient since the reference state; the identity if no reference was set.
+    pub deformation: Mat3,
+    /// Persistent ids of the grains.
+    pub ids: Vec<u32>,
+    /// Radii, m.
+    pub radii: Vec<f64>,
+    /// Positions as held: unwrapped, not folded into the cell, m.
+    pub positions: Vec<Vec3>,
+    /// Velocities relative to the affine motion, m/s.
+    pub velocities: Vec<Vec3>,
+    /// Angular velocities, rad/s.
+    pub spins: Vec<Vec3>,
+    /// Contacts with positive overlap, sorted by `(i, j, image)`.
+    pub contacts: Vec<Contact>,
+    /// Material of every grain.
+    pub material: Material,
+    /// Friction coefficient in force; may be infinite.
+    pub friction: f64,
+    /// Time step in force, s; 0 if the packing was not made by a simulation of ours.
+    pub time_step: f64,
+}
+
+/// Why a set of numbers is not a packing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PackingError {
+    /// A per-grain array has the wrong length.
+    #[error("{field} has {found} entries, but there are {expected} grains")]
+    Length {
+        /// Which array.
+        field: &'static str,
+        /// Entries it should have.
+        expected: usize,
+        /// Entries it has.
+        found: usize,
+    },
+    /// A number is not finite.
+    #[error("{field}[{index}] is not finite ({value})")]
+    NotFinite {
+        /// Which quantity.
+        field: &'static str,
+        /// Index of the grain or contact.
+        index: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A number is out of its range.
+    #[error("{field}[{index}] = {value:e} is out of range: {requirement}")]
+    Range {
+        /// Which quantity.
+        field: &'static str,
+        /// Index of the grain or contact; 0 for a quantity of the whole packing.
+        index: usize,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// A contact names a grain that does not exist.
+    #[error("contact {contact} names grain {grain}, but there are {grains} grains (indices count from 0)")]
+    GrainIndex {
+        /// Index of the contact.
+        contact: usize,
+        /// The index it holds.
+        grain: u32,
+        /// Number of grains.
+        grains: usize,
+    },
+    /// Contacts are not strictly sorted by (i, j, image) with i ≤ j.
+    #[error(
+        "contact {contact} is out of order: contacts must be sorted by i, j, image, with i <= j and no duplicates"
+    )]
+    ContactOrder {
+        /// Index of the first contact out of order.
+        contact: usize,
+    },
+}
+
+impl Packing {
+    /// The packing itself if it is one, else the first fault found.
+    pub fn validated(self) -> Result<Self, PackingError> {
+        let n = self.radii.len();
+        for (field, found) in [
+            ("id", self.ids.len()),
+            ("position", self.positions.len()),
+            ("velocity", self.velocities.len()),
+            ("angular_velocity", self.spins.len()),
+        ] {
+            if found != n {
+                return Err(PackingError::Length { field, expected: n, found });
+            }
+        }
+        let m = &self.material;
+        positive("shear_modulus", 0, m.shear_modulus)?;
+        positive("density", 0, m.density)?;
+        finite("poisson_ratio", 0, m.poisson_ratio)?;
+        if !(0.0..=0.5).contains(&m.poisson_ratio) {
+            return Err(range("poisson_ratio", 0, m.poisson_ratio, "between 0 and 0.5"));
+        }
+        if self.friction.is_nan() || self.friction < 0.0 {
+            return Err(range("friction", 0, self.friction, "0 or more"));
+        }
+        finite("time", 0, self.time)?;
+        finite("time_step", 0, self.time_step)?;
+        if self.time_step < 0.0 {
+            return Err(range("time_step", 0, self.time_step, "0 or more"));
+        }
+        for v in self.deformation.iter() {
+            finite("deformation", 0, *v)?;
+        }
+        let stretch = self.deformation.determinant();
+        if stretch <= 0.0 {
+            return Err(range("deformation", 0, stretch, "a positive determinant"));
+        }
+        for i in 0..n {
+            positive("radius", i, self.radii[i])?;
+            finite3("position", i, &self.positions[i])?;
+            finite3("velocity", i, &self.velocities[i])?;
+            finite3("angular_velocity", i, &self.spins[i])?;
+        }
+        self.validate_contacts()?;
+        Ok(self)
+    }
+
+    fn validate_contacts(&self) -> Result<(), PackingError> {
+        let n = self.grains();
+        for (index, c) in self.contacts.iter().enumerate() {
+            for grain in [c.i, c.j] {
+                if grain as usize >= n {
+                    return Err(PackingError::GrainIndex { contact: index, grain, grains: n });
+                }
+            }
+            let key = |c: &Contact| (c.i, c.j, c.image);
+            if c.i > c.j || (index > 0 && key(&self.contacts[index - 1]) >= key(c)) {
+                return Err(PackingError::ContactOrder { contact: index });
+            }
+            positive("contact_overlap", index, c.overlap)?;
+            finite("contact_normal_force", index, c.normal_force)?;
+            finite3("contact_normal", index, &c.normal)?;
+            if (c.normal.norm_squared() - 1.0).abs() > 1e-9 {
+                return Err(range("contact_normal", index, c.normal.norm(), "a unit vector"));
+            }
+            finite3("contact_tangential_force", index, &c.tangential_force)?;
+        }
+        Ok(())
+    }
+
+    /// Number of grains.
+    pub fn grains(&self) -> usize {
+        self.radii.len()
+    }
+
+    /// Solid fraction φ: volume of the spheres over volume of the cell.
+    pub fn solid_fraction(&self) -> f64 {
+        let solid: f64 = self.radii.iter().map(|r| r.powi(3)).sum();
+        4.0 / 3.0 * std::f64::consts::PI * solid / self.cell.volume()
+    }
+
+    /// Branch vector of a contact, from the centre of `i` to the centre of the image of `j`, m.
+    pub fn branch(&self, c: &Contact) -> Vec3 {
+        self.positions[c.j as usize] - self.positions[c.i as usize] + self.cell.shift(c.image)
+    }
+
+    /// Effective radius R* of a contact, m.
+    pub fn effective_radius(&self, c: &Contact) -> f64 {
+        effective_radius(self.radii[c.i as usize], self.radii[c.j as usize])
+    }
+
+    /// Contact stiffnesses (k_n, k_t) at the present overlap, N/m.
+    pub fn contact_stiffness(&self, c: &Contact) -> (f64, f64) {
+        let r_eff = self.effective_radius(c);
+        (
+            self.material.normal_stiffness(r_eff, c.overlap),
+            self.material.tangential_stiffness(r_eff, c.overlap),
+        )
+    }
+}
+
+fn finite(field: &'static str, index: usize, value: f64) -> Result<(), PackingError> {
+    if value.is_finite() { Ok(()) } else { Err(PackingError::NotFinite { field, index, value }) }
+}
+
+fn finite3(field: &'static str, index: usize, v: &Vec3) -> Result<(), PackingError> {
+    v.iter().try_for_each(|x| finite(field, index, *x))
+}
+
+fn positive(field: &'static str, index: usize, value: f64) -> Result<(), PackingError> {
+    finite(field, index, value)?;
+    if value > 0.0 { Ok(()) } else { Err(range(field, index, value, "more than 0")) }
+}
+
+fn range(field: &'static str, index: usize, value: f64, requirement: &'static str) -> PackingError {
+    PackingError::Range { field, index, value, requirement }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair() -> Packing {
+        Packing {
+            step: 0,
+            time: 0.0,
+            cell: Cell::cube(1.0).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![0, 1],
+            radii: vec![0.1, 0.1],
+            positions: vec![Vec3::zeros(), Vec3::new(0.0, 0.0, 0.9)],
+            velocities: vec![Vec3::zeros(); 2],
+            spins: vec![Vec3::zeros(); 2],
+            contacts: vec![Contact {
+                i: 0,
+                j: 1,
+                image: [0, 0, -1],
+                overlap: 0.1,
+                normal: -Vec3::z(),
+                normal_force: 1.0,
+                tangential_force: Vec3::zeros(),
+            }],
+            material: Material::GLASS,
+            friction: 0.1,
+            time_step: 0.0,
+        }
+    }
+
+    #[test]
+    fn branch_crosses_the_periodic_boundary() {
+        let p = pair().validated().unwrap();
+        assert!((p.branch(&p.contacts[0]) - Vec3::new(0.0, 0.0, -0.1)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn faults_are_named_with_field_and_index() {
+        let mut p = pair();
+        p.contacts[0].j = 7;
+        assert_eq!(p.validated(), Err(PackingError::GrainIndex { contact: 0, grain: 7, grains: 2 }));
+        let mut p = pair();
+        p.positions[1].y = f64::INFINITY;
+        let message = p.validated().unwrap_err().to_string();
+        assert_eq!(message, "position[1] is not finite (inf)");
+        let mut p = pair();
+        p.spins.pop();
+        assert_eq!(
+            p.validated(),
+            Err(PackingError::Length { field: "angular_velocity", expected: 2, found: 1 })
+        );
+        let mut p = pair();
+        p.friction = -0.1;
+        assert!(p.validated().is_err());
+        let mut p = pair();
+        p.contacts.push(p.contacts[0]);
+        assert_eq!(p.validated(), Err(PackingError::ContactOrder { contact: 1 }));
+    }
+}

@@ -1,0 +1,107 @@
+//! Small vectors and tensors.
+
+/// A vector of three Cartesian components.
+pub type Vec3 = nalgebra::Vector3<f64>;
+
+/// A general second-order tensor, 3×3.
+pub type Mat3 = nalgebra::Matrix3<f64>;
+
+/// A symmetric second-order tensor; unit and sign are those of the quantity it holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SymTensor {
+    /// Component along x, x.
+    pub xx: f64,
+    /// Component along y, y.
+    pub yy: f64,
+    /// Component along z, z.
+    pub zz: f64,
+    /// Component along y, z (tensor component, not engineering shear).
+    pub yz: f64,
+    /// Component along x, z.
+    pub xz: f64,
+    /// Component along x, y.
+    pub xy: f64,
+}
+
+impl SymTensor {
+    /// `value` times the identity.
+    pub const fn isotropic(value: f64) -> Self {
+        Self { xx: value, yy: value, zz: value, yz: 0.0, xz: 0.0, xy: 0.0 }
+    }
+
+    /// From Voigt order xx, yy, zz, yz, xz, xy (tensor components).
+    pub const fn from_voigt(v: [f64; 6]) -> Self {
+        Self { xx: v[0], yy: v[1], zz: v[2], yz: v[3], xz: v[4], xy: v[5] }
+    }
+
+    /// In Voigt order xx, yy, zz, yz, xz, xy (tensor components).
+    pub const fn voigt(&self) -> [f64; 6] {
+        [self.xx, self.yy, self.zz, self.yz, self.xz, self.xy]
+    }
+
+    /// The symmetric part of `m`.
+    pub fn symmetric_part(m: &Mat3) -> Self {
+        Self {
+            xx: m[(0, 0)],
+            yy: m[(1, 1)],
+            zz: m[(2, 2)],
+            yz: 0.5 * (m[(1, 2)] + m[(2, 1)]),
+            xz: 0.5 * (m[(0, 2)] + m[(2, 0)]),
+            xy: 0.5 * (m[(0, 1)] + m[(1, 0)]),
+        }
+    }
+
+    /// As a full matrix.
+    pub fn matrix(&self) -> Mat3 {
+        Mat3::new(
+            self.xx, self.xy, self.xz, //
+            self.xy, self.yy, self.yz, //
+            self.xz, self.yz, self.zz,
+        )
+    }
+
+    /// Sum of the diagonal.
+    pub fn trace(&self) -> f64 {
+        self.xx + self.yy + self.zz
+    }
+
+    /// A third of the trace: the pressure, if this is a stress.
+    pub fn mean(&self) -> f64 {
+        self.trace() / 3.0
+    }
+
+    /// Deviatoric invariant √(3/2 s:s) with s the deviator: q, if this is a stress.
+    pub fn deviatoric_invariant(&self) -> f64 {
+        let m = self.mean();
+        let (x, y, z) = (self.xx - m, self.yy - m, self.zz - m);
+        let off = self.yz * self.yz + self.xz * self.xz + self.xy * self.xy;
+        (1.5 * (x * x + y * y + z * z + 2.0 * off)).sqrt()
+    }
+
+    /// Every component times `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self::from_voigt(self.voigt().map(|v| v * factor))
+    }
+
+    /// Whether every component is finite.
+    pub fn is_finite(&self) -> bool {
+        self.voigt().iter().all(|v| v.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uniaxial_stress_has_its_own_magnitude_as_deviatoric_invariant() {
+        let s = SymTensor { zz: 7.0, ..SymTensor::default() };
+        assert!((s.deviatoric_invariant() - 7.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn symmetric_part_drops_the_spin() {
+        let spin = Mat3::new(0.0, 1.0, -2.0, -1.0, 0.0, 3.0, 2.0, -3.0, 0.0);
+        assert_eq!(SymTensor::symmetric_part(&spin), SymTensor::default());
+    }
+}

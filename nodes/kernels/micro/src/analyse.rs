@@ -1,0 +1,105 @@
+//! Everything that is measured on one packing.
+
+use crate::anisotropy;
+use crate::balance::unbalanced;
+use crate::error::{MicroError, NoNetwork};
+use crate::fabric::fabric;
+use crate::network::Network;
+use crate::rattlers::{contacts_needed, participating};
+use crate::stiffness;
+use grains::stress::{Stress, stress};
+use grains::{Fabric, Moduli, Packing, Vec3};
+
+/// How a packing is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2].
+    pub tolerance: f64,
+    /// Iterations after which the solve gives up.
+    pub max_iterations: u32,
+    /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken. Any length but zero. Stiffnesses stay in
+    /// the frame of the cell.
+    pub axis: Vec3,
+    /// Whether contacts keep their tangential stiffness ("friction set very high"), or have none (frictionless).
+    pub tangential: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-9, max_iterations: 20_000, axis: Vec3::z(), tangential: true }
+    }
+}
+
+/// What [`analyse`] finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// Structure: coordination, fabric, the ratios γ/Δ.
+    pub fabric: Fabric,
+    /// Stress of the elastic contact forces.
+    pub stress: Stress,
+    /// Mean stress, Pa, positive in compression.
+    pub pressure: f64,
+    /// Deviatoric stress invariant √(3/2 s:s), Pa.
+    pub deviatoric: f64,
+    /// Solid fraction φ.
+    pub solid_fraction: f64,
+    /// Unbalanced force ratio: mean net force of non-rattlers over mean contact force; `None` without forces.
+    pub unbalanced: Option<f64>,
+    /// Relaxed and affine stiffness of the frozen network, or why there is none.
+    pub moduli: Result<Moduli, NoNetwork>,
+}
+
+/// Measures structure, stress and stiffness of `packing`.
+///
+/// A packing without a contact network is measured as far as it goes and says why in [`Analysis::moduli`]. A stiffness
+/// that fails its checks is an error.
+pub fn analyse(packing: &Packing, settings: &Settings) -> Result<Analysis, MicroError> {
+    let axis = checked_axis(settings)?;
+    let stress = stress(packing);
+    let present = participating(packing);
+    let mut fabric = fabric(packing, &axis);
+    let moduli = measured_moduli(packing, &present, settings)?;
+    if let Ok(m) = &moduli {
+        fabric.anisotropy.elastic =
+            m.stiffness.isotropic_compression().and_then(|strain| anisotropy::ratio(&strain, &axis));
+    }
+    Ok(Analysis {
+        fabric,
+        stress,
+        pressure: stress.tensor.mean(),
+        deviatoric: stress.tensor.deviatoric_invariant(),
+        solid_fraction: packing.solid_fraction(),
+        unbalanced: unbalanced(packing, &present),
+        moduli,
+    })
+}
+
+fn measured_moduli(
+    packing: &Packing,
+    present: &[bool],
+    settings: &Settings,
+) -> Result<Result<Moduli, NoNetwork>, MicroError> {
+    let grains = packing.grains();
+    if packing.contacts.is_empty() {
+        return Ok(Err(NoNetwork::NoContacts { grains }));
+    }
+    if present.iter().all(|p| !p) {
+        return Ok(Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(packing.friction) }));
+    }
+    let network = Network::new(packing, settings.tangential)?;
+    stiffness::moduli(&network, settings.tolerance, settings.max_iterations)
+}
+
+fn checked_axis(settings: &Settings) -> Result<Vec3, MicroError> {
+    let tolerance = settings.tolerance;
+    if !(1e-13..=1e-2).contains(&tolerance) {
+        let requirement = "between 1e-13 and 1e-2";
+        return Err(MicroError::Setting { name: "tolerance", value: tolerance, requirement });
+    }
+    let length = settings.axis.norm();
+    if !(length > 0.0 && length.is_finite()) {
+        let requirement = "a finite vector longer than zero";
+        return Err(MicroError::Setting { name: "axis", value: length, requirement });
+    }
+    Ok(settings.axis / length)
+}

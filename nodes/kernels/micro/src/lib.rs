@@ -1,0 +1,28 @@
+//! Structure and stiffness of a packing: fabric, coordination, and the moduli of the frozen contact network.
+//!
+//! [`analyse`] is the one entry that node and command line share. The parts are public for those who need one alone:
+//!
+//! - [`analyse()`], [`Settings`], [`Analysis`]: everything that is measured on one packing
+//! - [`rattlers`]: who carries force
+//! - [`fabric`]: coordination, fabric tensors, ε
+//! - [`anisotropy`]: the three ratios γ/Δ
+//! - [`balance`]: how far the packing is from equilibrium
+//! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
+//! - [`preconditioner`], [`solve`]: block-Jacobi conjugate gradients on the singular operator
+//! - [`stiffness`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
+//! - [`error`]: what can go wrong, typed
+
+pub mod analyse;
+pub mod anisotropy;
+pub mod balance;
+pub mod error;
+pub mod fabric;
+pub mod network;
+pub mod preconditioner;
+pub mod rattlers;
+pub mod solve;
+pub mod stiffness;
+
+pub use analyse::{Analysis, Settings, analyse};
+pub use error::{MicroError, NoNetwork};
+pub use network::{Motion, Network};

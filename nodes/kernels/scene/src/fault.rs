@@ -1,0 +1,38 @@
+//! What can be wrong with a scene.
+
+use std::fmt;
+
+/// One fault of a scene, with the place it was found in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Where: for example `phase[2] (load).friction`.
+    pub place: String,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+/// All faults of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneError {
+    /// Every fault found, in the order of the text; at least one.
+    pub faults: Vec<Fault>,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n = self.faults.len();
+        write!(f, "the scene has {n} fault{}:", if n == 1 { "" } else { "s" })?;
+        for fault in &self.faults {
+            write!(f, "\n  {fault}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for SceneError {}

@@ -1,0 +1,149 @@
+//! The scene as a value.
+
+use grains::{ComponentControl, Material, ServoLaw};
+
+/// A whole experiment: what is simulated and along which loading path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Name; lower case letters, digits, `_` and `-`.
+    pub name: String,
+    /// One line for people.
+    pub description: String,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Number of grains.
+    pub grains: u32,
+    /// Diameter of every grain, m.
+    pub diameter: f64,
+    /// Material of every grain.
+    pub material: Material,
+    /// Numerical settings.
+    pub numerics: Numerics,
+    /// Phases in the order they run; cycles are already unrolled.
+    pub phases: Vec<Phase>,
+}
+
+/// Numerical settings of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numerics {
+    /// Share of the stability bound that the time step takes, in (0, 1].
+    pub time_step_safety: f64,
+    /// Verlet skin over grain diameter, positive.
+    pub skin: f64,
+    /// How the tangential force follows a change of normal stiffness.
+    pub tangential: Tangential,
+}
+
+impl Default for Numerics {
+    fn default() -> Self {
+        Self { time_step_safety: 0.5, skin: 0.05, tangential: Tangential::Rescaled }
+    }
+}
+
+/// How the tangential force follows a change of normal stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tangential {
+    /// Scaled down with the tangential stiffness on unloading: a closed cycle never creates energy.
+    Rescaled,
+    /// Kept on unloading: the increments of the stuck network, and LAMMPS's `mindlin/force`.
+    Incremental,
+}
+
+/// One phase of the loading path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// Name, for people; unrolled cycles carry their round, as in `unload#2`.
+    pub name: String,
+    /// What drives the cell.
+    pub kind: PhaseKind,
+    /// Friction coefficient; 0 switches spins and tangential springs off, infinity the Coulomb check.
+    pub friction: f64,
+    /// Contact damping, share of critical.
+    pub damping: f64,
+    /// Drag on velocities relative to the affine motion, 1/s.
+    pub drag: f64,
+    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever.
+    pub spin_drag: f64,
+    /// Solver steps between two requests.
+    pub control_period: u32,
+    /// The state at the end is the reference of strains reported from then on.
+    pub reference: bool,
+    /// Publish the packing at the end.
+    pub publish: bool,
+    /// When the phase is over.
+    pub until: Conditions,
+}
+
+/// What drives the cell during a phase.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PhaseKind {
+    /// Grains placed at random and agitated, compressed isotropically.
+    Gas {
+        /// Solid fraction at which the grains are placed, below 0.35.
+        initial_solid_fraction: f64,
+        /// Root mean square speed of a grain, m/s; the kinetic energy is capped at what it means.
+        speed: f64,
+        /// Strain rate of each axis, 1/s, negative in compression.
+        rate: f64,
+    },
+    /// Fixed cell.
+    Relax,
+    /// Imposed strain rate.
+    Strain {
+        /// Voigt order, tensor components, 1/s, positive in extension.
+        rate: [f64; 6],
+    },
+    /// Per component: a stress target, a strain rate, or nothing.
+    Servo {
+        /// What is imposed on each component, Voigt order.
+        controls: [ComponentControl; 6],
+        /// The control law.
+        law: ServoLaw,
+        /// Largest magnitude of a strain rate component, 1/s.
+        rate_limit: f64,
+    },
+}
+
+/// When a phase is over: every condition holds for `hold` seconds, or else at `timeout` the run fails.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditions {
+    /// All must hold at once.
+    pub all: Vec<Condition>,
+    /// For how long, s of simulated time.
+    pub hold: f64,
+    /// Simulated time after which the phase counts as failed, s.
+    pub timeout: f64,
+}
+
+/// A measured quantity that ends a phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// The quantity is at or above the value.
+    AtLeast(Measure, f64),
+    /// The quantity is at or below the value.
+    AtMost(Measure, f64),
+    /// Every servoed stress component is within `fraction` of the mean stress target.
+    OnTarget {
+        /// Allowed error over the mean of the stress targets.
+        fraction: f64,
+    },
+}
+
+/// What a condition looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Solid fraction.
+    SolidFraction,
+    /// Time in this phase, s.
+    Elapsed,
+    /// Logarithmic strain component since the phase began (Voigt index), positive in extension.
+    Strain(usize),
+    /// Stress component (Voigt index), Pa, positive in compression.
+    Stress(usize),
+    /// Mean stress, Pa.
+    Pressure,
+    /// Mean net force of non-rattlers over mean contact force.
+    Unbalanced,
+    /// Root mean square speed relative to the affine motion, m/s.
+    Speed,
+}

@@ -1,0 +1,249 @@
+//! The loading path in the text: phases, cycles, conditions.
+
+use crate::model::{Condition, Conditions, Measure, Phase, PhaseKind};
+use crate::table::{Reader, as_number};
+use grains::{ComponentControl, ServoLaw};
+use toml::{Table, Value};
+
+/// Unrolled phases a path may have; more is a mistake in a cycle count.
+const MAX_PHASES: usize = 100_000;
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+pub(crate) fn read(r: &mut Reader<'_>) -> Vec<Phase> {
+    let mut phases = Vec::new();
+    list(r, "phase", "phase", &mut phases);
+    if phases.len() > MAX_PHASES {
+        r.fault("phase", format!("unrolls to {} phases; at most {MAX_PHASES}", phases.len()));
+        phases.truncate(1);
+    }
+    for (i, phase) in phases.iter().enumerate() {
+        if matches!(phase.kind, PhaseKind::Gas { .. }) != (i == 0) {
+            r.fault(
+                "phase",
+                format!("phase {i} ({}): a path begins with one gas phase and has no other", phase.name),
+            );
+        }
+    }
+    phases
+}
+
+/// Reads the array of phase tables under `key`.
+fn list(r: &mut Reader<'_>, key: &'static str, place: &str, out: &mut Vec<Phase>) {
+    let Some(Value::Array(items)) = r.get(key) else {
+        r.fault(key, "is missing; it must be an array of tables, one a phase");
+        return;
+    };
+    if items.is_empty() {
+        r.fault(key, "is empty; a path needs at least one phase");
+    }
+    for (i, item) in items.iter().enumerate() {
+        let Value::Table(table) = item else {
+            r.fault(key, format!("entry {i} is a {}; it must be a table", item.type_str()));
+            continue;
+        };
+        r.adopt(one(format!("{place}[{i}]"), table, out));
+    }
+}
+
+fn one(place: String, table: &Table, out: &mut Vec<Phase>) -> Vec<crate::Fault> {
+    let name = table.get("name").and_then(Value::as_str).unwrap_or("");
+    let place = if name.is_empty() { place } else { format!("{place} ({name})") };
+    let mut r = Reader::new(place.clone(), table);
+    match r.text("kind", None).as_str() {
+        "cycle" => cycle(&mut r, &place, out),
+        "" => {
+            // Without a kind the other keys cannot be judged; the missing kind is the fault to mend first.
+            return r.finish().into_iter().filter(|f| f.place.ends_with(".kind")).collect();
+        }
+        kind => {
+            let kind = kind.to_string();
+            if let Some(phase) = phase(&mut r, &kind) {
+                out.push(phase);
+            } else {
+                r.fault("kind", format!("is {kind:?}; it must be gas, relax, strain, servo or cycle"));
+                return r.finish().into_iter().filter(|f| f.place.ends_with(".kind")).collect();
+            }
+        }
+    }
+    r.finish()
+}
+
+fn cycle(r: &mut Reader<'_>, place: &str, out: &mut Vec<Phase>) {
+    r.text("name", Some("cycle"));
+    let times = r.integer("times", None, 1, 10_000) as usize;
+    let mut body = Vec::new();
+    list(r, "phase", &format!("{place}.phase"), &mut body);
+    if body.len().saturating_mul(times).saturating_add(out.len()) > MAX_PHASES {
+        r.fault(
+            "times",
+            format!("unrolls to {} phases; at most {MAX_PHASES}", body.len().saturating_mul(times)),
+        );
+        return;
+    }
+    for round in 1..=times {
+        out.extend(body.iter().map(|p| Phase { name: format!("{}#{round}", p.name), ..p.clone() }));
+    }
+}
+
+fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
+    let positive = |v: f64| v > 0.0 && v.is_finite();
+    let from_zero = |v: f64| v >= 0.0 && v.is_finite();
+    let parsed = match kind {
+        "gas" => PhaseKind::Gas {
+            initial_solid_fraction: r.number(
+                "initial_solid_fraction",
+                Some(0.3),
+                "from 0.001 to 0.35",
+                |v| (0.001..=0.35).contains(&v),
+            ),
+            speed: r.number("speed", Some(1.0), "a speed in m/s, more than 0", positive),
+            rate: r.number("rate", None, "a strain rate in 1/s, below 0 (compression)", |v| {
+                v < 0.0 && v.is_finite()
+            }),
+        },
+        "relax" => PhaseKind::Relax,
+        "strain" => PhaseKind::Strain { rate: six(r, "rate") },
+        "servo" => servo(r),
+        _ => return None,
+    };
+    let gas = matches!(parsed, PhaseKind::Gas { .. });
+    Some(Phase {
+        name: r.text("name", Some(kind)),
+        friction: r.number(
+            "friction",
+            gas.then_some(0.0),
+            "a friction coefficient, 0 or more (inf: no sliding)",
+            |v| v >= 0.0,
+        ),
+        damping: r.number(
+            "damping",
+            Some(if gas { 0.002 } else { 0.3 }),
+            "a share of critical, from 0 to 1",
+            |v| (0.0..=1.0).contains(&v),
+        ),
+        drag: r.number("drag", Some(0.0), "in 1/s, 0 or more", from_zero),
+        spin_drag: r.number("spin_drag", Some(0.0), "in 1/s, 0 or more", from_zero),
+        control_period: r.integer("control_period", Some(if gas { 200 } else { 10 }), 1, 100_000) as u32,
+        reference: r.boolean("reference", false),
+        publish: r.boolean("publish", false),
+        until: conditions(r, matches!(parsed, PhaseKind::Servo { .. })),
+        kind: parsed,
+    })
+}
+
+/// Six numbers in Voigt order.
+fn six(r: &mut Reader<'_>, key: &'static str) -> [f64; 6] {
+    let requirement = "six numbers in 1/s, order xx, yy, zz, yz, xz, xy";
+    let values: Option<Vec<f64>> = r
+        .get(key)
+        .and_then(Value::as_array)
+        .map(|a| a.iter().filter_map(as_number).filter(|v| v.is_finite()).collect());
+    match values.and_then(|v| <[f64; 6]>::try_from(v).ok()) {
+        Some(v) => v,
+        None => {
+            r.fault(key, format!("must be {requirement}"));
+            [0.0; 6]
+        }
+    }
+}
+
+fn servo(r: &mut Reader<'_>) -> PhaseKind {
+    let positive = |v: f64| v > 0.0 && v.is_finite();
+    let controls: [ComponentControl; 6] = r
+        .sub("control", |r| COMPONENTS.map(|c| component(r, c)))
+        .unwrap_or_else(|| {
+            r.fault("control", "is missing; name what each of xx, yy, zz, yz, xz, xy gets: { stress = Pa }, { rate = 1/s } or \"held\"");
+            [ComponentControl::Held; 6]
+        });
+    let rate_limit = r.number("rate_limit", Some(4.0), "a strain rate in 1/s, more than 0", positive);
+    let law = match r.choice("law", true, &[("scaled", true), ("integral", false)]) {
+        true => ServoLaw::Scaled {
+            response_time: r.number("response_time", None, "a time in s, more than 0", positive),
+        },
+        false => ServoLaw::Integral {
+            gain: r.number("gain", None, "in 1/(Pa s), more than 0", positive),
+            leak: r.number("leak", Some(0.0), "from 0 to 1", |v| (0.0..=1.0).contains(&v)),
+        },
+    };
+    PhaseKind::Servo { controls, law, rate_limit }
+}
+
+fn component(r: &mut Reader<'_>, key: &'static str) -> ComponentControl {
+    let requirement = "{ stress = Pa }, { rate = 1/s } or \"held\"";
+    let single = |t: &Table, k: &str| (t.len() == 1).then(|| t.get(k).and_then(as_number)).flatten();
+    let parsed = match r.get(key) {
+        None => Some(ComponentControl::Held),
+        Some(Value::String(s)) if s == "held" => Some(ComponentControl::Held),
+        Some(Value::Table(t)) => single(t, "stress")
+            .map(ComponentControl::Stress)
+            .or(single(t, "rate").map(ComponentControl::StrainRate))
+            .filter(|c| matches!(c, ComponentControl::Stress(v) | ComponentControl::StrainRate(v) if v.is_finite())),
+        Some(_) => None,
+    };
+    parsed.unwrap_or_else(|| {
+        r.fault(key, format!("must be {requirement}"));
+        ComponentControl::Held
+    })
+}
+
+fn conditions(r: &mut Reader<'_>, servoed: bool) -> Conditions {
+    let until = r.sub("until", |r| {
+        let mut all = Vec::new();
+        condition(r, "solid_fraction", &mut all, |v| Condition::AtLeast(Measure::SolidFraction, v));
+        condition(r, "elapsed", &mut all, |v| Condition::AtLeast(Measure::Elapsed, v));
+        condition(r, "unbalanced", &mut all, |v| Condition::AtMost(Measure::Unbalanced, v));
+        condition(r, "speed", &mut all, |v| Condition::AtMost(Measure::Speed, v));
+        condition(r, "pressure_below", &mut all, |v| Condition::AtMost(Measure::Pressure, v));
+        condition(r, "pressure_above", &mut all, |v| Condition::AtLeast(Measure::Pressure, v));
+        signed(r, "strain", &mut all, |c, v| {
+            // A strain is reached from the side of zero.
+            if v < 0.0 {
+                Condition::AtMost(Measure::Strain(c), v)
+            } else {
+                Condition::AtLeast(Measure::Strain(c), v)
+            }
+        });
+        signed(r, "stress_above", &mut all, |c, v| Condition::AtLeast(Measure::Stress(c), v));
+        signed(r, "stress_below", &mut all, |c, v| Condition::AtMost(Measure::Stress(c), v));
+        if servoed {
+            condition(r, "on_target", &mut all, |v| Condition::OnTarget { fraction: v });
+        }
+        let hold = r.number("hold", Some(0.0), "a time in s, 0 or more", |v| v >= 0.0 && v.is_finite());
+        let timeout =
+            r.number("timeout", Some(1.0), "a time in s, more than 0", |v| v > 0.0 && v.is_finite());
+        if all.is_empty() {
+            r.fault("", "names no condition: the phase would never end by itself");
+        }
+        Conditions { all, hold, timeout }
+    });
+    until.unwrap_or_else(|| {
+        r.fault("until", "is missing; it must be a table of conditions that end the phase");
+        Conditions { all: Vec::new(), hold: 0.0, timeout: 1.0 }
+    })
+}
+
+fn condition(
+    r: &mut Reader<'_>,
+    key: &'static str,
+    out: &mut Vec<Condition>,
+    make: impl Fn(f64) -> Condition,
+) {
+    if r.get(key).is_some() {
+        let value = r.number(key, Some(0.0), "a finite number", f64::is_finite);
+        out.push(make(value));
+    }
+}
+
+/// A table of component = value.
+fn signed(
+    r: &mut Reader<'_>,
+    key: &'static str,
+    out: &mut Vec<Condition>,
+    make: impl Fn(usize, f64) -> Condition,
+) {
+    r.sub(key, |r| {
+        for (c, name) in COMPONENTS.iter().enumerate() {
+            condition(r, name, out, |v| make(c, v));
+        }
+    });
+}

@@ -1,0 +1,121 @@
+//! Scenes as their authors write them, right and wrong.
+
+use grains::{ComponentControl, SymTensor};
+use scene::{Condition, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene};
+
+const GOOD: &str = r#"
+name = "tiny"
+seed = 7
+[grains]
+count = 100
+diameter = 2e-4
+[[phase]]
+kind = "gas"
+rate = -12.0
+until = { solid_fraction = 0.6 }
+[[phase]]
+kind = "relax"
+name = "rest"
+friction = 0.0
+reference = true
+until = { speed = 1e-3, hold = 1e-4 }
+[[phase]]
+kind = "cycle"
+times = 2
+[[phase.phase]]
+kind = "strain"
+name = "unload"
+friction = 0.1
+rate = [0, 0, 4.0, 0, 0, 0]
+until = { strain = { zz = 0.002 } }
+[[phase.phase]]
+kind = "servo"
+name = "reload"
+friction = 0.1
+response_time = 2e-5
+control = { xx = { stress = 50e3 }, yy = { stress = 50e3 }, zz = { stress = 50e3 }, xy = { rate = 0.5 } }
+publish = true
+until = { on_target = 1e-3, unbalanced = 1e-6, timeout = 0.5 }
+"#;
+
+fn seen(time: f64) -> Observation {
+    Observation {
+        time,
+        stress: SymTensor::isotropic(50e3),
+        strain: SymTensor::default(),
+        solid_fraction: 0.5,
+        unbalanced: 1.0,
+        speed: 1.0,
+    }
+}
+
+#[test]
+fn cycles_unroll_into_numbered_phases() {
+    let scene = Scene::parse(GOOD).unwrap();
+    let names: Vec<&str> = scene.phases.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["gas", "rest", "unload#1", "reload#1", "unload#2", "reload#2"]);
+    assert_eq!(scene.phases[2].until.all, [Condition::AtLeast(Measure::Strain(2), 0.002)]);
+    let PhaseKind::Servo { controls, .. } = &scene.phases[3].kind else { panic!("a servo phase") };
+    assert_eq!(controls[0], ComponentControl::Stress(50e3));
+    assert_eq!(controls[3], ComponentControl::Held);
+    assert_eq!(controls[5], ComponentControl::StrainRate(0.5));
+}
+
+#[test]
+fn every_fault_is_reported_at_once_with_its_place() {
+    let bad = GOOD
+        .replace("diameter = 2e-4", "diameter = -1\ncolour = 'red'")
+        .replace("name = \"unload\"\nfriction = 0.1", "name = \"unload\"\nfriction = -0.1")
+        .replace("rate = -12.0", "rate = 12.0")
+        .replace("times = 2", "times = 0")
+        .replace("hold = 1e-4", "hold = 'long'");
+    let error = Scene::parse(&bad).unwrap_err();
+    let places: Vec<&str> = error.faults.iter().map(|f| f.place.as_str()).collect();
+    for place in [
+        "grains.diameter",
+        "grains.colour",
+        "phase[0].rate",
+        "phase[1] (rest).until.hold",
+        "phase[2].times",
+        "phase[2].phase[0] (unload).friction",
+    ] {
+        assert!(places.contains(&place), "{place} is missing from\n{error}");
+    }
+    assert_eq!(error.faults.len(), 6, "{error}");
+}
+
+#[test]
+fn text_that_is_no_toml_is_refused_with_its_line() {
+    let error = Scene::parse("name = \n").unwrap_err();
+    assert!(error.to_string().contains("line 1"), "{error}");
+}
+
+#[test]
+fn a_phase_ends_only_after_its_conditions_held_for_the_hold_time() {
+    let scene = Scene::parse(GOOD).unwrap();
+    let mut state = PathState { phase: 1, began: 1.0, holding_since: None };
+    let at = |time: f64, speed: f64| Observation { speed, ..seen(time) };
+    assert_eq!(state.observe(&scene, &at(1.0, 1e-4)), Ok(PathEvent::Stay));
+    // The condition fails once: the hold starts again.
+    assert_eq!(state.observe(&scene, &at(1.00005, 1.0)), Ok(PathEvent::Stay));
+    assert_eq!(state.observe(&scene, &at(1.00009, 1e-4)), Ok(PathEvent::Stay));
+    assert_eq!(state.observe(&scene, &at(1.00015, 1e-4)), Ok(PathEvent::Stay));
+    let ended = PathEvent::PhaseEnded { reference: true, publish: false, finished: false };
+    assert_eq!(state.observe(&scene, &at(1.00020, 1e-4)), Ok(ended));
+    assert_eq!(state, PathState { phase: 2, began: 1.00020, holding_since: None });
+}
+
+#[test]
+fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
+    let scene = Scene::parse(GOOD).unwrap();
+    let mut state = PathState { phase: 5, began: 2.0, holding_since: None };
+    let off = Observation { unbalanced: 1e-3, ..seen(2.6) };
+    let Err(PathError::Timeout { index: 5, unmet, .. }) = state.observe(&scene, &off) else {
+        panic!("a timeout")
+    };
+    assert!(unmet.contains("Unbalanced") && !unmet.contains("target"), "{unmet}");
+    let on = Observation { unbalanced: 1e-7, ..seen(2.4) };
+    let ended = PathEvent::PhaseEnded { reference: false, publish: true, finished: true };
+    assert_eq!(state.observe(&scene, &on), Ok(ended));
+    assert!(state.phase(&scene).is_none());
+}

@@ -1,0 +1,3 @@
+//! The `grainlab` binary.
+
+fn main() {}

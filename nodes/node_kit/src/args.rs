@@ -1,0 +1,257 @@
+//! The ROS 2 command line: `--ros-args -r from:=to -p name:=value --params-file f --log-level info [--]`.
+
+use std::path::PathBuf;
+
+/// Why a command line was refused. The process then ends with [`crate::Exit::Usage`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ArgsError {
+    /// An option that needs a value stands last.
+    #[error("{option} needs a value: {example}")]
+    MissingValue {
+        /// The option as typed.
+        option: String,
+        /// A correct use.
+        example: &'static str,
+    },
+    /// A rule without `:=`.
+    #[error("{option} {text:?} is not of the form {example}")]
+    Malformed {
+        /// The option as typed.
+        option: String,
+        /// Its value as typed.
+        text: String,
+        /// A correct use.
+        example: &'static str,
+    },
+    /// An option that is not a ROS 2 argument.
+    #[error("unknown ROS argument {option:?}; known: -r, -p, --params-file, --log-level, --enable-/--disable-{{rosout,stdout}}-logs, and -- to end them")]
+    Unknown {
+        /// The option as typed.
+        option: String,
+    },
+    /// An option of ROS 2 that cannot be honoured here.
+    #[error("{option} cannot be honoured: {reason}")]
+    Unsupported {
+        /// The option as typed.
+        option: String,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// A log level that does not exist.
+    #[error("log level {level:?} does not exist: use debug, info, warn, error or fatal")]
+    LogLevel {
+        /// The level as typed.
+        level: String,
+    },
+}
+
+/// One remap rule, `[node:]from:=to`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Remap {
+    /// The node it is for; `None` for every node.
+    pub node: Option<String>,
+    /// What is renamed: a topic, `__node` or `__ns`.
+    pub from: String,
+    /// The new name.
+    pub to: String,
+}
+
+/// One parameter from the command line, `[node:]name:=value`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The node it is for; `None` for every node.
+    pub node: Option<String>,
+    /// The parameter's name.
+    pub name: String,
+    /// Its value as YAML text.
+    pub yaml: String,
+}
+
+/// The ROS arguments of one process.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RosArgs {
+    /// Remap rules in the order given.
+    pub remaps: Vec<Remap>,
+    /// Parameters in the order given; a later one wins, and all of them win over files.
+    pub parameters: Vec<Assignment>,
+    /// Parameter files in the order given; a later one wins.
+    pub params_files: Vec<PathBuf>,
+    /// The level of our own log lines.
+    pub log_level: log::LevelFilter,
+    /// Levels of single loggers, `--log-level rustdds:=debug`; the logger is a Rust module path.
+    pub logger_levels: Vec<(String, log::LevelFilter)>,
+    /// Whether log lines are published on `/rosout`.
+    pub rosout: bool,
+    /// Whether log lines go to stderr.
+    pub stderr: bool,
+}
+
+impl Default for RosArgs {
+    fn default() -> Self {
+        Self {
+            remaps: Vec::new(),
+            parameters: Vec::new(),
+            params_files: Vec::new(),
+            log_level: log::LevelFilter::Info,
+            logger_levels: Vec::new(),
+            rosout: true,
+            stderr: true,
+        }
+    }
+}
+
+const REMAP_FORM: &str = "-r from:=to";
+const PARAM_FORM: &str = "-p name:=value";
+
+impl RosArgs {
+    /// Splits a command line into its ROS arguments and everything else, in order.
+    ///
+    /// ROS arguments stand between `--ros-args` and `--` (or the end); both may occur several times.
+    pub fn parse(args: &[String]) -> Result<(RosArgs, Vec<String>), ArgsError> {
+        let mut ros = RosArgs::default();
+        let mut plain = Vec::new();
+        let mut inside = false;
+        let mut rest = args.iter();
+        while let Some(arg) = rest.next() {
+            match (inside, arg.as_str()) {
+                (_, "--ros-args") => inside = true,
+                (true, "--") => inside = false,
+                (true, option) => ros.take_option(option, &mut rest)?,
+                (false, _) => plain.push(arg.clone()),
+            }
+        }
+        Ok((ros, plain))
+    }
+
+    fn take_option<'a>(&mut self, option: &str, rest: &mut impl Iterator<Item = &'a String>) -> Result<(), ArgsError> {
+        let mut value = |example: &'static str| {
+            rest.next().cloned().ok_or(ArgsError::MissingValue { option: option.into(), example })
+        };
+        match option {
+            "-r" | "--remap" => {
+                let (node, from, to) = split_rule(option, &value(REMAP_FORM)?, REMAP_FORM)?;
+                let from = from.strip_prefix("rostopic://").unwrap_or(&from).to_owned();
+                self.remaps.push(Remap { node, from, to });
+            }
+            "-p" | "--param" => {
+                let (node, name, yaml) = split_rule(option, &value(PARAM_FORM)?, PARAM_FORM)?;
+                self.parameters.push(Assignment { node, name, yaml });
+            }
+            "--params-file" => self.params_files.push(value("--params-file run.yaml")?.into()),
+            "--log-level" => {
+                let text = value("--log-level info")?;
+                match text.split_once(":=") {
+                    Some((logger, level)) => self.logger_levels.push((logger.into(), parse_level(level)?)),
+                    None => self.log_level = parse_level(&text)?,
+                }
+            }
+            "--enable-rosout-logs" => self.rosout = true,
+            "--disable-rosout-logs" => self.rosout = false,
+            "--enable-stdout-logs" => self.stderr = true,
+            "--disable-stdout-logs" => self.stderr = false,
+            // Written by some launch tools always; there is no external logger here to switch.
+            "--enable-external-lib-logs" | "--disable-external-lib-logs" => {}
+            "-e" | "--enclave" => {
+                return Err(ArgsError::Unsupported {
+                    option: option.into(),
+                    reason: "DDS security is not built in; leave the option out",
+                });
+            }
+            "--log-config-file" => {
+                return Err(ArgsError::Unsupported {
+                    option: option.into(),
+                    reason: "there is no configurable logger; use --log-level [logger:=]level",
+                });
+            }
+            unknown => return Err(ArgsError::Unknown { option: unknown.into() }),
+        }
+        Ok(())
+    }
+}
+
+/// Splits `[node:]left:=right`. A scheme such as `rostopic://` is not a node.
+fn split_rule(
+    option: &str,
+    text: &str,
+    example: &'static str,
+) -> Result<(Option<String>, String, String), ArgsError> {
+    let malformed = || ArgsError::Malformed { option: option.into(), text: text.into(), example };
+    let (left, right) = text.split_once(":=").ok_or_else(malformed)?;
+    let (node, name) = match left.split_once(':') {
+        Some((node, name)) if !name.starts_with("//") => (Some(node), name),
+        _ => (None, left),
+    };
+    if name.is_empty() || right.is_empty() || node == Some("") {
+        return Err(malformed());
+    }
+    Ok((node.map(Into::into), name.into(), right.into()))
+}
+
+/// Reads a ROS 2 severity; `fatal` is the facade's error level.
+fn parse_level(text: &str) -> Result<log::LevelFilter, ArgsError> {
+    match text.to_ascii_lowercase().as_str() {
+        "trace" => Ok(log::LevelFilter::Trace),
+        "debug" => Ok(log::LevelFilter::Debug),
+        "info" => Ok(log::LevelFilter::Info),
+        "warn" | "warning" => Ok(log::LevelFilter::Warn),
+        "error" | "fatal" => Ok(log::LevelFilter::Error),
+        _ => Err(ArgsError::LogLevel { level: text.into() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(line: &str) -> Result<(RosArgs, Vec<String>), ArgsError> {
+        let args: Vec<String> = line.split_whitespace().map(Into::into).collect();
+        RosArgs::parse(&args)
+    }
+
+    #[test]
+    fn ros_arguments_end_at_the_double_dash_and_may_come_twice() {
+        let (ros, plain) = parse("run --ros-args -r a:=b -p x:=1 -- scene.toml --ros-args -p y:=2").unwrap();
+        assert_eq!(plain, ["run", "scene.toml"]);
+        assert_eq!(ros.parameters.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["x", "y"]);
+        assert_eq!(ros.remaps, [Remap { node: None, from: "a".into(), to: "b".into() }]);
+    }
+
+    #[test]
+    fn node_prefixes_are_split_off_but_schemes_are_not() {
+        let (ros, _) = parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
+        assert_eq!(ros.remaps[0], Remap { node: Some("dem".into()), from: "__ns".into(), to: "/x".into() });
+        assert_eq!(ros.remaps[1], Remap { node: None, from: "stress".into(), to: "p".into() });
+        assert_eq!(ros.parameters[0].node.as_deref(), Some("servo"));
+        assert_eq!(ros.parameters[0].name, "gain.xx");
+    }
+
+    #[test]
+    fn a_value_may_hold_colons_and_equal_signs() {
+        let (ros, _) = parse("--ros-args -p path:=a:=b:c").unwrap();
+        assert_eq!((ros.parameters[0].name.as_str(), ros.parameters[0].yaml.as_str()), ("path", "a:=b:c"));
+    }
+
+    #[test]
+    fn log_levels_are_read_for_all_and_for_single_loggers() {
+        let (ros, _) = parse("--ros-args --log-level WARN --log-level rustdds:=debug --disable-rosout-logs").unwrap();
+        assert_eq!(ros.log_level, log::LevelFilter::Warn);
+        assert_eq!(ros.logger_levels, [("rustdds".into(), log::LevelFilter::Debug)]);
+        assert!(!ros.rosout && ros.stderr);
+    }
+
+    #[test]
+    fn mistakes_are_refused_and_named() {
+        for (line, needle) in [
+            ("--ros-args -p dt", "\"dt\""),
+            ("--ros-args -p", "needs a value"),
+            ("--ros-args --dt 3", "\"--dt\""),
+            ("--ros-args stress:=p", "\"stress:=p\""),
+            ("--ros-args -r :=x", ":=x"),
+            ("--ros-args --log-level loud", "\"loud\""),
+            ("--ros-args -e /e", "security"),
+        ] {
+            let error = parse(line).expect_err(line).to_string();
+            assert!(error.contains(needle), "{line}: {error}");
+        }
+    }
+}

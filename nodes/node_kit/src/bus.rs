@@ -1,0 +1,278 @@
+//! The bus: what a node sees of the network. Two implementations exist, over DDS and in memory.
+
+use crate::names::NameError;
+use grainlab_msgs::Topic;
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+/// The 16-byte GUID of one writer, as RTPS has it: 12 bytes of participant, 4 of entity. Unique among all processes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct WriterId(pub [u8; 16]);
+
+impl WriterId {
+    /// The 12 bytes that every endpoint of one process shares.
+    pub fn participant(&self) -> [u8; 12] {
+        let mut prefix = [0; 12];
+        prefix.copy_from_slice(&self.0[..12]);
+        prefix
+    }
+}
+
+/// 32 hexadecimal digits.
+impl fmt::Display for WriterId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl fmt::Debug for WriterId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "WriterId({self})")
+    }
+}
+
+/// Text that is not 32 hexadecimal digits.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not a writer id: 32 hexadecimal digits")]
+pub struct WriterIdError(pub String);
+
+impl FromStr for WriterId {
+    type Err = WriterIdError;
+
+    fn from_str(text: &str) -> Result<Self, WriterIdError> {
+        let error = || WriterIdError(text.into());
+        if text.len() != 32 || !text.is_ascii() {
+            return Err(error());
+        }
+        let mut bytes = [0; 16];
+        for (i, byte) in bytes.iter_mut().enumerate() {
+            *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).map_err(|_| error())?;
+        }
+        Ok(WriterId(bytes))
+    }
+}
+
+/// One received sample, undecoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// The serialized message with its 4-byte encapsulation header.
+    pub body: Vec<u8>,
+    /// Where it came from, and in which place of that writer's sequence.
+    pub info: SampleInfo,
+}
+
+/// Origin and times of one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleInfo {
+    /// Who wrote it.
+    pub writer: WriterId,
+    /// RTPS sequence number: 1, 2, 3, … for each writer; a missing number is a lost sample.
+    pub sequence: i64,
+    /// When the writer says it wrote it, ns since 1970; `None` if it does not say.
+    pub source_time: Option<u64>,
+    /// When it reached this process, ns since 1970.
+    pub received: u64,
+}
+
+/// What a subscription asks of its writers. It asks at most what the topic offers, so that it always matches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Demand {
+    /// Lost samples are sent again.
+    pub reliable: bool,
+    /// A latched topic's last samples are wanted by a late joiner, too. Needs `reliable`.
+    pub latched: bool,
+    /// Samples kept between two takes; older ones give way. At least the worst backlog.
+    pub depth: u32,
+}
+
+impl Demand {
+    /// Every sample once, and the latched ones for a late joiner.
+    pub const fn reliable(depth: u32) -> Self {
+        Self { reliable: true, latched: true, depth }
+    }
+
+    /// No repetition by the bus: for partners that repeat by themselves, and that must not hold up a writer when dead.
+    pub const fn best_effort(depth: u32) -> Self {
+        Self { reliable: false, latched: false, depth }
+    }
+
+    /// Reliable from now on, without what was latched before.
+    pub const fn reliable_from_now(depth: u32) -> Self {
+        Self { reliable: true, latched: false, depth }
+    }
+
+    /// The demand that `topic` can meet.
+    pub fn within(self, topic: &Topic) -> Self {
+        let reliable = self.reliable && topic.qos.reliable;
+        Self { reliable, latched: reliable && self.latched && topic.qos.transient_local, depth: self.depth.max(1) }
+    }
+
+    /// Whether a subscription with this demand also serves `other`.
+    pub fn covers(self, other: Self) -> bool {
+        self.reliable >= other.reliable && self.latched >= other.latched && self.depth >= other.depth
+    }
+}
+
+/// Handle of an advertised topic on one bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PublisherId(pub(crate) usize);
+
+/// Handle of a subscription on one bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SubscriptionId(pub(crate) usize);
+
+/// Why [`Bus::wait`] returned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// A subscription holds a sample.
+    Data,
+    /// A peer's endpoint appeared, matched or went.
+    Graph,
+    /// SIGINT or SIGTERM, once for each.
+    Shutdown,
+    /// Nothing, for the whole time.
+    Timeout,
+}
+
+/// What one writer of ours published.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Published {
+    /// Resolved topic name, as in `/lab/stress`.
+    pub topic: String,
+    /// Our writer.
+    pub writer: WriterId,
+    /// Samples accepted; the last one has this RTPS sequence number.
+    pub count: u64,
+    /// Samples refused because a reliable reader is too far behind.
+    pub full: u64,
+}
+
+/// What one subscription of ours received.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Received {
+    /// Resolved topic name.
+    pub topic: String,
+    /// Samples taken.
+    pub taken: u64,
+    /// Samples whose content was refused: undecodable, or invalid to the node.
+    pub refused: u64,
+}
+
+/// Why the bus could not do what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum BusError {
+    /// A topic name that does not resolve.
+    #[error("topic name: {0}")]
+    Name(#[from] NameError),
+    /// A reliable reader is so far behind that the window stayed full for the whole bounded wait. The sample was dropped.
+    #[error("{topic}: a reliable reader is more than {window} samples behind; the sample was dropped")]
+    Full {
+        /// Resolved topic name.
+        topic: String,
+        /// Samples that may be unacknowledged.
+        window: u32,
+    },
+    /// A body that cannot be published as it is.
+    #[error("{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)")]
+    Encapsulation {
+        /// Resolved topic name.
+        topic: String,
+        /// Its first bytes, at most four.
+        found: Vec<u8>,
+    },
+    /// A second subscription asks for more than the first one to the same topic got.
+    #[error("{topic}: already subscribed with a weaker demand; subscribe with the strongest demand first")]
+    Demand {
+        /// Resolved topic name.
+        topic: String,
+    },
+    /// A handle of another bus.
+    #[error("{0}: this handle does not belong to this bus")]
+    Handle(&'static str),
+    /// The network refused.
+    #[error("{what}: {reason}")]
+    Network {
+        /// What was attempted.
+        what: String,
+        /// What the layer below said.
+        reason: String,
+    },
+}
+
+/// The bus as a node sees it: serialized samples in and out, and one place to wait.
+///
+/// Names are resolved with the node's namespace and remaps; QoS comes from the contract table and nowhere else.
+pub trait Bus {
+    /// Offers a topic with the QoS of the contract table. Each call makes a writer of its own.
+    fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError>;
+
+    /// Subscribes to a topic. Several subscriptions to one topic share what arrives; the first has the strongest demand.
+    fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError>;
+
+    /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.
+    ///
+    /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and says
+    /// [`BusError::Full`].
+    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError>;
+
+    /// The next sample, if there is one. Never waits.
+    fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError>;
+
+    /// Blocks (never spins) until a subscription holds a sample, the graph changes, a signal comes, or `timeout` is over.
+    /// Returns [`Wake::Data`] at once while a sample is left untaken.
+    fn wait(&mut self, timeout: Duration) -> Wake;
+
+    /// Readers matched with this publisher, as known at the last [`Bus::wait`]. A crashed peer counts until its lease
+    /// ends, up to a minute: see [`crate::Peers`].
+    fn readers(&self, publisher: PublisherId) -> usize;
+
+    /// Writers matched with this subscription, as known at the last [`Bus::wait`].
+    fn writers(&self, subscription: SubscriptionId) -> usize;
+
+    /// Writers on the resolved topic that are not ours, sorted, as known at the last [`Bus::wait`].
+    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
+
+    /// What our writers published, in the order of [`Bus::advertise`].
+    fn published(&self) -> Vec<Published>;
+
+    /// What our subscriptions received, in the order of [`Bus::subscribe`].
+    fn received(&self) -> Vec<Received>;
+
+    /// Counts a taken sample whose content was refused.
+    fn count_refused(&mut self, subscription: SubscriptionId);
+
+    /// Waits until every reliable reader has acknowledged everything, or `timeout` is over; true in the first case.
+    fn flush(&mut self, timeout: Duration) -> bool;
+
+    /// Time since an arbitrary start, never going back; virtual on the in-memory bus.
+    fn now(&self) -> Duration;
+
+    /// Wall-clock time, ns since 1970; virtual on the in-memory bus.
+    fn wall_nanos(&self) -> u64;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_msgs::topics;
+
+    #[test]
+    fn writer_ids_read_back_from_their_hexadecimal_form() {
+        let id = WriterId(std::array::from_fn(|i| (i * 17) as u8));
+        assert_eq!(id.to_string(), "00112233445566778899aabbccddeeff");
+        assert_eq!(id.to_string().parse(), Ok(id));
+        for bad in ["", "0011", "zz112233445566778899aabbccddeeff", "é0112233445566778899aabbccddeef"] {
+            assert!(bad.parse::<WriterId>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_demand_never_exceeds_what_the_topic_offers() {
+        let of_clock = Demand::reliable(20_000).within(&topics::CLOCK);
+        assert_eq!(of_clock.reliable, topics::CLOCK.qos.reliable);
+        assert!(!Demand::reliable(10).within(&topics::STRESS).latched, "a volatile topic latches nothing");
+        assert!(Demand::reliable(10).within(&topics::PACKING).latched);
+        assert!(!Demand::best_effort(10).within(&topics::PACKING).latched);
+    }
+}

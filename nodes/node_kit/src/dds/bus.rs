@@ -1,0 +1,370 @@
+//! The bus over DDS.
+
+use super::caretaker::{Caretaker, Inboxes, lock};
+use super::graph::Graph;
+use super::inbox::Inbox;
+use super::presence::Presence;
+use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
+use super::{Network, create_error, qos};
+use crate::bus::{
+    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
+};
+use crate::names::Names;
+use crate::signals::Signals;
+use grainlab_msgs::Topic;
+use rustdds::bytes::Bytes;
+use rustdds::dds::WriteError;
+use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
+use rustdds::no_key::DataWriter;
+use rustdds::{
+    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusListener, GUID, QosPolicyBuilder, RTPSEntity,
+    StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
+};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant, SystemTime};
+
+const SIGNALS: Token = Token(0);
+const STATUS: Token = Token(1);
+const WAKER: Token = Token(2);
+const FIRST_READER: usize = 3;
+
+/// One writer of ours.
+struct Writer {
+    data: DataWriter<RawPayload, RawAdapter>,
+    guid: GUID,
+    topic: String,
+    window: u32,
+    count: u64,
+    full: u64,
+}
+
+/// One reader of ours, as the waiting thread knows it.
+struct Reader {
+    inbox: Arc<Mutex<Inbox>>,
+    guid: GUID,
+    topic: String,
+    /// A notification came and the reader was not seen empty since.
+    ready: bool,
+    /// That notification is still to be cleared.
+    notified: bool,
+}
+
+struct Subscriber {
+    reader: usize,
+    place: usize,
+    taken: u64,
+    refused: u64,
+}
+
+/// A participant of its own, for one node.
+///
+/// Dropping it tells the peers that the node leaves; a process that ends without that stays matched for up to a minute.
+pub struct DdsBus {
+    // Fields are dropped in this order, and endpoints have to go before their participant.
+    caretaker: Caretaker,
+    writers: Vec<Writer>,
+    subscribers: Vec<Subscriber>,
+    readers: Vec<Reader>,
+    inboxes: Inboxes,
+    presence: Presence,
+    signals: Option<Signals>,
+    poll: Poll,
+    events: Events,
+    topics: BTreeMap<String, rustdds::Topic>,
+    publisher: rustdds::Publisher,
+    subscriber: rustdds::Subscriber,
+    status: DomainParticipantStatusListener,
+    graph: Graph,
+    participant: DomainParticipant,
+    names: Names,
+    start: Instant,
+}
+
+impl DdsBus {
+    /// Joins the domain. Peers are known some 0.2 s later.
+    pub fn open(network: Network, names: Names) -> Result<Self, BusError> {
+        let mut builder = DomainParticipantBuilder::new(network.domain);
+        if let Some(interfaces) = network.interfaces() {
+            builder = builder.with_only_networks(interfaces);
+        }
+        let participant = builder.build().map_err(|e| create_error("DDS participant", &e))?;
+        let none = QosPolicyBuilder::new().build();
+        let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
+        let subscriber = participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
+        let presence = Presence::new(&participant, &publisher, &names)?;
+
+        let io = |e: std::io::Error| create_error("poll", &e);
+        let poll = Poll::new().map_err(io)?;
+        let mut status = participant.status_listener();
+        poll.registry().register(status.as_status_source_mio1(), STATUS, Interest::READABLE).map_err(io)?;
+        let inboxes = Inboxes::default();
+        let waker = Waker::new(poll.registry(), WAKER).map_err(io)?;
+        let caretaker = Caretaker::spawn(Arc::clone(&inboxes), waker).map_err(io)?;
+        let graph = Graph::new(participant.guid());
+        Ok(Self {
+            caretaker,
+            writers: Vec::new(),
+            subscribers: Vec::new(),
+            readers: Vec::new(),
+            inboxes,
+            presence,
+            signals: None,
+            poll,
+            events: Events::with_capacity(64),
+            topics: BTreeMap::new(),
+            publisher,
+            subscriber,
+            status,
+            graph,
+            participant,
+            names,
+            start: Instant::now(),
+        })
+    }
+
+    /// Lets signals end a [`Bus::wait`].
+    pub fn watch(&mut self, mut signals: Signals) -> Result<(), BusError> {
+        self.poll
+            .registry()
+            .register(signals.source(), SIGNALS, Interest::READABLE)
+            .map_err(|e| create_error("signal source", &e))?;
+        self.signals = Some(signals);
+        Ok(())
+    }
+
+    /// Our participant's 12-byte GUID prefix, shared by all our writers.
+    pub fn participant(&self) -> [u8; 12] {
+        WriterId(self.participant.guid().to_bytes()).participant()
+    }
+
+    fn dds_topic(&mut self, resolved: &str, topic: &Topic) -> Result<rustdds::Topic, BusError> {
+        if let Some(known) = self.topics.get(resolved) {
+            return Ok(known.clone());
+        }
+        let type_name = format!("{}::msg::dds_::{}_", topic.info.package, topic.info.name);
+        let created = self
+            .participant
+            .create_topic(wire_name(resolved), type_name, &QosPolicyBuilder::new().build(), TopicKind::NoKey)
+            .map_err(|e| create_error(resolved, &e))?;
+        self.topics.insert(resolved.into(), created.clone());
+        Ok(created)
+    }
+
+    /// The reader that serves `demand` on a topic, made if there is none.
+    fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
+        if let Some(index) = self.readers.iter().position(|r| r.topic == resolved) {
+            let covered = lock(&self.readers[index].inbox).demand().covers(demand);
+            return if covered { Ok(index) } else { Err(BusError::Demand { topic: resolved }) };
+        }
+        let dds_topic = self.dds_topic(&resolved, topic)?;
+        let reader = self
+            .subscriber
+            .create_simple_datareader_no_key(&dds_topic, Some(qos::requested(demand)))
+            .map_err(|e| create_error(&resolved, &e))?;
+        let mut inbox = Inbox::new(reader, resolved.clone(), demand);
+        let index = self.readers.len();
+        self.poll
+            .registry()
+            .register(inbox.reader_mut(), Token(FIRST_READER + index), Interest::READABLE)
+            .map_err(|e| create_error(&resolved, &e))?;
+        let guid = inbox.guid();
+        self.presence.add_reader(guid);
+        let inbox = Arc::new(Mutex::new(inbox));
+        lock(&self.inboxes).push(Arc::clone(&inbox));
+        self.readers.push(Reader { inbox, guid, topic: resolved, ready: true, notified: true });
+        Ok(index)
+    }
+
+    /// Takes in what discovery reported; true if something changed.
+    fn follow_graph(&mut self) -> bool {
+        let mut changed = false;
+        while let Some(event) = self.status.try_recv_status() {
+            changed |= self.graph.apply(event);
+        }
+        changed
+    }
+
+    fn has_data(&self) -> bool {
+        self.readers.iter().any(|r| r.ready || lock(&r.inbox).has_data())
+    }
+
+    /// Polls once. Reports in the order of urgency; what is not reported now is found at the next call.
+    fn poll_once(&mut self, timeout: Duration) -> Option<Wake> {
+        if let Err(error) = self.poll.poll(&mut self.events, Some(timeout)) {
+            // Interrupted by a signal handler: the signal's own event follows.
+            if error.kind() != std::io::ErrorKind::Interrupted {
+                log::error!("poll failed: {error}");
+            }
+            return None;
+        }
+        let (mut signal, mut status) = (false, false);
+        for event in &self.events {
+            match event.token() {
+                SIGNALS => signal = true,
+                STATUS => status = true,
+                WAKER => {}
+                Token(n) => {
+                    if let Some(reader) = self.readers.get_mut(n - FIRST_READER) {
+                        (reader.ready, reader.notified) = (true, true);
+                    }
+                }
+            }
+        }
+        let changed = status && self.follow_graph();
+        if signal && self.signals.as_mut().is_some_and(Signals::drain) {
+            return Some(Wake::Shutdown);
+        }
+        if self.has_data() {
+            return Some(Wake::Data);
+        }
+        changed.then_some(Wake::Graph)
+    }
+}
+
+/// The name of a ROS topic in DDS.
+fn wire_name(resolved: &str) -> String {
+    format!("rt{resolved}")
+}
+
+impl Bus for DdsBus {
+    fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        let dds_topic = self.dds_topic(&resolved, topic)?;
+        let data: DataWriter<RawPayload, RawAdapter> = self
+            .publisher
+            .create_datawriter_no_key(&dds_topic, Some(qos::offered(topic)))
+            .map_err(|e| create_error(&resolved, &e))?;
+        let guid = data.guid();
+        self.presence.add_writer(guid);
+        self.writers.push(Writer { data, guid, topic: resolved, window: qos::window(topic), count: 0, full: 0 });
+        Ok(PublisherId(self.writers.len() - 1))
+    }
+
+    fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        let reader = self.reader_for(resolved, topic, demand.within(topic))?;
+        let place = lock(&self.readers[reader].inbox).add_queue();
+        self.subscribers.push(Subscriber { reader, place, taken: 0, refused: 0 });
+        Ok(SubscriptionId(self.subscribers.len() - 1))
+    }
+
+    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
+        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
+        if body.len() < HEADER || body[..2] != CDR_LE {
+            let found = body[..body.len().min(HEADER)].to_vec();
+            return Err(BusError::Encapsulation { topic: writer.topic.clone(), found });
+        }
+        let payload = RawPayload(Bytes::copy_from_slice(&body[HEADER..]));
+        let options = WriteOptionsBuilder::new().source_timestamp(Timestamp::now()).build();
+        match writer.data.write_with_options(payload, options) {
+            Ok(identity) => {
+                writer.count += 1;
+                Ok(i64::from(identity.sequence_number))
+            }
+            Err(WriteError::WouldBlock { .. }) => {
+                writer.full += 1;
+                Err(BusError::Full { topic: writer.topic.clone(), window: writer.window })
+            }
+            Err(error) => Err(BusError::Network {
+                what: format!("publish {}", writer.topic),
+                reason: match error {
+                    WriteError::Serialization { reason, .. }
+                    | WriteError::Poisoned { reason, .. }
+                    | WriteError::Internal { reason, .. } => reason,
+                    WriteError::WouldBlock { .. } => "window full".into(),
+                },
+            }),
+        }
+    }
+
+    fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
+        self.caretaker.seen();
+        let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
+        let reader = &mut self.readers[subscriber.reader];
+        let mut inbox = lock(&reader.inbox);
+        if std::mem::take(&mut reader.notified) {
+            inbox.acknowledge();
+        }
+        let sample = inbox.take(subscriber.place)?;
+        match sample {
+            Some(_) => subscriber.taken += 1,
+            None => reader.ready = false,
+        }
+        Ok(sample)
+    }
+
+    fn wait(&mut self, timeout: Duration) -> Wake {
+        self.presence.announce();
+        self.caretaker.seen();
+        let deadline = Instant::now() + timeout;
+        let first = if self.has_data() { Duration::ZERO } else { timeout };
+        let mut wake = self.poll_once(first);
+        while wake.is_none() {
+            let now = Instant::now();
+            if self.has_data() {
+                wake = Some(Wake::Data);
+            } else if now >= deadline {
+                wake = Some(Wake::Timeout);
+            } else {
+                wake = self.poll_once(deadline - now);
+            }
+        }
+        self.caretaker.seen();
+        wake.unwrap_or(Wake::Timeout)
+    }
+
+    fn readers(&self, publisher: PublisherId) -> usize {
+        self.writers.get(publisher.0).map_or(0, |w| self.graph.matches_of(w.guid))
+    }
+
+    fn writers(&self, subscription: SubscriptionId) -> usize {
+        let reader = self.subscribers.get(subscription.0).map(|s| &self.readers[s.reader]);
+        reader.map_or(0, |r| self.graph.matches_of(r.guid))
+    }
+
+    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
+        self.names.resolve(topic.name).map(|name| self.graph.writers_of(&wire_name(&name))).unwrap_or_default()
+    }
+
+    fn published(&self) -> Vec<Published> {
+        let of = |w: &Writer| Published {
+            topic: w.topic.clone(),
+            writer: WriterId(w.guid.to_bytes()),
+            count: w.count,
+            full: w.full,
+        };
+        self.writers.iter().map(of).collect()
+    }
+
+    fn received(&self) -> Vec<Received> {
+        let of = |s: &Subscriber| {
+            let reader = &self.readers[s.reader];
+            let refused = s.refused + lock(&reader.inbox).refused();
+            Received { topic: reader.topic.clone(), taken: s.taken, refused }
+        };
+        self.subscribers.iter().map(of).collect()
+    }
+
+    fn count_refused(&mut self, subscription: SubscriptionId) {
+        if let Some(subscriber) = self.subscribers.get_mut(subscription.0) {
+            subscriber.refused += 1;
+        }
+    }
+
+    fn flush(&mut self, timeout: Duration) -> bool {
+        let deadline = Instant::now() + timeout;
+        self.writers.iter().all(|writer| {
+            let left = deadline.saturating_duration_since(Instant::now());
+            writer.data.wait_for_acknowledgments(left).unwrap_or(false)
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    fn wall_nanos(&self) -> u64 {
+        SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64)
+    }
+}

@@ -1,0 +1,90 @@
+//! Empties the readers while the node computes.
+//!
+//! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the marker
+//! of what is complete goes with the writer). A node that computes for seconds would so lose the last packing of a
+//! simulator that ended meanwhile. The caretaker moves samples into our own queues as soon as the node has been away
+//! from the bus for a while; a node that exchanges quickly never meets it.
+
+use super::inbox::Inbox;
+use rustdds::mio1::Waker;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How long a node may be away before its readers are emptied for it. A leaving node lingers longer than this.
+const ABSENCE: Duration = Duration::from_millis(50);
+
+/// Readers of one bus, shared with the caretaker.
+pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;
+
+/// Locks, whether or not another thread panicked while it held the lock: queues are valid after every statement.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+struct Shared {
+    start: Instant,
+    /// Nanoseconds from `start` to when the node last used the bus.
+    last_seen: AtomicU64,
+    stopped: Mutex<bool>,
+    stop: Condvar,
+}
+
+/// The thread; it ends when this is dropped.
+pub(super) struct Caretaker {
+    shared: Arc<Shared>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+impl Caretaker {
+    pub(super) fn spawn(inboxes: Inboxes, waker: Waker) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            start: Instant::now(),
+            last_seen: AtomicU64::new(0),
+            stopped: Mutex::new(false),
+            stop: Condvar::new(),
+        });
+        let its = Arc::clone(&shared);
+        let thread =
+            std::thread::Builder::new().name("bus caretaker".into()).spawn(move || run(&its, &inboxes, &waker))?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// The node uses the bus now.
+    pub(super) fn seen(&self) {
+        self.shared.last_seen.store(self.shared.start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Caretaker {
+    fn drop(&mut self) {
+        *lock(&self.shared.stopped) = true;
+        self.shared.stop.notify_all();
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            log::error!("the bus caretaker panicked");
+        }
+    }
+}
+
+fn run(shared: &Shared, inboxes: &Inboxes, waker: &Waker) {
+    let mut stopped = lock(&shared.stopped);
+    while !*stopped {
+        stopped = shared.stop.wait_timeout(stopped, ABSENCE).unwrap_or_else(PoisonError::into_inner).0;
+        let absent = shared.start.elapsed().as_nanos() as u64 - shared.last_seen.load(Ordering::Relaxed);
+        if *stopped || absent < ABSENCE.as_nanos() as u64 {
+            continue;
+        }
+        let all: Vec<Arc<Mutex<Inbox>>> = lock(inboxes).clone();
+        let mut moved = false;
+        for inbox in &all {
+            // A failing reader is reported to the node itself, by its next take.
+            moved |= lock(inbox).collect().unwrap_or(false);
+        }
+        // The node may have begun to wait meanwhile: what woke it is gone from the reader, so wake it again.
+        if moved && let Err(error) = waker.wake() {
+            log::error!("cannot wake the node: {error}");
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Who else is there: endpoints and matches, followed through the participant's own event channel.
+//!
+//! The endpoints' own status channels hold four events and drop the rest; the participant's holds 2048.
+
+use crate::bus::WriterId;
+use rustdds::{DomainParticipantStatusEvent as Event, GUID};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Endpoints of other processes, and what ours are matched with.
+#[derive(Default)]
+pub(super) struct Graph {
+    own: [u8; 12],
+    /// Remote writers by topic as it is named on the wire.
+    writers: BTreeMap<GUID, String>,
+    /// Local endpoint to matched remote endpoints.
+    matches: BTreeMap<GUID, BTreeSet<GUID>>,
+}
+
+fn prefix(guid: &GUID) -> [u8; 12] {
+    WriterId(guid.to_bytes()).participant()
+}
+
+impl Graph {
+    pub(super) fn new(participant: GUID) -> Self {
+        Self { own: prefix(&participant), ..Self::default() }
+    }
+
+    /// Takes one event in; true if it changed what is known.
+    pub(super) fn apply(&mut self, event: Event) -> bool {
+        match event {
+            Event::WriterDetected { writer } => {
+                !self.is_ours(&writer.guid) && self.writers.insert(writer.guid, writer.topic_name).is_none()
+            }
+            Event::RemoteReaderMatched { local_writer, remote_reader } => self.matched(local_writer, remote_reader),
+            Event::RemoteWriterMatched { local_reader, remote_writer } => self.matched(local_reader, remote_writer),
+            Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => self.lost(|g| *g == guid),
+            Event::ParticipantLost { id, .. } => self.lost(|g| g.prefix == id),
+            Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => {
+                log::warn!(
+                    "a reader ({}) asks for more than we offer and will receive nothing: requested {requested_qos:?}, offered {offered_qos:?}",
+                    WriterId(remote_reader.to_bytes())
+                );
+                false
+            }
+            Event::RemoteWriterQosIncompatible { remote_writer, requested_qos, offered_qos, .. } => {
+                log::warn!(
+                    "a writer ({}) offers less than we ask and will not be heard: requested {requested_qos:?}, offered {offered_qos:?}",
+                    WriterId(remote_writer.to_bytes())
+                );
+                false
+            }
+            Event::InconsistentTopic { previous_topic_data, discovered_topic_data, .. } => {
+                log::warn!("a peer uses a topic of ours with another type: {previous_topic_data:?} and {discovered_topic_data:?}");
+                false
+            }
+            _ => false,
+        }
+    }
+
+    fn is_ours(&self, guid: &GUID) -> bool {
+        prefix(guid) == self.own
+    }
+
+    /// A participant also matches itself; that is no peer.
+    fn matched(&mut self, local: GUID, remote: GUID) -> bool {
+        !self.is_ours(&remote) && self.matches.entry(local).or_default().insert(remote)
+    }
+
+    fn lost(&mut self, gone: impl Fn(&GUID) -> bool) -> bool {
+        let before = self.writers.len() + self.matches.values().map(BTreeSet::len).sum::<usize>();
+        self.writers.retain(|guid, _| !gone(guid));
+        for remotes in self.matches.values_mut() {
+            remotes.retain(|guid| !gone(guid));
+        }
+        before != self.writers.len() + self.matches.values().map(BTreeSet::len).sum::<usize>()
+    }
+
+    /// Remote endpoints matched with a local one.
+    pub(super) fn matches_of(&self, local: GUID) -> usize {
+        self.matches.get(&local).map_or(0, BTreeSet::len)
+    }
+
+    /// Remote writers of a topic as named on the wire, sorted.
+    pub(super) fn writers_of(&self, dds_topic: &str) -> Vec<WriterId> {
+        self.writers.iter().filter(|(_, topic)| *topic == dds_topic).map(|(g, _)| WriterId(g.to_bytes())).collect()
+    }
+}

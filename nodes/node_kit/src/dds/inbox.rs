@@ -1,0 +1,139 @@
+//! One DDS reader and the samples that were read from it but not taken yet.
+
+use super::raw::{RawAdapter, RawBody};
+use crate::bus::{BusError, Demand, Sample, SampleInfo, WriterId};
+use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
+use rustdds::{GUID, Timestamp};
+use std::collections::VecDeque;
+
+pub(super) type RawReader = SimpleDataReader<RawBody, RawAdapter>;
+
+/// A reader shared by every subscription to its topic, one queue for each of them.
+pub(super) struct Inbox {
+    reader: RawReader,
+    topic: String,
+    demand: Demand,
+    queues: Vec<VecDeque<Sample>>,
+    /// Samples that RustDDS could not hand over: a representation that is not CDR.
+    refused: u64,
+}
+
+impl Inbox {
+    pub(super) fn new(reader: RawReader, topic: String, demand: Demand) -> Self {
+        Self { reader, topic, demand, queues: Vec::new(), refused: 0 }
+    }
+
+    pub(super) fn guid(&self) -> GUID {
+        self.reader.guid()
+    }
+
+    pub(super) fn demand(&self) -> Demand {
+        self.demand
+    }
+
+    pub(super) fn reader_mut(&mut self) -> &mut RawReader {
+        &mut self.reader
+    }
+
+    /// Adds a subscriber and returns its place.
+    pub(super) fn add_queue(&mut self) -> usize {
+        self.queues.push(VecDeque::new());
+        self.queues.len() - 1
+    }
+
+    pub(super) fn has_data(&self) -> bool {
+        self.queues.iter().any(|queue| !queue.is_empty())
+    }
+
+    pub(super) fn refused(&self) -> u64 {
+        self.refused
+    }
+
+    /// Clears the reader's notification, so that the next sample raises a new one. Before reading, never after.
+    pub(super) fn acknowledge(&self) {
+        self.reader.drain_read_notifications();
+    }
+
+    /// The next sample for one subscriber.
+    pub(super) fn take(&mut self, place: usize) -> Result<Option<Sample>, BusError> {
+        if let Some(sample) = self.queues[place].pop_front() {
+            return Ok(Some(sample));
+        }
+        // With one subscriber a sample goes straight through; with more, the others find it in their queues.
+        let Some(sample) = self.read()? else { return Ok(None) };
+        for (other, queue) in self.queues.iter_mut().enumerate() {
+            if other != place {
+                push_bounded(queue, sample.clone(), self.demand.depth);
+            }
+        }
+        Ok(Some(sample))
+    }
+
+    /// Moves everything that arrived into the queues; true if there was anything.
+    pub(super) fn collect(&mut self) -> Result<bool, BusError> {
+        self.acknowledge();
+        let mut moved = false;
+        while let Some(sample) = self.read()? {
+            moved = true;
+            if let Some((last, others)) = self.queues.split_last_mut() {
+                for queue in others {
+                    push_bounded(queue, sample.clone(), self.demand.depth);
+                }
+                push_bounded(last, sample, self.demand.depth);
+            }
+        }
+        Ok(moved)
+    }
+
+    fn read(&mut self) -> Result<Option<Sample>, BusError> {
+        loop {
+            match self.reader.try_take_one() {
+                Ok(change) => return Ok(change.map(sample)),
+                Err(rustdds::dds::ReadError::Deserialization { reason }) => {
+                    self.refused += 1;
+                    log::warn!("{}: sample refused: {reason}", self.topic);
+                }
+                Err(error) => {
+                    return Err(BusError::Network { what: format!("read {}", self.topic), reason: error.to_string() });
+                }
+            }
+        }
+    }
+}
+
+/// Keep last: the oldest gives way.
+fn push_bounded(queue: &mut VecDeque<Sample>, sample: Sample, depth: u32) {
+    if queue.len() >= depth as usize {
+        queue.pop_front();
+    }
+    queue.push_back(sample);
+}
+
+fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
+    let info = SampleInfo {
+        writer: WriterId(change.writer_guid.to_bytes()),
+        sequence: i64::from(change.sequence_number),
+        source_time: change.source_timestamp().filter(|t| *t != Timestamp::INVALID).map(nanos),
+        received: nanos(change.receive_instant),
+    };
+    Sample { body: change.into_value().0, info }
+}
+
+/// An RTPS time (2⁻³² s since 1970) in nanoseconds.
+fn nanos(time: Timestamp) -> u64 {
+    let ticks = time.to_ticks();
+    let fraction = ((ticks & 0xffff_ffff) * 1_000_000_000 + (1 << 31)) >> 32;
+    (ticks >> 32) * 1_000_000_000 + fraction
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rtps_ticks_become_nanoseconds_to_half_a_tick() {
+        for (ticks, expected) in [(0, 0), (1 << 32, 1_000_000_000), ((5 << 32) | (1 << 31), 5_500_000_000)] {
+            assert_eq!(nanos(Timestamp::from_ticks(ticks)), expected);
+        }
+    }
+}

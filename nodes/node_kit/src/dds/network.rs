@@ -1,0 +1,139 @@
+//! Which network and which domain: the ROS 2 environment variables, as far as RustDDS can honour them.
+
+use std::net::Ipv4Addr;
+
+/// How far discovery reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Range {
+    /// This host alone, over the loopback interface. Our default.
+    Localhost,
+    /// Whatever multicast reaches, as ROS 2 does by default.
+    Subnet,
+}
+
+/// Domain and reach of a participant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Network {
+    /// DDS domain, 0 to 232; participants of different domains do not see each other.
+    pub domain: u16,
+    /// How far discovery reaches.
+    pub range: Range,
+}
+
+/// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
+pub const MAX_DOMAIN: u16 = 232;
+
+/// A variable that cannot be honoured. The process then ends with [`crate::Exit::Usage`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{variable}={value:?}: {reason}")]
+pub struct NetworkError {
+    /// The variable.
+    pub variable: &'static str,
+    /// Its value.
+    pub value: String,
+    /// Why not, and what to do.
+    pub reason: &'static str,
+}
+
+impl Network {
+    /// This host alone, in the given domain.
+    pub const fn localhost(domain: u16) -> Self {
+        Self { domain, range: Range::Localhost }
+    }
+
+    /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and `ROS_STATIC_PEERS`.
+    pub fn from_env() -> Result<Self, NetworkError> {
+        Self::from_variables(|name| std::env::var(name).ok())
+    }
+
+    /// The same from any source of variables; unset and empty are the same.
+    pub fn from_variables(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, NetworkError> {
+        let get = |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
+        let refuse = |variable, value: &str, reason| NetworkError { variable, value: value.into(), reason };
+
+        let domain = match get("ROS_DOMAIN_ID") {
+            None => 0,
+            Some(text) => match text.parse() {
+                Ok(domain) if domain <= MAX_DOMAIN => domain,
+                _ => return Err(refuse("ROS_DOMAIN_ID", &text, "must be a whole number from 0 to 232")),
+            },
+        };
+        if let Some(peers) = get("ROS_STATIC_PEERS") {
+            return Err(refuse(
+                "ROS_STATIC_PEERS",
+                &peers,
+                "RustDDS has no list of peers; unset it, and use ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET to reach other hosts",
+            ));
+        }
+        let localhost_only = get("ROS_LOCALHOST_ONLY");
+        let range = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
+            // ROS_LOCALHOST_ONLY is deprecated in ROS 2, but still wins when it is 1.
+            _ if localhost_only.as_deref() == Some("1") => Range::Localhost,
+            None => Range::Localhost,
+            Some(text) => match text.to_ascii_uppercase().as_str() {
+                "LOCALHOST" => Range::Localhost,
+                "SUBNET" | "SYSTEM_DEFAULT" => Range::Subnet,
+                "OFF" => {
+                    return Err(refuse(
+                        "ROS_AUTOMATIC_DISCOVERY_RANGE",
+                        &text,
+                        "RustDDS cannot run without discovery, and the processes of one run must find each other; use LOCALHOST",
+                    ));
+                }
+                _ => {
+                    return Err(refuse(
+                        "ROS_AUTOMATIC_DISCOVERY_RANGE",
+                        &text,
+                        "must be LOCALHOST, SUBNET or SYSTEM_DEFAULT",
+                    ));
+                }
+            },
+        };
+        Ok(Self { domain, range })
+    }
+
+    /// The interfaces to use; `None` for all of them.
+    pub(super) fn interfaces(&self) -> Option<[Ipv4Addr; 1]> {
+        match self.range {
+            Range::Localhost => Some([Ipv4Addr::LOCALHOST]),
+            Range::Subnet => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(variables: &[(&str, &str)]) -> Result<Network, NetworkError> {
+        Network::from_variables(|name| variables.iter().find(|(n, _)| *n == name).map(|(_, v)| (*v).into()))
+    }
+
+    #[test]
+    fn everything_stays_on_this_host_unless_asked() {
+        assert_eq!(read(&[]), Ok(Network::localhost(0)));
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "")]), Ok(Network::localhost(0)));
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().range, Range::Subnet);
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().range, Range::Subnet);
+        let both = [("ROS_LOCALHOST_ONLY", "1"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
+        assert_eq!(read(&both).unwrap().range, Range::Localhost);
+        assert_eq!(read(&[("ROS_LOCALHOST_ONLY", "0")]), Ok(Network::localhost(0)));
+    }
+
+    #[test]
+    fn the_domain_is_checked() {
+        assert_eq!(read(&[("ROS_DOMAIN_ID", "42")]), Ok(Network::localhost(42)));
+        for bad in ["-1", "233", "x", "4.0"] {
+            let error = read(&[("ROS_DOMAIN_ID", bad)]).unwrap_err().to_string();
+            assert!(error.contains("ROS_DOMAIN_ID") && error.contains(bad), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_honoured_is_refused_with_the_reason() {
+        let error = read(&[("ROS_STATIC_PEERS", "10.0.0.2")]).unwrap_err();
+        assert!(error.to_string().contains("no list of peers"), "{error}");
+        assert!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).is_err());
+        assert!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "NEAR")]).is_err());
+    }
+}

@@ -1,0 +1,149 @@
+//! ROS 2 parameter files: node keys (`/**`, `/ns/node`, nested namespaces), then `ros__parameters`.
+
+use super::{ParameterError, ParameterValue, yaml::Yaml};
+use std::path::Path;
+
+const PARAMETERS_KEY: &str = "ros__parameters";
+
+/// The parameters that the file gives to `node` (fully qualified), in the order of the file, names joined by dots.
+///
+/// A file none of whose keys is for the node is an error: it would be ignored without a word.
+pub(super) fn read(path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+    let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
+    let text = std::fs::read_to_string(path).map_err(|e| file_error(format!("cannot read: {e}")))?;
+    parse(&text, path, node)
+}
+
+fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+    let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
+    let mut sections = Vec::new();
+    collect_sections("", Yaml::parse(text).map_err(file_error)?, &mut sections).map_err(file_error)?;
+    if !sections.iter().any(|(key, _)| matches(key, node)) {
+        let keys: Vec<&str> = sections.iter().map(|(key, _)| key.as_str()).collect();
+        let keys = if keys.is_empty() { "none".into() } else { keys.join(", ") };
+        return Err(ParameterError::NoMatchingKey { path: path.into(), node: node.into(), keys });
+    }
+    let mut values = Vec::new();
+    for (_, parameters) in sections.into_iter().filter(|(key, _)| matches(key, node)) {
+        flatten("", parameters, &mut values).map_err(file_error)?;
+    }
+    Ok(values)
+}
+
+/// Finds every `ros__parameters` and the node key above it.
+fn collect_sections(key: &str, yaml: Yaml, sections: &mut Vec<(String, Yaml)>) -> Result<(), String> {
+    let Yaml::Map(entries) = yaml else {
+        let place = if key.is_empty() { "the top" } else { key };
+        return Err(format!("at {place}: expected node keys with {PARAMETERS_KEY} under them"));
+    };
+    for (name, value) in entries {
+        if name == PARAMETERS_KEY {
+            if key.is_empty() {
+                return Err(format!("{PARAMETERS_KEY} stands at the top: put a node key such as /** above it"));
+            }
+            sections.push((key.into(), value));
+        } else {
+            collect_sections(&format!("{key}/{}", name.trim_start_matches('/')), value, sections)?;
+        }
+    }
+    Ok(())
+}
+
+/// Turns nested groups into dotted names.
+fn flatten(prefix: &str, yaml: Yaml, values: &mut Vec<(String, ParameterValue)>) -> Result<(), String> {
+    let Yaml::Map(entries) = yaml else {
+        return Err(format!("{PARAMETERS_KEY} must hold name: value lines"));
+    };
+    for (name, value) in entries {
+        let name = if prefix.is_empty() { name } else { format!("{prefix}.{name}") };
+        if matches!(value, Yaml::Map(_)) {
+            flatten(&name, value, values)?;
+        } else {
+            let value = value.into_value().map_err(|reason| format!("parameter {name:?}: {reason}"))?;
+            values.push((name, value));
+        }
+    }
+    Ok(())
+}
+
+/// Whether a node key is for `node`: `*` stands for one token, `**` for any number of them.
+fn matches(key: &str, node: &str) -> bool {
+    fn tokens_match(key: &[&str], node: &[&str]) -> bool {
+        match (key, node) {
+            ([], []) => true,
+            (["**", rest @ ..], _) => (0..=node.len()).any(|skipped| tokens_match(rest, &node[skipped..])),
+            (["*", rest @ ..], [_, others @ ..]) => tokens_match(rest, others),
+            ([first, rest @ ..], [token, others @ ..]) if first == token => tokens_match(rest, others),
+            _ => false,
+        }
+    }
+    let tokens = |text: &str| text.split('/').filter(|t| !t.is_empty()).map(str::to_owned).collect::<Vec<_>>();
+    let (key, node) = (tokens(key), tokens(node));
+    let key: Vec<&str> = key.iter().map(String::as_str).collect();
+    let node: Vec<&str> = node.iter().map(String::as_str).collect();
+    tokens_match(&key, &node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+        parse(text, Path::new("run.yaml"), node)
+    }
+
+    #[test]
+    fn keys_match_by_name_wildcard_and_nested_namespace() {
+        for (key, node, expected) in [
+            ("/**", "/a/b/servo", true),
+            ("/servo", "/servo", true),
+            ("/servo", "/a/servo", false),
+            ("/**/servo", "/a/b/servo", true),
+            ("/**/servo", "/servo", true),
+            ("/*/servo", "/a/servo", true),
+            ("/*/servo", "/a/b/servo", false),
+            ("/serv", "/servo", false),
+        ] {
+            assert_eq!(matches(key, node), expected, "{key} for {node}");
+        }
+        let nested = "lab:\n  servo:\n    ros__parameters: {gain: 2.0}\n";
+        assert_eq!(read_text(nested, "/lab/servo").unwrap(), [("gain".into(), ParameterValue::Double(2.0))]);
+    }
+
+    #[test]
+    fn groups_become_dotted_names_and_later_sections_come_later() {
+        let text = "/**:\n  ros__parameters:\n    gain: 1\n    limits: {rate: 2.5, names: [a, b]}\nservo:\n  ros__parameters:\n    gain: 3\n";
+        let values = read_text(text, "/servo").unwrap();
+        assert_eq!(
+            values,
+            [
+                ("gain".into(), ParameterValue::Integer(1)),
+                ("limits.rate".into(), ParameterValue::Double(2.5)),
+                ("limits.names".into(), ParameterValue::StringArray(vec!["a".into(), "b".into()])),
+                ("gain".into(), ParameterValue::Integer(3)),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_file_that_is_not_for_this_node_is_refused_naming_both() {
+        let error = read_text("dem:\n  ros__parameters: {dt: 1.0}\n", "/lab/servo").unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("/lab/servo") && text.contains("/dem") && text.contains("run.yaml"), "{text}");
+    }
+
+    #[test]
+    fn misshapen_files_say_where() {
+        for (text, needle) in [
+            ("ros__parameters: {dt: 1}", "stands at the top"),
+            ("- 1\n- 2\n", "node keys"),
+            ("servo:\n  dt: 1\n", "/servo/dt"),
+            ("/**:\n  ros__parameters:\n    a: [1, x]\n", "one type"),
+            ("/**:\n  ros__parameters:\n    a:\n", "\"a\""),
+            ("/**: [unclosed", "run.yaml"),
+        ] {
+            let error = read_text(text, "/servo").expect_err(text).to_string();
+            assert!(error.contains(needle), "{text}: {error}");
+        }
+    }
+}

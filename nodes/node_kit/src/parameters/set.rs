@@ -1,0 +1,233 @@
+//! The values a node runs with.
+
+use super::{ParameterError, ParameterSpec, ParameterValue, file, yaml::Yaml};
+use crate::{args::RosArgs, names::Names};
+use std::collections::BTreeMap;
+
+/// Every declared parameter with its value, sorted by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameters {
+    values: BTreeMap<&'static str, ParameterValue>,
+}
+
+impl Parameters {
+    /// Applies files and command line to the declared parameters; files first, later ones win.
+    ///
+    /// Everything given must be for this node and declared by it, of its type and within its range. An integer is taken
+    /// where a double is declared.
+    pub fn resolve(
+        specs: &[ParameterSpec],
+        default_node: &str,
+        names: &Names,
+        args: &RosArgs,
+    ) -> Result<Self, ParameterError> {
+        let mut set = Self { values: specs.iter().map(|s| (s.name, s.default.clone())).collect() };
+        for path in &args.params_files {
+            let origin = path.display().to_string();
+            for (name, value) in file::read(path, &names.fully_qualified())? {
+                set.assign(specs, names, &origin, &name, value)?;
+            }
+        }
+        for assignment in &args.parameters {
+            let origin = "-p".to_owned();
+            let name = &assignment.name;
+            if let Some(prefix) = assignment.node.as_deref()
+                && ![default_node, names.node(), "*", "/**"].contains(&prefix)
+            {
+                return Err(ParameterError::OtherNode {
+                    prefix: prefix.into(),
+                    name: name.clone(),
+                    node: names.fully_qualified(),
+                });
+            }
+            let value = Yaml::parse(&assignment.yaml)
+                .and_then(Yaml::into_value)
+                .map_err(|reason| ParameterError::Value { origin: origin.clone(), name: name.clone(), reason })?;
+            set.assign(specs, names, &origin, name, value)?;
+        }
+        Ok(set)
+    }
+
+    /// The defaults alone.
+    pub fn defaults(specs: &[ParameterSpec]) -> Self {
+        Self { values: specs.iter().map(|s| (s.name, s.default.clone())).collect() }
+    }
+
+    fn assign(
+        &mut self,
+        specs: &[ParameterSpec],
+        names: &Names,
+        origin: &str,
+        name: &str,
+        value: ParameterValue,
+    ) -> Result<(), ParameterError> {
+        let Some(spec) = specs.iter().find(|s| s.name == name) else {
+            let known: Vec<&str> = self.values.keys().copied().collect();
+            return Err(ParameterError::Unknown {
+                origin: origin.into(),
+                node: names.fully_qualified(),
+                name: name.into(),
+                known: if known.is_empty() { "none".into() } else { known.join(", ") },
+            });
+        };
+        let value = coerce(value, &spec.default).map_err(|found| ParameterError::Type {
+            origin: origin.into(),
+            name: name.into(),
+            expected: spec.default.type_name(),
+            found: found.type_name(),
+            value: found.to_string(),
+            hint: match spec.default {
+                ParameterValue::String(_) => "; put it in quotes: \"'text'\"",
+                _ => "",
+            },
+        })?;
+        if !spec.range.contains(&value) {
+            return Err(ParameterError::OutOfRange {
+                origin: origin.into(),
+                name: name.into(),
+                value: value.to_string(),
+                range: spec.range.to_string(),
+            });
+        }
+        self.values.insert(spec.name, value);
+        Ok(())
+    }
+
+    /// The value of a declared parameter.
+    ///
+    /// # Panics
+    /// If the node does not declare `name` or declares it with another type: a mistake in the node's code, found by its
+    /// first test.
+    pub fn get<T: FromParameter>(&self, name: &str) -> T {
+        let value = self.values.get(name).unwrap_or_else(|| panic!("parameter {name:?} is not declared"));
+        T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", value.type_name()))
+    }
+
+    /// Names and values, sorted by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &ParameterValue)> {
+        self.values.iter().map(|(name, value)| (*name, value))
+    }
+}
+
+/// Makes `value` the type of `like` where nothing is lost by it; else gives it back.
+fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue, ParameterValue> {
+    use ParameterValue as V;
+    match (value, like) {
+        (V::Integer(v), V::Double(_)) => Ok(V::Double(v as f64)),
+        (V::IntegerArray(v), V::DoubleArray(_)) => Ok(V::DoubleArray(v.into_iter().map(|v| v as f64).collect())),
+        // An empty list carries no type of its own.
+        (V::IntegerArray(v), V::StringArray(_)) if v.is_empty() => Ok(V::StringArray(Vec::new())),
+        (V::IntegerArray(v), V::BoolArray(_)) if v.is_empty() => Ok(V::BoolArray(Vec::new())),
+        (value, like) if value.type_name() == like.type_name() => Ok(value),
+        (value, _) => Err(value),
+    }
+}
+
+/// A Rust type that a parameter can be read as.
+pub trait FromParameter: Sized {
+    /// The value, if it is of this type.
+    fn from_parameter(value: &ParameterValue) -> Option<Self>;
+}
+
+macro_rules! from_parameter {
+    ($($variant:ident => $to:ty),* $(,)?) => {$(
+        impl FromParameter for $to {
+            fn from_parameter(value: &ParameterValue) -> Option<Self> {
+                match value {
+                    ParameterValue::$variant(v) => Some(v.clone()),
+                    _ => None,
+                }
+            }
+        }
+    )*};
+}
+
+from_parameter! {
+    Bool => bool,
+    Integer => i64,
+    Double => f64,
+    String => String,
+    BoolArray => Vec<bool>,
+    IntegerArray => Vec<i64>,
+    DoubleArray => Vec<f64>,
+    StringArray => Vec<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Range;
+
+    fn specs() -> Vec<ParameterSpec> {
+        vec![
+            ParameterSpec::new("dt", 1e-6, "time step, s").within(Range::Positive),
+            ParameterSpec::new("seed", 1_i64, "seed").within(Range::Integer { min: 0, max: i64::MAX }),
+            ParameterSpec::new("scene", "demo", "scene"),
+            ParameterSpec::new("law", "scaled", "law").within(Range::Choice(&["scaled", "literal"])),
+            ParameterSpec::new("mu", vec![0.1], "friction of each phase")
+                .within(Range::Double { min: 0.0, max: f64::INFINITY }),
+        ]
+    }
+
+    fn resolve(args: &[&str]) -> Result<Parameters, ParameterError> {
+        let owned: Vec<String> =
+            std::iter::once("--ros-args").chain(args.iter().copied()).map(Into::into).collect();
+        let (ros, _) = RosArgs::parse(&owned).expect("valid arguments");
+        let names = Names::from_args("dem", &ros).expect("valid names");
+        Parameters::resolve(&specs(), "dem", &names, &ros)
+    }
+
+    #[test]
+    fn the_command_line_wins_over_files_and_the_last_one_wins() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("run.yaml");
+        std::fs::write(&path, "/**:\n  ros__parameters: {dt: 5e-7, seed: 9}\n").unwrap();
+        let file = path.to_str().unwrap();
+        let set = resolve(&["-p", "dt:=1e-7", "--params-file", file, "-p", "dem:dt:=2e-7"]).unwrap();
+        assert_eq!(set.get::<f64>("dt"), 2e-7);
+        assert_eq!(set.get::<i64>("seed"), 9);
+        assert_eq!(set.get::<String>("scene"), "demo", "untouched ones keep their default");
+    }
+
+    #[test]
+    fn integers_are_taken_for_doubles_and_nothing_else_is_converted() {
+        let set = resolve(&["-p", "dt:=1", "-p", "mu:=[1, 2]", "-p", "scene:='12'"]).unwrap();
+        assert_eq!(set.get::<f64>("dt"), 1.0);
+        assert_eq!(set.get::<Vec<f64>>("mu"), [1.0, 2.0]);
+        assert_eq!(set.get::<String>("scene"), "12");
+        for (argument, needle) in [("seed:=1.5", "double"), ("scene:=12", "quotes"), ("dt:=fast", "string")] {
+            let error = resolve(&["-p", argument]).expect_err(argument).to_string();
+            assert!(error.contains(needle), "{argument}: {error}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_parameter_is_named_with_what_exists() {
+        let error = resolve(&["-p", "dtt:=1"]).unwrap_err().to_string();
+        assert!(error.contains("\"dtt\"") && error.contains("dt, law, mu, scene, seed"), "{error}");
+    }
+
+    #[test]
+    fn values_out_of_range_and_nan_are_refused_with_the_range() {
+        for (argument, needle) in [
+            ("dt:=0", "greater than 0"),
+            ("dt:=.inf", "greater than 0"),
+            ("dt:=.nan", "greater than 0"),
+            ("seed:=-1", "at least 0"),
+            ("law:=pid", "scaled, literal"),
+            ("mu:=[0.1, -0.1]", "at least 0"),
+            ("mu:=[.nan]", "at least 0"),
+        ] {
+            let error = resolve(&["-p", argument]).expect_err(argument).to_string();
+            assert!(error.contains(needle), "{argument}: {error}");
+        }
+        assert_eq!(resolve(&["-p", "mu:=[.inf]"]).unwrap().get::<Vec<f64>>("mu"), [f64::INFINITY]);
+    }
+
+    #[test]
+    fn a_prefix_for_another_node_is_an_error_rather_than_a_lost_value() {
+        let error = resolve(&["-p", "servo:dt:=1"]).unwrap_err();
+        assert!(matches!(error, ParameterError::OtherNode { .. }), "{error}");
+        assert!(resolve(&["-r", "__node:=sim", "-p", "sim:dt:=1"]).is_ok(), "the new name of this node is its name");
+    }
+}

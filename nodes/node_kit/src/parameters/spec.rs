@@ -1,0 +1,132 @@
+//! What a node declares about a parameter: name, type and default, range, meaning.
+
+use super::ParameterValue;
+use std::fmt;
+
+/// Which values a parameter may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// Any value of its type (a double is never NaN).
+    Any,
+    /// An integer or every integer of a list, bounds included.
+    Integer {
+        /// Least value.
+        min: i64,
+        /// Greatest value.
+        max: i64,
+    },
+    /// A double or every double of a list, bounds included; infinite bounds are none.
+    Double {
+        /// Least value.
+        min: f64,
+        /// Greatest value.
+        max: f64,
+    },
+    /// A double strictly above zero, and finite.
+    Positive,
+    /// One of these texts.
+    Choice(&'static [&'static str]),
+}
+
+impl Range {
+    /// Whether `value` lies within.
+    pub fn contains(&self, value: &ParameterValue) -> bool {
+        use ParameterValue as V;
+        let doubles: &[f64] = match value {
+            V::Double(v) => std::slice::from_ref(v),
+            V::DoubleArray(v) => v,
+            _ => &[],
+        };
+        if doubles.iter().any(|v| v.is_nan()) {
+            return false;
+        }
+        match (self, value) {
+            (Range::Any, _) => true,
+            (Range::Integer { min, max }, V::Integer(v)) => (min..=max).contains(&v),
+            (Range::Integer { min, max }, V::IntegerArray(v)) => v.iter().all(|v| (min..=max).contains(&v)),
+            (Range::Double { min, max }, V::Double(_) | V::DoubleArray(_)) => {
+                doubles.iter().all(|v| (min..=max).contains(&v))
+            }
+            (Range::Positive, V::Double(_) | V::DoubleArray(_)) => doubles.iter().all(|v| *v > 0.0 && v.is_finite()),
+            (Range::Choice(allowed), V::String(v)) => allowed.contains(&v.as_str()),
+            (Range::Choice(allowed), V::StringArray(v)) => v.iter().all(|v| allowed.contains(&v.as_str())),
+            // A range of another type than the parameter is a mistake of the declaration; it allows nothing.
+            _ => false,
+        }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Range::Any => write!(f, "any value that is a number"),
+            Range::Integer { min, max: i64::MAX } => write!(f, "at least {min}"),
+            Range::Integer { min, max } => write!(f, "{min} to {max}"),
+            Range::Double { min, max } if max.is_infinite() => write!(f, "at least {min}"),
+            Range::Double { min, max } => write!(f, "{min} to {max}"),
+            Range::Positive => write!(f, "greater than 0 and finite"),
+            Range::Choice(allowed) => write!(f, "one of {}", allowed.join(", ")),
+        }
+    }
+}
+
+/// One parameter of a node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterSpec {
+    /// Its name, dots separating groups.
+    pub name: &'static str,
+    /// Its value when nobody sets it; this also fixes its type.
+    pub default: ParameterValue,
+    /// The values it may take.
+    pub range: Range,
+    /// What it does, with its unit.
+    pub description: &'static str,
+    /// Whether it is fixed once the node runs.
+    pub read_only: bool,
+}
+
+impl ParameterSpec {
+    /// A read-only parameter that may take any value of its type.
+    pub fn new(name: &'static str, default: impl Into<ParameterValue>, description: &'static str) -> Self {
+        Self { name, default: default.into(), range: Range::Any, description, read_only: true }
+    }
+
+    /// The same with a range.
+    #[must_use]
+    pub fn within(self, range: Range) -> Self {
+        Self { range, ..self }
+    }
+}
+
+/// One line of `--help`: `name (type, default …, range): description`.
+impl fmt::Display for ParameterSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({}, default {}", self.name, self.default.type_name(), self.default)?;
+        if self.range != Range::Any {
+            write!(f, ", {}", self.range)?;
+        }
+        write!(f, "): {}", self.description)
+    }
+}
+
+macro_rules! into_value {
+    ($($from:ty => $variant:ident),* $(,)?) => {$(
+        impl From<$from> for ParameterValue {
+            fn from(value: $from) -> Self {
+                ParameterValue::$variant(value.into())
+            }
+        }
+    )*};
+}
+
+into_value! {
+    bool => Bool,
+    i64 => Integer,
+    f64 => Double,
+    &str => String,
+    String => String,
+    Vec<bool> => BoolArray,
+    Vec<i64> => IntegerArray,
+    Vec<f64> => DoubleArray,
+    Vec<String> => StringArray,
+}

@@ -1,0 +1,56 @@
+//! SIGINT and SIGTERM: the first asks the node to end, the second ends the process at once.
+
+use crate::exit::Exit;
+use rustdds::mio1::net::UnixStream;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::{flag, low_level::pipe};
+use std::io::{self, Read};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Handlers of SIGINT and SIGTERM for the whole process, installed once.
+#[derive(Debug)]
+pub struct Signals {
+    requested: Arc<AtomicBool>,
+    arrivals: UnixStream,
+}
+
+impl Signals {
+    /// Installs the handlers.
+    pub fn install() -> io::Result<Self> {
+        let requested = Arc::new(AtomicBool::new(false));
+        let (arrivals, sender) = std::os::unix::net::UnixStream::pair()?;
+        arrivals.set_nonblocking(true)?;
+        for signal in [SIGINT, SIGTERM] {
+            // Handlers run in this order: the first signal finds the flag unset and sets it, the second ends the process.
+            flag::register_conditional_shutdown(signal, i32::from(Exit::Interrupted.code()), Arc::clone(&requested))?;
+            flag::register(signal, Arc::clone(&requested))?;
+            pipe::register(signal, sender.try_clone()?)?;
+        }
+        Ok(Self { requested, arrivals: UnixStream::from_std(arrivals) })
+    }
+
+    /// Whether a signal came.
+    pub fn requested(&self) -> bool {
+        self.requested.load(Ordering::Relaxed)
+    }
+
+    /// A flag that becomes true with the first signal, for those who outlive the bus.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.requested)
+    }
+
+    pub(crate) fn source(&mut self) -> &mut UnixStream {
+        &mut self.arrivals
+    }
+
+    /// Forgets the arrivals that woke a waiter; true if there were any.
+    pub(crate) fn drain(&mut self) -> bool {
+        let mut bytes = [0; 16];
+        let mut any = false;
+        while matches!(self.arrivals.read(&mut bytes), Ok(n) if n > 0) {
+            any = true;
+        }
+        any
+    }
+}

@@ -1,0 +1,95 @@
+//! Typed handles over the raw bus.
+
+use crate::bus::{Bus, BusError, Demand, PublisherId, SampleInfo, SubscriptionId};
+use grainlab_msgs::{DecodeError, Message, Topic, from_cdr, to_cdr};
+use std::marker::PhantomData;
+
+/// A topic offered with its type.
+#[derive(Debug)]
+pub struct Publisher<T> {
+    id: PublisherId,
+    message: PhantomData<fn(&T)>,
+}
+
+impl<T: Message> Publisher<T> {
+    /// Offers `topic`, which must be of type `T` in the contract table.
+    ///
+    /// # Panics
+    /// If the contract table gives the topic another type: a mistake in the node's code.
+    pub fn advertise(bus: &mut dyn Bus, topic: &Topic) -> Result<Self, BusError> {
+        assert_eq!(topic.info.type_name, T::TYPE, "type of topic {}", topic.name);
+        Ok(Self { id: bus.advertise(topic)?, message: PhantomData })
+    }
+
+    /// Encodes and publishes; returns the RTPS sequence number.
+    pub fn publish(&self, bus: &mut dyn Bus, message: &T) -> Result<i64, BusError> {
+        bus.publish(self.id, &to_cdr(message))
+    }
+
+    /// The raw handle, for [`Bus::readers`] and for bodies that are already encoded.
+    pub fn id(&self) -> PublisherId {
+        self.id
+    }
+}
+
+/// Why a sample could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum TakeError {
+    /// The bus failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// A sample came but is not a message of the type. It is counted as refused; the next take goes on behind it.
+    #[error("sample {} of writer {} refused: {reason}", info.sequence, info.writer)]
+    Decode {
+        /// Which sample.
+        info: SampleInfo,
+        /// What is wrong with it.
+        reason: DecodeError,
+    },
+}
+
+/// A subscription with its type.
+#[derive(Debug)]
+pub struct Subscription<T> {
+    id: SubscriptionId,
+    message: PhantomData<fn() -> T>,
+}
+
+impl<T: Message> Subscription<T> {
+    /// Subscribes to `topic`, which must be of type `T` in the contract table.
+    ///
+    /// # Panics
+    /// If the contract table gives the topic another type: a mistake in the node's code.
+    pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
+        assert_eq!(topic.info.type_name, T::TYPE, "type of topic {}", topic.name);
+        Ok(Self { id: bus.subscribe(topic, demand)?, message: PhantomData })
+    }
+
+    /// The next message, if there is one. A sample that is not a `T` is an error of that sample alone.
+    pub fn take(&self, bus: &mut dyn Bus) -> Result<Option<(T, SampleInfo)>, TakeError> {
+        let Some(sample) = bus.take(self.id)? else { return Ok(None) };
+        match from_cdr(&sample.body) {
+            Ok(message) => Ok(Some((message, sample.info))),
+            Err(reason) => {
+                bus.count_refused(self.id);
+                Err(TakeError::Decode { info: sample.info, reason })
+            }
+        }
+    }
+
+    /// The next message that decodes, if there is one; what does not is counted and logged.
+    pub fn take_valid(&self, bus: &mut dyn Bus) -> Result<Option<(T, SampleInfo)>, BusError> {
+        loop {
+            match self.take(bus) {
+                Ok(taken) => return Ok(taken),
+                Err(TakeError::Bus(error)) => return Err(error),
+                Err(refused @ TakeError::Decode { .. }) => log::warn!("{refused}"),
+            }
+        }
+    }
+
+    /// The raw handle, for [`Bus::writers`] and [`Bus::count_refused`].
+    pub fn id(&self) -> SubscriptionId {
+        self.id
+    }
+}

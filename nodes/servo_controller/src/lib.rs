@@ -1,0 +1,1 @@
+//! The servo node: answers every stress with a strain rate.

@@ -1,0 +1,190 @@
+//! What was recorded, lost and repeated, per topic and per writer.
+//!
+//! Loss is judged by RTPS sequence numbers, which count every message of one writer from 1: a number that never came is
+//! a message that was lost, whoever lost it. What a writer sent after the last number seen, only that writer knows; it
+//! reports its count when it ends ([`Ledger::report`]).
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+mod sequence;
+
+use sequence::Sequence;
+
+/// The RTPS identity of one writer: 16 bytes, shown as 32 hexadecimal digits.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Guid(pub [u8; 16]);
+
+impl fmt::Display for Guid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|b| write!(f, "{b:02x}"))
+    }
+}
+
+impl fmt::Debug for Guid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// A text that is not 32 hexadecimal digits.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not a writer GUID: 32 hexadecimal digits are needed")]
+pub struct GuidError(pub String);
+
+impl FromStr for Guid {
+    type Err = GuidError;
+
+    fn from_str(text: &str) -> Result<Self, GuidError> {
+        // Digits only: from_str_radix alone would take a sign.
+        let value = match text.len() {
+            32 if text.bytes().all(|b| b.is_ascii_hexdigit()) => u128::from_str_radix(text, 16).ok(),
+            _ => None,
+        };
+        value.map(|v| Self(v.to_be_bytes())).ok_or_else(|| GuidError(text.to_owned()))
+    }
+}
+
+/// Account of one topic, all writers together.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TopicTally {
+    /// Name of the topic, absolute.
+    pub name: String,
+    /// Messages published: a writer's own count where it reported one, else its highest sequence number seen.
+    pub published: u64,
+    /// Messages in the recording.
+    pub recorded: u64,
+    /// Published but not recorded.
+    pub lost: u64,
+    /// Deliveries of a message that was already recorded; not recorded again.
+    pub repeated: u64,
+    /// The writers, in order of GUID.
+    pub writers: Vec<WriterTally>,
+}
+
+/// Account of one writer of one topic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WriterTally {
+    /// GUID, 32 hexadecimal digits.
+    pub guid: String,
+    /// Name of the node, if it was told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<String>,
+    /// Messages recorded.
+    pub recorded: u64,
+    /// Count the writer reported; `None` if it ended without a word (a crash) or has not ended.
+    pub reported: Option<u64>,
+    /// Lowest sequence number recorded; `None` if nothing was.
+    pub first: Option<i64>,
+    /// Highest sequence number recorded; `None` if nothing was.
+    pub last: Option<i64>,
+    /// Published but not recorded.
+    pub lost: u64,
+    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most 32 are kept
+    /// here; `lost` counts all.
+    pub gaps: Vec<(i64, i64)>,
+    /// Deliveries of a message that was already recorded.
+    pub repeated: u64,
+}
+
+/// Ranges that a [`WriterTally`] lists at most.
+const LISTED_GAPS: usize = 32;
+
+#[derive(Clone, Debug, Default)]
+struct Writer {
+    sequence: Sequence,
+    reported: Option<u64>,
+}
+
+/// The running account of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct Ledger {
+    topics: BTreeMap<String, BTreeMap<Guid, Writer>>,
+    nodes: BTreeMap<Guid, String>,
+}
+
+impl Ledger {
+    /// Makes `topic` known, so that it is accounted for even if nothing comes.
+    pub fn expect(&mut self, topic: &str) {
+        if !self.topics.contains_key(topic) {
+            self.topics.insert(topic.to_owned(), BTreeMap::new());
+        }
+    }
+
+    /// Whether message `sequence` of this writer was recorded already.
+    pub fn holds(&self, topic: &str, guid: &Guid, sequence: i64) -> bool {
+        self.topics.get(topic).and_then(|t| t.get(guid)).is_some_and(|w| w.sequence.holds(sequence))
+    }
+
+    /// Enters message `sequence` of this writer; `false` if it is a repeat, which is then counted as one.
+    pub fn enter(&mut self, topic: &str, guid: Guid, sequence: i64) -> bool {
+        self.expect(topic);
+        match self.topics.get_mut(topic) {
+            Some(writers) => writers.entry(guid).or_default().sequence.enter(sequence),
+            None => false,
+        }
+    }
+
+    /// Notes that a writer says it published `count` messages in all. The largest report counts.
+    pub fn report(&mut self, topic: &str, guid: Guid, count: u64) {
+        self.expect(topic);
+        if let Some(writers) = self.topics.get_mut(topic) {
+            let writer = writers.entry(guid).or_default();
+            writer.reported = Some(writer.reported.map_or(count, |known| known.max(count)));
+        }
+    }
+
+    /// Notes which node a writer belongs to.
+    pub fn name(&mut self, guid: Guid, node: &str) {
+        self.nodes.insert(guid, node.to_owned());
+    }
+
+    /// Messages that writers report as published and that have not come: what a recorder that is about to end may still
+    /// wait for.
+    pub fn outstanding(&self) -> u64 {
+        self.topics
+            .values()
+            .flat_map(|writers| writers.values())
+            .map(|w| w.reported.unwrap_or(0).saturating_sub(w.sequence.held()))
+            .sum()
+    }
+
+    /// The account, topic by topic in order of name.
+    pub fn tallies(&self) -> Vec<TopicTally> {
+        self.topics.iter().map(|(name, writers)| self.tally(name, writers)).collect()
+    }
+
+    fn tally(&self, name: &str, writers: &BTreeMap<Guid, Writer>) -> TopicTally {
+        let mut topic =
+            TopicTally { name: name.to_owned(), published: 0, recorded: 0, lost: 0, repeated: 0, writers: Vec::new() };
+        for (guid, writer) in writers {
+            let s = &writer.sequence;
+            let recorded = s.held();
+            // A report that is lower than what was seen is out of date, not proof of a negative loss.
+            let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(recorded);
+            let lost = published - recorded;
+            topic.published += published;
+            topic.recorded += recorded;
+            topic.lost += lost;
+            topic.repeated += s.repeated();
+            topic.writers.push(WriterTally {
+                guid: guid.to_string(),
+                node: self.nodes.get(guid).cloned(),
+                recorded,
+                reported: writer.reported,
+                first: s.first(),
+                last: (recorded > 0).then(|| s.highest()),
+                lost,
+                gaps: s.gaps().take(LISTED_GAPS).collect(),
+                repeated: s.repeated(),
+            });
+        }
+        topic
+    }
+}
+
+#[cfg(test)]
+mod tests;

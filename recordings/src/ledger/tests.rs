@@ -1,0 +1,88 @@
+use super::*;
+
+const A: Guid = Guid([1; 16]);
+const B: Guid = Guid([2; 16]);
+
+fn only(ledger: &Ledger) -> TopicTally {
+    let tallies = ledger.tallies();
+    assert_eq!(tallies.len(), 1);
+    tallies.into_iter().next().unwrap()
+}
+
+#[test]
+fn a_gap_in_the_middle_is_a_loss_and_a_late_arrival_heals_it() {
+    let mut ledger = Ledger::default();
+    for n in [1, 2, 6, 7] {
+        assert!(ledger.enter("/stress", A, n));
+    }
+    let t = only(&ledger);
+    assert_eq!((t.published, t.recorded, t.lost), (7, 4, 3));
+    assert_eq!(t.writers[0].gaps, [(3, 5)]);
+    assert!(ledger.enter("/stress", A, 4));
+    assert_eq!(only(&ledger).writers[0].gaps, [(3, 3), (5, 5)]);
+    assert!(ledger.enter("/stress", A, 3) && ledger.enter("/stress", A, 5));
+    let t = only(&ledger);
+    assert_eq!((t.lost, t.repeated), (0, 0));
+    assert!(t.writers[0].gaps.is_empty());
+}
+
+#[test]
+fn a_repeat_is_counted_apart_and_not_as_a_message() {
+    let mut ledger = Ledger::default();
+    assert!(ledger.enter("/stress", A, 1) && ledger.enter("/stress", A, 2));
+    assert!(ledger.holds("/stress", &A, 1) && !ledger.holds("/stress", &A, 3) && !ledger.holds("/stress", &B, 1));
+    assert!(!ledger.enter("/stress", A, 1) && !ledger.enter("/stress", A, 2));
+    let t = only(&ledger);
+    assert_eq!((t.published, t.recorded, t.lost, t.repeated), (2, 2, 0, 2));
+}
+
+#[test]
+fn what_a_writer_sent_before_and_after_is_known_from_its_report_and_its_numbers() {
+    let mut ledger = Ledger::default();
+    // Two messages before the recorder was there, one lost at the end.
+    for n in [3, 4, 5] {
+        ledger.enter("/packing", A, n);
+    }
+    assert_eq!(only(&ledger).lost, 2);
+    ledger.report("/packing", A, 6);
+    assert_eq!(ledger.outstanding(), 3);
+    let t = only(&ledger);
+    assert_eq!((t.published, t.recorded, t.lost), (6, 3, 3));
+    assert_eq!((t.writers[0].first, t.writers[0].last, t.writers[0].reported), (Some(3), Some(5), Some(6)));
+    // A report that arrives late and low changes nothing.
+    ledger.report("/packing", A, 2);
+    assert_eq!(only(&ledger).published, 6);
+}
+
+#[test]
+fn writers_are_accounted_apart_and_a_silent_topic_appears() {
+    let mut ledger = Ledger::default();
+    ledger.expect("/moduli");
+    ledger.enter("/stress", A, 1);
+    ledger.enter("/stress", B, 1);
+    ledger.report("/stress", B, 1);
+    ledger.name(B, "/dem_simulator");
+    let t = ledger.tallies();
+    assert_eq!((t[0].name.as_str(), t[0].recorded, t[0].published), ("/moduli", 0, 0));
+    assert_eq!((t[1].published, t[1].recorded, t[1].lost, t[1].repeated), (2, 2, 0, 0));
+    assert_eq!(t[1].writers[1].node.as_deref(), Some("/dem_simulator"));
+    assert_eq!(t[1].writers[0].reported, None);
+}
+
+#[test]
+fn a_writer_of_which_nothing_came_is_all_loss() {
+    let mut ledger = Ledger::default();
+    ledger.report("/stress", A, 40);
+    let t = only(&ledger);
+    assert_eq!((t.published, t.recorded, t.lost), (40, 0, 40));
+    assert_eq!(t.writers[0].last, None);
+}
+
+#[test]
+fn guids_survive_their_text_and_other_texts_are_refused() {
+    let guid = Guid(std::array::from_fn(|i| 17 * i as u8));
+    assert_eq!(guid.to_string().parse(), Ok(guid));
+    for bad in ["", "00", "+0000000000000000000000000000000", "g0000000000000000000000000000000"] {
+        assert!(bad.parse::<Guid>().is_err(), "{bad}");
+    }
+}

@@ -1,0 +1,226 @@
+//! When to send which recorded message: a schedule without a clock or a socket of its own.
+//!
+//! The caller says what time it is and does as told. Messages keep their order and their distances in log time. If the caller
+//! falls behind, the whole schedule slips, so that topics stay in proportion, and [`Player::slipped`] says by how much.
+//! Playback that starts in the middle begins with the last earlier message of every latched topic, as a node that joins late would
+//! get it.
+
+use std::collections::VecDeque;
+use std::iter::Peekable;
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::reader::{ChannelInfo, Message, Messages, ReadError, Recording, Selection};
+
+/// What to play, and how fast.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlayOptions {
+    /// Names of topics, with or without the leading slash; `None` for all.
+    pub topics: Option<Vec<String>>,
+    /// Names of topics to leave out of those.
+    pub exclude: Vec<String>,
+    /// Recorded seconds per second; positive. Infinity sends as fast as the caller takes.
+    pub rate: f64,
+    /// Where to start, after the first message of the recording.
+    pub start_offset: Duration,
+    /// How much to play, in recorded time; `None` to the end.
+    pub duration: Option<Duration>,
+    /// Lateness from which the schedule slips instead of catching up.
+    pub patience: Duration,
+}
+
+impl Default for PlayOptions {
+    fn default() -> Self {
+        Self {
+            topics: None,
+            exclude: Vec::new(),
+            rate: 1.0,
+            start_offset: Duration::ZERO,
+            duration: None,
+            patience: Duration::from_millis(20),
+        }
+    }
+}
+
+/// Why a recording cannot be played as asked.
+#[derive(Debug, thiserror::Error)]
+pub enum PlayError {
+    /// The recording does not have what was asked for.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A rate that is no rate.
+    #[error("rate {0} is out of range: it must be more than 0 (1 is the speed of the recording)")]
+    Rate(f64),
+    /// Nothing is left to play.
+    #[error("start offset {offset:?} is beyond the end: the recording lasts {length:?}")]
+    BeyondEnd {
+        /// The offset asked for.
+        offset: Duration,
+        /// Length of the recording.
+        length: Duration,
+    },
+}
+
+/// What the caller shall do now.
+#[derive(Clone, Debug)]
+pub enum Play {
+    /// Send this message, and ask again.
+    Send(Message),
+    /// Nothing is due for this long.
+    Wait(Duration),
+    /// Nothing is due until [`Player::resume`].
+    Paused,
+    /// All has been sent.
+    Done,
+}
+
+/// The schedule of one playback.
+pub struct Player<'r> {
+    channels: Vec<Arc<ChannelInfo>>,
+    latched: VecDeque<Message>,
+    messages: Peekable<Messages<'r>>,
+    rate: f64,
+    patience: Duration,
+    paused: bool,
+    /// Log time (ns since 1970) that belongs to `anchor`, in the caller's time; `None` before the first question.
+    position: u64,
+    anchor: Option<Duration>,
+    slipped: Duration,
+}
+
+impl<'r> Player<'r> {
+    /// A playback of `recording`, which begins with the first [`Player::poll`].
+    ///
+    /// # Errors
+    /// If a topic does not exist, the rate is not positive, or the offset is beyond the end.
+    pub fn new(recording: &'r Recording, options: &PlayOptions) -> Result<Self, PlayError> {
+        check_rate(options.rate)?;
+        let names = match &options.topics {
+            Some(names) => names.clone(),
+            None => recording.channels().iter().map(|c| c.topic.clone()).collect(),
+        };
+        let excluded: Vec<&str> = options.exclude.iter().map(|n| n.trim_start_matches('/')).collect();
+        let mut channels = Vec::new();
+        for name in names.iter().filter(|n| !excluded.contains(&n.trim_start_matches('/'))) {
+            channels.push(recording.channel(name)?);
+        }
+        channels.sort_by(|a, b| a.topic.cmp(&b.topic));
+        channels.dedup();
+        let (first, last) = recording.time_range().unwrap_or((0, 0));
+        let start = first.saturating_add(nanoseconds(options.start_offset));
+        if start > last {
+            let (offset, length) = (options.start_offset, Duration::from_nanos(last - first));
+            return Err(PlayError::BeyondEnd { offset, length });
+        }
+        let mut latched = Vec::new();
+        for channel in channels.iter().filter(|c| c.is_latched()) {
+            latched.extend(recording.last_before(&channel.topic, start)?);
+        }
+        latched.sort_by_key(|m| m.log_time);
+        let selection = Selection {
+            topics: Some(channels.iter().map(|c| c.topic.clone()).collect()),
+            start: Some(start),
+            end: options.duration.map(|d| start.saturating_add(nanoseconds(d))),
+        };
+        Ok(Self {
+            messages: recording.messages(&selection)?.peekable(),
+            channels,
+            latched: latched.into(),
+            rate: options.rate,
+            patience: options.patience,
+            paused: false,
+            position: start,
+            anchor: None,
+            slipped: Duration::ZERO,
+        })
+    }
+
+    /// The topics that will be sent, by name.
+    pub fn channels(&self) -> &[Arc<ChannelInfo>] {
+        &self.channels
+    }
+
+    /// What to do at `now`, a time that only ever grows (since any origin).
+    pub fn poll(&mut self, now: Duration) -> Play {
+        self.anchor.get_or_insert(now);
+        if let Some(message) = self.latched.pop_front() {
+            return Play::Send(message);
+        }
+        if self.paused {
+            return Play::Paused;
+        }
+        let Some(due) = self.messages.peek().map(|m| m.log_time) else {
+            return Play::Done;
+        };
+        let position = self.position(now);
+        if self.rate.is_infinite() {
+            self.position = due;
+        } else if due > position {
+            return Play::Wait(self.in_callers_time(due - position));
+        } else if self.in_callers_time(position - due) > self.patience {
+            self.slipped += self.in_callers_time(position - due);
+            self.set_anchor(due, now);
+        }
+        self.messages.next().map_or(Play::Done, Play::Send)
+    }
+
+    /// Log time (ns since 1970) that playback has reached at `now`: what a `/clock` would say.
+    pub fn position(&self, now: Duration) -> u64 {
+        match self.anchor {
+            Some(anchor) if !self.paused && self.rate.is_finite() => {
+                let passed = now.saturating_sub(anchor).as_nanos() as f64 * self.rate;
+                self.position.saturating_add(passed as u64)
+            }
+            _ => self.position,
+        }
+    }
+
+    /// Stops the schedule until [`Player::resume`].
+    pub fn pause(&mut self, now: Duration) {
+        self.set_anchor(self.position(now), now);
+        self.paused = true;
+    }
+
+    /// Goes on after [`Player::pause`].
+    pub fn resume(&mut self, now: Duration) {
+        self.set_anchor(self.position(now), now);
+        self.paused = false;
+    }
+
+    /// Whether the schedule is stopped.
+    pub fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Changes the rate from `now` on.
+    ///
+    /// # Errors
+    /// If it is not positive.
+    pub fn set_rate(&mut self, now: Duration, rate: f64) -> Result<(), PlayError> {
+        check_rate(rate)?;
+        self.set_anchor(self.position(now), now);
+        self.rate = rate;
+        Ok(())
+    }
+
+    /// How much later than it should be the schedule has become because messages were not taken in time, all told.
+    pub fn slipped(&self) -> Duration {
+        self.slipped
+    }
+
+    fn set_anchor(&mut self, position: u64, now: Duration) {
+        (self.position, self.anchor) = (position, Some(now));
+    }
+
+    fn in_callers_time(&self, recorded: u64) -> Duration {
+        Duration::try_from_secs_f64(recorded as f64 * 1e-9 / self.rate).unwrap_or(Duration::MAX)
+    }
+}
+
+fn check_rate(rate: f64) -> Result<(), PlayError> {
+    if rate > 0.0 { Ok(()) } else { Err(PlayError::Rate(rate)) }
+}
+
+fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}

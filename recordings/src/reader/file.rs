@@ -1,0 +1,104 @@
+//! One MCAP file.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use mcap::MAGIC;
+use mcap::records::Record;
+use memmap2::Mmap;
+
+use super::error::WarningKind;
+use super::index::{Entry, Index};
+use super::records::Records;
+use super::{ReadError, StoredFile, Warning};
+
+pub(super) struct OpenFile {
+    pub(super) path: PathBuf,
+    bytes: Bytes,
+    pub(super) index: Index,
+}
+
+enum Bytes {
+    Mapped(Mmap),
+    Owned(Vec<u8>),
+}
+
+impl fmt::Debug for OpenFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OpenFile").field("path", &self.path).finish_non_exhaustive()
+    }
+}
+
+impl OpenFile {
+    pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
+        let io = |source| ReadError::Io { path: path.to_owned(), source };
+        let file = File::open(path).map_err(io)?;
+        if file.metadata().map_err(io)?.len() == 0 {
+            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
+        }
+        // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user (module text).
+        let map = unsafe { Mmap::map(&file) }.map_err(io)?;
+        Self::new(path, Bytes::Mapped(map), warnings)
+    }
+
+    pub(super) fn in_memory(path: &Path, bytes: Vec<u8>, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
+        Self::new(path, Bytes::Owned(bytes), warnings)
+    }
+
+    fn new(path: &Path, bytes: Bytes, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
+        let mut file = Self { path: path.to_owned(), bytes, index: Index::default() };
+        if !file.bytes().starts_with(MAGIC) {
+            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: file.bytes().len() as u64 });
+        }
+        file.index = Index::build(path, file.bytes(), warnings);
+        Ok(file)
+    }
+
+    pub(super) fn bytes(&self) -> &[u8] {
+        match &self.bytes {
+            Bytes::Mapped(map) => map,
+            Bytes::Owned(bytes) => bytes,
+        }
+    }
+
+    pub(super) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {
+        Warning { path: self.path.clone(), offset: offset as u64, kind, detail }
+    }
+
+    pub(super) fn stored_files(&self, warn: impl Fn(Warning)) -> Vec<StoredFile> {
+        let read = |entry: &Entry| match self.record(entry) {
+            Ok(Record::Attachment { header, data, .. }) => {
+                let (name, media_type, time) = (header.name, header.media_type, header.log_time);
+                Some(StoredFile { name, media_type, time, bytes: data.into_owned() })
+            }
+            outcome => {
+                warn(self.damaged(entry, outcome.err()));
+                None
+            }
+        };
+        self.index.attachments.iter().filter_map(read).collect()
+    }
+
+    pub(super) fn metadata(&self, name: &str, warn: impl Fn(Warning)) -> Option<BTreeMap<String, String>> {
+        let read = |entry: &Entry| match self.record(entry) {
+            Ok(Record::Metadata(m)) => Some(m.metadata),
+            outcome => {
+                warn(self.damaged(entry, outcome.err()));
+                None
+            }
+        };
+        self.index.metadata.iter().rev().filter(|e| e.name == name).find_map(read)
+    }
+
+    fn record(&self, entry: &Entry) -> Result<Record<'_>, String> {
+        Records::at(self.bytes(), entry.offset).ok_or("there is no whole record")?.parse()
+    }
+
+    fn damaged(&self, entry: &Entry, detail: Option<String>) -> Warning {
+        let detail = detail.unwrap_or_else(|| "it is not what the index says".into());
+        let detail = format!("{} cannot be read: {detail}", entry.name);
+        self.warning(usize::try_from(entry.offset).unwrap_or(usize::MAX), WarningKind::DamagedRecord, detail)
+    }
+}

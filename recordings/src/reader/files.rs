@@ -1,0 +1,62 @@
+//! Which files a recording consists of.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::error::WarningKind;
+use super::{ReadError, Warning};
+
+#[derive(Deserialize)]
+struct BagFile {
+    rosbag2_bagfile_information: Information,
+}
+
+#[derive(Deserialize)]
+struct Information {
+    relative_file_paths: Vec<String>,
+}
+
+/// The file itself, or those of a directory in order.
+pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Vec<PathBuf>, ReadError> {
+    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    if !fs::metadata(path).map_err(io)?.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    for name in listed(path) {
+        let file = path.join(&name);
+        if file.exists() {
+            files.push(file);
+        } else {
+            let detail = "metadata.yaml names it".to_owned();
+            warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::MissingFile, detail });
+        }
+    }
+    if files.is_empty() {
+        // Without metadata.yaml (the recorder was killed), or with a useless one: what is there.
+        for entry in fs::read_dir(path).map_err(io)? {
+            let file = entry.map_err(io)?.path();
+            if file.extension().is_some_and(|e| e == "mcap") {
+                files.push(file);
+            }
+        }
+        files.sort_by_key(|f| (part_number(f), f.clone()));
+    }
+    if files.is_empty() { Err(ReadError::Empty { path: path.to_owned() }) } else { Ok(files) }
+}
+
+fn listed(directory: &Path) -> Vec<String> {
+    let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap_or_default();
+    let names = serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
+    // A name that leads out of the directory is not one of its parts.
+    let inside = |name: &String| Path::new(name).components().count() == 1 && !name.starts_with('.');
+    names.unwrap_or_default().into_iter().filter(inside).collect()
+}
+
+/// n of `<name>_<n>.mcap`: parts are numbered without leading zeros.
+fn part_number(file: &Path) -> Option<u64> {
+    file.file_stem()?.to_str()?.rsplit_once('_')?.1.parse().ok()
+}

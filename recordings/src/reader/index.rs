@@ -1,0 +1,270 @@
+//! What lies where in a file: taken from its summary, or found by walking over all of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+use mcap::MAGIC;
+use mcap::records::{Channel, Footer, Record, SchemaHeader, op};
+
+use super::records::{FRAME, RawRecord, Records};
+use super::{ChannelInfo, Warning, chunk, error::WarningKind};
+
+/// A run of messages: a chunk, or messages that lie in the file without one.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub(super) offset: usize,
+    /// First byte after it.
+    pub(super) end_offset: usize,
+    /// Log time of its first and last message, ns since 1970.
+    pub(super) start: u64,
+    pub(super) end: u64,
+    /// Channels that have messages in it; `None` if that is not known.
+    pub(super) channels: Option<BTreeSet<u16>>,
+    pub(super) is_chunk: bool,
+}
+
+/// Where a metadata record or an attachment lies.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub(super) offset: u64,
+    pub(super) name: String,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Index {
+    pub(super) profile: String,
+    pub(super) library: String,
+    pub(super) channels: BTreeMap<u16, Arc<ChannelInfo>>,
+    /// In order of start, then of offset.
+    pub(super) blocks: Vec<Block>,
+    pub(super) attachments: Vec<Entry>,
+    pub(super) metadata: Vec<Entry>,
+    /// Messages by channel.
+    pub(super) counts: BTreeMap<u16, u64>,
+    pub(super) compressions: BTreeSet<String>,
+    /// Whether the file has its proper end.
+    pub(super) complete: bool,
+    schemas: BTreeMap<u16, (SchemaHeader, String)>,
+}
+
+impl Index {
+    /// Of a file that starts with the MCAP magic.
+    pub(super) fn build(path: &Path, bytes: &[u8], warnings: &mut BTreeSet<Warning>) -> Self {
+        let mut index = match Self::from_summary(bytes) {
+            Ok(index) => index,
+            Err(reason) => Self::from_scan(path, bytes, &reason, warnings),
+        };
+        if let Some(Ok(Record::Header(header))) = Records::at(bytes, MAGIC.len() as u64).map(|r| r.parse()) {
+            (index.profile, index.library) = (header.profile, header.library);
+        }
+        index.blocks.sort_by_key(|b| (b.start, b.offset));
+        index
+    }
+
+    fn from_summary(bytes: &[u8]) -> Result<Self, String> {
+        let (footer, footer_at) = footer(bytes)?;
+        let start = usize::try_from(footer.summary_start).unwrap_or(usize::MAX);
+        if footer.summary_start == 0 || start >= footer_at {
+            return Err("there is no summary section".into());
+        }
+        let crc = crc32fast::hash(&bytes[start..footer_at + FRAME + 16]);
+        if footer.summary_crc != 0 && crc != footer.summary_crc {
+            return Err("the checksum of the summary section fails".into());
+        }
+        let mut index = Self { complete: true, ..Self::default() };
+        let mut counted = None;
+        for record in Records::new(&bytes[..footer_at], start) {
+            let record = record.map_err(|at| format!("the summary section breaks off at byte {at}"))?;
+            match record.parse()? {
+                Record::Statistics(s) => counted = Some(s),
+                Record::ChunkIndex(c) => {
+                    let offset = usize::try_from(c.chunk_start_offset).unwrap_or(usize::MAX);
+                    let end_offset = offset.saturating_add(usize::try_from(c.chunk_length).unwrap_or(usize::MAX));
+                    if end_offset > start {
+                        return Err(format!("the chunk index points at byte {offset}, outside the data"));
+                    }
+                    index.compressions.insert(c.compression);
+                    // A chunk without a message (schemas and channels) has no times either.
+                    let channels: BTreeSet<u16> = c.message_index_offsets.into_keys().collect();
+                    let indexed = c.message_index_length > 0 || !channels.is_empty();
+                    if indexed || c.message_end_time > 0 {
+                        let (start, end) = (c.message_start_time, c.message_end_time);
+                        let channels = indexed.then_some(channels);
+                        index.blocks.push(Block { offset, end_offset, start, end, channels, is_chunk: true });
+                    }
+                }
+                Record::AttachmentIndex(a) => index.attachments.push(Entry { offset: a.offset, name: a.name }),
+                Record::MetadataIndex(m) => index.metadata.push(Entry { offset: m.offset, name: m.name }),
+                other => index.declare(other)?,
+            }
+        }
+        let counted = counted.ok_or("the summary section has no statistics")?;
+        let in_blocks: bool = counted.message_count == 0 || !index.blocks.is_empty();
+        let declared = counted.channel_message_counts.keys().all(|c| index.channels.contains_key(c));
+        if !in_blocks || !declared {
+            return Err("the summary section does not index all messages".into());
+        }
+        index.counts = counted.channel_message_counts;
+        Ok(index)
+    }
+
+    fn from_scan(path: &Path, bytes: &[u8], reason: &str, warnings: &mut BTreeSet<Warning>) -> Self {
+        let mut scan = Scan { index: Self::default(), path, warnings };
+        let mut stop = None;
+        for record in Records::new(bytes, MAGIC.len()) {
+            match record {
+                Ok(record) if record.opcode == op::DATA_END => {
+                    scan.index.complete = true;
+                    scan.warn(record.offset, WarningKind::NoIndex, reason.to_owned());
+                    return scan.index;
+                }
+                Ok(record) => {
+                    stop = Some(record.end());
+                    scan.record(&record);
+                }
+                Err(at) => {
+                    stop = Some(at);
+                    break;
+                }
+            }
+        }
+        let end = stop.unwrap_or(MAGIC.len());
+        let left = bytes.len().saturating_sub(end);
+        scan.warn(end, WarningKind::Truncated, format!("it ends without an end record, {left} bytes are no whole record"));
+        scan.index
+    }
+
+    /// Takes in a schema or a channel; other records pass.
+    fn declare(&mut self, record: Record<'_>) -> Result<(), String> {
+        match record {
+            Record::Schema { header, data } => {
+                let text = String::from_utf8_lossy(&data).into_owned();
+                self.schemas.entry(header.id).or_insert((header, text));
+            }
+            Record::Channel(channel) => {
+                let info = self.channel_info(&channel)?;
+                self.channels.entry(channel.id).or_insert_with(|| Arc::new(info));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn channel_info(&self, channel: &Channel) -> Result<ChannelInfo, String> {
+        let (ros_type, schema_encoding, definition) = match channel.schema_id {
+            0 => Default::default(),
+            id => match self.schemas.get(&id) {
+                Some((header, text)) => (header.name.clone(), header.encoding.clone(), text.clone()),
+                None => return Err(format!("channel {} names schema {id}, which is not there", channel.topic)),
+            },
+        };
+        let value = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
+        Ok(ChannelInfo {
+            topic: channel.topic.clone(),
+            ros_type,
+            definition,
+            schema_encoding,
+            message_encoding: channel.message_encoding.clone(),
+            qos: value("offered_qos_profiles"),
+            type_hash: value("topic_type_hash"),
+        })
+    }
+}
+
+/// The footer and where it stands, if the file ends as it should.
+fn footer(bytes: &[u8]) -> Result<(Footer, usize), String> {
+    const FOOTER: usize = FRAME + 20;
+    let at = bytes.strip_suffix(MAGIC).and_then(|b| b.len().checked_sub(FOOTER)).ok_or("the end magic is missing")?;
+    match Records::at(bytes, at as u64).map(|r| (r.opcode, r.parse())) {
+        Some((op::FOOTER, Ok(Record::Footer(footer)))) => Ok((footer, at)),
+        _ => Err("there is no footer before the end magic".into()),
+    }
+}
+
+/// A walk over a whole file, which decodes each chunk once to learn what is in it.
+struct Scan<'a> {
+    index: Index,
+    path: &'a Path,
+    warnings: &'a mut BTreeSet<Warning>,
+}
+
+impl Scan<'_> {
+    fn warn(&mut self, offset: usize, kind: WarningKind, detail: String) {
+        self.warnings.insert(Warning { path: self.path.to_owned(), offset: offset as u64, kind, detail });
+    }
+
+    fn record(&mut self, record: &RawRecord<'_>) {
+        let outcome = match record.opcode {
+            op::CHUNK => return self.chunk(record),
+            op::MESSAGE_INDEX => Ok(()),
+            _ => record.parse().and_then(|parsed| self.top_level(record, parsed)),
+        };
+        if let Err(detail) = outcome {
+            self.warn(record.offset, WarningKind::DamagedRecord, detail);
+        }
+    }
+
+    fn top_level(&mut self, raw: &RawRecord<'_>, parsed: Record<'_>) -> Result<(), String> {
+        let offset = raw.offset as u64;
+        match parsed {
+            Record::Attachment { header, .. } => self.index.attachments.push(Entry { offset, name: header.name }),
+            Record::Metadata(m) => self.index.metadata.push(Entry { offset, name: m.name }),
+            Record::Message { header, .. } => {
+                let (start, end) = (header.log_time, header.log_time);
+                let channels = Some(BTreeSet::from([header.channel_id]));
+                self.count(header.channel_id);
+                self.index.blocks.push(Block {
+                    offset: raw.offset,
+                    end_offset: raw.end(),
+                    start,
+                    end,
+                    channels,
+                    is_chunk: false,
+                });
+            }
+            other => self.index.declare(other)?,
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, channel: u16) {
+        if self.index.channels.contains_key(&channel) {
+            *self.index.counts.entry(channel).or_default() += 1;
+        }
+    }
+
+    fn chunk(&mut self, record: &RawRecord<'_>) {
+        let content = match chunk::content(record) {
+            Ok(content) => content,
+            Err(detail) => return self.warn(record.offset, WarningKind::DamagedChunk, detail),
+        };
+        if let Ok(Record::Chunk { header, .. }) = record.parse() {
+            self.index.compressions.insert(header.compression);
+        }
+        let (mut bounds, mut channels) = (None, BTreeSet::new());
+        for inner in Records::new(&content, 0) {
+            let parsed = match inner {
+                Ok(inner) => inner.parse(),
+                Err(at) => Err(format!("byte {at} of its content starts no whole record")),
+            };
+            let outcome = parsed.and_then(|parsed| match parsed {
+                Record::Message { header, .. } => {
+                    let t = header.log_time;
+                    bounds = Some(bounds.map_or((t, t), |(a, b): (u64, u64)| (a.min(t), b.max(t))));
+                    channels.insert(header.channel_id);
+                    self.count(header.channel_id);
+                    Ok(())
+                }
+                other => self.index.declare(other),
+            });
+            if let Err(detail) = outcome {
+                self.warn(record.offset, WarningKind::DamagedChunk, detail);
+            }
+        }
+        if let Some((start, end)) = bounds {
+            let (offset, end_offset) = (record.offset, record.end());
+            self.index.blocks.push(Block { offset, end_offset, start, end, channels: Some(channels), is_chunk: true });
+        }
+    }
+}

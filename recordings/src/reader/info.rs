@@ -1,0 +1,157 @@
+//! Overview of a recording.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use serde::Serialize;
+
+use super::{Recording, Warning};
+use crate::ledger::TopicTally;
+
+/// Overview of a recording; its `Display` is the table for people, its `Serialize` the stable form for programs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Info {
+    /// The recording.
+    pub path: String,
+    /// Its files.
+    pub files: Vec<String>,
+    /// Size of all files, bytes.
+    pub bytes: u64,
+    /// Whether every file has its proper end.
+    pub complete: bool,
+    /// Profile in the header; `ros2`.
+    pub profile: String,
+    /// Library that wrote it.
+    pub library: String,
+    /// Compressions of the chunks; `none` for uncompressed.
+    pub compression: Vec<String>,
+    /// Chunks that hold messages.
+    pub chunks: u64,
+    /// First log time, ns since 1970; `None` without messages.
+    pub start_ns: Option<u64>,
+    /// Last log time, ns since 1970; `None` without messages.
+    pub end_ns: Option<u64>,
+    /// Last minus first log time, s.
+    pub duration_s: f64,
+    /// Messages.
+    pub messages: u64,
+    /// The topics, by name.
+    pub topics: Vec<TopicInfo>,
+    /// Names of the stored files.
+    pub attachments: Vec<String>,
+    /// Names of the metadata records.
+    pub metadata: Vec<String>,
+    /// What could not be read so far.
+    pub warnings: Vec<Warning>,
+}
+
+/// One topic of an [`Info`].
+#[derive(Clone, Debug, Serialize)]
+pub struct TopicInfo {
+    /// Absolute name.
+    pub name: String,
+    /// Type.
+    #[serde(rename = "type")]
+    pub ros_type: String,
+    /// Messages in the recording.
+    pub messages: u64,
+    /// Whether the last message is kept for whoever joins late.
+    pub latched: bool,
+    /// Messages published, if the recorder's account is there.
+    pub published: Option<u64>,
+    /// Messages lost, if the recorder's account is there.
+    pub lost: Option<u64>,
+    /// Repeated deliveries, if the recorder's account is there.
+    pub repeated: Option<u64>,
+}
+
+pub(super) fn of(recording: &Recording) -> Info {
+    let files = &recording.files;
+    let range = recording.time_range();
+    let mut counts = BTreeMap::<&str, u64>::new();
+    for file in files {
+        for (channel, n) in &file.index.counts {
+            if let Some(info) = file.index.channels.get(channel) {
+                *counts.entry(&info.topic).or_default() += n;
+            }
+        }
+    }
+    let tallies = recording.ledger().unwrap_or_default();
+    let tallies: BTreeMap<&str, &TopicTally> = tallies.iter().map(|t| (t.name.as_str(), t)).collect();
+    let topics: Vec<_> = recording
+        .channels()
+        .iter()
+        .map(|channel| {
+            let tally = tallies.get(channel.topic.as_str());
+            TopicInfo {
+                name: channel.topic.clone(),
+                ros_type: channel.ros_type.clone(),
+                messages: counts.get(channel.topic.as_str()).copied().unwrap_or(0),
+                latched: channel.is_latched(),
+                published: tally.map(|t| t.published),
+                lost: tally.map(|t| t.lost),
+                repeated: tally.map(|t| t.repeated),
+            }
+        })
+        .collect();
+    let compressions: BTreeSet<&str> =
+        files.iter().flat_map(|f| &f.index.compressions).map(|c| if c.is_empty() { "none" } else { c }).collect();
+    Info {
+        path: recording.path.display().to_string(),
+        files: files.iter().map(|f| f.path.display().to_string()).collect(),
+        bytes: files.iter().map(|f| f.bytes().len() as u64).sum(),
+        complete: files.iter().all(|f| f.index.complete),
+        profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
+        library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),
+        compression: compressions.into_iter().map(str::to_owned).collect(),
+        chunks: files.iter().map(|f| f.index.blocks.iter().filter(|b| b.is_chunk).count() as u64).sum(),
+        start_ns: range.map(|r| r.0),
+        end_ns: range.map(|r| r.1),
+        duration_s: range.map_or(0.0, |(a, b)| (b - a) as f64 * 1e-9),
+        messages: topics.iter().map(|t| t.messages).sum(),
+        topics,
+        attachments: files.iter().flat_map(|f| f.index.attachments.iter().map(|a| a.name.clone())).collect(),
+        metadata: recording.metadata_names().into_iter().collect(),
+        warnings: recording.warnings(),
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = |ns: Option<u64>| match ns.and_then(|ns| jiff::Timestamp::from_nanosecond(i128::from(ns)).ok()) {
+            Some(t) => format!("{t:.3}"),
+            None => "-".to_owned(),
+        };
+        let list = |names: &[String]| if names.is_empty() { "-".to_owned() } else { names.join(", ") };
+        writeln!(f, "recording    {}{}", self.path, if self.complete { "" } else { " (incomplete)" })?;
+        writeln!(f, "size         {:.3} MB in {} file(s)", self.bytes as f64 * 1e-6, self.files.len())?;
+        writeln!(f, "start        {}", time(self.start_ns))?;
+        writeln!(f, "end          {}", time(self.end_ns))?;
+        writeln!(f, "duration     {:.3} s", self.duration_s)?;
+        writeln!(f, "messages     {} in {} chunks", self.messages, self.chunks)?;
+        writeln!(f, "compression  {}", list(&self.compression))?;
+        writeln!(f, "profile      {} ({})", self.profile, self.library)?;
+        writeln!(f, "attachments  {}", list(&self.attachments))?;
+        writeln!(f, "metadata     {}", list(&self.metadata))?;
+        let width = |text: &dyn Fn(&TopicInfo) -> usize, least: usize| {
+            self.topics.iter().map(text).max().unwrap_or(0).max(least)
+        };
+        let (name, ros_type) = (width(&|t| t.name.len(), 5), width(&|t| t.ros_type.len(), 4));
+        write!(f, "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}", "topic", "type", "messages", "published", "lost", "repeated")?;
+        let count = |n: Option<u64>| n.map_or_else(|| "-".to_owned(), |n| n.to_string());
+        for t in &self.topics {
+            write!(
+                f,
+                "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}{}",
+                t.name,
+                t.ros_type,
+                t.messages,
+                count(t.published),
+                count(t.lost),
+                count(t.repeated),
+                if t.latched { "  latched" } else { "" }
+            )?;
+        }
+        Ok(())
+    }
+}

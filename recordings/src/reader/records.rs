@@ -1,0 +1,81 @@
+//! Framing: one byte of opcode, eight of length, the body.
+
+use mcap::records::{Record, op};
+
+/// A record as it lies in the file or in a chunk.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RawRecord<'a> {
+    pub(super) opcode: u8,
+    /// Where its opcode stands, counted from the start of the bytes walked.
+    pub(super) offset: usize,
+    pub(super) body: &'a [u8],
+}
+
+/// Bytes before the body.
+pub(super) const FRAME: usize = 9;
+
+impl<'a> RawRecord<'a> {
+    /// Offset of the first byte after the record.
+    pub(super) fn end(&self) -> usize {
+        self.offset + FRAME + self.body.len()
+    }
+
+    /// The record, or what is wrong with it.
+    pub(super) fn parse(&self) -> Result<Record<'a>, String> {
+        if self.opcode == op::ATTACHMENT && !attachment_fits(self.body) {
+            return Err("the attachment's lengths do not fit its record".into());
+        }
+        mcap::parse_record(self.opcode, self.body).map_err(|e| match e {
+            mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
+            other => other.to_string(),
+        })
+    }
+}
+
+/// Whether the fixed and variable parts of an attachment fit its body: `mcap::parse_record` takes that for granted.
+fn attachment_fits(body: &[u8]) -> bool {
+    let text_end = |start: usize| {
+        let length = body.get(start..start.checked_add(4)?)?;
+        let length = u32::from_le_bytes(length.try_into().ok()?) as usize;
+        start.checked_add(4)?.checked_add(length)
+    };
+    // Two times, two texts, the length of the data, the data, a CRC.
+    let fixed = 16;
+    text_end(fixed).and_then(text_end).is_some_and(|end| end.checked_add(12).is_some_and(|end| end <= body.len()))
+}
+
+/// Walks over records; ends at the end of the bytes, or with the offset of what is not a whole record.
+pub(super) struct Records<'a> {
+    bytes: &'a [u8],
+    position: usize,
+}
+
+impl<'a> Records<'a> {
+    pub(super) fn new(bytes: &'a [u8], position: usize) -> Self {
+        Self { bytes, position }
+    }
+
+    /// The record at `offset`, if a whole one lies there.
+    pub(super) fn at(bytes: &'a [u8], offset: u64) -> Option<RawRecord<'a>> {
+        let offset = usize::try_from(offset).ok()?;
+        Records::new(bytes, offset).next()?.ok()
+    }
+}
+
+impl<'a> Iterator for Records<'a> {
+    type Item = Result<RawRecord<'a>, usize>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let offset = self.position;
+        let rest = self.bytes.get(offset..).filter(|rest| !rest.is_empty())?;
+        // A broken frame ends the walk: after it nothing says where the next record starts.
+        self.position = self.bytes.len();
+        let frame = rest.split_first().and_then(|(opcode, rest)| Some((*opcode, rest.first_chunk::<8>()?)));
+        let Some((opcode, length)) = frame else { return Some(Err(offset)) };
+        let body = usize::try_from(u64::from_le_bytes(*length)).ok().and_then(|n| rest[FRAME..].get(..n));
+        let Some(body) = body else { return Some(Err(offset)) };
+        let record = RawRecord { opcode, offset, body };
+        self.position = record.end();
+        Some(Ok(record))
+    }
+}

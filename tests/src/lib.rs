@@ -1,0 +1,1 @@
+//! Tests of the whole laboratory: real processes, recordings, interoperation, physics.
