@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_stamp_gives_the_time_back_to_half_a_nanosecond() {
-        for t in [0.0, 1.234_567_891_234e-3, 17.5, 3600.000_000_001] {
+        for t in [0.0, 1.234_567_891_234e-3, 17.5, 3_600.000_000_001] {
             // 0.5 ns of rounding, and the spacing of f64 near an hour, 5e-13 s.
             assert!((simulated_seconds(&stamp(t)) - t).abs() <= 0.5e-9 + 1e-12, "{t}");
         }

@@ -1,7 +1,9 @@
 //! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and the
 //! boundary to the kernels' types.
 //!
-//! - [`msg`] and the packages of standard messages beside it: types generated from the message files
+//! - [`msg`] and the packages of standard messages beside it: types generated from the message files, ours in `msg/`,
+//!   those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message file:
+//!   `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
 //! - [`message`]: what every type knows about itself, and [`TypeInfo`], the same as a value
 //! - [`cdr`]: bytes on the wire
 //! - [`topics`]: the one table of topics, types and QoS

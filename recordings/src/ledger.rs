@@ -158,8 +158,14 @@ impl Ledger {
     }
 
     fn tally(&self, name: &str, writers: &BTreeMap<Guid, Writer>) -> TopicTally {
-        let mut topic =
-            TopicTally { name: name.to_owned(), published: 0, recorded: 0, lost: 0, repeated: 0, writers: Vec::new() };
+        let mut topic = TopicTally {
+            name: name.to_owned(),
+            published: 0,
+            recorded: 0,
+            lost: 0,
+            repeated: 0,
+            writers: Vec::new(),
+        };
         for (guid, writer) in writers {
             let s = &writer.sequence;
             let recorded = s.held();

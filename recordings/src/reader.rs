@@ -20,7 +20,7 @@ mod messages;
 mod records;
 mod verify;
 
-pub use error::{ReadError, Warning};
+pub use error::{ReadError, Warning, WarningKind};
 pub use info::{Info, TopicInfo};
 pub use messages::{Message, Messages, Payload};
 
@@ -172,7 +172,10 @@ impl Recording {
         let topics = match &selection.topics {
             None => None,
             Some(names) => Some(
-                names.iter().map(|n| Ok(self.channel(n)?.topic.clone())).collect::<Result<BTreeSet<_>, ReadError>>()?,
+                names
+                    .iter()
+                    .map(|n| Ok(self.channel(n)?.topic.clone()))
+                    .collect::<Result<BTreeSet<_>, ReadError>>()?,
             ),
         };
         Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end.unwrap_or(u64::MAX)))

@@ -12,6 +12,7 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
+use grainlab_msgs::{Topic, TypeInfo};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
@@ -39,6 +40,26 @@ pub struct TopicSpec {
     pub type_hash: String,
     /// QoS offered, as the YAML list of rosbag2 with integers, or empty if unknown.
     pub qos: String,
+}
+
+impl TopicSpec {
+    /// The channel of a topic of the contract, under its full name (with the namespace, if it has one).
+    pub fn of_contract(topic: &Topic, full_name: &str) -> Self {
+        let mut spec = Self::of_type(&topic.info, full_name);
+        spec.qos = topic.qos.offered_qos_profiles();
+        spec
+    }
+
+    /// A channel of any type known to the laboratory; its QoS is unknown.
+    pub fn of_type(info: &TypeInfo, full_name: &str) -> Self {
+        Self {
+            name: full_name.to_owned(),
+            ros_type: info.type_name.to_owned(),
+            definition: info.definition.to_owned(),
+            type_hash: info.hash.to_owned(),
+            qos: String::new(),
+        }
+    }
 }
 
 /// A sample as it came from the network.
@@ -137,6 +158,17 @@ pub enum WriteError {
     },
 }
 
+impl WriteError {
+    /// The file system's own words where it was the file system.
+    fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
+        let path = path.to_owned();
+        match source {
+            McapError::Io(source) => Self::Io { path, action, source },
+            source => Self::Format { path, action, source },
+        }
+    }
+}
+
 /// How a recording is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriterOptions {
@@ -182,7 +214,7 @@ pub struct Finished {
     pub ledger: Ledger,
 }
 
-struct Topic {
+struct Channel {
     spec: TopicSpec,
     channel: u16,
     messages: u64,
@@ -197,7 +229,7 @@ pub struct RunWriter {
     /// `None` only after the end.
     mcap: Option<mcap::Writer<BufWriter<File>>>,
     sync: DeviceSync,
-    topics: BTreeMap<String, Topic>,
+    topics: BTreeMap<String, Channel>,
     ledger: Ledger,
     /// First and last log time.
     bounds: Option<(u64, u64)>,
@@ -210,7 +242,7 @@ pub struct RunWriter {
 }
 
 /// Payload bytes after which free space is looked at again, whatever the clock says.
-const CHECK_EVERY: u64 = 8 << 20;
+const CHECK_EVERY: u64 = 1 << 20;
 
 impl RunWriter {
     /// Begins `<directory>/<name>_0.mcap` with these topics; the directory is made if need be. For rosbag2, `name` should be the
@@ -236,7 +268,9 @@ impl RunWriter {
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
         }
         let handle = match File::create_new(&file) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path: file }),
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
+                return Err(WriteError::Exists { path: file });
+            }
             other => other.map_err(io(&file, "create the file"))?,
         };
         let sync = DeviceSync::start(handle.try_clone().map_err(io(&file, "duplicate the handle"))?)
@@ -251,7 +285,11 @@ impl RunWriter {
             .chunk_size(Some(options.chunk_size))
             .disable_seeking(true)
             .create(BufWriter::with_capacity(64 << 10, handle))
-            .map_err(|source| WriteError::Format { path: file.clone(), action: "write the header", source })?;
+            .map_err(|source| WriteError::Format {
+                path: file.clone(),
+                action: "write the header",
+                source,
+            })?;
         let mut writer = Self {
             directory: directory.to_owned(),
             file,
@@ -297,7 +335,7 @@ impl RunWriter {
             mcap.add_channel(schema, &topic.name, "cdr", &metadata)
         })?;
         self.ledger.expect(&topic.name);
-        self.topics.insert(topic.name.clone(), Topic { spec: topic.clone(), channel, messages: 0 });
+        self.topics.insert(topic.name.clone(), Channel { spec: topic.clone(), channel, messages: 0 });
         Ok(())
     }
 
@@ -343,15 +381,21 @@ impl RunWriter {
     /// # Errors
     /// If the file cannot be written, or a push to the device failed.
     pub fn tick(&mut self, now: Instant) -> Result<(), WriteError> {
-        if self.pending.is_some_and(|since| now.saturating_duration_since(since) >= self.options.flush_interval) {
+        if self
+            .pending
+            .is_some_and(|since| now.saturating_duration_since(since) >= self.options.flush_interval)
+        {
             self.flush()?;
             self.require_space()?;
         }
         self.sync.request(now, self.options.sync_interval);
         match self.sync.failure() {
             Some(source) => {
-                let error =
-                    WriteError::Io { path: self.file.clone(), action: "push the recording to the device", source };
+                let error = WriteError::Io {
+                    path: self.file.clone(),
+                    action: "push the recording to the device",
+                    source,
+                };
                 self.ended = Some(error.to_string());
                 Err(error)
             }
@@ -364,7 +408,8 @@ impl RunWriter {
     /// # Errors
     /// If the file cannot be written.
     pub fn attach(&mut self, name: &str, media_type: &str, bytes: &[u8]) -> Result<(), WriteError> {
-        let time = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
+        let time =
+            SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
         let attachment = Attachment {
             log_time: time,
             create_time: time,
@@ -412,7 +457,7 @@ impl RunWriter {
         let path = self.file.clone();
         let format = |action: &'static str| {
             let path = path.clone();
-            move |source| WriteError::Format { path, action, source }
+            move |source| WriteError::mcap(&path, action, source)
         };
         let mut metadata = std::mem::take(&mut self.metadata);
         metadata.insert("finished".into(), finished.to_string());
@@ -432,7 +477,8 @@ impl RunWriter {
             let path = path.clone();
             move |source| WriteError::Io { path, action, source }
         };
-        let handle = mcap.into_inner().into_inner().map_err(|e| io("write the end of the file")(e.into_error()))?;
+        let handle =
+            mcap.into_inner().into_inner().map_err(|e| io("write the end of the file")(e.into_error()))?;
         self.sync.stop();
         handle.sync_all().map_err(io("push the recording to the device"))?;
         let bytes = handle.metadata().map_err(io("ask for the size"))?.len();
@@ -443,7 +489,11 @@ impl RunWriter {
             start,
             duration: end - start,
             messages,
-            topics: self.topics.values().map(|t| TopicCount { spec: &t.spec, messages: t.messages }).collect(),
+            topics: self
+                .topics
+                .values()
+                .map(|t| TopicCount { spec: &t.spec, messages: t.messages })
+                .collect(),
         };
         bag.write(&self.directory).map_err(io("write metadata.yaml beside it"))?;
         Ok(Finished {
@@ -493,7 +543,7 @@ impl RunWriter {
             return Err(self.already_ended());
         };
         action(mcap).map_err(|source| {
-            let error = WriteError::Format { path: self.file.clone(), action: what, source };
+            let error = WriteError::mcap(&self.file, what, source);
             self.ended = Some(error.to_string());
             error
         })

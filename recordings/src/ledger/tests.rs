@@ -30,7 +30,9 @@ fn a_gap_in_the_middle_is_a_loss_and_a_late_arrival_heals_it() {
 fn a_repeat_is_counted_apart_and_not_as_a_message() {
     let mut ledger = Ledger::default();
     assert!(ledger.enter("/stress", A, 1) && ledger.enter("/stress", A, 2));
-    assert!(ledger.holds("/stress", &A, 1) && !ledger.holds("/stress", &A, 3) && !ledger.holds("/stress", &B, 1));
+    assert!(
+        ledger.holds("/stress", &A, 1) && !ledger.holds("/stress", &A, 3) && !ledger.holds("/stress", &B, 1)
+    );
     assert!(!ledger.enter("/stress", A, 1) && !ledger.enter("/stress", A, 2));
     let t = only(&ledger);
     assert_eq!((t.published, t.recorded, t.lost, t.repeated), (2, 2, 0, 2));

@@ -29,7 +29,9 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
             content.extend_from_slice(data);
             Ok(data.len())
         }
-        "zstd" => zstd::stream::read::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content)),
+        "zstd" => {
+            zstd::stream::read::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content))
+        }
         "lz4" => lz4::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content)),
         other => return Err(format!("its compression {other:?} is not known (zstd, lz4 and none are)")),
     };

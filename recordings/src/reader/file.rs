@@ -9,10 +9,9 @@ use mcap::MAGIC;
 use mcap::records::Record;
 use memmap2::Mmap;
 
-use super::error::WarningKind;
 use super::index::{Entry, Index};
 use super::records::Records;
-use super::{ReadError, StoredFile, Warning};
+use super::{ReadError, StoredFile, Warning, WarningKind};
 
 pub(super) struct OpenFile {
     pub(super) path: PathBuf,
@@ -43,7 +42,11 @@ impl OpenFile {
         Self::new(path, Bytes::Mapped(map), warnings)
     }
 
-    pub(super) fn in_memory(path: &Path, bytes: Vec<u8>, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
+    pub(super) fn in_memory(
+        path: &Path,
+        bytes: Vec<u8>,
+        warnings: &mut BTreeSet<Warning>,
+    ) -> Result<Self, ReadError> {
         Self::new(path, Bytes::Owned(bytes), warnings)
     }
 

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::error::WarningKind;
-use super::{ReadError, Warning};
+use super::{ReadError, Warning, WarningKind};
 
 #[derive(Deserialize)]
 struct BagFile {
@@ -50,7 +49,8 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
 
 fn listed(directory: &Path) -> Vec<String> {
     let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap_or_default();
-    let names = serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
+    let names =
+        serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
     // A name that leads out of the directory is not one of its parts.
     let inside = |name: &String| Path::new(name).components().count() == 1 && !name.starts_with('.');
     names.unwrap_or_default().into_iter().filter(inside).collect()

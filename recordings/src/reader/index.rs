@@ -8,7 +8,7 @@ use mcap::MAGIC;
 use mcap::records::{Channel, Footer, Record, SchemaHeader, op};
 
 use super::records::{FRAME, RawRecord, Records};
-use super::{ChannelInfo, Warning, chunk, error::WarningKind};
+use super::{ChannelInfo, Warning, WarningKind, chunk};
 
 /// A run of messages: a chunk, or messages that lie in the file without one.
 #[derive(Clone, Debug)]
@@ -80,7 +80,8 @@ impl Index {
                 Record::Statistics(s) => counted = Some(s),
                 Record::ChunkIndex(c) => {
                     let offset = usize::try_from(c.chunk_start_offset).unwrap_or(usize::MAX);
-                    let end_offset = offset.saturating_add(usize::try_from(c.chunk_length).unwrap_or(usize::MAX));
+                    let end_offset =
+                        offset.saturating_add(usize::try_from(c.chunk_length).unwrap_or(usize::MAX));
                     if end_offset > start {
                         return Err(format!("the chunk index points at byte {offset}, outside the data"));
                     }
@@ -94,7 +95,9 @@ impl Index {
                         index.blocks.push(Block { offset, end_offset, start, end, channels, is_chunk: true });
                     }
                 }
-                Record::AttachmentIndex(a) => index.attachments.push(Entry { offset: a.offset, name: a.name }),
+                Record::AttachmentIndex(a) => {
+                    index.attachments.push(Entry { offset: a.offset, name: a.name })
+                }
                 Record::MetadataIndex(m) => index.metadata.push(Entry { offset: m.offset, name: m.name }),
                 other => index.declare(other)?,
             }
@@ -130,8 +133,11 @@ impl Index {
             }
         }
         let end = stop.unwrap_or(MAGIC.len());
-        let left = bytes.len().saturating_sub(end);
-        scan.warn(end, WarningKind::Truncated, format!("it ends without an end record, {left} bytes are no whole record"));
+        let detail = match bytes.len().saturating_sub(end) {
+            0 => "its end record is missing".to_owned(),
+            left => format!("its last {left} bytes are no whole record"),
+        };
+        scan.warn(end, WarningKind::Truncated, detail);
         scan.index
     }
 
@@ -156,7 +162,9 @@ impl Index {
             0 => Default::default(),
             id => match self.schemas.get(&id) {
                 Some((header, text)) => (header.name.clone(), header.encoding.clone(), text.clone()),
-                None => return Err(format!("channel {} names schema {id}, which is not there", channel.topic)),
+                None => {
+                    return Err(format!("channel {} names schema {id}, which is not there", channel.topic));
+                }
             },
         };
         let value = |key: &str| channel.metadata.get(key).cloned().unwrap_or_default();
@@ -175,7 +183,10 @@ impl Index {
 /// The footer and where it stands, if the file ends as it should.
 fn footer(bytes: &[u8]) -> Result<(Footer, usize), String> {
     const FOOTER: usize = FRAME + 20;
-    let at = bytes.strip_suffix(MAGIC).and_then(|b| b.len().checked_sub(FOOTER)).ok_or("the end magic is missing")?;
+    let at = bytes
+        .strip_suffix(MAGIC)
+        .and_then(|b| b.len().checked_sub(FOOTER))
+        .ok_or("the end magic is missing")?;
     match Records::at(bytes, at as u64).map(|r| (r.opcode, r.parse())) {
         Some((op::FOOTER, Ok(Record::Footer(footer)))) => Ok((footer, at)),
         _ => Err("there is no footer before the end magic".into()),
@@ -208,7 +219,9 @@ impl Scan<'_> {
     fn top_level(&mut self, raw: &RawRecord<'_>, parsed: Record<'_>) -> Result<(), String> {
         let offset = raw.offset as u64;
         match parsed {
-            Record::Attachment { header, .. } => self.index.attachments.push(Entry { offset, name: header.name }),
+            Record::Attachment { header, .. } => {
+                self.index.attachments.push(Entry { offset, name: header.name })
+            }
             Record::Metadata(m) => self.index.metadata.push(Entry { offset, name: m.name }),
             Record::Message { header, .. } => {
                 let (start, end) = (header.log_time, header.log_time);
@@ -264,7 +277,14 @@ impl Scan<'_> {
         }
         if let Some((start, end)) = bounds {
             let (offset, end_offset) = (record.offset, record.end());
-            self.index.blocks.push(Block { offset, end_offset, start, end, channels: Some(channels), is_chunk: true });
+            self.index.blocks.push(Block {
+                offset,
+                end_offset,
+                start,
+                end,
+                channels: Some(channels),
+                is_chunk: true,
+            });
         }
     }
 }

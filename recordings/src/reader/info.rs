@@ -94,8 +94,11 @@ pub(super) fn of(recording: &Recording) -> Info {
             }
         })
         .collect();
-    let compressions: BTreeSet<&str> =
-        files.iter().flat_map(|f| &f.index.compressions).map(|c| if c.is_empty() { "none" } else { c }).collect();
+    let compressions: BTreeSet<&str> = files
+        .iter()
+        .flat_map(|f| &f.index.compressions)
+        .map(|c| if c.is_empty() { "none" } else { c })
+        .collect();
     Info {
         path: recording.path.display().to_string(),
         files: files.iter().map(|f| f.path.display().to_string()).collect(),
@@ -118,10 +121,11 @@ pub(super) fn of(recording: &Recording) -> Info {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let time = |ns: Option<u64>| match ns.and_then(|ns| jiff::Timestamp::from_nanosecond(i128::from(ns)).ok()) {
-            Some(t) => format!("{t:.3}"),
-            None => "-".to_owned(),
-        };
+        let time =
+            |ns: Option<u64>| match ns.and_then(|ns| jiff::Timestamp::from_nanosecond(i128::from(ns)).ok()) {
+                Some(t) => format!("{t:.3}"),
+                None => "-".to_owned(),
+            };
         let list = |names: &[String]| if names.is_empty() { "-".to_owned() } else { names.join(", ") };
         writeln!(f, "recording    {}{}", self.path, if self.complete { "" } else { " (incomplete)" })?;
         writeln!(f, "size         {:.3} MB in {} file(s)", self.bytes as f64 * 1e-6, self.files.len())?;
@@ -137,7 +141,11 @@ impl fmt::Display for Info {
             self.topics.iter().map(text).max().unwrap_or(0).max(least)
         };
         let (name, ros_type) = (width(&|t| t.name.len(), 5), width(&|t| t.ros_type.len(), 4));
-        write!(f, "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}", "topic", "type", "messages", "published", "lost", "repeated")?;
+        write!(
+            f,
+            "\n{:name$}  {:ros_type$}  {:>9}  {:>9}  {:>5}  {:>8}",
+            "topic", "type", "messages", "published", "lost", "repeated"
+        )?;
         let count = |n: Option<u64>| n.map_or_else(|| "-".to_owned(), |n| n.to_string());
         for t in &self.topics {
             write!(

@@ -7,11 +7,10 @@ use std::sync::Arc;
 
 use mcap::records::{MessageHeader, Record, op};
 
-use super::error::WarningKind;
 use super::file::OpenFile;
 use super::index::Block;
 use super::records::{RawRecord, Records};
-use super::{ChannelInfo, Recording, chunk};
+use super::{ChannelInfo, Recording, WarningKind, chunk};
 
 /// Bytes of a message, shared with the chunk they lie in.
 #[derive(Clone)]
@@ -85,11 +84,17 @@ impl Ord for Pending {
 }
 
 impl<'r> Messages<'r> {
-    pub(super) fn new(recording: &'r Recording, topics: Option<BTreeSet<String>>, start: u64, end: u64) -> Self {
+    pub(super) fn new(
+        recording: &'r Recording,
+        topics: Option<BTreeSet<String>>,
+        start: u64,
+        end: u64,
+    ) -> Self {
         let mut blocks = Vec::new();
         for (f, file) in recording.files.iter().enumerate() {
             let wanted = |b: &Block| b.end >= start && b.start < end && holds(file, b, topics.as_ref());
-            blocks.extend(file.index.blocks.iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
+            blocks
+                .extend(file.index.blocks.iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
         }
         blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].index.blocks[n].start, f, n)));
         Self { recording, topics, start, end, blocks, pending: BinaryHeap::new() }
@@ -101,8 +106,10 @@ impl<'r> Messages<'r> {
         let (topics, times) = (self.topics.as_ref(), self.start..self.end);
         let pending = &mut self.pending;
         let take = |position: usize, message: Message| {
-            if times.contains(&message.log_time) && topics.is_none_or(|t| t.contains(&message.channel.topic)) {
-                pending.push(Reverse(Pending { key: (message.log_time, f, block.offset, position), message }));
+            if times.contains(&message.log_time) && topics.is_none_or(|t| t.contains(&message.channel.topic))
+            {
+                pending
+                    .push(Reverse(Pending { key: (message.log_time, f, block.offset, position), message }));
             }
         };
         decode(self.recording, file, block, take);
@@ -157,7 +164,8 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
 fn decode(recording: &Recording, file: &OpenFile, block: &Block, mut take: impl FnMut(usize, Message)) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
     let content: Arc<[u8]> = if block.is_chunk {
-        let record = Records::at(file.bytes(), block.offset as u64).ok_or_else(|| "it is no whole record".to_owned());
+        let record =
+            Records::at(file.bytes(), block.offset as u64).ok_or_else(|| "it is no whole record".to_owned());
         match record.and_then(|r| chunk::content(&r)) {
             Ok(content) => content.into(),
             Err(detail) => return damaged(detail),

@@ -41,7 +41,9 @@ fn attachment_fits(body: &[u8]) -> bool {
     };
     // Two times, two texts, the length of the data, the data, a CRC.
     let fixed = 16;
-    text_end(fixed).and_then(text_end).is_some_and(|end| end.checked_add(12).is_some_and(|end| end <= body.len()))
+    text_end(fixed)
+        .and_then(text_end)
+        .is_some_and(|end| end.checked_add(12).is_some_and(|end| end <= body.len()))
 }
 
 /// Walks over records; ends at the end of the bytes, or with the offset of what is not a whole record.

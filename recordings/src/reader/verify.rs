@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
-use super::error::WarningKind;
 use super::file::OpenFile;
 use super::records::{FRAME, RawRecord, Records};
-use super::{Warning, chunk, messages};
+use super::{Warning, WarningKind, chunk, messages};
 
 /// Reports everything in `file` that is damaged or contradicts its index.
 pub(super) fn file(file: &OpenFile, mut warn: impl FnMut(Warning)) {
@@ -20,7 +19,8 @@ pub(super) fn file(file: &OpenFile, mut warn: impl FnMut(Warning)) {
             Err(at) => {
                 // Of a file without its proper end, opening it has said so.
                 if file.index.complete {
-                    let detail = "no whole record starts here; what follows can be reached by the index only".to_owned();
+                    let detail = "no whole record starts here; what follows can be reached by the index only"
+                        .to_owned();
                     warn(file.warning(at, WarningKind::Inconsistent, detail));
                 }
                 break;
@@ -54,7 +54,8 @@ pub(super) fn file(file: &OpenFile, mut warn: impl FnMut(Warning)) {
         let claimed = file.index.counts.get(channel).copied().unwrap_or(0);
         let found = counts.get(channel).copied().unwrap_or(0);
         if claimed != found {
-            let detail = format!("the index counts {claimed} messages on {}, the file holds {found}", info.topic);
+            let detail =
+                format!("the index counts {claimed} messages on {}, the file holds {found}", info.topic);
             warn(file.warning(file.bytes().len(), WarningKind::Inconsistent, detail));
         }
     }
@@ -79,6 +80,9 @@ fn data_checksum(file: &OpenFile, end: &RawRecord<'_>) -> Option<String> {
     let crc = crc32fast::hash(&file.bytes()[..end.offset]);
     // 0 stands for "not computed".
     (claimed.data_section_crc != 0 && claimed.data_section_crc != crc).then(|| {
-        format!("the checksum of the whole data is {crc:08x}, not {:08x}: bytes were altered", claimed.data_section_crc)
+        format!(
+            "the checksum of the whole data is {crc:08x}, not {:08x}: bytes were altered",
+            claimed.data_section_crc
+        )
     })
 }

@@ -18,10 +18,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             control_interval: r.control_interval,
         })?;
         let advanced = run.answer(&answer.rate)?;
-        if std::env::var("TRACE").is_ok() && r.sequence % 100 == 0 {
-            let s = &r.snapshot;
-            println!("  {} t={:.6} sig={:?} rate={:?} unb={:.2e} k={:.3} v={:.2e} dt={:.2e}", r.step, r.time, s.stress.tensor.voigt().map(|v| v.round()), answer.rate.map(|v| (v*1e3).round()/1e3), s.unbalanced, s.coordination, run.engine().speed(), run.engine().time_step());
-        }
         if let Some(name) = advanced.ended {
             let (e, done) = (run.engine(), run.engine().steps() - steps);
             let seen = e.snapshot()?;
@@ -36,8 +32,45 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 seen.unbalanced
             );
             (mark, steps) = (Instant::now(), run.engine().steps());
+            if advanced.packing_due {
+                report(&run.packing())?;
+            }
         }
     }
     println!("{:.1} s in all", begin.elapsed().as_secs_f64());
+    Ok(())
+}
+
+fn report(packing: &grains::Packing) -> Result<(), Box<dyn std::error::Error>> {
+    let a = micro::analyse(packing, &micro::Settings::default())?;
+    let f = &a.fabric;
+    let l = f.contact_fabric;
+    println!(
+        "  phi {:.4} p {:.2} q/p {:.1e} k {:.3} z {:.3} rattlers {} L {:.4} {:.4} {:.4} eps {:.4} g {:?}",
+        a.solid_fraction,
+        a.pressure,
+        a.deviatoric / a.pressure,
+        f.k,
+        f.z,
+        f.rattlers,
+        l.xx,
+        l.yy,
+        l.zz,
+        f.eps,
+        f.anisotropy
+    );
+    let (moduli, begin) = (a.moduli?, Instant::now());
+    let (t, v) = (moduli.stiffness.transverse_isotropy(), moduli.affine.transverse_isotropy());
+    println!(
+        "  G12 {:.2} G13 {:.2} theta {:.2} MPa, affine/relaxed {:.3} {:.3} {:.3}, {} iterations {:?}",
+        t.g12 / 1e6,
+        t.g13 / 1e6,
+        moduli.stiffness.bulk_voigt() / 1e6,
+        v.g12 / t.g12,
+        v.g13 / t.g13,
+        moduli.affine.bulk_voigt() / moduli.stiffness.bulk_voigt(),
+        moduli.iterations,
+        begin.elapsed()
+    );
     Ok(())
 }

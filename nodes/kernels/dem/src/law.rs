@@ -36,8 +36,8 @@ pub struct Touch {
     pub relative: Vec3,
     /// a_i ω_i + a_j ω_j with levers a = R − δ/2, m/s.
     pub rolling: Vec3,
-    /// (ω_i + ω_j)/2 along the normal, rad/s: the twist that carries the tangential force along.
-    pub twist: f64,
+    /// (ω_i + ω_j)/2, rad/s: its part along the normal twists the tangential force along.
+    pub spin: Vec3,
 }
 
 /// Forces of one contact.
@@ -92,13 +92,16 @@ impl Law {
         let n = t.normal;
         let along = t.relative.dot(&n);
         let across = t.relative - n * along;
-        let slip = across - t.rolling.cross(&n);
+        // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
+        let mean = if ADVANCE { n - across * (0.5 * dt / t.distance) } else { n };
+        let rolling = t.rolling.cross(&mean);
+        let slip = across - (rolling - n * rolling.dot(&n));
         let root = (t.r_eff * t.overlap).sqrt();
         let (elastic, normal, dashpot) = self.normal_force(t, root, -along);
         let mut f = history;
         let mut slides = false;
         if ADVANCE {
-            f = carried(f, t, &across, dt);
+            f = carried(f, t, &mean, dt);
             if RESCALED && t.overlap < t.previous_overlap {
                 f *= (t.overlap / t.previous_overlap).sqrt();
             }
@@ -126,13 +129,12 @@ impl Law {
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.
 ///
-/// With m the mean of the old and new normal, f − (f·n) m is that rotation; m is n less half of the normal's change.
-/// Norm and perpendicularity are kept to third order in the angle of one step (1e-7 rad at most in practice).
+/// With m the mean of the old and new normal, f − (f·n) m is that rotation. Norm and perpendicularity are kept to third
+/// order in the angle of one step (1e-7 rad at most in practice).
 #[inline(always)]
-fn carried(f: Vec3, t: &Touch, across: &Vec3, dt: f64) -> Vec3 {
+fn carried(f: Vec3, t: &Touch, mean: &Vec3, dt: f64) -> Vec3 {
     let n = t.normal;
-    let mean = n - across * (0.5 * dt / t.distance);
     let f = f - mean * f.dot(&n);
-    let angle = t.twist * dt;
+    let angle = t.spin.dot(mean) * dt;
     f * (1.0 - 0.5 * angle * angle) + n.cross(&f) * angle
 }

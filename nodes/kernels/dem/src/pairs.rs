@@ -32,16 +32,6 @@ impl Pairs {
         (self.i[p], self.j[p], self.images[self.image[p] as usize])
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.i.clear();
-        self.j.clear();
-        self.image.clear();
-        self.images.clear();
-        self.shifts.clear();
-        self.overlap.clear();
-        self.tangential.clear();
-    }
-
     pub(crate) fn push(&mut self, i: u32, j: u32, image: [i8; 3], overlap: f64, tangential: Vec3) {
         let slot = match self.images.iter().position(|k| *k == image) {
             Some(slot) => slot,

@@ -68,7 +68,7 @@ fn frictional<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
         let lever_i = state.radius[i] - 0.5 * touch.overlap;
         let lever_j = state.radius[j] - 0.5 * touch.overlap;
         touch.rolling = spin_i * lever_i + spin_j * lever_j;
-        touch.twist = 0.5 * (spin_i + spin_j).dot(&touch.normal);
+        touch.spin = 0.5 * (spin_i + spin_j);
         let f = law.frictional::<ADVANCE, SLIDING, RESCALED>(&touch, pairs.tangential.get(p), dt);
         pairs.overlap[p] = touch.overlap;
         if ADVANCE {
@@ -104,6 +104,6 @@ fn touch(
         m_eff: 1.0 / (m_i + m_j),
         relative: state.velocity.get(j) - state.velocity.get(i) + state.rate * branch,
         rolling: Vec3::zeros(),
-        twist: 0.0,
+        spin: Vec3::zeros(),
     }
 }

@@ -49,12 +49,6 @@ impl Soa {
         self.z.fill(value);
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.x.clear();
-        self.y.clear();
-        self.z.clear();
-    }
-
     pub(crate) fn push(&mut self, v: Vec3) {
         self.x.push(v.x);
         self.y.push(v.y);

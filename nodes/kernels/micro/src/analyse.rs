@@ -13,7 +13,8 @@ use grains::{Fabric, Moduli, Packing, Vec3};
 /// How a packing is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2].
+    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of about 1e-14
+    /// in C at z = 5.3; a loose one overestimates C, the more so the closer the network is to isostaticity (z = 4).
     pub tolerance: f64,
     /// Iterations after which the solve gives up.
     pub max_iterations: u32,

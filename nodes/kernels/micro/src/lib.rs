@@ -1,8 +1,8 @@
 //! Structure and stiffness of a packing: fabric, coordination, and the moduli of the frozen contact network.
 //!
-//! [`analyse`] is the one entry that node and command line share. The parts are public for those who need one alone:
+//! [`analyse()`] is the one entry that node and command line share. The parts are public for those who need one alone:
 //!
-//! - [`analyse()`], [`Settings`], [`Analysis`]: everything that is measured on one packing
+//! - [`mod@analyse`]: everything that is measured on one packing
 //! - [`rattlers`]: who carries force
 //! - [`fabric`]: coordination, fabric tensors, ε
 //! - [`anisotropy`]: the three ratios γ/Δ

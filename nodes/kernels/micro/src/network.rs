@@ -112,21 +112,21 @@ impl Network {
             std::array::from_fn(|r| std::array::from_fn(|l| if r == l { 1.0 } else { 0.0 }));
         let zero = [[0.0; 6]; 6];
         for s in &self.springs {
-            // An own image is moved on both sides at once; otherwise the other grain stands still.
-            let sides = if s.i == s.j {
-                vec![(s.i, [&unit, &unit])]
-            } else {
-                vec![(s.i, [&unit, &zero]), (s.j, [&zero, &unit])]
-            };
-            for (grain, [a, b]) in sides {
+            let mut add = |grain: u32, a: &Motion<6>, b: &Motion<6>| {
                 let w = s.relative(a, b);
                 let f = s.force(&w);
-                let block = &mut blocks[grain as usize];
-                for row in 0..6 {
-                    for column in 0..6 {
-                        block[row][column] += (0..3).map(|k| w[k][row] * f[k][column]).sum::<f64>();
+                for (row, entries) in blocks[grain as usize].iter_mut().enumerate() {
+                    for (column, entry) in entries.iter_mut().enumerate() {
+                        *entry += (0..3).map(|k| w[k][row] * f[k][column]).sum::<f64>();
                     }
                 }
+            };
+            if s.i == s.j {
+                // An own image moves with the grain.
+                add(s.i, &unit, &unit);
+            } else {
+                add(s.i, &unit, &zero);
+                add(s.j, &zero, &unit);
             }
         }
         blocks

@@ -160,7 +160,7 @@ impl DdsBus {
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let reader = self
             .subscriber
-            .create_simple_datareader_no_key(&dds_topic, Some(qos::requested(demand)))
+            .create_simple_datareader_no_key(&dds_topic, Some(qos::requested(topic, demand)))
             .map_err(|e| create_error(&resolved, &e))?;
         let mut inbox = Inbox::new(reader, resolved.clone(), demand);
         let index = self.readers.len();
@@ -172,7 +172,7 @@ impl DdsBus {
         self.presence.add_reader(guid);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
-        self.readers.push(Reader { inbox, guid, topic: resolved, ready: true, notified: true });
+        self.readers.push(Reader { inbox, guid, topic: resolved, ready: false, notified: false });
         Ok(index)
     }
 
@@ -273,6 +273,7 @@ impl Bus for DdsBus {
                     | WriteError::Poisoned { reason, .. }
                     | WriteError::Internal { reason, .. } => reason,
                     WriteError::WouldBlock { .. } => "window full".into(),
+                    WriteError::Io(error) => error.to_string(),
                 },
             }),
         }

@@ -29,9 +29,9 @@ pub(super) fn offered(topic: &Topic) -> QosPolicies {
 }
 
 /// What a reader asks, the demand being within the topic's QoS already.
-pub(super) fn requested(demand: Demand) -> QosPolicies {
+pub(super) fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
     // RustDDS keeps 64 samples unless told otherwise: too few for a recorder, too many for packings of megabytes.
-    policies(demand.reliable, demand.latched, demand.depth, demand.depth)
+    policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
 }
 
 fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32) -> QosPolicies {

@@ -67,14 +67,9 @@ fn random_networks_agree_with_a_dense_pseudo_inverse() {
         let a = analyse(&p, &Settings::default()).unwrap();
         rattlers += a.fabric.rattlers;
         let dense = dense_stiffness(&p, true);
-        match a.moduli {
-            Ok(m) => {
-                let error = (m.stiffness.0 - dense).amax() / m.affine.0.amax();
-                println!("k {} swell {swell}: error {error:e}, {} iterations", a.fabric.k, m.iterations);
-                assert!(error < 1e-9, "swell {swell}: {error:e}");
-            }
-            Err(reason) => panic!("swell {swell}: {reason}"),
-        }
+        let m = a.moduli.unwrap();
+        let error = (m.stiffness.0 - dense).amax() / m.affine.0.amax();
+        assert!(error < 1e-9, "swell {swell}: {error:e}");
     }
     assert!(rattlers > 0, "no sample had a rattler");
 }
@@ -86,7 +81,6 @@ fn random_networks_without_tangential_springs_agree_with_a_dense_pseudo_inverse(
         let settings = Settings { tangential: false, ..Settings::default() };
         let m = analyse(&p, &settings).unwrap().moduli.unwrap();
         let error = (m.stiffness.0 - dense_stiffness(&p, false)).amax() / m.affine.0.amax();
-        println!("swell {swell}: error {error:e}, {} iterations", m.iterations);
         assert!(error < 1e-9, "swell {swell}: {error:e}");
     }
 }

@@ -97,7 +97,6 @@ fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
         let difference = with(tolerance) - exact;
         assert!(difference.symmetric_eigenvalues().min() > -1e-12 * scale, "{tolerance:e}: below the truth");
         let error = difference.amax() / scale;
-        println!("tolerance {tolerance:e}: error {error:e}");
         assert!(error < 10.0 * tolerance * tolerance.sqrt(), "{tolerance:e}: {error:e}");
     }
 }

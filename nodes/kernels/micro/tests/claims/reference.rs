@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::fs;
 use std::io::Read;
 
-const FOLDER: &str = "/work/shared/reference";
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/golden/reference");
 
 fn sidecar() -> Value {
     serde_json::from_str(&fs::read_to_string(format!("{FOLDER}/ref_packing_500.json")).unwrap()).unwrap()
@@ -99,30 +99,27 @@ fn coordination_rattlers_and_fabric_are_those_of_the_reference() {
         }
     }
     assert!((f.mobilised - json["mobilised_fraction_gt_0p999"].as_f64().unwrap()).abs() < 1e-14);
-    // The sidecar averages over all 500 grains and ours over the 476 that carry; the rattlers' share is nothing.
+    // The sidecar averages net forces over all 500 grains, ours over the 476 that carry; the rattlers' own are tiny.
     let unbalanced = json["unbalanced_mean"].as_f64().unwrap() * 500.0 / 476.0;
-    println!("unbalanced {:e} against {unbalanced:e}", a.unbalanced.unwrap());
-    assert!((a.unbalanced.unwrap() / unbalanced - 1.0).abs() < 0.3);
+    assert!((a.unbalanced.unwrap() / unbalanced - 1.0).abs() < 1e-2);
 }
 
-/// The direct solve holds the one rattler that touches the network (with 1e-8 of the mean force) fixed, and adds 1e-11
-/// of the mean stiffness to its diagonal; ours lets every grain go.
+/// The direct solve adds 1e-11 of the mean stiffness to its diagonal and refines five times; 1e-9 is far above what
+/// either leaves.
 #[test]
 fn stiffness_is_that_of_a_sparse_direct_solve() {
     let m = analysis().moduli.unwrap();
     let json = sidecar();
     let affine = matrix(&json["C_affine_matrix_Pa"]);
     let error = (m.affine.0 - affine).amax() / affine[(0, 0)];
-    println!("affine error {error:e}");
     assert!(error < 1e-12, "affine: {error:e}");
     let relaxed = matrix(&json["C_relaxed_matrix_Pa_stiffness_matrix_mu_inf"]);
     let error = (m.stiffness.0 - relaxed).amax() / relaxed[(0, 0)];
-    println!("relaxed error {error:e}, residual {:e}, {} iterations", m.residual, m.iterations);
-    assert!(error < 1e-5, "relaxed: {error:e}");
+    assert!(error < 1e-9, "relaxed: {error:e}");
 }
 
 /// A probe of 1e-7 with the whole nonlinear code: it sees terms of the order of the pressure (0.1 MPa) too, and its
-/// note gives the order xx yy zz xy xz yz; the 6×6 form in the sidecar is in Voigt order already.
+/// raw rows are in the order xx yy zz xy xz yz.
 #[test]
 fn stiffness_is_within_a_permille_of_an_explicit_probe_by_lammps() {
     let m = analysis().moduli.unwrap();
@@ -134,6 +131,5 @@ fn stiffness_is_within_a_permille_of_an_explicit_probe_by_lammps() {
     });
     let c11 = m.stiffness.0[(0, 0)];
     let error = (m.stiffness.0 - raw).amax() / c11;
-    println!("error against the probe: {error:e} of C11");
     assert!(error < 1e-3, "{error:e}\n{}\n{raw}", m.stiffness.0);
 }

@@ -1,0 +1,141 @@
+use super::refuses;
+use grainlab_msgs::boundary::{StrainRateAnswer, StressRequest};
+use grainlab_msgs::msg::{StrainRate, Stress};
+use grainlab_msgs::{from_cdr, stamp, to_cdr};
+use grains::{ComponentControl, ServoLaw, SymTensor};
+use proptest::array::uniform6;
+use proptest::prelude::*;
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+fn finite() -> impl Strategy<Value = f64> {
+    any::<f64>().prop_filter("finite", |x| x.is_finite())
+}
+
+fn control() -> impl Strategy<Value = ComponentControl> {
+    prop_oneof![
+        Just(ComponentControl::Held),
+        finite().prop_map(ComponentControl::Stress),
+        finite().prop_map(ComponentControl::StrainRate),
+    ]
+}
+
+fn law() -> impl Strategy<Value = ServoLaw> {
+    prop_oneof![
+        (1e-9..1e9f64).prop_map(|response_time| ServoLaw::Scaled { response_time }),
+        (0.0..1e9f64, 0.0..=1.0f64).prop_map(|(gain, leak)| ServoLaw::Integral { gain, leak }),
+    ]
+}
+
+prop_compose! {
+    fn request()(
+        (sequence, step, phase, time) in (any::<u64>(), any::<u64>(), any::<u32>(), 0.0..1e6f64),
+        (stress, strain, tangent, rate) in (uniform6(finite()), uniform6(finite()), uniform6(finite()), uniform6(finite())),
+        (controls, law) in (uniform6(control()), law()),
+        (rate_limit, control_interval, solid_fraction) in (0.0..1e9f64, 1e-12..1.0f64, 0.01..1.0f64),
+        (asymmetry, coordination, unbalanced) in (0.0..1e9f64, 0.0..12.0f64, 0.0..9.0f64),
+    ) -> StressRequest {
+        StressRequest {
+            sequence, step, phase, stamp: stamp(time), stress: SymTensor::from_voigt(stress), asymmetry, controls, rate,
+            rate_limit, law, tangent, control_interval, strain: SymTensor::from_voigt(strain), solid_fraction,
+            coordination, unbalanced,
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_request_crosses_the_wire_and_back_bit_for_bit(request in request()) {
+        let bytes = to_cdr(&Stress::try_from(&request).unwrap());
+        let back = StressRequest::try_from(&from_cdr::<Stress>(&bytes).unwrap()).unwrap();
+        prop_assert_eq!(&back, &request);
+        prop_assert_eq!(to_cdr(&Stress::try_from(&back).unwrap()), bytes);
+    }
+
+    #[test]
+    fn an_answer_crosses_the_wire_and_back(
+        sequence in any::<u64>(), rate in uniform6(finite()), saturated in uniform6(any::<bool>()), time in 0.0..1e6f64,
+    ) {
+        let answer = StrainRateAnswer { stamp: stamp(time), sequence, rate, saturated };
+        let bytes = to_cdr(&StrainRate::try_from(&answer).unwrap());
+        prop_assert_eq!(StrainRateAnswer::try_from(&from_cdr::<StrainRate>(&bytes).unwrap()).unwrap(), answer);
+    }
+}
+
+fn stress() -> Stress {
+    let request = StressRequest {
+        sequence: 3,
+        step: 30,
+        phase: 1,
+        stamp: stamp(0.5),
+        stress: SymTensor::isotropic(5e4),
+        asymmetry: 0.0,
+        controls: [ComponentControl::Stress(5e4); 6],
+        rate: [0.0; 6],
+        rate_limit: 1.0,
+        law: ServoLaw::Scaled { response_time: 1e-3 },
+        tangent: [4e8; 6],
+        control_interval: 1e-7,
+        strain: SymTensor::default(),
+        solid_fraction: 0.63,
+        coordination: 5.2,
+        unbalanced: 1e-3,
+    };
+    Stress::try_from(&request).unwrap()
+}
+
+#[test]
+fn each_fault_of_a_request_is_refused_by_name() {
+    refuses(
+        &stress(),
+        &[
+            (|m| m.header.stamp.nanosec = u32::MAX, "Stress.header.stamp.nanosec = 4294967295.0 is refused"),
+            (|m| m.stress.xz = NAN, "Stress.stress.xz = NaN is refused: it must be finite"),
+            (|m| m.asymmetry = -1.0, "Stress.asymmetry = -1.0 is refused: it must be finite and 0 or more"),
+            (|m| m.mode[5] = 3, "Stress.mode[5] (xy) = 3 is refused: it must be one of 0 (held), 1 (stress)"),
+            (|m| m.setpoint[1] = INF, "Stress.setpoint[1] (yy) = inf is refused"),
+            (|m| m.rate[2] = NAN, "Stress.rate[2] (zz) = NaN is refused"),
+            (|m| m.rate_limit = -0.5, "Stress.rate_limit = -0.5 is refused"),
+            (|m| m.law = 2, "Stress.law = 2 is refused: it must be one of 0 (scaled), 1 (integral)"),
+            (
+                |m| m.response_time = 0.0,
+                "Stress.response_time = 0.0 is refused: it must be finite and more than 0",
+            ),
+            (|m| (m.law, m.leak) = (1, 1.5), "Stress.leak = 1.5 is refused: it must be between 0 and 1"),
+            (|m| (m.law, m.gain) = (1, NAN), "Stress.gain = NaN is refused"),
+            (|m| m.tangent.zz = INF, "Stress.tangent.zz = inf is refused"),
+            (|m| m.control_interval = 0.0, "Stress.control_interval = 0.0 is refused"),
+            (|m| m.strain.xy = NAN, "Stress.strain.xy = NaN is refused"),
+            (|m| m.solid_fraction = 0.0, "Stress.solid_fraction = 0.0 is refused"),
+            (|m| m.coordination = -1.0, "Stress.coordination = -1.0 is refused"),
+            (|m| m.unbalanced_force_ratio = NAN, "Stress.unbalanced_force_ratio = NaN is refused"),
+        ],
+        |m| StressRequest::try_from(m),
+    );
+}
+
+#[test]
+fn a_rate_that_is_not_finite_is_refused_with_its_component() {
+    refuses(
+        &StrainRate::default(),
+        &[
+            (|m| m.rate[0] = NAN, "StrainRate.rate[0] (xx) = NaN is refused: it must be finite"),
+            (|m| m.rate[3] = -INF, "StrainRate.rate[3] (yz) = -inf is refused: it must be finite"),
+            (|m| m.header.stamp.nanosec = 1_000_000_000, "StrainRate.header.stamp.nanosec"),
+        ],
+        |m| StrainRateAnswer::try_from(m),
+    );
+}
+
+/// What no reader would take is not written either.
+#[test]
+fn nothing_that_would_be_refused_goes_out() {
+    let mut request = StressRequest::try_from(&stress()).unwrap();
+    request.stress.zz = NAN;
+    assert!(Stress::try_from(&request).unwrap_err().to_string().starts_with("Stress.stress.zz = NaN"));
+    let answer = StrainRateAnswer { stamp: stamp(0.0), sequence: 0, rate: [INF; 6], saturated: [false; 6] };
+    assert!(
+        StrainRate::try_from(&answer).unwrap_err().to_string().starts_with("StrainRate.rate[0] (xx) = inf")
+    );
+}

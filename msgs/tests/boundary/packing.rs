@@ -1,0 +1,216 @@
+use super::refuses;
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::{from_cdr, msg, to_cdr};
+use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use proptest::array::{uniform3, uniform9};
+use proptest::collection::{btree_map, vec};
+use proptest::prelude::*;
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+/// Finite numbers of every size and sign, zeros of both signs among them.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![any::<f64>().prop_filter("finite", |x| x.is_finite()), Just(0.0), Just(-0.0)]
+}
+
+fn vector() -> impl Strategy<Value = Vec3> {
+    uniform3(number()).prop_map(Vec3::from)
+}
+
+fn unit() -> impl Strategy<Value = Vec3> {
+    uniform3(-1.0..1.0f64)
+        .prop_map(Vec3::from)
+        .prop_filter("long enough", |v| v.norm() > 0.1)
+        .prop_map(|v| v.normalize())
+}
+
+fn positive() -> impl Strategy<Value = f64> {
+    1e-9..1e9f64
+}
+
+/// A shear and stretch whose determinant is positive.
+fn matrix() -> impl Strategy<Value = Mat3> {
+    uniform9(-0.2..0.2f64)
+        .prop_map(|m| Mat3::identity() + Mat3::from_row_slice(&m))
+        .prop_filter("regular", |m| m.determinant() > 0.05)
+}
+
+prop_compose! {
+    fn contact()(
+        overlap in positive(), normal in unit(), normal_force in number(), tangential_force in vector(),
+    ) -> Contact {
+        Contact { i: 0, j: 0, image: [0; 3], overlap, normal, normal_force, tangential_force }
+    }
+}
+
+prop_compose! {
+    fn packing()(grains in vec((any::<u32>(), positive(), vector(), vector(), vector()), 1..6))(
+        contacts in btree_map((0..grains.len() as u32, 0..grains.len() as u32, uniform3(-2i8..3)), contact(), 0..9),
+        (step, time, time_step) in (any::<u64>(), number(), positive()),
+        (cell, deformation) in (matrix(), matrix()),
+        (shear_modulus, poisson_ratio, density) in (positive(), 0.0..=0.5f64, positive()),
+        friction in prop_oneof![Just(INF), Just(0.0), positive()],
+        grains in Just(grains),
+    ) -> Packing {
+        let ordered = contacts.into_iter().filter(|((i, j, _), _)| i <= j);
+        Packing {
+            step, time, time_step, deformation, friction,
+            cell: Cell::new(cell).unwrap(),
+            ids: grains.iter().map(|g| g.0).collect(),
+            radii: grains.iter().map(|g| g.1).collect(),
+            positions: grains.iter().map(|g| g.2).collect(),
+            velocities: grains.iter().map(|g| g.3).collect(),
+            spins: grains.iter().map(|g| g.4).collect(),
+            contacts: ordered.map(|((i, j, image), c)| Contact { i, j, image, ..c }).collect(),
+            material: Material { shear_modulus, poisson_ratio, density },
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_packing_crosses_the_wire_and_back_bit_for_bit(packing in packing(), state in vec(any::<u8>(), 0..20)) {
+        let packing = packing.validated().unwrap();
+        let message = packing_message(&packing, "demo", state);
+        let bytes = to_cdr(&message);
+        let received: msg::Packing = from_cdr(&bytes).unwrap();
+        let back = Packing::try_from(&received).unwrap();
+        prop_assert_eq!(&back, &packing);
+        // Equality takes -0 for 0; bytes do not.
+        prop_assert_eq!(to_cdr(&packing_message(&back, &received.scene, received.run_state.clone())), bytes);
+    }
+
+    #[test]
+    fn arbitrary_numbers_are_refused_or_are_a_packing(
+        radius in vec(any::<f64>(), 0..4),
+        position in vec(any::<f64>(), 0..13),
+        contact_pair in vec(0..4u32, 0..5),
+        contact_overlap in vec(any::<f64>(), 0..3),
+    ) {
+        let message = msg::Packing { radius, position, contact_pair, contact_overlap, ..pair() };
+        if let Ok(packing) = Packing::try_from(&message) {
+            prop_assert!(packing.validated().is_ok());
+        }
+    }
+}
+
+/// Two grains that touch across the boundary of the cell.
+fn pair() -> msg::Packing {
+    let packing = Packing {
+        step: 7,
+        time: 0.125,
+        cell: Cell::cube(1.0).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![4, 9],
+        radii: vec![0.1, 0.1],
+        positions: vec![Vec3::zeros(), Vec3::new(0.0, 0.0, 0.9)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: vec![Contact {
+            i: 0,
+            j: 1,
+            image: [0, 0, -1],
+            overlap: 0.1,
+            normal: -Vec3::z(),
+            normal_force: 1.0,
+            tangential_force: Vec3::zeros(),
+        }],
+        material: Material::GLASS,
+        friction: 0.1,
+        time_step: 1e-8,
+    };
+    packing_message(&packing, "pair", vec![1, 2])
+}
+
+#[test]
+fn the_header_is_simulated_time_after_the_epoch_in_the_frame_of_the_cell() {
+    let message = pair();
+    assert_eq!((message.header.stamp.sec, message.header.stamp.nanosec), (1_000_000_000, 125_000_000));
+    assert_eq!(message.header.frame_id, "cell");
+}
+
+#[test]
+fn each_fault_of_a_packing_is_refused_by_name() {
+    refuses(
+        &pair(),
+        &[
+            (
+                |m| m.header.stamp.nanosec = 1_000_000_000,
+                "Packing.header.stamp.nanosec = 1000000000.0 is refused",
+            ),
+            (|m| m.cell[4] = NAN, "Packing.cell[4] = NaN is refused: it must be finite"),
+            (|m| m.cell[8] = -1.0, "Packing.cell (volume) = -1.0 is refused"),
+            (|m| m.cell = [0.0; 9], "Packing.cell (volume) = 0.0 is refused"),
+            (|m| m.deformation[0] = INF, "Packing is refused: deformation[0] is not finite (inf)"),
+            (|m| m.deformation[0] = -1.0, "Packing is refused: deformation[0] = -1e0 is out of range"),
+            (|m| m.time = NAN, "Packing is refused: time[0] is not finite (NaN)"),
+            (|m| m.time_step = -1e-8, "Packing is refused: time_step[0] = -1e-8 is out of range"),
+            (|m| m.friction = -0.1, "Packing is refused: friction[0] = -1e-1 is out of range"),
+            (|m| m.friction = NAN, "Packing is refused: friction[0] = NaN is out of range"),
+            (|m| m.poisson_ratio = 0.6, "Packing is refused: poisson_ratio[0] = 6e-1 is out of range"),
+            (|m| m.shear_modulus = 0.0, "Packing is refused: shear_modulus[0] = 0e0 is out of range"),
+            (|m| m.density = INF, "Packing is refused: density[0] is not finite"),
+            (|m| m.radius[1] = -0.1, "Packing is refused: radius[1] = -1e-1 is out of range"),
+            (|m| m.position[4] = INF, "Packing is refused: position[1] is not finite (inf)"),
+            (|m| m.velocity[2] = NAN, "Packing is refused: velocity[0] is not finite (NaN)"),
+            (|m| m.angular_velocity[3] = NAN, "Packing is refused: angular_velocity[1] is not finite (NaN)"),
+            (
+                |m| m.contact_pair[1] = 2,
+                "Packing is refused: contact 0 names grain 2, but there are 2 grains",
+            ),
+            (|m| m.contact_pair[0] = u32::MAX, "Packing is refused: contact 0 names grain 4294967295"),
+            (|m| m.contact_pair.swap(0, 1), "Packing is refused: contact 0 is out of order"),
+            (|m| m.contact_overlap[0] = 0.0, "Packing is refused: contact_overlap[0] = 0e0 is out of range"),
+            (|m| m.contact_normal[2] = -0.9, "Packing is refused: contact_normal[0] = 9e-1 is out of range"),
+            (
+                |m| m.contact_normal_force[0] = NAN,
+                "Packing is refused: contact_normal_force[0] is not finite",
+            ),
+            (
+                |m| m.contact_tangential_force[1] = INF,
+                "Packing is refused: contact_tangential_force[0] is not",
+            ),
+        ],
+        |m| Packing::try_from(m),
+    );
+}
+
+#[test]
+fn each_array_of_the_wrong_length_is_refused_by_name() {
+    fn drop_last<T>(v: &mut Vec<T>) {
+        v.pop();
+    }
+    refuses(
+        &pair(),
+        &[
+            (|m| drop_last(&mut m.id), "Packing is refused: id has 1 entries, but there are 2 grains"),
+            (|m| drop_last(&mut m.position), "Packing.position has 5 entries and is refused: it must have 6"),
+            (|m| drop_last(&mut m.velocity), "Packing.velocity has 5 entries and is refused: it must have 6"),
+            (|m| drop_last(&mut m.angular_velocity), "Packing.angular_velocity has 5 entries and is refused"),
+            (
+                |m| drop_last(&mut m.contact_pair),
+                "Packing.contact_pair has 1 entries and is refused: it must have 2",
+            ),
+            (
+                |m| drop_last(&mut m.contact_image),
+                "Packing.contact_image has 2 entries and is refused: it must have 3",
+            ),
+            (|m| drop_last(&mut m.contact_normal), "Packing.contact_normal has 2 entries and is refused"),
+            (
+                |m| drop_last(&mut m.contact_normal_force),
+                "Packing.contact_normal_force has 0 entries and is refused",
+            ),
+            (
+                |m| drop_last(&mut m.contact_tangential_force),
+                "Packing.contact_tangential_force has 2 entries and is",
+            ),
+            (
+                |m| drop_last(&mut m.contact_overlap),
+                "Packing.contact_pair has 2 entries and is refused: it must have 0",
+            ),
+            (|m| m.radius.push(0.1), "Packing.position has 6 entries and is refused: it must have 9"),
+        ],
+        |m| Packing::try_from(m),
+    );
+}

@@ -1,0 +1,260 @@
+use super::refuses;
+use grainlab_msgs::boundary::{
+    EstimateStatus, MicrostructureReading, ModuliMethod, ModuliReading, RunStateReading, RunStatus,
+    fabric_message, moduli_message,
+};
+use grainlab_msgs::msg;
+use grainlab_msgs::std_msgs::Header;
+use grainlab_msgs::{from_cdr, stamp, to_cdr};
+use grains::{Anisotropy, Fabric, Material, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3};
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+fn header() -> Header {
+    Header { stamp: stamp(0.25), frame_id: "cell".into() }
+}
+
+fn fabric() -> Fabric {
+    Fabric {
+        grains: 500,
+        contacts: 1300,
+        rattlers: 20,
+        k: 5.2,
+        z: 5.4,
+        contact_fabric: SymTensor::from_voigt([0.33, 0.32, 0.35, 0.001, -0.002, 0.003]),
+        force_fabric: SymTensor::isotropic(1.0 / 3.0),
+        stiffness_fabric: SymTensor::from_voigt([0.3, 0.3, 0.4, 0.0, 0.0, 0.0]),
+        eps: 0.0625,
+        axis: Vec3::z(),
+        fourth_order: -0.01,
+        anisotropy: Anisotropy { total: Some(-0.3), elastic: Some(0.02), contact: None },
+        mobilised: 0.125,
+    }
+}
+
+fn moduli() -> Moduli {
+    let relaxed = TransverseIsotropy {
+        c11: 360e6,
+        c12: 80e6,
+        c13: 70e6,
+        c33: 400e6,
+        g13: 150e6,
+        g12: 140e6,
+        residual: 0.0,
+    };
+    let affine = TransverseIsotropy { c11: 460e6, g13: 200e6, ..relaxed };
+    Moduli { stiffness: relaxed.stiffness(), affine: affine.stiffness(), residual: 1e-9, iterations: 91 }
+}
+
+fn moduli_sent() -> msg::Moduli {
+    moduli_message(header(), 7, &fabric(), &moduli(), 5e4, 0.64, &Material::GLASS).unwrap()
+}
+
+#[test]
+fn a_fabric_crosses_the_wire_and_back() {
+    let sent = fabric_message(header(), 7, &fabric()).unwrap();
+    let received: msg::Fabric = from_cdr(&to_cdr(&sent)).unwrap();
+    assert_eq!(Fabric::try_from(&received).unwrap(), fabric());
+    assert_eq!((received.source_step, received.header), (7, header()));
+}
+
+#[test]
+fn moduli_cross_the_wire_and_back() {
+    let received: msg::Moduli = from_cdr(&to_cdr(&moduli_sent())).unwrap();
+    assert_eq!(Moduli::try_from(&received).unwrap(), moduli());
+}
+
+#[test]
+fn an_inversion_reads_what_the_analysis_measured() {
+    let r = ModuliReading::try_from(&moduli_sent()).unwrap();
+    // The projection of a stiffness that is transversely isotropic is exact up to rounding.
+    for (read, measured) in [
+        (r.g12, 140e6),
+        (r.g13, 150e6),
+        (r.theta, (2.0 * 360e6 + 400e6 + 2.0 * 80e6 + 4.0 * 70e6) / 9.0),
+        (r.c11.unwrap(), 360e6),
+        (r.c33.unwrap(), 400e6),
+        (r.c13.unwrap(), 70e6),
+    ] {
+        assert!((read / measured - 1.0f64).abs() < 1e-14, "{read} {measured}");
+    }
+    assert_eq!(r.theta_reuss, moduli().stiffness.bulk_reuss());
+    assert_eq!((r.k, r.z, r.eps), (Some(5.2), Some(5.4), Some(0.0625)));
+    assert_eq!(r.gamma_over_delta, fabric().anisotropy);
+    assert_eq!((r.pressure, r.solid_fraction, r.material), (5e4, 0.64, Material::GLASS));
+    assert_eq!((r.source_step, r.stamp, r.grains, r.axis), (7, stamp(0.25), Some(500), Some(Vec3::z())));
+    assert_eq!((r.method, r.covariance), (ModuliMethod::FrozenNetwork, None));
+}
+
+/// An instrument knows three moduli, pressure, φ and the glass; nothing else, and the wire has no word for "nothing".
+#[test]
+fn what_an_instrument_does_not_know_is_none() {
+    let message = msg::Moduli {
+        method: msg::Moduli::METHOD_ACOUSTIC,
+        covariance: [4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
+        g12: 140e6,
+        g13: 150e6,
+        theta: 170e6,
+        pressure: 5e4,
+        solid_fraction: 0.64,
+        eps: 9.0,
+        gamma_over_delta_total: 9.0,
+        grain_shear_modulus: 29e9,
+        grain_poisson_ratio: 0.2,
+        grain_density: 2500.0,
+        ..msg::Moduli::default()
+    };
+    let r = ModuliReading::try_from(&message).unwrap();
+    assert_eq!(r.method, ModuliMethod::Acoustic);
+    assert_eq!((r.k, r.z, r.eps, r.grains), (None, None, None, None));
+    assert_eq!((r.c11, r.c33, r.c13, r.theta_reuss), (None, None, None, None));
+    assert_eq!((r.stiffness, r.affine, r.axis), (None, None, None));
+    assert_eq!(r.gamma_over_delta, Anisotropy::default());
+    assert_eq!(r.covariance, Some(message.covariance));
+    let fault = Moduli::try_from(&message).unwrap_err().to_string();
+    assert_eq!(
+        fault,
+        "Moduli.stiffness = 0.0 is refused: it must be known: the message holds only zeros there"
+    );
+}
+
+#[test]
+fn a_singular_stiffness_has_no_reuss_modulus() {
+    let broken = Moduli { stiffness: Stiffness::from_row_major(&[0.0; 36]), ..moduli() };
+    let m = moduli_message(header(), 7, &fabric(), &broken, 5e4, 0.64, &Material::GLASS).unwrap();
+    assert_eq!(ModuliReading::try_from(&m).unwrap().theta_reuss, None);
+}
+
+#[test]
+fn each_fault_of_the_moduli_is_refused_by_name() {
+    refuses(
+        &moduli_sent(),
+        &[
+            (|m| m.header.stamp.nanosec = u32::MAX, "Moduli.header.stamp.nanosec"),
+            (|m| m.method = 4, "Moduli.method = 4 is refused: it must be one of 0 (frozen network)"),
+            (|m| m.stiffness[35] = NAN, "Moduli.stiffness[35] = NaN is refused"),
+            (|m| m.stiffness_stddev[3] = -1.0, "Moduli.stiffness_stddev[3] = -1.0 is refused"),
+            (|m| m.stiffness_affine[0] = INF, "Moduli.stiffness_affine[0] = inf is refused"),
+            (|m| m.g12 = NAN, "Moduli.g12 = NaN is refused"),
+            (|m| m.g13 = INF, "Moduli.g13 = inf is refused"),
+            (|m| m.theta = NAN, "Moduli.theta = NaN is refused"),
+            (|m| m.theta_reuss = NAN, "Moduli.theta_reuss = NaN is refused"),
+            (|m| m.covariance[1] = NAN, "Moduli.covariance[1] = NaN is refused"),
+            (|m| m.covariance[4] = -1.0, "Moduli.covariance[4] = -1.0 is refused"),
+            (|m| m.covariance[3] = 1.0, "Moduli.covariance[3] = 1.0 is refused: it must be symmetric"),
+            (|m| m.pressure = -5e4, "Moduli.pressure = -50000.0 is refused"),
+            (|m| m.solid_fraction = 0.0, "Moduli.solid_fraction = 0.0 is refused"),
+            (|m| m.axis.z = 0.5, "Moduli.|axis| = 0.5 is refused: it must be 1"),
+            (|m| m.axis.x = NAN, "Moduli.|axis| = NaN is refused"),
+            (|m| m.gamma_over_delta_total = NAN, "Moduli.gamma_over_delta_total = NaN is refused"),
+            (|m| m.gamma_over_delta_elastic = INF, "Moduli.gamma_over_delta_elastic = inf is refused"),
+            (
+                |m| (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact) = (true, NAN),
+                "Moduli.gamma_over_delta_contact = NaN is refused",
+            ),
+            (|m| m.k = NAN, "Moduli.k = NaN is refused"),
+            (|m| m.z = -1.0, "Moduli.z = -1.0 is refused"),
+            (|m| m.eps = NAN, "Moduli.eps = NaN is refused"),
+            (|m| m.grain_shear_modulus = 0.0, "Moduli.grain_shear_modulus = 0.0 is refused"),
+            (|m| m.grain_poisson_ratio = 0.51, "Moduli.grain_poisson_ratio = 0.51 is refused"),
+            (|m| m.grain_density = -1.0, "Moduli.grain_density = -1.0 is refused"),
+            (|m| m.residual = NAN, "Moduli.residual = NaN is refused"),
+        ],
+        |m| ModuliReading::try_from(m),
+    );
+}
+
+#[test]
+fn each_fault_of_a_fabric_is_refused_by_name() {
+    refuses(
+        &fabric_message(header(), 7, &fabric()).unwrap(),
+        &[
+            (
+                |m| m.rattlers = 501,
+                "Fabric.rattlers = 501.0 is refused: it must be at most the number of grains",
+            ),
+            (|m| m.k = NAN, "Fabric.k = NaN is refused"),
+            (|m| m.z = -1.0, "Fabric.z = -1.0 is refused"),
+            (|m| m.contact_fabric.yy = NAN, "Fabric.contact_fabric.yy = NaN is refused"),
+            (|m| m.force_fabric.xy = INF, "Fabric.force_fabric.xy = inf is refused"),
+            (|m| m.stiffness_fabric.yz = NAN, "Fabric.stiffness_fabric.yz = NaN is refused"),
+            (|m| m.eps = INF, "Fabric.eps = inf is refused"),
+            (|m| m.axis.x = 1.0, "Fabric.|axis| = 1.4142135623730951 is refused"),
+            (|m| m.fourth_order = NAN, "Fabric.fourth_order = NaN is refused"),
+            (|m| m.gamma_over_delta_total = NAN, "Fabric.gamma_over_delta_total = NaN is refused"),
+            (|m| m.mobilised = 1.5, "Fabric.mobilised = 1.5 is refused: it must be between 0 and 1"),
+        ],
+        |m| Fabric::try_from(m),
+    );
+    let broken = Fabric { eps: NAN, ..fabric() };
+    assert!(fabric_message(header(), 7, &broken).is_err(), "nor is it written");
+}
+
+fn estimate() -> msg::Estimate {
+    msg::Estimate {
+        model: "ratio".into(),
+        status: msg::Estimate::STATUS_OK,
+        k: 5.2,
+        k_hat: 5.1,
+        eps: 0.06,
+        covariance: [0.01, 0.0, 0.0, 0.0, 0.04, 0.0, 0.0, 0.0, 1e-4],
+        interval: [5.1, 5.3, 4.9, 5.3, 0.05, 0.07],
+        credible_level: 0.68,
+        ..msg::Estimate::default()
+    }
+}
+
+#[test]
+fn estimates_without_an_answer_have_no_values() {
+    let failed = msg::Estimate { status: msg::Estimate::STATUS_FAILED, k: NAN, ..estimate() };
+    let message =
+        msg::Microstructure { estimates: vec![estimate(), failed], ..msg::Microstructure::default() };
+    let reading = MicrostructureReading::try_from(&message).unwrap();
+    let [good, failed] = &reading.estimates[..] else { panic!("two estimates") };
+    let values = good.inferred.unwrap();
+    assert_eq!((values.k, values.k_hat, values.eps), (5.2, 5.1, 0.06));
+    let interval = values.interval.unwrap();
+    assert_eq!((interval.level, interval.k, interval.eps), (0.68, (5.1, 5.3), (0.05, 0.07)));
+    assert_eq!((failed.status, failed.inferred), (EstimateStatus::Failed, None));
+}
+
+#[test]
+fn each_fault_of_an_estimate_is_refused_by_name() {
+    refuses(
+        &msg::Microstructure { estimates: vec![estimate()], ..msg::Microstructure::default() },
+        &[
+            (|m| m.estimates[0].status = 4, "Estimate.status = 4 is refused: it must be one of 0 (ok)"),
+            (|m| m.estimates[0].k = NAN, "Estimate.k = NaN is refused"),
+            (|m| m.estimates[0].k_hat = INF, "Estimate.k_hat = inf is refused"),
+            (|m| m.estimates[0].eps = NAN, "Estimate.eps = NaN is refused"),
+            (|m| m.estimates[0].covariance[8] = NAN, "Estimate.covariance[8] = NaN is refused"),
+            (|m| m.estimates[0].interval[3] = NAN, "Estimate.interval[3] = NaN is refused"),
+            (
+                |m| m.estimates[0].interval[4] = 0.08,
+                "Estimate.interval[4] = 0.08 is refused: it must be at most",
+            ),
+            (|m| m.estimates[0].credible_level = 68.0, "Estimate.credible_level = 68.0 is refused"),
+        ],
+        |m| MicrostructureReading::try_from(m),
+    );
+}
+
+#[test]
+fn a_run_state_is_read_and_its_faults_are_refused_by_name() {
+    let good =
+        msg::RunState { state: msg::RunState::FINISHED, progress: 1.0, step: 9, ..msg::RunState::default() };
+    let reading = RunStateReading::try_from(&good).unwrap();
+    assert_eq!((reading.status, reading.step, reading.last_packing_step), (RunStatus::Finished, 9, None));
+    let with_packing = msg::RunState { packings: 2, last_packing_step: 8, ..good.clone() };
+    assert_eq!(RunStateReading::try_from(&with_packing).unwrap().last_packing_step, Some(8));
+    refuses(
+        &good,
+        &[
+            (|m| m.state = 9, "RunState.state = 9 is refused: it must be one of 0 (running)"),
+            (|m| m.progress = 1.5, "RunState.progress = 1.5 is refused: it must be between 0 and 1"),
+            (|m| m.progress = NAN, "RunState.progress = NaN is refused"),
+        ],
+        |m| RunStateReading::try_from(m),
+    );
+}

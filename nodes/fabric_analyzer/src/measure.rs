@@ -1,0 +1,65 @@
+//! From one `Packing` to one `Fabric` and one `Moduli`.
+
+use crate::Settings;
+use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
+use grainlab_msgs::msg;
+use grains::Packing;
+use micro::{MicroError, NoNetwork};
+
+/// What is published about one packing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its structure.
+    pub fabric: msg::Fabric,
+    /// Its stiffness, or why it has none.
+    pub moduli: Result<msg::Moduli, NoNetwork>,
+}
+
+/// Why a packing is not measured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeasureError {
+    /// The message is not a packing.
+    #[error(transparent)]
+    Refused(BoundaryError),
+    /// The measurement failed.
+    #[error("packing of step {step} is not analysed: {reason}")]
+    Analysis {
+        /// Its step.
+        step: u64,
+        /// What went wrong.
+        reason: MicroError,
+    },
+    /// What was measured is nothing that a reader would accept.
+    #[error("packing of step {step} is analysed, but the result cannot be published: {reason}")]
+    Result {
+        /// Its step.
+        step: u64,
+        /// What a reader would object to.
+        reason: BoundaryError,
+    },
+}
+
+/// Measures one packing. Header and step are copied; nothing but the two arguments enters.
+pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
+    let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
+    let step = packing.step;
+    let found =
+        micro::analyse(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    let unfit = |reason| MeasureError::Result { step, reason };
+    let header = || message.header.clone();
+    let fabric = fabric_message(header(), step, &found.fabric).map_err(unfit)?;
+    let moduli = match found.moduli {
+        Err(none) => Err(none),
+        Ok(moduli) => Ok(moduli_message(
+            header(),
+            step,
+            &found.fabric,
+            &moduli,
+            found.pressure,
+            found.solid_fraction,
+            &packing.material,
+        )
+        .map_err(unfit)?),
+    };
+    Ok(Measured { fabric, moduli })
+}

@@ -1,0 +1,50 @@
+//! What can be set.
+
+use grains::Vec3;
+use node_kit::{ParameterSpec, Parameters, Range};
+
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let default = micro::Settings::default();
+    let axis: Vec<f64> = default.axis.iter().copied().collect();
+    vec![
+        ParameterSpec::new(
+            "tolerance",
+            default.tolerance,
+            "relative residual at which the stiffness solve stops, 1",
+        )
+        .within(Range::Double { min: 1e-13, max: 1e-2 }),
+        ParameterSpec::new(
+            "axis",
+            axis,
+            "axis of eps and of the ratios gamma/Delta: x, y, z, of any length but zero; stiffnesses stay in the cell's frame",
+        )
+        .within(Range::Double { min: -1e9, max: 1e9 }),
+    ]
+}
+
+/// The parameters, typed: how a packing is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings(pub(crate) micro::Settings);
+
+/// Parameters that each are in range and together make no sense. The process then ends with [`node_kit::Exit::Usage`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]
+pub struct SettingsError(pub Vec<f64>);
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self(micro::Settings::default())
+    }
+}
+
+impl TryFrom<&Parameters> for Settings {
+    type Error = SettingsError;
+
+    fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
+        let axis: Vec<f64> = parameters.get("axis");
+        let direction = <[f64; 3]>::try_from(axis.as_slice()).ok().map(Vec3::from).filter(|v| v.norm() > 0.0);
+        let axis = direction.ok_or(SettingsError(axis))?;
+        Ok(Self(micro::Settings { tolerance: parameters.get("tolerance"), axis, ..micro::Settings::default() }))
+    }
+}

@@ -1,0 +1,283 @@
+//! Grains in motion: collisions, the deforming cell, its periodic images, and what is refused.
+
+use dem::{DemError, Engine, Setting};
+use grains::{Cell, Mat3, Material, Vec3};
+use nalgebra::Rotation3;
+use scene::Tangential;
+
+const RADIUS: f64 = 1e-4;
+
+fn setting(friction: f64) -> Setting {
+    Setting {
+        friction,
+        damping: 0.0,
+        drag: 0.0,
+        spin_drag: 0.0,
+        tangential: Tangential::Incremental,
+        time_step_safety: 0.2,
+        skin: 1e-5,
+        speed_cap: None,
+    }
+}
+
+fn energy(e: &Engine) -> f64 {
+    let p = e.packing(Mat3::identity());
+    let kinetic: f64 = p
+        .velocities
+        .iter()
+        .zip(&p.spins)
+        .map(|(v, w)| {
+            let m = p.material.sphere_mass(RADIUS);
+            0.5 * m * v.norm_squared() + 0.2 * m * RADIUS * RADIUS * w.norm_squared()
+        })
+        .sum();
+    let elastic: f64 = p.contacts.iter().map(|c| 0.4 * c.normal_force * c.overlap).sum();
+    kinetic + elastic
+}
+
+#[test]
+fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
+    let cell = Cell::cube(20.0 * RADIUS).unwrap();
+    let positions = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(2.1 * RADIUS, 0.5 * RADIUS, 0.0)];
+    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, setting(0.0));
+    let speed = 0.5;
+    e.set_velocities(&[Vec3::x() * speed, -Vec3::x() * speed]);
+    e.prepare().unwrap();
+    e.set_time_step(2e-10);
+    let before = energy(&e);
+    let mut touching = 0u32;
+    for _ in 0..100_000 {
+        e.step().unwrap();
+        touching += e.snapshot().unwrap().contacts;
+    }
+    let p = e.packing(Mat3::identity());
+    assert!((p.velocities[0] + p.velocities[1]).norm() < 1e-13 * speed);
+    assert!(p.velocities[0].x < 0.5 * speed, "they did collide");
+    assert!((energy(&e) / before - 1.0).abs() < 1e-6, "{}", energy(&e) / before - 1.0);
+    // Hertz: t = 2.9432 δ_max/v with the normal component of the approach speed.
+    let normal = 2.0 * speed * (1.0 - (0.25f64).powi(2)).sqrt();
+    let m_eff = 0.5 * Material::GLASS.sphere_mass(RADIUS);
+    let deepest = (15.0 / 16.0 * m_eff * normal * normal / (36.25e9 * (RADIUS / 2.0).sqrt())).powf(0.4);
+    let duration = 2.943_275 * deepest / normal;
+    let measured = f64::from(touching) * 2e-10;
+    assert!((measured / duration - 1.0).abs() < 0.01, "{measured} {duration}");
+}
+
+#[test]
+fn an_undamped_gas_keeps_its_energy() {
+    let gas = dem::gas::place(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
+    let mut e = Engine::new(gas.cell, Material::GLASS, vec![RADIUS; 60], &gas.positions, setting(0.0));
+    e.set_velocities(&gas.velocities);
+    e.prepare().unwrap();
+    e.set_time_step(5e-9);
+    let before = energy(&e);
+    for _ in 0..60_000 {
+        e.step().unwrap();
+    }
+    assert!((energy(&e) / before - 1.0).abs() < 2e-4, "{}", energy(&e) / before - 1.0);
+    let sum: Vec3 = e.packing(Mat3::identity()).velocities.iter().sum();
+    assert!(sum.norm() < 1e-11, "{sum:?}");
+}
+
+/// One grain that touches its own images along x, y and z: a simple cubic lattice of edge `a`.
+fn cubic(overlap: f64, friction: f64) -> (Engine, f64) {
+    let edge = 2.0 * RADIUS - overlap;
+    let mut e = Engine::new(
+        Cell::cube(edge).unwrap(),
+        Material::GLASS,
+        vec![RADIUS],
+        &[Vec3::new(0.3, 0.1, -0.2) * RADIUS],
+        setting(friction),
+    );
+    e.prepare().unwrap();
+    (e, edge)
+}
+
+#[test]
+fn a_cubic_lattice_has_the_stress_of_its_three_contacts() {
+    let overlap = 4e-8;
+    let (e, edge) = cubic(overlap, 0.5);
+    let s = e.snapshot().unwrap();
+    // σ = F l/V, one contact a face.
+    let expected = Material::GLASS.normal_force(RADIUS / 2.0, overlap) / (edge * edge);
+    for v in &s.stress.tensor.voigt()[..3] {
+        assert!((v / expected - 1.0).abs() < 1e-9, "{v} {expected}");
+    }
+    assert_eq!(s.contacts, 3);
+    let (k_n, k_t) = (
+        Material::GLASS.normal_stiffness(RADIUS / 2.0, overlap),
+        Material::GLASS.tangential_stiffness(RADIUS / 2.0, overlap),
+    );
+    assert!((s.tangent[0] * edge / k_n - 1.0).abs() < 1e-9, "C11 = k_n/a");
+    assert!((s.tangent[3] * edge / (0.5 * k_t) - 1.0).abs() < 1e-9, "C44 = k_t/(2a)");
+}
+
+#[test]
+fn affine_shear_loads_tangential_springs_across_periodic_images() {
+    let overlap = 4e-8;
+    let (mut e, edge) = cubic(overlap, f64::INFINITY);
+    e.set_time_step(1e-9);
+    let (rate, steps) = (1.0, 1000u32);
+    e.set_rate(&[0.0, 0.0, 0.0, 0.0, rate, 0.0]).unwrap();
+    for _ in 0..steps {
+        e.step().unwrap();
+    }
+    let p = e.packing(Mat3::identity());
+    let strain = rate * 1e-9 * f64::from(steps);
+    let k_t = p.material.tangential_stiffness(RADIUS / 2.0, overlap);
+    // The contact along z slips by l E_xz along x, the one along x by as much along z; y carries none.
+    let slip = k_t * edge * strain;
+    assert_eq!(p.contacts.len(), 3);
+    for c in &p.contacts {
+        let axis = c.normal.iamax();
+        let expected = match axis {
+            0 => Vec3::z() * slip,
+            2 => Vec3::x() * slip,
+            _ => Vec3::zeros(),
+        } * c.normal[axis].signum();
+        assert!((c.tangential_force - expected).norm() < 1e-5 * slip, "{c:?} {expected:?}");
+    }
+    // σ_xz = −2 C44 E_xz with C44 = k_t/(2a).
+    let stress = e.snapshot().unwrap().stress.tensor;
+    assert!((stress.xz / (-k_t / edge * strain) - 1.0).abs() < 1e-5, "{}", stress.xz);
+    assert!(p.spins[0].norm() < 1e-6 * rate, "symmetric shear does not turn the grain");
+}
+
+#[test]
+fn two_grains_that_touch_only_through_an_image_feel_the_affine_velocity() {
+    // Heavy grains stay where they are: only the affine motion shears the contact.
+    let heavy = Material { density: 1e20, ..Material::GLASS };
+    let overlap = 4e-8;
+    let height = 8.0 * RADIUS;
+    let top = Vec3::new(0.0, 0.0, height - 2.0 * RADIUS + overlap);
+    let positions = [Vec3::zeros(), top];
+    let mut e = Engine::new(Cell::cube(height).unwrap(), heavy, vec![RADIUS; 2], &positions, setting(0.5));
+    e.prepare().unwrap();
+    e.set_time_step(1e-9);
+    e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
+    for _ in 0..1000 {
+        e.step().unwrap();
+    }
+    let p = e.packing(Mat3::identity());
+    assert_eq!((p.contacts.len(), p.contacts[0].image), (1, [0, 0, -1]));
+    let slip = (2.0 * RADIUS - overlap) * 1e-6;
+    let expected = -Vec3::x() * p.material.tangential_stiffness(RADIUS / 2.0, overlap) * slip;
+    assert!((p.contacts[0].tangential_force - expected).norm() < 1e-4 * expected.norm());
+}
+
+/// A loose random packing of 40 grains pressed together in a few thousand steps.
+fn pressed(turn: &Rotation3<f64>, steps: u32) -> Engine {
+    let gas = dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, 11).unwrap();
+    let cell =
+        Cell::new(turn.matrix() * gas.cell.matrix() * Mat3::new(1.0, 0.3, 0.0, 0.0, 1.0, 0.2, 0.0, 0.0, 1.0));
+    let rotate = |v: &[Vec3]| v.iter().map(|x| turn * x).collect::<Vec<_>>();
+    let mut s = setting(0.3);
+    s.damping = 0.2;
+    s.tangential = Tangential::Rescaled;
+    let mut e = Engine::new(cell.unwrap(), Material::GLASS, vec![RADIUS; 40], &rotate(&gas.positions), s);
+    e.set_velocities(&rotate(&gas.velocities));
+    e.prepare().unwrap();
+    e.set_time_step(2e-8);
+    let rate = Mat3::new(-900.0, 100.0, 0.0, 100.0, -700.0, -200.0, 0.0, -200.0, -800.0);
+    let rate = grains::SymTensor::symmetric_part(&(turn.matrix() * rate * turn.matrix().transpose()));
+    e.set_rate(&rate.voigt()).unwrap();
+    for _ in 0..steps {
+        e.step().unwrap();
+    }
+    e
+}
+
+#[test]
+fn the_whole_dynamics_is_objective() {
+    let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
+    let (plain, turned) = (pressed(&Rotation3::identity(), 3000), pressed(&turn, 3000));
+    let expected =
+        turn.matrix() * plain.snapshot().unwrap().stress.tensor.matrix() * turn.matrix().transpose();
+    let found = turned.snapshot().unwrap();
+    assert!(found.contacts > 20, "{} contacts", found.contacts);
+    let difference = (found.stress.tensor.matrix() - expected).norm() / expected.norm();
+    // Round-off grows by collisions; 3,000 steps keep it far below this.
+    assert!(difference < 1e-7, "{difference}");
+}
+
+#[test]
+fn every_contact_is_found_in_thin_and_sheared_cells() {
+    for shape in [
+        Mat3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        Mat3::new(4.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5),
+        Mat3::new(1.0, 0.9, -0.8, 0.0, 1.0, 0.7, 0.0, 0.0, 1.0),
+        Mat3::new(0.4, 0.2, 0.0, 0.0, 5.0, 0.0, 0.0, 0.1, 0.5),
+    ] {
+        let n = 12;
+        let edge = (n as f64 * 4.19 * RADIUS.powi(3) / 0.55 / shape.determinant()).cbrt();
+        let cell = Cell::new(shape * edge).unwrap();
+        let positions: Vec<Vec3> =
+            (0..n).map(|i| cell.matrix() * Vec3::new(0.137, 0.311, 0.713) * f64::from(i)).collect();
+        let mut s = setting(0.0);
+        // Overlaps of this start are far beyond Hertz's law: only distances matter here.
+        s.skin = 0.3 * RADIUS;
+        let mut e = Engine::new(
+            cell,
+            Material { density: 1e20, ..Material::GLASS },
+            vec![RADIUS; n as usize],
+            &positions,
+            s,
+        );
+        e.prepare().unwrap();
+        e.set_time_step(1e-3);
+        e.set_rate(&[0.2, -0.3, 0.1, 0.4, -0.2, 0.3]).unwrap();
+        let mut relisted = Vec::new();
+        for step in 0..900 {
+            e.step().unwrap();
+            if step % 100 == 99 {
+                let p = e.packing(Mat3::identity());
+                let found: Vec<_> = p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
+                assert_eq!(found, brute_force(&p.cell, &p.positions), "{shape} after {step} steps");
+                relisted.push(found.len());
+            }
+        }
+        assert!(relisted.iter().any(|c| *c != relisted[0]), "contacts change under this strain");
+    }
+}
+
+fn brute_force(cell: &Cell, x: &[Vec3]) -> Vec<(u32, u32, [i8; 3])> {
+    let mut out = Vec::new();
+    for i in 0..x.len() {
+        for j in i..x.len() {
+            let drift = cell.fractional(&(x[j] - x[i]));
+            let near: [i32; 3] = std::array::from_fn(|k| -(drift[k].round() as i32));
+            for a in -8..=8 {
+                for b in -8..=8 {
+                    for c in -8..=8 {
+                        let image = [near[0] + a, near[1] + b, near[2] + c].map(|v| v as i8);
+                        let d = x[j] - x[i] + cell.shift(image);
+                        if (i < j || image > [0, 0, 0]) && d.norm() < 2.0 * RADIUS {
+                            out.push((i as u32, j as u32, image));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    out.sort_unstable();
+    out
+}
+
+#[test]
+fn too_long_a_time_step_is_refused_with_grain_and_contact_named() {
+    let mut e = pressed(&Rotation3::identity(), 4000);
+    e.set_time_step(2e-6);
+    let error = (0..2000).find_map(|_| e.step().err());
+    let Some(DemError::Unstable { cause, time_step, .. }) = error else { panic!("{error:?}") };
+    assert!(time_step > 0.0 && cause.contains("overlap"), "{cause}");
+    assert!(matches!(
+        e.set_rate(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]),
+        Err(DemError::Rate { component: "yy", .. })
+    ));
+}
+
+#[test]
+fn grains_that_do_not_fit_are_refused() {
+    let error = dem::gas::place(3000, 2.0 * RADIUS, 0.60, 1.0, 1).unwrap_err();
+    assert!(matches!(error, DemError::Placement { grains: 3000, .. }), "{error}");
+}

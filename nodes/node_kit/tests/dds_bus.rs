@@ -1,0 +1,227 @@
+//! The bus over DDS: two participants in one process, on loopback, in a domain of their own.
+
+use grainlab_msgs::msg::{RunState, StrainRate};
+use grainlab_msgs::{Topic, topics};
+use node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
+use std::time::{Duration, Instant};
+
+/// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A domain that other tests and other users of this machine hardly share: below 101, where Linux has no ephemeral ports.
+fn domain(offset: u16) -> Network {
+    Network::localhost(20 + (std::process::id() as u16 % 8) * 10 + offset)
+}
+
+fn open(network: Network, node: &str) -> DdsBus {
+    DdsBus::open(network, Names::in_namespace(node, "/lab").unwrap()).unwrap()
+}
+
+/// Waits on `bus` until `done`.
+fn until(bus: &mut DdsBus, what: &str, mut done: impl FnMut(&mut DdsBus) -> bool) {
+    let start = Instant::now();
+    while !done(bus) {
+        assert!(start.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+        bus.wait(Duration::from_millis(20));
+    }
+}
+
+fn state(step: u64) -> RunState {
+    RunState { step, ..RunState::default() }
+}
+
+fn rate(sequence: u64) -> StrainRate {
+    StrainRate { sequence, ..StrainRate::default() }
+}
+
+#[test]
+fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
+    let network = domain(0);
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
+    let subscription =
+        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::reliable(1000)).unwrap();
+    until(&mut a, "a sees a reader", |a| a.readers(publisher.id()) == 1);
+    until(&mut b, "b sees a writer", |b| b.writers(subscription.id()) == 1);
+
+    let before = b.wall_nanos();
+    for n in 1..=300 {
+        assert_eq!(publisher.publish(&mut a, &rate(n)).unwrap(), n as i64);
+    }
+    let ours = a.published()[0].clone();
+    assert_eq!((ours.topic.as_str(), ours.count, ours.full), ("/lab/strain_rate", 300, 0));
+    let mut next = 1;
+    until(&mut b, "300 samples", |b| {
+        while let Some((message, info)) = subscription.take(b).unwrap() {
+            assert_eq!((message.sequence, info.sequence), (next, next as i64));
+            assert_eq!(info.writer, ours.writer);
+            // RTPS times have a resolution of 0.23 ns, rounded to 1 ns.
+            assert!(info.received + 1 >= info.source_time.expect("our writers stamp") && info.received >= before);
+            next += 1;
+        }
+        next == 301
+    });
+    assert_eq!(b.received()[0].taken, 300);
+    assert_eq!(b.foreign_writers(&topics::STRAIN_RATE), [ours.writer]);
+    assert!(a.foreign_writers(&topics::STRAIN_RATE).is_empty(), "our own writer is not foreign");
+    assert!(a.flush(PATIENCE), "all acknowledged");
+}
+
+#[test]
+fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
+    let network = domain(1);
+    let mut a = open(network, "a");
+    let publisher = Publisher::<RunState>::advertise(&mut a, &topics::RUN_STATE).unwrap();
+    publisher.publish(&mut a, &state(7)).unwrap();
+    publisher.publish(&mut a, &state(8)).unwrap();
+
+    let mut late = open(network, "late");
+    let latched = Subscription::<RunState>::subscribe(&mut late, &topics::RUN_STATE, Demand::reliable(10)).unwrap();
+    let mut last = None;
+    until(&mut late, "the latched state", |b| {
+        while let Some((message, info)) = latched.take(b).unwrap() {
+            last = Some((message.step, info.sequence));
+        }
+        last == Some((8, 2))
+    });
+    publisher.publish(&mut a, &state(9)).unwrap();
+    until(&mut late, "the new state", |b| latched.take(b).unwrap().is_some_and(|(m, _)| m.step == 9));
+}
+
+#[test]
+fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
+    let network = domain(2);
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
+    let subscription =
+        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::reliable(1000)).unwrap();
+    until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
+    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    for n in 1..=50 {
+        publisher.publish(&mut a, &rate(n)).unwrap();
+    }
+    assert!(a.flush(PATIENCE));
+    // The node of b computes: it does not look at its bus while a lingers and leaves.
+    std::thread::sleep(Duration::from_millis(300));
+    drop(a);
+    let left = Instant::now();
+    std::thread::sleep(Duration::from_millis(300));
+    let mut got = 0;
+    until(&mut b, "the leave", |b| {
+        while subscription.take(b).unwrap().is_some() {
+            got += 1;
+        }
+        b.writers(subscription.id()) == 0
+    });
+    // A crashed peer stays for up to 50 s; this one said goodbye.
+    assert!(left.elapsed() < Duration::from_secs(5));
+    assert_eq!(got, 50, "what was received before the writer left is still delivered");
+    assert!(b.foreign_writers(&topics::STRAIN_RATE).is_empty());
+}
+
+#[test]
+fn waiting_blocks_until_data_and_returns_on_time_without_it() {
+    let network = domain(3);
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
+    let subscription =
+        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::best_effort(10)).unwrap();
+    until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
+    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    while subscription.take(&mut b).unwrap().is_some() {}
+    while b.wait(Duration::from_millis(300)) != Wake::Timeout {
+        while subscription.take(&mut b).unwrap().is_some() {}
+    }
+    let start = Instant::now();
+    assert_eq!(b.wait(Duration::from_millis(200)), Wake::Timeout);
+    assert!(start.elapsed() >= Duration::from_millis(200));
+
+    let writer = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(200));
+        publisher.publish(&mut a, &rate(1)).unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+    });
+    let cpu = cpu_time();
+    let start = Instant::now();
+    assert_eq!(b.wait(PATIENCE), Wake::Data);
+    assert!(start.elapsed() < Duration::from_secs(5));
+    // A spinning wait would burn its 200 ms; a blocking one needs a few wakeups of the threads below.
+    assert!(cpu_time() - cpu < Duration::from_millis(100));
+    assert_eq!(b.wait(PATIENCE), Wake::Data, "untaken data is reported again");
+    assert!(subscription.take(&mut b).unwrap().is_some());
+    writer.join().unwrap();
+}
+
+#[test]
+fn two_subscriptions_to_one_topic_share_what_arrives_the_stronger_one_first() {
+    let network = domain(4);
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
+    let subscribe = |b: &mut DdsBus, demand| Subscription::<StrainRate>::subscribe(b, &topics::STRAIN_RATE, demand);
+    let strong = subscribe(&mut b, Demand::reliable(1000)).unwrap();
+    let weak = subscribe(&mut b, Demand::best_effort(100)).unwrap();
+    assert!(matches!(subscribe(&mut b, Demand::reliable(2000)), Err(BusError::Demand { .. })));
+    until(&mut b, "match", |b| b.writers(strong.id()) == 1);
+    until(&mut a, "match", |a| a.readers(publisher.id()) == 1);
+    for n in 1..=20 {
+        publisher.publish(&mut a, &rate(n)).unwrap();
+    }
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    until(&mut b, "20 samples for both", |b| {
+        while let Some((m, _)) = weak.take(b).unwrap() {
+            second.push(m.sequence);
+        }
+        while let Some((m, _)) = strong.take(b).unwrap() {
+            first.push(m.sequence);
+        }
+        first.len() == 20 && second.len() == 20
+    });
+    assert_eq!(first, (1..=20).collect::<Vec<u64>>());
+    assert_eq!(second, first);
+}
+
+#[test]
+fn bodies_that_are_not_messages_are_refused_on_both_sides() {
+    let network = domain(5);
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let id = a.advertise(&topics::STRAIN_RATE).unwrap();
+    for bad in [&[][..], &[0, 1], &[0, 0, 0, 0, 1], b"text"] {
+        assert!(matches!(a.publish(id, bad), Err(BusError::Encapsulation { .. })), "{bad:?}");
+    }
+    let subscription =
+        Subscription::<StrainRate>::subscribe(&mut b, &topics::STRAIN_RATE, Demand::reliable(10)).unwrap();
+    until(&mut b, "match", |b| b.writers(subscription.id()) == 1);
+    until(&mut a, "match", |a| a.readers(id) == 1);
+    a.publish(id, &[0, 1, 0, 0, 9, 9, 9, 9]).unwrap();
+    a.publish(id, &grainlab_msgs::to_cdr(&rate(5))).unwrap();
+    let mut good = None;
+    until(&mut b, "the valid one behind it", |b| {
+        good = good.or(subscription.take_valid(b).unwrap().map(|(m, info)| (m.sequence, info.sequence)));
+        good.is_some()
+    });
+    assert_eq!(good, Some((5, 2)));
+    assert_eq!((b.received()[0].taken, b.received()[0].refused), (2, 1));
+}
+
+#[test]
+fn seven_participants_find_each_other_on_plain_loopback() {
+    const EACH: usize = 7;
+    let network = domain(6);
+    let topic: &Topic = &topics::DIAGNOSTICS;
+    let mut buses: Vec<DdsBus> = (0..EACH).map(|n| open(network, &format!("n{n}"))).collect();
+    let handles: Vec<_> = buses
+        .iter_mut()
+        .map(|bus| (bus.advertise(topic).unwrap(), bus.subscribe(topic, Demand::reliable(100)).unwrap()))
+        .collect();
+    for (bus, (publisher, subscription)) in buses.iter_mut().zip(handles) {
+        until(bus, "six peers", |b| b.readers(publisher) == EACH - 1 && b.writers(subscription) == EACH - 1);
+    }
+}
+
+/// Processor time of this process, all threads.
+fn cpu_time() -> Duration {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap().split_whitespace().collect();
+    let ticks: u64 = fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap();
+    Duration::from_millis(ticks * 10)
+}

@@ -1,0 +1,141 @@
+//! Damaged and foreign files: read as far as possible, named, never a panic.
+
+use std::path::Path;
+
+use crate::support::run_in;
+use recordings::reader::WarningKind;
+use recordings::{ReadError, Recording, Selection};
+
+fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {
+    let recording = Recording::from_bytes("damaged.mcap", bytes.to_vec()).unwrap();
+    let messages = recording.messages(&Selection::default()).unwrap();
+    let found = messages.map(|m| (m.channel.topic.clone(), m.sequence)).collect();
+    let _ = (recording.stored_files(), recording.info().to_string(), recording.ledger());
+    (found, recording.warnings().into_iter().map(|w| w.kind).collect())
+}
+
+#[test]
+fn every_truncation_gives_the_messages_before_it() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 200);
+    let (whole, warnings) = read(&bytes);
+    assert!(warnings.is_empty());
+    let mut last = 0;
+    // Every offset near both ends, where the records are; every 97th between.
+    let near_end = bytes.len() - 6000;
+    for cut in (8..600).chain((600..near_end).step_by(97)).chain((near_end..bytes.len()).step_by(3)) {
+        let (found, warnings) = read(&bytes[..cut]);
+        assert_eq!(found, whole[..found.len()], "cut at {cut}");
+        assert!(found.len() >= last, "cut at {cut} gives less than an earlier cut");
+        last = found.len();
+        let expected = [WarningKind::Truncated, WarningKind::NoIndex];
+        assert!(warnings.len() == 1 && expected.contains(&warnings[0]), "cut at {cut}: {warnings:?}");
+    }
+    // With only the index cut off, no message is missing.
+    assert_eq!(last, whole.len());
+}
+
+#[test]
+fn a_flipped_bit_in_a_chunk_costs_that_chunk_and_is_named() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 2000);
+    let (whole, _) = read(&bytes);
+    let (mut damaged, mut undamaged) = (0, 0);
+    for at in (1000..bytes.len()).step_by(211) {
+        let mut copy = bytes.clone();
+        copy[at] ^= 1 << (at % 8);
+        let (found, warnings) = read(&copy);
+        // Nothing false comes through: what is found is what was written, in order, with one run missing.
+        let missing = whole.len() - found.len();
+        let head = found.iter().zip(&whole).take_while(|(a, b)| a == b).count();
+        assert_eq!(found[head..], whole[head + missing..], "bit flipped at {at}");
+        assert!(missing < 400, "bit flipped at {at} costs {missing} messages");
+        assert_eq!(
+            missing > 0,
+            warnings.contains(&WarningKind::DamagedChunk),
+            "bit flipped at {at}: {warnings:?}"
+        );
+        if missing > 0 {
+            damaged += 1
+        } else {
+            undamaged += 1
+        }
+        let recording = Recording::from_bytes("flipped.mcap", copy).unwrap();
+        assert!(!recording.verify().is_empty(), "bit flipped at {at} goes unnoticed");
+    }
+    assert!(damaged > 20 && undamaged > 5, "{damaged} {undamaged}");
+}
+
+#[test]
+fn a_truncated_file_with_a_flipped_bit_still_reads() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 1000);
+    let cut = bytes.len() * 3 / 4;
+    for at in (8..cut).step_by(173) {
+        let mut copy = bytes[..cut].to_vec();
+        copy[at] ^= 1 << (at % 8);
+        let (_, warnings) = read(&copy);
+        assert!(!warnings.is_empty());
+    }
+}
+
+#[test]
+fn files_that_are_no_recordings_are_refused_with_a_reason() {
+    let root = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = root.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    assert!(matches!(Recording::open(Path::new("/no/such/run")), Err(ReadError::Io { .. })));
+    assert!(matches!(Recording::open(root.path()), Err(ReadError::Empty { .. })));
+    for (name, bytes) in
+        [("empty.mcap", &b""[..]), ("text.mcap", b"LAMMPS data file"), ("short.mcap", b"\x89MCAP")]
+    {
+        let error = Recording::open(&file(name, bytes)).unwrap_err();
+        assert!(matches!(error, ReadError::NotMcap { .. }), "{error}");
+        assert!(error.to_string().contains(name), "{error}");
+    }
+    let (found, warnings) = read(b"\x89MCAP0\r\n");
+    assert!(found.is_empty() && warnings == [WarningKind::Truncated]);
+}
+
+#[test]
+fn lengths_that_lie_do_not_exhaust_memory() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 100);
+    // Every eight bytes in turn become a huge length; reading must stay quick and small.
+    for at in (8..bytes.len().min(4000)).step_by(5).chain((bytes.len() - 2000..bytes.len() - 8).step_by(5)) {
+        let mut copy = bytes.clone();
+        copy[at..at + 8].copy_from_slice(&(u64::MAX / 3).to_le_bytes());
+        let _ = read(&copy);
+    }
+}
+
+#[test]
+fn a_topic_that_is_not_there_is_answered_with_those_that_are() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 10);
+    let recording = Recording::from_bytes("r.mcap", bytes).unwrap();
+    let error = recording.messages(&Selection::topics(["stresses"])).err().unwrap().to_string();
+    assert!(error.contains("/stress,") && error.contains("stresses"), "{error}");
+}
+
+mod arbitrary_bytes {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+        #[test]
+        fn never_panic(body in proptest::collection::vec(any::<u8>(), 0..400), opcode in 0u8..18) {
+            let mut bytes = b"\x89MCAP0\r\n".to_vec();
+            bytes.push(opcode);
+            bytes.extend((body.len() as u64).to_le_bytes());
+            bytes.extend(&body);
+            let _ = read(&bytes);
+            bytes.extend(b"\x89MCAP0\r\n");
+            let _ = read(&bytes);
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! What goes in comes out.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use crate::support::{ROBOT, SIMULATOR, START, clock, contract, options, run_in, sample, stress, write_run};
+use grainlab_msgs::{from_cdr, msg};
+use recordings::{METADATA_RECORD, Outcome, Recording, RunWriter, Selection, WriteError, WriterOptions};
+
+#[test]
+fn every_message_comes_back_with_its_bytes_times_and_sequence() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, _) = run_in(&root, 500);
+    let recording = Recording::open(&directory).unwrap();
+    let all: Vec<_> = recording.messages(&Selection::default()).unwrap().collect();
+    assert_eq!(all.len(), 500 + 50 + 1);
+    assert!(all.windows(2).all(|w| w[0].log_time < w[1].log_time), "log times must increase strictly");
+    assert!(all.iter().all(|m| m.publish_time <= m.log_time));
+    let stresses: Vec<_> = recording.messages(&Selection::topics(["stress"])).unwrap().collect();
+    for (k, m) in stresses.iter().enumerate() {
+        let n = k as u64 + 1;
+        assert_eq!((m.sequence, m.channel.topic.as_str()), (n as u32, "/stress"));
+        assert_eq!(m.publish_time, START + n * 1_000_000 - 30_000);
+        assert_eq!(&*m.payload, stress(n));
+        assert_eq!(from_cdr::<msg::Stress>(&m.payload).unwrap().step, 10 * n);
+    }
+    assert_eq!(stresses.len(), 500);
+    assert!(recording.warnings().is_empty());
+    assert_eq!(recording.verify(), []);
+}
+
+#[test]
+fn attachments_metadata_channels_and_the_account_come_back() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, _) = run_in(&root, 200);
+    let recording = Recording::open(&directory.join("demo-7-1_0.mcap")).unwrap();
+    let stored = recording.stored_files();
+    let names: Vec<_> = stored.iter().map(|f| (f.name.as_str(), f.media_type.as_str())).collect();
+    assert_eq!(names, [("demo.toml", "application/toml"), ("late.txt", "text/plain")]);
+    assert_eq!(stored[0].bytes, b"name = \"demo\"\n");
+    let metadata = recording.metadata(METADATA_RECORD).unwrap();
+    assert_eq!((metadata["seed"].as_str(), metadata["finished"].as_str()), ("7", "true"));
+    let channel = recording.channel("packing").unwrap();
+    assert!(channel.is_latched() && !recording.channel("/stress").unwrap().is_latched());
+    assert_eq!(channel.ros_type, "grainlab_msgs/msg/Packing");
+    assert!(channel.type_hash.starts_with("RIHS01_") && channel.definition.contains("MSG: std_msgs/Header"));
+    let ledger = recording.ledger().unwrap();
+    let stress = ledger.iter().find(|t| t.name == "/stress").unwrap();
+    assert_eq!((stress.published, stress.recorded, stress.lost, stress.repeated), (200, 200, 0, 0));
+    assert_eq!(stress.writers[0].node.as_deref(), Some("/dem_simulator"));
+    assert!(
+        ledger.iter().any(|t| t.name == "/moduli" && t.published == 0),
+        "silent topics are accounted for"
+    );
+    let info = recording.info();
+    assert!(info.complete && info.profile == "ros2" && info.compression == ["zstd"] && info.messages == 221);
+    let json = serde_json::to_value(&info).unwrap();
+    assert_eq!(json["topics"].as_array().unwrap().len(), contract().len());
+    let table = info.to_string();
+    assert!(table.contains("/stress") && table.contains("grainlab_msgs/msg/Stress"), "{table}");
+}
+
+#[test]
+fn a_time_range_cuts_where_it_says() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, _) = run_in(&root, 300);
+    let recording = Recording::open(&directory).unwrap();
+    let (start, end) = (START + 100 * 1_000_000, START + 200 * 1_000_000);
+    let selection = Selection { start: Some(start), end: Some(end), ..Selection::topics(["/stress"]) };
+    let found: Vec<_> = recording.messages(&selection).unwrap().map(|m| m.sequence).collect();
+    assert_eq!(found, (100..200).collect::<Vec<u32>>());
+    assert_eq!(recording.last_before("stress", start).unwrap().unwrap().sequence, 99);
+    assert!(recording.last_before("stress", START).unwrap().is_none());
+}
+
+#[test]
+fn arrival_times_that_stand_still_or_go_back_give_increasing_log_times() {
+    let root = tempfile::tempdir().unwrap();
+    let mut run = RunWriter::create(&root.path().join("r"), "r", &contract(), options()).unwrap();
+    let mut log_times = Vec::new();
+    for (n, time) in [START, START, START - 5_000_000, START + 1, START + 10].into_iter().enumerate() {
+        match run.write("/stress", &sample(SIMULATOR, n as i64 + 1, time, &stress(1))).unwrap() {
+            Outcome::Recorded { log_time } => log_times.push(log_time - START),
+            Outcome::Repeated => panic!("message {n} is new"),
+        }
+    }
+    assert_eq!(log_times, [0, 1, 2, 3, 10]);
+    run.finish().unwrap();
+}
+
+#[test]
+fn repeats_are_counted_and_not_written_and_two_writers_are_told_apart() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
+    let body = stress(1);
+    for (guid, sequence) in [(SIMULATOR, 1), (SIMULATOR, 1), (ROBOT, 1), (SIMULATOR, 3)] {
+        run.write("/stress", &sample(guid, sequence, START, &body)).unwrap();
+    }
+    let finished = run.finish().unwrap();
+    assert_eq!(finished.messages, 3);
+    let recording = Recording::open(&directory).unwrap();
+    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 3);
+    let ledger = recording.ledger().unwrap();
+    let stress = ledger.iter().find(|t| t.name == "/stress").unwrap();
+    assert_eq!((stress.published, stress.recorded, stress.lost, stress.repeated), (4, 3, 1, 1));
+    assert_eq!(stress.writers.iter().find(|w| w.guid == SIMULATOR.to_string()).unwrap().gaps, [(2, 2)]);
+}
+
+#[test]
+fn what_the_recorder_cannot_take_is_refused_by_name() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
+    let body = clock(1);
+    let unknown = run.write("/nothing", &sample(SIMULATOR, 1, START, &body)).unwrap_err();
+    assert!(matches!(&unknown, WriteError::UnknownTopic(t) if t == "/nothing"));
+    let short = run.write("/clock", &sample(SIMULATOR, 1, START, &[0, 1])).unwrap_err();
+    assert!(matches!(short, WriteError::NotCdr { bytes: 2, .. }));
+    let mut other = contract().remove(0);
+    run.add_topic(&other).unwrap();
+    other.ros_type = "x/msg/Y".into();
+    assert!(matches!(run.add_topic(&other), Err(WriteError::ConflictingTopic(_))));
+    // None of this ended the recording.
+    run.write("/clock", &sample(SIMULATOR, 1, START, &body)).unwrap();
+    assert_eq!(run.finish().unwrap().messages, 1);
+    let again = RunWriter::create(&directory, "r", &contract(), options());
+    assert!(matches!(again, Err(WriteError::Exists { .. })));
+}
+
+#[test]
+fn a_disk_too_full_is_refused_at_the_start_and_survived_later() {
+    let root = tempfile::tempdir().unwrap();
+    let impossible = WriterOptions { free_to_start: u64::MAX, ..options() };
+    let refused = RunWriter::create(&root.path().join("a"), "a", &contract(), impossible);
+    assert!(matches!(refused, Err(WriteError::NoSpace { state: "not begun", .. })));
+    let directory = root.path().join("b");
+    let fills = WriterOptions { free_to_continue: u64::MAX, flush_interval: Duration::ZERO, ..options() };
+    let mut run = RunWriter::create(&directory, "b", &contract(), fills).unwrap();
+    let stopped = run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1)));
+    assert!(matches!(stopped, Err(WriteError::NoSpace { .. })), "{stopped:?}");
+    let refused = run.write("/stress", &sample(SIMULATOR, 2, START, &stress(2)));
+    assert!(matches!(refused, Err(WriteError::Ended { .. })));
+    run.ledger_mut().report("/stress", SIMULATOR, 2);
+    run.finish().unwrap();
+    let recording = Recording::open(&directory).unwrap();
+    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 1);
+    assert!(recording.metadata(METADATA_RECORD).unwrap()["ended_by"].contains("bytes are free"));
+    assert_eq!(recording.ledger().unwrap().iter().map(|t| t.lost).sum::<u64>(), 1);
+}
+
+#[test]
+fn a_quiet_topic_is_on_disk_after_the_flush_interval() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let patient = WriterOptions { flush_interval: Duration::from_millis(400), ..WriterOptions::default() };
+    let mut run = RunWriter::create(&directory, "r", &contract(), patient).unwrap();
+    run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
+    let count = || Recording::open(&directory).unwrap().messages(&Selection::default()).unwrap().count();
+    run.tick(Instant::now()).unwrap();
+    assert_eq!(count(), 0, "the chunk is still open");
+    run.tick(Instant::now() + Duration::from_millis(401)).unwrap();
+    assert_eq!(count(), 1);
+    run.finish().unwrap();
+}
+
+#[test]
+fn a_dropped_writer_leaves_a_whole_file_that_says_so() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
+    run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
+    drop(run);
+    let recording = Recording::open(&directory).unwrap();
+    assert!(recording.info().complete);
+    assert_eq!(recording.metadata(METADATA_RECORD).unwrap()["finished"], "false");
+    assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 1);
+}
+
+#[test]
+fn metadata_yaml_agrees_with_the_file() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("demo-7-1");
+    let finished = write_run(&directory, 40);
+    let text = std::fs::read_to_string(directory.join("metadata.yaml")).unwrap();
+    let yaml: serde_json::Value = serde_saphyr::from_str(&text).unwrap();
+    let bag = &yaml["rosbag2_bagfile_information"];
+    assert_eq!((bag["version"].as_u64(), bag["storage_identifier"].as_str()), (Some(8), Some("mcap")));
+    assert_eq!(bag["message_count"].as_u64(), Some(44));
+    assert_eq!(bag["starting_time"]["nanoseconds_since_epoch"].as_u64(), Some(finished.start));
+    assert_eq!(bag["duration"]["nanoseconds"].as_u64(), Some(finished.end - finished.start));
+    let counts: BTreeMap<_, _> = bag["topics_with_message_count"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|t| (t["topic_metadata"]["name"].as_str().unwrap(), t["message_count"].as_u64().unwrap()))
+        .collect();
+    assert_eq!((counts["/stress"], counts["/clock"], counts["/moduli"]), (40, 4, 0));
+    let recording = Recording::open(&directory).unwrap();
+    for topic in bag["topics_with_message_count"].as_array().unwrap() {
+        let metadata = &topic["topic_metadata"];
+        let channel = recording.channel(metadata["name"].as_str().unwrap()).unwrap();
+        // Where these differ, readers of rosbag2 recordings find no message of the topic.
+        assert_eq!(metadata["offered_qos_profiles"].as_str(), Some(channel.qos.as_str()));
+        assert_eq!(metadata["type_description_hash"].as_str(), Some(channel.type_hash.as_str()));
+    }
+}
