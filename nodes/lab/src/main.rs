@@ -1,3 +1,18 @@
-//! The `grainlab` binary.
+//! The `grainlab` binary: every node, the launcher and the tools as subcommands.
+//!
+//! - [`cli`]: the command line, as typed
+//! - [`commands`]: one module a command; low arguments become checked ones there
+//! - [`results`]: what is printed and stored: states, inferences, tables
+//! - [`failure`], [`output`]: how a command ends, and where its result goes
+//! - [`scenes`]: the scenes built in
+//! - [`network`]: buses of tools, free domains
 
-fn main() {}
+mod cli;
+mod commands;
+mod failure;
+mod output;
+mod results;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

@@ -24,7 +24,9 @@ pub enum ArgsError {
         example: &'static str,
     },
     /// An option that is not a ROS 2 argument.
-    #[error("unknown ROS argument {option:?}; known: -r, -p, --params-file, --log-level, --enable-/--disable-{{rosout,stdout}}-logs, and -- to end them")]
+    #[error(
+        "unknown ROS argument {option:?}; known: -r, -p, --params-file, --log-level, --enable-/--disable-{{rosout,stdout}}-logs, and -- to end them"
+    )]
     Unknown {
         /// The option as typed.
         option: String,
@@ -123,7 +125,11 @@ impl RosArgs {
         Ok((ros, plain))
     }
 
-    fn take_option<'a>(&mut self, option: &str, rest: &mut impl Iterator<Item = &'a String>) -> Result<(), ArgsError> {
+    fn take_option<'a>(
+        &mut self,
+        option: &str,
+        rest: &mut impl Iterator<Item = &'a String>,
+    ) -> Result<(), ArgsError> {
         let mut value = |example: &'static str| {
             rest.next().cloned().ok_or(ArgsError::MissingValue { option: option.into(), example })
         };
@@ -218,7 +224,8 @@ mod tests {
 
     #[test]
     fn node_prefixes_are_split_off_but_schemes_are_not() {
-        let (ros, _) = parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
+        let (ros, _) =
+            parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
         assert_eq!(ros.remaps[0], Remap { node: Some("dem".into()), from: "__ns".into(), to: "/x".into() });
         assert_eq!(ros.remaps[1], Remap { node: None, from: "stress".into(), to: "p".into() });
         assert_eq!(ros.parameters[0].node.as_deref(), Some("servo"));
@@ -233,7 +240,8 @@ mod tests {
 
     #[test]
     fn log_levels_are_read_for_all_and_for_single_loggers() {
-        let (ros, _) = parse("--ros-args --log-level WARN --log-level rustdds:=debug --disable-rosout-logs").unwrap();
+        let (ros, _) =
+            parse("--ros-args --log-level WARN --log-level rustdds:=debug --disable-rosout-logs").unwrap();
         assert_eq!(ros.log_level, log::LevelFilter::Warn);
         assert_eq!(ros.logger_levels, [("rustdds".into(), log::LevelFilter::Debug)]);
         assert!(!ros.rosout && ros.stderr);

@@ -166,7 +166,9 @@ pub enum BusError {
         window: u32,
     },
     /// A body that cannot be published as it is.
-    #[error("{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)")]
+    #[error(
+        "{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)"
+    )]
     Encapsulation {
         /// Resolved topic name.
         topic: String,

@@ -2,22 +2,36 @@
 //!
 //! - [`bus`]: the [`Bus`] a node sees: serialized samples, one place to wait; [`typed`]: typed handles over it
 //! - [`dds`]: the bus over DDS; [`memory`]: the bus in memory, with virtual time and faults, for tests
+//! - [`node`]: a node as a state machine; [`run`]: running it as a process
+//! - [`diagnostics`]: what a process reports of itself; [`peers`]: who lives; [`watchdog`]: whether DDS lives
 //! - [`args`], [`names`], [`parameters`]: the ROS 2 command line, names and remaps, parameters
-//! - [`exit`]: exit codes; [`signals`]: SIGINT and SIGTERM
+//! - [`exit`]: exit codes; [`signals`]: SIGINT and SIGTERM; [`logging`]: stderr and `/rosout`
 
 pub mod args;
 pub mod bus;
 pub mod dds;
+pub mod diagnostics;
 pub mod exit;
+pub mod logging;
+pub mod memory;
 pub mod names;
+pub mod node;
 pub mod parameters;
+pub mod peers;
+pub mod run;
 pub mod signals;
 pub mod typed;
+pub mod watchdog;
 
 pub use args::RosArgs;
 pub use bus::{Bus, BusError, Demand, PublisherId, Sample, SampleInfo, SubscriptionId, Wake, WriterId};
 pub use dds::{DdsBus, Network};
+pub use diagnostics::Report;
 pub use exit::Exit;
+pub use memory::{Faults, Hub, MemoryBus};
 pub use names::Names;
+pub use node::{Health, Level, Next, Node, NodeError};
 pub use parameters::{ParameterSpec, ParameterValue, Parameters, Range};
+pub use peers::{Life, PeerWatch, Peers};
+pub use run::{NodeSpec, drive, run_node};
 pub use typed::{Publisher, Subscription, TakeError};

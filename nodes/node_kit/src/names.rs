@@ -13,7 +13,9 @@ pub enum NameError {
         name: String,
     },
     /// A character that ROS 2 does not allow in a name.
-    #[error("name {name:?} holds {found:?}: only letters, digits and underscores are allowed between slashes")]
+    #[error(
+        "name {name:?} holds {found:?}: only letters, digits and underscores are allowed between slashes"
+    )]
     Character {
         /// The refused name.
         name: String,
@@ -161,7 +163,8 @@ mod tests {
     use super::*;
 
     fn names(args: &[&str]) -> Names {
-        let owned: Vec<String> = std::iter::once("--ros-args").chain(args.iter().copied()).map(Into::into).collect();
+        let owned: Vec<String> =
+            std::iter::once("--ros-args").chain(args.iter().copied()).map(Into::into).collect();
         let (ros, rest) = RosArgs::parse(&owned).expect("valid arguments");
         assert!(rest.is_empty());
         Names::from_args("servo", &ros).expect("valid names")
@@ -188,7 +191,11 @@ mod tests {
         assert_eq!(n.resolve("stress").unwrap(), "/lab/p2");
         assert_eq!(n.resolve("/lab/stress").unwrap(), "/lab/p2");
         assert_eq!(n.resolve("~/x").unwrap(), "/y");
-        assert_eq!(n.resolve("/stress").unwrap(), "/stress", "an absolute name outside the namespace is another topic");
+        assert_eq!(
+            n.resolve("/stress").unwrap(),
+            "/stress",
+            "an absolute name outside the namespace is another topic"
+        );
     }
 
     #[test]

@@ -23,7 +23,11 @@ impl Signals {
         arrivals.set_nonblocking(true)?;
         for signal in [SIGINT, SIGTERM] {
             // Handlers run in this order: the first signal finds the flag unset and sets it, the second ends the process.
-            flag::register_conditional_shutdown(signal, i32::from(Exit::Interrupted.code()), Arc::clone(&requested))?;
+            flag::register_conditional_shutdown(
+                signal,
+                i32::from(Exit::Interrupted.code()),
+                Arc::clone(&requested),
+            )?;
             flag::register(signal, Arc::clone(&requested))?;
             pipe::register(signal, sender.try_clone()?)?;
         }

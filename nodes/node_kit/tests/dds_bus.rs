@@ -56,7 +56,9 @@ fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
             assert_eq!((message.sequence, info.sequence), (next, next as i64));
             assert_eq!(info.writer, ours.writer);
             // RTPS times have a resolution of 0.23 ns, rounded to 1 ns.
-            assert!(info.received + 1 >= info.source_time.expect("our writers stamp") && info.received >= before);
+            assert!(
+                info.received + 1 >= info.source_time.expect("our writers stamp") && info.received >= before
+            );
             next += 1;
         }
         next == 301
@@ -76,7 +78,8 @@ fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
     publisher.publish(&mut a, &state(8)).unwrap();
 
     let mut late = open(network, "late");
-    let latched = Subscription::<RunState>::subscribe(&mut late, &topics::RUN_STATE, Demand::reliable(10)).unwrap();
+    let latched =
+        Subscription::<RunState>::subscribe(&mut late, &topics::RUN_STATE, Demand::reliable(10)).unwrap();
     let mut last = None;
     until(&mut late, "the latched state", |b| {
         while let Some((message, info)) = latched.take(b).unwrap() {
@@ -157,7 +160,8 @@ fn two_subscriptions_to_one_topic_share_what_arrives_the_stronger_one_first() {
     let network = domain(4);
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
-    let subscribe = |b: &mut DdsBus, demand| Subscription::<StrainRate>::subscribe(b, &topics::STRAIN_RATE, demand);
+    let subscribe =
+        |b: &mut DdsBus, demand| Subscription::<StrainRate>::subscribe(b, &topics::STRAIN_RATE, demand);
     let strong = subscribe(&mut b, Demand::reliable(1000)).unwrap();
     let weak = subscribe(&mut b, Demand::best_effort(100)).unwrap();
     assert!(matches!(subscribe(&mut b, Demand::reliable(2000)), Err(BusError::Demand { .. })));

@@ -25,6 +25,15 @@ pub enum Features {
     Stuck,
 }
 
+/// How the time step is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeStep {
+    /// This share of the stability bound, followed as contacts stiffen.
+    Safety(f64),
+    /// Exactly this, s; too long a step ends in [`DemError::Unstable`].
+    Fixed(f64),
+}
+
 /// What the engine is set to during a phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
@@ -38,8 +47,8 @@ pub struct Setting {
     pub spin_drag: f64,
     /// How the tangential force follows a change of normal stiffness.
     pub tangential: Tangential,
-    /// Share of the stability bound that the time step takes.
-    pub time_step_safety: f64,
+    /// How the time step is chosen.
+    pub time_step: TimeStep,
     /// Verlet skin, m.
     pub skin: f64,
     /// Root mean square speed that the grains are kept from exceeding, m/s: a gas's thermostat.
@@ -164,11 +173,6 @@ impl Engine {
         self.state.time_step
     }
 
-    /// Takes a time step as given instead of the engine's own, s; kept until the contacts demand a shorter one.
-    pub fn set_time_step(&mut self, time_step: f64) {
-        self.state.time_step = time_step;
-    }
-
     /// The cell.
     pub fn cell(&self) -> &Cell {
         &self.state.cell
@@ -257,13 +261,20 @@ impl Engine {
 
     /// Chooses the time step anew from the contacts present (or, in a gas, from the speeds).
     pub fn renew_time_step(&mut self) {
+        let safety = match self.setting.time_step {
+            TimeStep::Safety(share) => share,
+            TimeStep::Fixed(step) => {
+                self.state.time_step = step;
+                return;
+            }
+        };
         let bound = match self.setting.speed_cap {
             // Collisions come and go between two looks: take the stiffest likely one, at six times the mean speed.
             Some(speed) => time_step::collision(&self.state, 6.0 * speed, self.setting.damping),
             None => time_step::stable(&self.state, &self.pairs, &self.setting)
                 .min(time_step::rayleigh(&self.state)),
         };
-        self.state.time_step = time_step::settle(self.state.time_step, self.setting.time_step_safety * bound);
+        self.state.time_step = time_step::settle(self.state.time_step, safety * bound);
     }
 
     /// Whether a pair missing from the list could touch: the list holds pairs closer than S + skin, the affine motion

@@ -17,7 +17,7 @@ pub struct Gas {
 }
 
 /// Attempts to place one grain before giving up; at a solid fraction of 0.35 some tens of thousands may be needed.
-const ATTEMPTS: u32 = 2_000_000;
+const ATTEMPTS: u32 = 200_000;
 
 /// Places `grains` spheres of `diameter` (m) one after the other at random without overlap (random sequential addition,
 /// possible up to about 0.38) and gives them random velocities of root mean square `speed` (m/s).

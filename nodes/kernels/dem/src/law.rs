@@ -92,39 +92,42 @@ impl Law {
         let n = t.normal;
         let along = t.relative.dot(&n);
         let across = t.relative - n * along;
-        // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
-        let mean = if ADVANCE { n - across * (0.5 * dt / t.distance) } else { n };
-        let rolling = t.rolling.cross(&mean);
-        let slip = across - (rolling - n * rolling.dot(&n));
         let root = (t.r_eff * t.overlap).sqrt();
         let (elastic, normal, dashpot) = self.normal_force(t, root, -along);
+        let limit = self.friction * elastic;
         let mut f = history;
-        let mut slides = false;
         if ADVANCE {
+            let mean = n - across * (0.5 * dt / t.distance);
             f = carried(f, t, &mean, dt);
             if RESCALED && t.overlap < t.previous_overlap {
                 f *= (t.overlap / t.previous_overlap).sqrt();
             }
+            // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
+            let rolling = t.rolling.cross(&mean);
+            let slip = across - (rolling - n * rolling.dot(&n));
             f += slip * (self.tangential * root * dt);
-        }
-        if SLIDING {
-            let limit = self.friction * elastic;
-            let size2 = f.norm_squared();
-            if size2 > limit * limit {
-                slides = true;
-                if ADVANCE {
-                    f *= limit / size2.sqrt();
-                }
-            } else if !ADVANCE {
-                slides = size2 >= limit * limit * (1.0 - 1e-12);
+            if SLIDING {
+                f = limited(f, limit);
             }
         }
         let mut tangential = f;
-        if dashpot > 0.0 && !slides {
+        if dashpot > 0.0 {
+            // From the present velocities alone, so that a resumed state has the same force.
+            let slip = across - t.rolling.cross(&n);
             tangential += slip * (dashpot * (self.tangential / self.normal).sqrt());
+            if SLIDING {
+                tangential = limited(tangential, limit);
+            }
         }
         Forces { normal, tangential, history: f }
     }
+}
+
+/// Coulomb's limit.
+#[inline(always)]
+fn limited(f: Vec3, limit: f64) -> Vec3 {
+    let square = f.norm_squared();
+    if square > limit * limit { f * (limit / square.sqrt()) } else { f }
 }
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.

@@ -23,7 +23,7 @@ pub mod simulation;
 mod state;
 mod time_step;
 
-pub use engine::{Engine, Setting};
+pub use engine::{Engine, Features, Setting, TimeStep};
 pub use error::DemError;
 pub use observe::Snapshot;
 pub use simulation::{Advanced, Request, Simulation};

@@ -1,6 +1,6 @@
 //! A scene run along its loading path, one request and one answer at a time.
 
-use crate::engine::{Engine, Setting};
+use crate::engine::{Engine, Setting, TimeStep};
 use crate::error::DemError;
 use crate::gas;
 use crate::observe::Snapshot;
@@ -273,7 +273,7 @@ fn setting(scene: &Scene, phase: &Phase) -> Setting {
         drag: phase.drag,
         spin_drag: phase.spin_drag,
         tangential: scene.numerics.tangential,
-        time_step_safety: scene.numerics.time_step_safety,
+        time_step: TimeStep::Safety(scene.numerics.time_step_safety),
         skin: scene.numerics.skin * scene.diameter,
         speed_cap: match phase.kind {
             PhaseKind::Gas { speed, .. } => Some(speed),

@@ -7,7 +7,7 @@ const SCENE: &str = r#"
 name = "tiny"
 seed = 5
 [grains]
-count = 40
+count = 32
 diameter = 2e-4
 [[phase]]
 kind = "gas"
@@ -34,7 +34,7 @@ drag = 5e3
 response_time = 3e-6
 control = { xx = { stress = 5e4 }, yy = { stress = 5e4 }, zz = { stress = 5e4 }, xy = { stress = 0.0 } }
 control_period = 7
-until = { on_target = 1e-2, unbalanced = 1e-2, hold = 2e-5 }
+until = { on_target = 0.1, unbalanced = 3e-2, hold = 1e-5 }
 [[phase]]
 kind = "relax"
 friction = inf
@@ -71,9 +71,9 @@ fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
     }
     let (end, phases) = (run.packing(), run.path().phase);
     assert_eq!(phases, 5);
-    assert!(end.contacts.len() > 60, "{} contacts", end.contacts.len());
+    assert!(end.contacts.len() > 50, "{} contacts", end.contacts.len());
     let mut phases_resumed = std::collections::BTreeSet::new();
-    for at in (0..exchanges).step_by(exchanges / 23) {
+    for at in (0..exchanges).step_by(exchanges / 9) {
         let mut first = start();
         (0..at).for_each(|_| assert!(advance(&mut first)));
         let saved = (first.packing(), first.run_state());

@@ -17,8 +17,8 @@ use rustdds::dds::WriteError;
 use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
 use rustdds::no_key::DataWriter;
 use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusListener, GUID, QosPolicyBuilder, RTPSEntity,
-    StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
+    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusListener, GUID, QosPolicyBuilder,
+    RTPSEntity, StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
 };
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -91,7 +91,8 @@ impl DdsBus {
         let participant = builder.build().map_err(|e| create_error("DDS participant", &e))?;
         let none = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
-        let subscriber = participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
+        let subscriber =
+            participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
         let presence = Presence::new(&participant, &publisher, &names)?;
 
         let io = |e: std::io::Error| create_error("poll", &e);
@@ -237,7 +238,14 @@ impl Bus for DdsBus {
             .map_err(|e| create_error(&resolved, &e))?;
         let guid = data.guid();
         self.presence.add_writer(guid);
-        self.writers.push(Writer { data, guid, topic: resolved, window: qos::window(topic), count: 0, full: 0 });
+        self.writers.push(Writer {
+            data,
+            guid,
+            topic: resolved,
+            window: qos::window(topic),
+            count: 0,
+            full: 0,
+        });
         Ok(PublisherId(self.writers.len() - 1))
     }
 
@@ -325,7 +333,10 @@ impl Bus for DdsBus {
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
-        self.names.resolve(topic.name).map(|name| self.graph.writers_of(&wire_name(&name))).unwrap_or_default()
+        self.names
+            .resolve(topic.name)
+            .map(|name| self.graph.writers_of(&wire_name(&name)))
+            .unwrap_or_default()
     }
 
     fn published(&self) -> Vec<Published> {

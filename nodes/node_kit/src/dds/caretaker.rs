@@ -45,8 +45,9 @@ impl Caretaker {
             stop: Condvar::new(),
         });
         let its = Arc::clone(&shared);
-        let thread =
-            std::thread::Builder::new().name("bus caretaker".into()).spawn(move || run(&its, &inboxes, &waker))?;
+        let thread = std::thread::Builder::new()
+            .name("bus caretaker".into())
+            .spawn(move || run(&its, &inboxes, &waker))?;
         Ok(Self { shared, thread: Some(thread) })
     }
 

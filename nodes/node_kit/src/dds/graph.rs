@@ -31,8 +31,12 @@ impl Graph {
             Event::WriterDetected { writer } => {
                 !self.is_ours(&writer.guid) && self.writers.insert(writer.guid, writer.topic_name).is_none()
             }
-            Event::RemoteReaderMatched { local_writer, remote_reader } => self.matched(local_writer, remote_reader),
-            Event::RemoteWriterMatched { local_reader, remote_writer } => self.matched(local_reader, remote_writer),
+            Event::RemoteReaderMatched { local_writer, remote_reader } => {
+                self.matched(local_writer, remote_reader)
+            }
+            Event::RemoteWriterMatched { local_reader, remote_writer } => {
+                self.matched(local_reader, remote_writer)
+            }
             Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => self.lost(|g| *g == guid),
             Event::ParticipantLost { id, .. } => self.lost(|g| g.prefix == id),
             Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => {
@@ -50,7 +54,9 @@ impl Graph {
                 false
             }
             Event::InconsistentTopic { previous_topic_data, discovered_topic_data, .. } => {
-                log::warn!("a peer uses a topic of ours with another type: {previous_topic_data:?} and {discovered_topic_data:?}");
+                log::warn!(
+                    "a peer uses a topic of ours with another type: {previous_topic_data:?} and {discovered_topic_data:?}"
+                );
                 false
             }
             _ => false,
@@ -82,6 +88,10 @@ impl Graph {
 
     /// Remote writers of a topic as named on the wire, sorted.
     pub(super) fn writers_of(&self, dds_topic: &str) -> Vec<WriterId> {
-        self.writers.iter().filter(|(_, topic)| *topic == dds_topic).map(|(g, _)| WriterId(g.to_bytes())).collect()
+        self.writers
+            .iter()
+            .filter(|(_, topic)| *topic == dds_topic)
+            .map(|(g, _)| WriterId(g.to_bytes()))
+            .collect()
     }
 }

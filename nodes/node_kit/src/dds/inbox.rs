@@ -94,7 +94,10 @@ impl Inbox {
                     log::warn!("{}: sample refused: {reason}", self.topic);
                 }
                 Err(error) => {
-                    return Err(BusError::Network { what: format!("read {}", self.topic), reason: error.to_string() });
+                    return Err(BusError::Network {
+                        what: format!("read {}", self.topic),
+                        reason: error.to_string(),
+                    });
                 }
             }
         }

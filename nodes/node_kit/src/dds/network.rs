@@ -48,7 +48,8 @@ impl Network {
 
     /// The same from any source of variables; unset and empty are the same.
     pub fn from_variables(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, NetworkError> {
-        let get = |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
+        let get =
+            |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
         let refuse = |variable, value: &str, reason| NetworkError { variable, value: value.into(), reason };
 
         let domain = match get("ROS_DOMAIN_ID") {
@@ -114,7 +115,10 @@ mod tests {
         assert_eq!(read(&[]), Ok(Network::localhost(0)));
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "")]), Ok(Network::localhost(0)));
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().range, Range::Subnet);
-        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().range, Range::Subnet);
+        assert_eq!(
+            read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().range,
+            Range::Subnet
+        );
         let both = [("ROS_LOCALHOST_ONLY", "1"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
         assert_eq!(read(&both).unwrap().range, Range::Localhost);
         assert_eq!(read(&[("ROS_LOCALHOST_ONLY", "0")]), Ok(Network::localhost(0)));

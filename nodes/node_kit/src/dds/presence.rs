@@ -1,6 +1,6 @@
 //! The node in the ROS graph: `ros2 node list` and `ros2 node info` read `ros_discovery_info`.
 
-use super::{create_error, BusError};
+use super::{BusError, create_error};
 use crate::names::Names;
 use ros2_client::Gid;
 use ros2_client::NodeName;
@@ -29,8 +29,10 @@ impl Presence {
         let writer = publisher
             .create_datawriter_no_key_cdr(&topic, Some(QOS_PUB.clone()))
             .map_err(|e| create_error("ros_discovery_info", &e))?;
-        let name = NodeName::new(names.namespace(), names.node())
-            .map_err(|e| BusError::Network { what: format!("node name {names}"), reason: format!("{e:?}") })?;
+        let name = NodeName::new(names.namespace(), names.node()).map_err(|e| BusError::Network {
+            what: format!("node name {names}"),
+            reason: format!("{e:?}"),
+        })?;
         let mut node = NodeEntitiesInfo::new(name);
         node.add_writer(Gid::from(writer.guid()));
         Ok(Self { writer, participant: participant.guid(), node, dirty: true })

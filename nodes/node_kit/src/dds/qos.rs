@@ -18,7 +18,11 @@ const LATCHED_WINDOW: u32 = 256;
 
 /// Samples that a writer of `topic` may have unacknowledged.
 pub(super) fn window(topic: &Topic) -> u32 {
-    let window = if topic.qos.transient_local && topic.qos.depth < LATCHED_WINDOW { LATCHED_WINDOW } else { STREAM_WINDOW };
+    let window = if topic.qos.transient_local && topic.qos.depth < LATCHED_WINDOW {
+        LATCHED_WINDOW
+    } else {
+        STREAM_WINDOW
+    };
     window.max(topic.qos.depth)
 }
 

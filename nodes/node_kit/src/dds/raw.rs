@@ -26,8 +26,13 @@ pub(super) struct KeepBytes;
 impl<'de> Decode<'de, RawBody> for KeepBytes {
     type Error = Infallible;
 
-    fn decode_bytes(self, payload: &'de [u8], encoding: RepresentationIdentifier) -> Result<RawBody, Infallible> {
-        let representation = ENCODINGS.iter().position(|known| *known == encoding).map_or(CDR_LE, |i| IDENTIFIERS[i]);
+    fn decode_bytes(
+        self,
+        payload: &'de [u8],
+        encoding: RepresentationIdentifier,
+    ) -> Result<RawBody, Infallible> {
+        let representation =
+            ENCODINGS.iter().position(|known| *known == encoding).map_or(CDR_LE, |i| IDENTIFIERS[i]);
         let mut body = Vec::with_capacity(HEADER + payload.len());
         body.extend_from_slice(&representation);
         body.extend_from_slice(&[0, 0]);
@@ -81,9 +86,10 @@ mod tests {
 
     #[test]
     fn a_body_comes_back_with_the_header_it_travelled_with() {
-        for (encoding, header) in
-            [(RepresentationIdentifier::CDR_LE, [0, 1, 0, 0]), (RepresentationIdentifier::CDR_BE, [0, 0, 0, 0])]
-        {
+        for (encoding, header) in [
+            (RepresentationIdentifier::CDR_LE, [0, 1, 0, 0]),
+            (RepresentationIdentifier::CDR_BE, [0, 0, 0, 0]),
+        ] {
             let Ok(body) = KeepBytes.decode_bytes(&[7, 8], encoding);
             assert_eq!(body.0[..4], header);
             assert_eq!(body.0[4..], [7, 8]);

@@ -39,7 +39,9 @@ fn collect_sections(key: &str, yaml: Yaml, sections: &mut Vec<(String, Yaml)>) -
     for (name, value) in entries {
         if name == PARAMETERS_KEY {
             if key.is_empty() {
-                return Err(format!("{PARAMETERS_KEY} stands at the top: put a node key such as /** above it"));
+                return Err(format!(
+                    "{PARAMETERS_KEY} stands at the top: put a node key such as /** above it"
+                ));
             }
             sections.push((key.into(), value));
         } else {
@@ -77,7 +79,8 @@ fn matches(key: &str, node: &str) -> bool {
             _ => false,
         }
     }
-    let tokens = |text: &str| text.split('/').filter(|t| !t.is_empty()).map(str::to_owned).collect::<Vec<_>>();
+    let tokens =
+        |text: &str| text.split('/').filter(|t| !t.is_empty()).map(str::to_owned).collect::<Vec<_>>();
     let (key, node) = (tokens(key), tokens(node));
     let key: Vec<&str> = key.iter().map(String::as_str).collect();
     let node: Vec<&str> = node.iter().map(String::as_str).collect();

@@ -107,7 +107,9 @@ pub enum ParameterError {
         range: String,
     },
     /// `-p other:name:=value` for a node that is not this one.
-    #[error("-p {prefix}:{name}: this process runs node {node}, so the value would be lost; remove the prefix or correct it")]
+    #[error(
+        "-p {prefix}:{name}: this process runs node {node}, so the value would be lost; remove the prefix or correct it"
+    )]
     OtherNode {
         /// The prefix given.
         prefix: String,

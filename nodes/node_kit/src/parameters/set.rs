@@ -40,9 +40,9 @@ impl Parameters {
                     node: names.fully_qualified(),
                 });
             }
-            let value = Yaml::parse(&assignment.yaml)
-                .and_then(Yaml::into_value)
-                .map_err(|reason| ParameterError::Value { origin: origin.clone(), name: name.clone(), reason })?;
+            let value = Yaml::parse(&assignment.yaml).and_then(Yaml::into_value).map_err(|reason| {
+                ParameterError::Value { origin: origin.clone(), name: name.clone(), reason }
+            })?;
             set.assign(specs, names, &origin, name, value)?;
         }
         Ok(set)
@@ -114,7 +114,9 @@ fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue
     use ParameterValue as V;
     match (value, like) {
         (V::Integer(v), V::Double(_)) => Ok(V::Double(v as f64)),
-        (V::IntegerArray(v), V::DoubleArray(_)) => Ok(V::DoubleArray(v.into_iter().map(|v| v as f64).collect())),
+        (V::IntegerArray(v), V::DoubleArray(_)) => {
+            Ok(V::DoubleArray(v.into_iter().map(|v| v as f64).collect()))
+        }
         // An empty list carries no type of its own.
         (V::IntegerArray(v), V::StringArray(_)) if v.is_empty() => Ok(V::StringArray(Vec::new())),
         (V::IntegerArray(v), V::BoolArray(_)) if v.is_empty() => Ok(V::BoolArray(Vec::new())),
@@ -228,6 +230,9 @@ mod tests {
     fn a_prefix_for_another_node_is_an_error_rather_than_a_lost_value() {
         let error = resolve(&["-p", "servo:dt:=1"]).unwrap_err();
         assert!(matches!(error, ParameterError::OtherNode { .. }), "{error}");
-        assert!(resolve(&["-r", "__node:=sim", "-p", "sim:dt:=1"]).is_ok(), "the new name of this node is its name");
+        assert!(
+            resolve(&["-r", "__node:=sim", "-p", "sim:dt:=1"]).is_ok(),
+            "the new name of this node is its name"
+        );
     }
 }

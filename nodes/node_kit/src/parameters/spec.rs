@@ -47,7 +47,9 @@ impl Range {
             (Range::Double { min, max }, V::Double(_) | V::DoubleArray(_)) => {
                 doubles.iter().all(|v| (min..=max).contains(&v))
             }
-            (Range::Positive, V::Double(_) | V::DoubleArray(_)) => doubles.iter().all(|v| *v > 0.0 && v.is_finite()),
+            (Range::Positive, V::Double(_) | V::DoubleArray(_)) => {
+                doubles.iter().all(|v| *v > 0.0 && v.is_finite())
+            }
             (Range::Choice(allowed), V::String(v)) => allowed.contains(&v.as_str()),
             (Range::Choice(allowed), V::StringArray(v)) => v.iter().all(|v| allowed.contains(&v.as_str())),
             // A range of another type than the parameter is a mistake of the declaration; it allows nothing.

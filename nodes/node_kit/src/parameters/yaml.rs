@@ -97,7 +97,9 @@ impl<'de> Deserialize<'de> for Yaml {
                 Ok(Yaml::Integer(v))
             }
             fn visit_u64<E: serde::de::Error>(self, v: u64) -> Result<Yaml, E> {
-                i64::try_from(v).map(Yaml::Integer).map_err(|_| E::custom(format!("{v} does not fit 64 bits with a sign")))
+                i64::try_from(v)
+                    .map(Yaml::Integer)
+                    .map_err(|_| E::custom(format!("{v} does not fit 64 bits with a sign")))
             }
             fn visit_f64<E>(self, v: f64) -> Result<Yaml, E> {
                 Ok(Yaml::Double(v))

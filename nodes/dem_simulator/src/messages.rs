@@ -1,0 +1,77 @@
+//! From the run to messages. Only simulated time is in any of them.
+
+use dem::{Request, Simulation};
+use grainlab_msgs::boundary::{BoundaryError, StressRequest, packing_message};
+use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
+use grainlab_msgs::rosgraph_msgs::Clock;
+use grainlab_msgs::std_msgs::Header;
+use grainlab_msgs::tf2_msgs::TFMessage;
+use grainlab_msgs::{msg, stamp};
+use grains::PackingError;
+
+/// Frame of everything measured in the cell.
+const FRAME: &str = "cell";
+
+pub(crate) fn stress(request: &Request) -> Result<msg::Stress, BoundaryError> {
+    let seen = &request.snapshot;
+    msg::Stress::try_from(&StressRequest {
+        sequence: request.sequence,
+        step: request.step,
+        phase: request.phase,
+        stamp: stamp(request.time),
+        stress: seen.stress.tensor,
+        asymmetry: seen.stress.asymmetry,
+        controls: request.controls,
+        rate: request.rate,
+        rate_limit: request.rate_limit,
+        law: request.law,
+        tangent: seen.tangent,
+        control_interval: request.control_interval,
+        strain: request.strain,
+        solid_fraction: seen.solid_fraction,
+        coordination: seen.coordination,
+        unbalanced: seen.unbalanced,
+    })
+}
+
+pub(crate) fn packing(run: &Simulation) -> Result<msg::Packing, PackingError> {
+    Ok(packing_message(&run.packing().validated()?, &run.scene().name, run.run_state()))
+}
+
+/// Step and number of the packings published so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Packings {
+    pub(crate) last_step: u64,
+    pub(crate) count: u32,
+}
+
+pub(crate) fn run_state(run: &Simulation, state: u8, packings: Packings, message: &str) -> msg::RunState {
+    let phases = &run.scene().phases;
+    let phase = run.path().phase.min(phases.len().saturating_sub(1));
+    msg::RunState {
+        header: Header { stamp: stamp(run.engine().time()), frame_id: FRAME.to_owned() },
+        state,
+        phase: phase as u32,
+        phase_name: phases.get(phase).map(|p| p.name.clone()).unwrap_or_default(),
+        progress: run.path().progress(run.scene()).clamp(0.0, 1.0),
+        step: run.engine().steps(),
+        last_packing_step: packings.last_step,
+        packings: packings.count,
+        message: message.to_owned(),
+    }
+}
+
+pub(crate) fn clock(run: &Simulation) -> Clock {
+    Clock { clock: stamp(run.engine().time()) }
+}
+
+/// The frame of the cell rests in the world: what a viewer needs to show anything.
+pub(crate) fn frames() -> TFMessage {
+    let rotation = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
+    let rest = TransformStamped {
+        header: Header { stamp: stamp(0.0), frame_id: "world".to_owned() },
+        child_frame_id: FRAME.to_owned(),
+        transform: Transform { rotation, ..Transform::default() },
+    };
+    TFMessage { transforms: vec![rest] }
+}

@@ -1,0 +1,129 @@
+//! What can be set.
+
+use grainlab_msgs::{Topic, topics};
+use node_kit::{ParameterSpec, Parameters, Range};
+use std::time::Duration;
+
+/// How the run and the servo are tied together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Every request waits for its own answer: a run is a pure function of scene and seed.
+    Lockstep,
+    /// The run goes on with the latest answer, as hardware does; it depends on timing. It waits only where the latest
+    /// answer is this many requests old, so that a dead servo stops it.
+    FreeRun {
+        /// Requests that may be ahead of the latest answer.
+        lag: u64,
+    },
+}
+
+impl Mode {
+    /// Requests that may be ahead of the latest answer.
+    pub(crate) fn lag(self) -> u64 {
+        match self {
+            Mode::Lockstep => 0,
+            Mode::FreeRun { lag } => lag,
+        }
+    }
+}
+
+/// Topics of ours that a run may wait for readers of.
+const AWAITED: [Topic; 3] = [topics::STRESS, topics::PACKING, topics::RUN_STATE];
+
+/// The parameters of the node; scene and packing to resume from come as values.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let d = Settings::default();
+    let time = Range::Double { min: 0.0, max: 3600.0 };
+    vec![
+        ParameterSpec::new(
+            "mode",
+            "lockstep",
+            "lockstep: each request waits for its answer, same bytes every run; free_run: the latest answer is used",
+        )
+        .within(Range::Choice(&["lockstep", "free_run"])),
+        ParameterSpec::new("free_run_lag", 10_i64, "requests that free_run may be ahead of the latest answer")
+            .within(Range::Integer { min: 1, max: 1_000_000 }),
+        ParameterSpec::new(
+            "look_around",
+            d.look_around.as_secs_f64(),
+            "time to look for another simulator before the first request, s",
+        )
+        .within(time),
+        ParameterSpec::new(
+            "resend_after",
+            d.resend_after.as_secs_f64(),
+            "a request without answer is published again after this time, s; doubled at each repetition",
+        )
+        .within(Range::Positive),
+        ParameterSpec::new("resend_at_most", d.resend_at_most.as_secs_f64(), "longest time between repetitions, s")
+            .within(Range::Positive),
+        ParameterSpec::new(
+            "wait_for",
+            Vec::<String>::new(),
+            "topics that need readers before the run starts, as in [stress, packing]",
+        )
+        .within(Range::Choice(&["stress", "packing", "run_state"])),
+        ParameterSpec::new("min_readers", d.min_readers as i64, "readers that each topic of wait_for needs")
+            .within(Range::Integer { min: 1, max: 1000 }),
+        ParameterSpec::new(
+            "exit_when_finished",
+            d.exit_when_finished,
+            "end when the loading path is done; else stay, so that late readers get the last packing",
+        ),
+    ]
+}
+
+/// The parameters, typed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// How the run and the servo are tied together.
+    pub mode: Mode,
+    /// Time to look for another simulator before the first request.
+    pub look_around: Duration,
+    /// Time after which a request without answer is published again.
+    pub resend_after: Duration,
+    /// Longest time between repetitions; they grow apart by factors of two.
+    pub resend_at_most: Duration,
+    /// Topics that need readers before the run starts.
+    pub wait_for: Vec<Topic>,
+    /// Readers that each topic of `wait_for` needs.
+    pub min_readers: usize,
+    /// End when the loading path is done.
+    pub exit_when_finished: bool,
+}
+
+/// Discovery on one host takes 0.2 s; three times that finds a simulator on a busy one. An exchange takes well below
+/// 1 ms; 20 ms is a whole time slice of a busy host more.
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Lockstep,
+            look_around: Duration::from_millis(600),
+            resend_after: Duration::from_millis(20),
+            resend_at_most: Duration::from_millis(200),
+            wait_for: Vec::new(),
+            min_readers: 1,
+            exit_when_finished: false,
+        }
+    }
+}
+
+impl From<&Parameters> for Settings {
+    fn from(parameters: &Parameters) -> Self {
+        let seconds = |name: &str| Duration::try_from_secs_f64(parameters.get(name)).unwrap_or(Duration::MAX);
+        let count = |name: &str| parameters.get::<i64>(name).unsigned_abs();
+        let wait_for: Vec<String> = parameters.get("wait_for");
+        Self {
+            mode: match parameters.get::<String>("mode").as_str() {
+                "free_run" => Mode::FreeRun { lag: count("free_run_lag") },
+                _ => Mode::Lockstep,
+            },
+            look_around: seconds("look_around"),
+            resend_after: seconds("resend_after"),
+            resend_at_most: seconds("resend_at_most"),
+            wait_for: AWAITED.into_iter().filter(|t| wait_for.iter().any(|name| name == t.name)).collect(),
+            min_readers: count("min_readers") as usize,
+            exit_when_finished: parameters.get("exit_when_finished"),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! The command line, as typed.
+
+use crate::commands::invert;
+use crate::failure::Failure;
+use clap::{Parser, Subcommand};
+use node_kit::Exit;
+use std::process::ExitCode;
+
+/// Exit codes, shown by every help.
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 failure, 2 usage, scene or parameters, 3 done with data loss, 4 physics invalid, 130 interrupted.
+Results go to stdout, everything else to stderr. All quantities are in SI units.";
+
+/// A laboratory for granular packings: prepares them, measures them, and infers their microstructure.
+///
+/// Without a command, the demo scene is run: every node as its own process over DDS on this host, everything recorded.
+#[derive(Debug, Parser)]
+#[command(name = "grainlab", version, after_help = EXIT_CODES, arg_required_else_help = false)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Infer the microstructure from moduli: numbers in, coordination and anisotropy with uncertainty out.
+    Invert(invert::Args),
+}
+
+/// Parses, runs, reports.
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match cli.command {
+        None => Err(Failure::usage("no command")),
+        Some(Command::Invert(args)) => invert::run(&args),
+    };
+    match outcome {
+        Ok(exit) => exit.into(),
+        Err(failure) => report(&failure).into(),
+    }
+}
+
+fn report(failure: &Failure) -> Exit {
+    eprintln!("grainlab: {failure}");
+    failure.exit
+}

@@ -1,0 +1,117 @@
+//! Results to stdout: as a table, as JSON, as CSV.
+
+use crate::failure::Failure;
+use clap::ValueEnum;
+use serde::Serialize;
+use std::io::{ErrorKind, Write};
+
+/// How a result is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// For programs; the keys are stable, undefined values are null.
+    Json,
+    /// For spreadsheets; one header line, units in the names, undefined values are empty.
+    Csv,
+}
+
+/// Writes `text` to stdout. A reader that has seen enough (`| head`) is no error.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::failure(format!("stdout: {e}"))),
+        _ => Ok(()),
+    }
+}
+
+/// Indented JSON with a newline at its end. Numbers that are not finite become null.
+pub(crate) fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failure(format!("JSON: {e}")))?;
+    Ok(text + "\n")
+}
+
+/// Rows of cells under a header; the first column is text and aligned left, the others are aligned right.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table with these column names.
+    pub(crate) fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![header.into_iter().map(Into::into).collect()] }
+    }
+
+    /// Adds a row.
+    pub(crate) fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// Aligned columns, two spaces apart.
+    pub(crate) fn text(&self) -> String {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |c: usize| self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let mut text = String::new();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (c, cell) in row.iter().enumerate() {
+                let w = widths[c];
+                let gap = if c == 0 { "" } else { "  " };
+                line += &if c == 0 { format!("{gap}{cell:<w$}") } else { format!("{gap}{cell:>w$}") };
+            }
+            text += line.trim_end();
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Comma-separated, quoted where need be (RFC 4180, but with bare newlines).
+    pub(crate) fn csv(&self) -> String {
+        let quoted = |cell: &String| {
+            if cell.contains([',', '"', '\n', '\r']) {
+                format!("\"{}\"", cell.replace('"', "\"\""))
+            } else {
+                cell.clone()
+            }
+        };
+        self.rows.iter().map(|r| r.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n").collect()
+    }
+}
+
+/// A number at full precision for CSV, empty if there is none.
+pub(crate) fn exact(value: Option<f64>) -> String {
+    value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string())
+}
+
+/// A number with `digits` behind the point for people, `-` if there is none.
+pub(crate) fn fixed(value: Option<f64>, digits: usize) -> String {
+    value.filter(|v| v.is_finite()).map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_with_commas_and_quotes_survive_csv() {
+        let mut t = Table::new(["a", "b"]);
+        t.row(["x,y", "say \"no\""]);
+        assert_eq!(t.csv(), "a,b\n\"x,y\",\"say \"\"no\"\"\"\n");
+    }
+
+    #[test]
+    fn undefined_numbers_are_never_printed_as_nan() {
+        assert_eq!((exact(Some(f64::NAN)), fixed(Some(f64::INFINITY), 3)), (String::new(), "-".to_owned()));
+        assert_eq!(json(&[f64::NAN, 1.5]).unwrap(), "[\n  null,\n  1.5\n]\n");
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let mut t = Table::new(["name", "k"]);
+        t.row(["a longer name", "5.13"]);
+        assert_eq!(t.text(), "name              k\na longer name  5.13\n");
+    }
+}

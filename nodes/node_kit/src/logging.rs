@@ -1,0 +1,208 @@
+//! Log lines: to stderr in the format of ROS 2, and to `/rosout`.
+
+use crate::args::RosArgs;
+use crate::diagnostics::wall_stamp;
+use grainlab_msgs::rcl_interfaces::Log;
+use log::{Level, LevelFilter, Metadata, Record};
+use std::collections::VecDeque;
+use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::SystemTime;
+
+/// Lines kept for `/rosout` until they are published; the oldest give way.
+const BACKLOG: usize = 1000;
+
+/// Libraries below us: their errors matter, their warnings are about packets.
+const LIBRARIES: [&str; 3] = ["rustdds", "ros2_client", "mio"];
+
+static LOGGER: OnceLock<Logger> = OnceLock::new();
+
+/// Everything that can change after the logger is installed.
+struct Settings {
+    name: String,
+    level: LevelFilter,
+    logger_levels: Vec<(String, LevelFilter)>,
+    stderr: bool,
+    rosout: bool,
+    colour: bool,
+    queue: VecDeque<Log>,
+}
+
+/// The logger of this process.
+pub struct Logger {
+    settings: Mutex<Settings>,
+}
+
+impl Logger {
+    /// Installs the logger, or changes its name and levels if it is installed already. `node` is the fully qualified
+    /// node name. A logger installed by someone else before us stays in charge of stderr.
+    pub fn install(node: &str, args: &RosArgs) -> &'static Logger {
+        let settings = Settings {
+            // ROS 2 writes namespaces with dots in logger names.
+            name: node.trim_start_matches('/').replace('/', "."),
+            level: args.log_level,
+            logger_levels: args.logger_levels.clone(),
+            stderr: args.stderr,
+            rosout: args.rosout,
+            colour: colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal()),
+            queue: VecDeque::new(),
+        };
+        let most =
+            settings.logger_levels.iter().map(|(_, level)| *level).fold(settings.level, LevelFilter::max);
+        let mut fresh = Some(settings);
+        let logger = LOGGER.get_or_init(|| Logger {
+            settings: Mutex::new(fresh.take().unwrap_or_else(unreachable_settings)),
+        });
+        if let Some(settings) = fresh {
+            *logger.lock() = settings;
+        } else if let Err(error) = log::set_logger(logger) {
+            logger.lock().stderr = false;
+            log::debug!("another logger is installed already: {error}");
+        }
+        log::set_max_level(most);
+        logger
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Settings> {
+        self.settings.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes the lines that are to be published on `/rosout`.
+    pub fn drain(&self) -> Vec<Log> {
+        self.lock().queue.drain(..).collect()
+    }
+
+    /// Publishes nothing more on `/rosout`: the final counts were reported.
+    pub fn close(&self) {
+        let mut settings = self.lock();
+        settings.rosout = false;
+        settings.queue.clear();
+    }
+}
+
+fn unreachable_settings() -> Settings {
+    unreachable!("the settings are taken only once")
+}
+
+/// Colour only for people: a terminal, `NO_COLOR` unset, `RCUTILS_COLORIZED_OUTPUT` not 0 (1 forces it, as in ROS 2).
+fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> bool {
+    match lookup("RCUTILS_COLORIZED_OUTPUT").as_deref() {
+        Some("1") => true,
+        Some("0") => false,
+        _ => terminal && lookup("NO_COLOR").is_none_or(|v| v.is_empty()),
+    }
+}
+
+impl Settings {
+    /// The level in force for a module.
+    fn level_of(&self, target: &str) -> LevelFilter {
+        let named = |logger: &str| {
+            target.strip_prefix(logger).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
+        };
+        match self.logger_levels.iter().rfind(|(logger, _)| named(logger)) {
+            Some((_, level)) => *level,
+            None if LIBRARIES.iter().any(|library| named(library)) => self.level.min(LevelFilter::Error),
+            None => self.level,
+        }
+    }
+}
+
+/// RustDDS reports an error when it leaves a multicast group that the loopback interface never let it join.
+fn harmless(record: &Record) -> bool {
+    record.target().starts_with("rustdds::network")
+        && record.args().to_string().contains("leave_multicast_group")
+}
+
+/// Name on stderr, number on the wire, colour as rcutils has it.
+fn severity(level: Level) -> (&'static str, u8, &'static str) {
+    match level {
+        Level::Error => ("ERROR", Log::ERROR, "\x1b[31m"),
+        Level::Warn => ("WARN", Log::WARN, "\x1b[33m"),
+        Level::Info => ("INFO", Log::INFO, ""),
+        Level::Debug => ("DEBUG", Log::DEBUG, "\x1b[32m"),
+        Level::Trace => ("TRACE", Log::DEBUG, "\x1b[32m"),
+    }
+}
+
+impl log::Log for Logger {
+    fn enabled(&self, metadata: &Metadata) -> bool {
+        metadata.level() <= self.lock().level_of(metadata.target())
+    }
+
+    fn log(&self, record: &Record) {
+        if !self.enabled(record.metadata()) || harmless(record) {
+            return;
+        }
+        let nanos =
+            SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
+        let stamp = wall_stamp(nanos);
+        let text = record.args().to_string();
+        let (name, number, colour) = severity(record.level());
+        let mut settings = self.lock();
+        if settings.stderr {
+            let line = format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
+            let (colour, reset) =
+                if settings.colour && !colour.is_empty() { (colour, "\x1b[0m") } else { ("", "") };
+            // One write, so that lines of several processes on one terminal do not mix. A closed stderr is no reason to end.
+            let _ = std::io::stderr().write_all(format!("{colour}{line}{reset}\n").as_bytes());
+        }
+        if settings.rosout {
+            if settings.queue.len() >= BACKLOG {
+                settings.queue.pop_front();
+            }
+            let entry = Log {
+                stamp,
+                level: number,
+                name: settings.name.clone(),
+                msg: text,
+                file: record.file().unwrap_or_default().into(),
+                function: record.module_path().unwrap_or_default().into(),
+                line: record.line().unwrap_or_default(),
+            };
+            settings.queue.push_back(entry);
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(level: LevelFilter, logger_levels: &[(&str, LevelFilter)]) -> Settings {
+        Settings {
+            name: "n".into(),
+            level,
+            logger_levels: logger_levels.iter().map(|(n, l)| ((*n).into(), *l)).collect(),
+            stderr: false,
+            rosout: true,
+            colour: false,
+            queue: VecDeque::new(),
+        }
+    }
+
+    #[test]
+    fn libraries_speak_only_of_errors_unless_asked() {
+        let quiet = settings(LevelFilter::Debug, &[]);
+        assert_eq!(quiet.level_of("dem_simulator::run"), LevelFilter::Debug);
+        assert_eq!(quiet.level_of("rustdds::rtps::reader"), LevelFilter::Error);
+        assert_eq!(quiet.level_of("rustdds_like"), LevelFilter::Debug);
+        let asked = settings(LevelFilter::Info, &[("rustdds", LevelFilter::Trace)]);
+        assert_eq!(asked.level_of("rustdds::rtps::reader"), LevelFilter::Trace);
+        assert_eq!(asked.level_of("ros2_client"), LevelFilter::Error);
+    }
+
+    #[test]
+    fn colour_is_for_terminals_and_can_be_refused_or_forced() {
+        let with = |variables: &'static [(&str, &str)]| {
+            move |name: &str| variables.iter().find(|(n, _)| *n == name).map(|(_, v)| (*v).to_owned())
+        };
+        assert!(colour_wanted(with(&[]), true));
+        assert!(!colour_wanted(with(&[]), false));
+        assert!(!colour_wanted(with(&[("NO_COLOR", "1")]), true));
+        assert!(colour_wanted(with(&[("NO_COLOR", "")]), true));
+        assert!(colour_wanted(with(&[("RCUTILS_COLORIZED_OUTPUT", "1")]), false));
+        assert!(!colour_wanted(with(&[("RCUTILS_COLORIZED_OUTPUT", "0")]), true));
+    }
+}

@@ -1,0 +1,176 @@
+//! One participant of the network in memory.
+
+use super::hub::{Hub, State, writer_id};
+use crate::bus::{
+    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
+};
+use crate::names::Names;
+use grainlab_msgs::Topic;
+use std::time::Duration;
+
+/// A bus over a [`Hub`]. Waiting lets virtual time pass.
+#[derive(Debug)]
+pub struct MemoryBus {
+    hub: Hub,
+    participant: u32,
+    names: Names,
+    /// Places in the hub.
+    writers: Vec<usize>,
+    readers: Vec<usize>,
+    interrupted: bool,
+}
+
+impl MemoryBus {
+    pub(super) fn new(hub: Hub, participant: u32, names: Names) -> Self {
+        Self { hub, participant, names, writers: Vec::new(), readers: Vec::new(), interrupted: false }
+    }
+
+    /// What a signal does on the real bus: the next wait says [`Wake::Shutdown`], once.
+    pub fn interrupt(&mut self) {
+        self.interrupted = true;
+    }
+
+    pub(super) fn has_data(&self) -> bool {
+        let state = self.hub.state.borrow();
+        self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
+    }
+
+    fn endpoints(&self, topic: &str, count: impl Fn(&State, &str) -> usize) -> usize {
+        count(&self.hub.state.borrow(), topic)
+    }
+
+    fn is_ours(&self, writer: WriterId) -> bool {
+        writer.participant() == writer_id(self.participant, 0).participant()
+    }
+}
+
+impl Bus for MemoryBus {
+    fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        self.writers.push(self.hub.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
+        Ok(PublisherId(self.writers.len() - 1))
+    }
+
+    fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        let demand = demand.within(topic);
+        let mut state = self.hub.state.borrow_mut();
+        let first = self.readers.iter().map(|r| &state.readers[*r]).find(|r| r.topic == resolved);
+        if first.is_some_and(|first| !first.demand.covers(demand)) {
+            return Err(BusError::Demand { topic: resolved });
+        }
+        self.readers.push(state.add_reader(self.participant, resolved, demand));
+        Ok(SubscriptionId(self.readers.len() - 1))
+    }
+
+    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
+        let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
+        let mut state = self.hub.state.borrow_mut();
+        if !body.starts_with(&[0, 1]) || body.len() < 4 {
+            let found = body[..body.len().min(4)].to_vec();
+            return Err(BusError::Encapsulation { topic: state.writers[writer].topic.clone(), found });
+        }
+        Ok(state.publish(writer, body))
+    }
+
+    fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
+        let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
+        let mut state = self.hub.state.borrow_mut();
+        let now = state.now;
+        Ok(state.readers[reader].take(now))
+    }
+
+    fn wait(&mut self, timeout: Duration) -> Wake {
+        if std::mem::take(&mut self.interrupted) {
+            return Wake::Shutdown;
+        }
+        let mut state = self.hub.state.borrow_mut();
+        let deadline = state.now + timeout;
+        let due = self.readers.iter().filter_map(|r| state.readers[*r].next_due()).min();
+        match due {
+            Some(due) if due <= deadline => {
+                state.now = state.now.max(due);
+                Wake::Data
+            }
+            _ => {
+                state.now = deadline;
+                Wake::Timeout
+            }
+        }
+    }
+
+    fn readers(&self, publisher: PublisherId) -> usize {
+        let Some(writer) = self.writers.get(publisher.0) else { return 0 };
+        let topic = self.hub.state.borrow().writers[*writer].topic.clone();
+        let others = |r: &&super::hub::Reader| r.alive && r.participant != self.participant;
+        self.endpoints(&topic, |s, topic| {
+            s.readers.iter().filter(others).filter(|r| r.topic == topic).count()
+        })
+    }
+
+    fn writers(&self, subscription: SubscriptionId) -> usize {
+        let Some(reader) = self.readers.get(subscription.0) else { return 0 };
+        let topic = self.hub.state.borrow().readers[*reader].topic.clone();
+        let others = |w: &&super::hub::Writer| w.alive && !self.is_ours(w.id);
+        self.endpoints(&topic, |s, topic| {
+            s.writers.iter().filter(others).filter(|w| w.topic == topic).count()
+        })
+    }
+
+    fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
+        let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
+        let state = self.hub.state.borrow();
+        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved);
+        let mut ids: Vec<WriterId> = on_topic.map(|w| w.id).filter(|id| !self.is_ours(*id)).collect();
+        ids.sort();
+        ids
+    }
+
+    fn published(&self) -> Vec<Published> {
+        let state = self.hub.state.borrow();
+        let of = |w: &usize| {
+            let w = &state.writers[*w];
+            Published { topic: w.topic.clone(), writer: w.id, count: w.count, full: 0 }
+        };
+        self.writers.iter().map(of).collect()
+    }
+
+    fn received(&self) -> Vec<Received> {
+        let state = self.hub.state.borrow();
+        let of = |r: &usize| {
+            let r = &state.readers[*r];
+            Received { topic: r.topic.clone(), taken: r.taken, refused: r.refused }
+        };
+        self.readers.iter().map(of).collect()
+    }
+
+    fn count_refused(&mut self, subscription: SubscriptionId) {
+        if let Some(reader) = self.readers.get(subscription.0) {
+            self.hub.state.borrow_mut().readers[*reader].refused += 1;
+        }
+    }
+
+    fn flush(&mut self, _timeout: Duration) -> bool {
+        true
+    }
+
+    fn now(&self) -> Duration {
+        self.hub.now()
+    }
+
+    fn wall_nanos(&self) -> u64 {
+        self.hub.state.borrow().wall_nanos()
+    }
+}
+
+impl Drop for MemoryBus {
+    fn drop(&mut self) {
+        let mut state = self.hub.state.borrow_mut();
+        for writer in &self.writers {
+            state.writers[*writer].alive = false;
+        }
+        for reader in &self.readers {
+            state.readers[*reader].alive = false;
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! What can go wrong with a sample on its way.
+
+use std::time::Duration;
+
+/// Faults of one topic. A reliable subscription sees only their delays; a best-effort one sees them all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Faults {
+    /// Share of samples lost, 0 to 1.
+    pub drop: f64,
+    /// Share of samples that arrive twice, 0 to 1.
+    pub duplicate: f64,
+    /// Longest delay; each sample's is drawn evenly from zero to this, so that samples overtake each other.
+    pub delay: Duration,
+}
+
+/// The SplitMix64 generator: eight bytes of state, the same numbers on every machine.
+#[derive(Clone, Debug)]
+pub(super) struct Dice(u64);
+
+impl Dice {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Evenly from 0 to 1, 1 excluded.
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// When the copies of one sample arrive, from now. Empty if it is lost. Draws the same count of numbers whatever the
+    /// outcome, so that one topic's faults do not shift another's.
+    pub(super) fn arrivals(&mut self, faults: &Faults, reliable: bool) -> Vec<Duration> {
+        let [lost, twice, first, second] = std::array::from_fn(|_| self.unit());
+        if reliable {
+            // A lost sample is sent again: it only comes later.
+            let rounds = if lost < faults.drop { 2.0 } else { first };
+            return vec![faults.delay.mul_f64(rounds)];
+        }
+        if lost < faults.drop {
+            return Vec::new();
+        }
+        let copies = if twice < faults.duplicate { 2 } else { 1 };
+        [first, second][..copies].iter().map(|share| faults.delay.mul_f64(*share)).collect()
+    }
+}

@@ -1,0 +1,71 @@
+//! Several nodes in one thread, in a fixed order and in virtual time.
+
+use super::{Hub, MemoryBus};
+use crate::exit::Exit;
+use crate::node::{Next, Node, NodeError};
+use std::time::Duration;
+
+/// One node on its bus.
+pub struct Actor<'a> {
+    node: &'a mut dyn Node,
+    bus: MemoryBus,
+    /// When it wants its next step at the latest.
+    due: Duration,
+    ended: Option<Result<Exit, NodeError>>,
+}
+
+impl<'a> Actor<'a> {
+    /// A node that was made on `bus`.
+    pub fn new(node: &'a mut dyn Node, bus: MemoryBus) -> Self {
+        Self { node, bus, due: Duration::ZERO, ended: None }
+    }
+
+    /// How it ended, if it did.
+    pub fn ended(&self) -> Option<&Result<Exit, NodeError>> {
+        self.ended.as_ref()
+    }
+
+    /// Its bus.
+    pub fn bus(&mut self) -> &mut MemoryBus {
+        &mut self.bus
+    }
+}
+
+/// Steps all actors in turn until `done`, until all ended, or until virtual time `limit`; true in the first case.
+///
+/// An actor is stepped when a sample arrived for it or its waiting time is over. Time passes only while nobody can step.
+pub fn run_until(
+    hub: &Hub,
+    actors: &mut [Actor],
+    limit: Duration,
+    mut done: impl FnMut(&mut [Actor]) -> bool,
+) -> bool {
+    loop {
+        let now = hub.now();
+        let mut stepped = false;
+        for actor in actors.iter_mut() {
+            if actor.ended.is_some() || (actor.due > now && !actor.bus.has_data()) {
+                continue;
+            }
+            stepped = true;
+            match actor.node.step(&mut actor.bus) {
+                Ok(Next::Again) => actor.due = now,
+                Ok(Next::Wait(time)) => actor.due = now + time,
+                Ok(Next::Finished(exit)) => actor.ended = Some(Ok(exit)),
+                Err(error) => actor.ended = Some(Err(error)),
+            }
+        }
+        if done(actors) {
+            return true;
+        }
+        if stepped {
+            continue;
+        }
+        let waiting = actors.iter().filter(|a| a.ended.is_none()).map(|a| a.due).min();
+        let next = waiting.into_iter().chain(hub.next_arrival()).min();
+        match next {
+            Some(next) if waiting.is_some() && next <= limit => hub.advance(next.saturating_sub(now)),
+            _ => return false,
+        }
+    }
+}

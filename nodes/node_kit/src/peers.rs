@@ -1,0 +1,163 @@
+//! Who lives, by heartbeats: DDS keeps a crashed process matched for up to a minute.
+
+use crate::bus::{Bus, BusError, Demand, SampleInfo};
+use crate::diagnostics::Report;
+use crate::exit::Exit;
+use crate::typed::Subscription;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::topics;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// A heartbeat comes each second. A node that computes does not beat, so silence alone is no death.
+pub const SILENCE: Duration = Duration::from_secs(5);
+
+/// Heartbeats kept between two looks: a minute of a full laboratory.
+const BACKLOG: u32 = 512;
+
+/// What is known of one process.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Peer {
+    /// Its last report.
+    pub report: Report,
+    /// The GUID prefix of its writers.
+    pub participant: [u8; 12],
+    /// When it was last heard, in [`Bus::now`].
+    pub last_heard: Duration,
+}
+
+/// Whether a peer lives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Life {
+    /// Heard within [`SILENCE`].
+    Alive,
+    /// Not heard for this long: it computes, or it is dead.
+    Silent(Duration),
+    /// It said that it leaves, and how.
+    Left(Exit),
+}
+
+impl Peer {
+    /// Whether it lives at `now`, in [`Bus::now`].
+    pub fn life(&self, now: Duration) -> Life {
+        let silent = now.saturating_sub(self.last_heard);
+        match self.report.exit {
+            Some(exit) => Life::Left(exit),
+            None if silent > SILENCE => Life::Silent(silent),
+            None => Life::Alive,
+        }
+    }
+}
+
+/// Every process heard on `/diagnostics`, this one included.
+#[derive(Clone, Debug, Default)]
+pub struct Peers {
+    by_participant: BTreeMap<[u8; 12], Peer>,
+}
+
+impl Peers {
+    /// Takes one heartbeat in; the reports in it are returned.
+    pub fn hear(&mut self, message: &DiagnosticArray, info: &SampleInfo, now: Duration) -> Vec<Report> {
+        let reports = Report::from_message(message);
+        for report in &reports {
+            let participant = info.writer.participant();
+            self.by_participant
+                .insert(participant, Peer { report: report.clone(), participant, last_heard: now });
+        }
+        reports
+    }
+
+    /// Every peer, in the order of its GUID.
+    pub fn iter(&self) -> impl Iterator<Item = &Peer> {
+        self.by_participant.values()
+    }
+
+    /// The one heard last of those with this fully qualified node name: a restarted node hides its predecessor.
+    pub fn find(&self, node: &str) -> Option<&Peer> {
+        self.iter().filter(|p| p.report.node == node).max_by_key(|p| p.last_heard)
+    }
+
+    /// The peer with a writer.
+    pub fn owner(&self, participant: [u8; 12]) -> Option<&Peer> {
+        self.by_participant.get(&participant)
+    }
+}
+
+/// [`Peers`] fed by a subscription of their own.
+#[derive(Debug)]
+pub struct PeerWatch {
+    subscription: Subscription<DiagnosticArray>,
+    peers: Peers,
+}
+
+impl PeerWatch {
+    /// Listens on `/diagnostics`. A node that subscribes to it with a stronger demand does so before.
+    pub fn subscribe(bus: &mut dyn Bus) -> Result<Self, BusError> {
+        let subscription = Subscription::subscribe(bus, &topics::DIAGNOSTICS, Demand::best_effort(BACKLOG))?;
+        Ok(Self { subscription, peers: Peers::default() })
+    }
+
+    /// Takes in what was heard since the last call, and hands on each sample's origin and report.
+    pub fn update(
+        &mut self,
+        bus: &mut dyn Bus,
+        mut heard: impl FnMut(&SampleInfo, &Report),
+    ) -> Result<(), BusError> {
+        while let Some((message, info)) = self.subscription.take_valid(bus)? {
+            let now = bus.now();
+            for report in self.peers.hear(&message, &info, now) {
+                heard(&info, &report);
+            }
+        }
+        Ok(())
+    }
+
+    /// What is known now.
+    pub fn peers(&self) -> &Peers {
+        &self.peers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bus::WriterId;
+    use crate::node::Health;
+
+    fn beat(pid: u32, exit: Option<Exit>) -> (DiagnosticArray, SampleInfo) {
+        let report = Report {
+            node: "/servo".into(),
+            pid,
+            health: Health::default(),
+            exit,
+            published: Vec::new(),
+            received: Vec::new(),
+        };
+        let writer = WriterId([pid as u8; 16]);
+        (report.to_message(0), SampleInfo { writer, sequence: 1, source_time: None, received: 0 })
+    }
+
+    #[test]
+    fn a_peer_is_alive_then_silent_then_left() {
+        let mut peers = Peers::default();
+        let (message, info) = beat(1, None);
+        peers.hear(&message, &info, Duration::from_secs(10));
+        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.life(Duration::from_secs(at)));
+        assert_eq!(life(&peers, 15), Some(Life::Alive));
+        assert_eq!(life(&peers, 16), Some(Life::Silent(Duration::from_secs(6))));
+        let (message, info) = beat(1, Some(Exit::Done));
+        peers.hear(&message, &info, Duration::from_secs(20));
+        assert_eq!(life(&peers, 100), Some(Life::Left(Exit::Done)));
+    }
+
+    #[test]
+    fn a_restarted_node_hides_its_predecessor() {
+        let mut peers = Peers::default();
+        for (pid, at) in [(9, 1), (3, 8)] {
+            let (message, info) = beat(pid, None);
+            peers.hear(&message, &info, Duration::from_secs(at));
+        }
+        assert_eq!(peers.iter().count(), 2);
+        assert_eq!(peers.find("/servo").map(|p| p.report.pid), Some(3));
+    }
+}

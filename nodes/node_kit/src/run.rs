@@ -1,0 +1,229 @@
+//! Running a node: the only place that waits.
+
+use crate::args::RosArgs;
+use crate::bus::{Bus, BusError, Wake, WriterId};
+use crate::dds::{DdsBus, Network};
+use crate::diagnostics::Report;
+use crate::exit::Exit;
+use crate::logging::Logger;
+use crate::names::Names;
+use crate::node::{Next, Node, NodeError};
+use crate::parameters::{ParameterSpec, Parameters};
+use crate::peers::PeerWatch;
+use crate::signals::Signals;
+use crate::typed::Publisher;
+use crate::watchdog::{self, Watchdog};
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::rcl_interfaces::Log;
+use grainlab_msgs::topics;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Duration;
+
+/// Time between two heartbeats.
+pub const HEARTBEAT: Duration = Duration::from_secs(1);
+
+/// How long a leaving process waits for its readers' acknowledgements.
+const LAST_WORDS: Duration = Duration::from_millis(300);
+
+/// How long it stays after that: a reader loses what it received but did not take when the writer goes, and a busy node's
+/// readers are emptied every 50 ms.
+const GRACE: Duration = Duration::from_millis(150);
+
+/// What a node is called and which parameters it has.
+#[derive(Clone, Debug)]
+pub struct NodeSpec {
+    /// Its name unless `__node` gives another.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub summary: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<ParameterSpec>,
+}
+
+/// Runs one node as this process: arguments, logs, signals, DDS, the loop, and a clean leave.
+///
+/// `build` makes the node on the open bus; it subscribes and advertises there. The first SIGINT or SIGTERM ends the run
+/// after the current step, the second ends the process at once.
+pub fn run_node<F>(spec: &NodeSpec, args: &RosArgs, build: F) -> Exit
+where
+    F: FnOnce(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>,
+{
+    Logger::install(spec.name, args);
+    watchdog::watch_dds_threads();
+    // A panic of a node is a bug, but it must leave as every other failure does: with exit 1 and a farewell to the peers.
+    catch_unwind(AssertUnwindSafe(|| run_process(spec, args, build))).unwrap_or_else(|_| {
+        log::error!("{} panicked (see above); this is a bug", spec.name);
+        Exit::Failure
+    })
+}
+
+fn run_process<F>(spec: &NodeSpec, args: &RosArgs, build: F) -> Exit
+where
+    F: FnOnce(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>,
+{
+    fn refused<T, E: std::fmt::Display>(exit: Exit, result: Result<T, E>) -> Result<T, Exit> {
+        result.map_err(|error| {
+            log::error!("{error}");
+            exit
+        })
+    }
+    let start = || -> Result<Exit, Exit> {
+        let names = refused(Exit::Usage, Names::from_args(spec.name, args))?;
+        let parameters =
+            refused(Exit::Usage, Parameters::resolve(&spec.parameters, spec.name, &names, args))?;
+        let network = refused(Exit::Usage, Network::from_env())?;
+        let node_name = names.fully_qualified();
+        let logger = Logger::install(&node_name, args);
+        let signals = refused(Exit::Failure, Signals::install())?;
+        let stop = signals.flag();
+        let mut bus = refused(Exit::Failure, DdsBus::open(network, names))?;
+        refused(Exit::Failure, bus.watch(signals))?;
+        let mut node = build(&mut bus, &parameters).map_err(|error| {
+            log::error!("{error}");
+            error.exit()
+        })?;
+        let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
+        let exit = refused(Exit::Failure, drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop))?;
+        std::thread::sleep(GRACE);
+        Ok(exit)
+    };
+    start().unwrap_or_else(|exit| exit)
+}
+
+/// Steps a node on any bus until it finishes, fails, or is asked to stop; reports its health once a second and its final
+/// counts at the end. `stop` is asked before every step, for nodes that never wait.
+pub fn drive(
+    node: &mut dyn Node,
+    bus: &mut dyn Bus,
+    node_name: &str,
+    logger: Option<&Logger>,
+    stop: &dyn Fn() -> bool,
+) -> Result<Exit, BusError> {
+    let mut tender = Tender::new(bus, node_name, logger)?;
+    let mut asked = false;
+    let exit = loop {
+        let until_beat = match tender.tend(node, bus) {
+            Ok(until_beat) => until_beat,
+            Err(dead) => {
+                log::error!("{dead}");
+                return Ok(Exit::Failure);
+            }
+        };
+        if asked || stop() {
+            log::info!("asked to stop");
+            break settle(node.on_shutdown(bus));
+        }
+        match node.step(bus) {
+            Ok(Next::Again) => {}
+            Ok(Next::Wait(time)) => asked = bus.wait(time.min(until_beat)) == Wake::Shutdown,
+            Ok(Next::Finished(exit)) => break exit,
+            Err(error) => break settle(Err(error)),
+        }
+    };
+    tender.leave(node, bus, exit)?;
+    Ok(exit)
+}
+
+fn settle(result: Result<Exit, NodeError>) -> Exit {
+    result.unwrap_or_else(|error| {
+        log::error!("{error}");
+        error.exit()
+    })
+}
+
+/// Why the run loop gives up on its bus.
+#[derive(Debug, thiserror::Error)]
+enum TendError {
+    #[error(transparent)]
+    Dead(#[from] watchdog::Dead),
+    #[error(transparent)]
+    Bus(#[from] BusError),
+}
+
+/// Heartbeats, log lines, peers and watchdog of one process.
+struct Tender<'a> {
+    node_name: String,
+    pid: u32,
+    diagnostics: Publisher<DiagnosticArray>,
+    diagnostics_writer: Option<WriterId>,
+    rosout: Publisher<Log>,
+    logger: Option<&'a Logger>,
+    watch: PeerWatch,
+    watchdog: Watchdog,
+    next_beat: Duration,
+}
+
+impl<'a> Tender<'a> {
+    fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'a Logger>) -> Result<Self, BusError> {
+        let diagnostics = Publisher::advertise(bus, &topics::DIAGNOSTICS)?;
+        let diagnostics_writer = bus.published().last().map(|p| p.writer);
+        Ok(Self {
+            node_name: node_name.into(),
+            pid: std::process::id(),
+            diagnostics,
+            diagnostics_writer,
+            rosout: Publisher::advertise(bus, &topics::ROSOUT)?,
+            logger,
+            watch: PeerWatch::subscribe(bus)?,
+            watchdog: Watchdog::default(),
+            next_beat: bus.now(),
+        })
+    }
+
+    /// Does what is due and returns the time until the next heartbeat.
+    fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, TendError> {
+        let mut heard = false;
+        let (own, watchdog) = (self.diagnostics_writer, &mut self.watchdog);
+        self.watch.update(bus, |info, _| {
+            heard = true;
+            if Some(info.writer) == own {
+                watchdog.heard();
+            }
+        })?;
+        self.watchdog.check(bus.now())?;
+        if heard {
+            node.on_peers(self.watch.peers());
+        }
+        self.publish_logs(bus)?;
+        let now = bus.now();
+        if now >= self.next_beat {
+            self.report(node, bus, None)?;
+            self.watchdog.sent(now);
+            self.next_beat = now + HEARTBEAT;
+        }
+        Ok(self.next_beat.saturating_sub(now))
+    }
+
+    fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {
+        let report = Report::of(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
+        let message = report.to_message(bus.wall_nanos());
+        self.tolerate_full(self.diagnostics.publish(bus, &message))
+    }
+
+    fn publish_logs(&self, bus: &mut dyn Bus) -> Result<(), BusError> {
+        for line in self.logger.map(Logger::drain).unwrap_or_default() {
+            self.tolerate_full(self.rosout.publish(bus, &line))?;
+        }
+        Ok(())
+    }
+
+    /// A listener that died must not end the node: the bus counts what it could not send.
+    fn tolerate_full(&self, published: Result<i64, BusError>) -> Result<(), BusError> {
+        match published {
+            Ok(_) | Err(BusError::Full { .. }) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Last log lines, then the last report: nothing is published after it, so its counts are final.
+    fn leave(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Exit) -> Result<(), BusError> {
+        log::info!("leaving: {exit}");
+        self.publish_logs(bus)?;
+        if let Some(logger) = self.logger {
+            logger.close();
+        }
+        self.report(node, bus, Some(exit))?;
+        bus.flush(LAST_WORDS);
+        Ok(())
+    }
+}
