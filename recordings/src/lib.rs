@@ -9,8 +9,8 @@
 //!
 //! Nothing here knows DDS: a thin shell hands samples to the writer and takes them from the player.
 
-//EXP
-//IMP
+pub mod export;
+pub mod import;
 pub mod ledger;
 pub mod player;
 pub mod reader;

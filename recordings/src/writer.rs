@@ -12,7 +12,6 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use grainlab_msgs::{Topic, TypeInfo};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
@@ -21,46 +20,15 @@ use crate::{LEDGER_KEY, METADATA_RECORD};
 
 mod bag_metadata;
 mod device_sync;
+mod error;
 mod free_space;
+mod topic_spec;
 
 use bag_metadata::{BagMetadata, TopicCount};
 use device_sync::DeviceSync;
+pub use error::WriteError;
 pub use free_space::free_space;
-
-/// What a channel of the recording declares.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TopicSpec {
-    /// Absolute name, `/stress`.
-    pub name: String,
-    /// ROS type, `grainlab_msgs/msg/Stress`.
-    pub ros_type: String,
-    /// Schema: the `.msg` text followed by those it depends on, as `ros2msg`.
-    pub definition: String,
-    /// `RIHS01_<64 hexadecimal digits>`, or empty if unknown.
-    pub type_hash: String,
-    /// QoS offered, as the YAML list of rosbag2 with integers, or empty if unknown.
-    pub qos: String,
-}
-
-impl TopicSpec {
-    /// The channel of a topic of the contract, under its full name (with the namespace, if it has one).
-    pub fn of_contract(topic: &Topic, full_name: &str) -> Self {
-        let mut spec = Self::of_type(&topic.info, full_name);
-        spec.qos = topic.qos.offered_qos_profiles();
-        spec
-    }
-
-    /// A channel of any type known to the laboratory; its QoS is unknown.
-    pub fn of_type(info: &TypeInfo, full_name: &str) -> Self {
-        Self {
-            name: full_name.to_owned(),
-            ros_type: info.type_name.to_owned(),
-            definition: info.definition.to_owned(),
-            type_hash: info.hash.to_owned(),
-            qos: String::new(),
-        }
-    }
-}
+pub use topic_spec::TopicSpec;
 
 /// A sample as it came from the network.
 #[derive(Clone, Copy, Debug)]
@@ -87,86 +55,6 @@ pub enum Outcome {
     },
     /// It was recorded before: counted, not written again.
     Repeated,
-}
-
-/// Why a recording cannot be begun, continued or ended.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// There is a recording already.
-    #[error("{path} exists: choose another run directory; a recording is never overwritten")]
-    Exists {
-        /// The file in the way.
-        path: PathBuf,
-    },
-    /// Not enough space to begin or to go on.
-    #[error(
-        "{path}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space and run again"
-    )]
-    NoSpace {
-        /// The recording.
-        path: PathBuf,
-        /// Bytes free.
-        free: u64,
-        /// Bytes that must be free.
-        needed: u64,
-        /// `not begun`, or `stopped (what is recorded stays readable)`.
-        state: &'static str,
-    },
-    /// The file system refused.
-    #[error("{path}: cannot {action}: {source}")]
-    Io {
-        /// The file or directory.
-        path: PathBuf,
-        /// What was tried.
-        action: &'static str,
-        /// What it said.
-        source: io::Error,
-    },
-    /// The MCAP writer refused.
-    #[error("{path}: cannot {action}: {source}; what was written before stays readable")]
-    Format {
-        /// The recording.
-        path: PathBuf,
-        /// What was tried.
-        action: &'static str,
-        /// What it said.
-        source: McapError,
-    },
-    /// A sample came on a topic that was never declared.
-    #[error("topic {0} was not declared to the recording: add it with its type before its first message")]
-    UnknownTopic(String),
-    /// A topic was declared twice, differently.
-    #[error("topic {0} is already recorded with another type, schema or QoS")]
-    ConflictingTopic(String),
-    /// A sample is too short to be CDR.
-    #[error("message {sequence} on {topic} has {bytes} bytes: CDR starts with a 4-byte encapsulation header")]
-    NotCdr {
-        /// Topic it came on.
-        topic: String,
-        /// Its RTPS sequence number.
-        sequence: i64,
-        /// Its length.
-        bytes: usize,
-    },
-    /// An earlier failure ended the recording.
-    #[error("{path}: an earlier error ended this recording: {reason}")]
-    Ended {
-        /// The recording.
-        path: PathBuf,
-        /// The earlier error.
-        reason: String,
-    },
-}
-
-impl WriteError {
-    /// The file system's own words where it was the file system.
-    fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
-        let path = path.to_owned();
-        match source {
-            McapError::Io(source) => Self::Io { path, action, source },
-            source => Self::Format { path, action, source },
-        }
-    }
 }
 
 /// How a recording is written.

@@ -1,1 +1,11 @@
-//! Tests of the whole laboratory: real processes, recordings, interoperation, physics.
+//! Tests of the whole laboratory: real processes, recordings, interoperation, the paper.
+//!
+//! - [`lab`]: the `grainlab` binary under test, in a folder and a DDS domain of its own
+//! - [`process`]: one process, never left behind
+//! - [`bodies`]: what a recording holds, topic by topic, repeats removed
+//! - [`python`]: the independent tools, where they are installed
+
+pub mod bodies;
+pub mod lab;
+pub mod process;
+pub mod python;

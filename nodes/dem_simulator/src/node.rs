@@ -69,6 +69,8 @@ pub struct DemSimulator {
     began: Duration,
     first_step: u64,
     computing: Duration,
+    /// From the first request to the latest answer obeyed.
+    wall: Duration,
     next_beat: Duration,
     next_clock: Duration,
     next_notice: Duration,
@@ -117,6 +119,7 @@ impl DemSimulator {
             began: now,
             first_step: run.engine().steps(),
             computing: Duration::ZERO,
+            wall: Duration::ZERO,
             next_beat: now,
             next_clock: now,
             next_notice: now + NOTICE_PERIOD,
@@ -188,11 +191,11 @@ impl DemSimulator {
                 return Ok(Next::Wait(LOOK_AGAIN));
             }
             Verdict::Refuse(writer) => {
-                log::error!(
+                let message = format!(
                     "another simulator (writer {writer}) is on topic stress; two would mix their runs. Stop it, or start \
                      this one in another ROS_DOMAIN_ID or namespace (--ros-args -r __ns:=/other)"
                 );
-                return Ok(Next::Exit(Exit::Failure));
+                return Err(NodeError::new(Exit::Failure, message));
             }
         }
         if let Some(missing) = self.missing(bus) {
@@ -203,7 +206,7 @@ impl DemSimulator {
         }
         self.began = now;
         if std::mem::take(&mut self.resumed) {
-            let message = messages::packing(&self.run).map_err(NodeError::other)?;
+            let message = messages::packing(&self.run).map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
             self.post(self.packing.id(), &message);
         }
         self.go_on(bus, now)
@@ -295,6 +298,7 @@ impl DemSimulator {
 
     fn advanced(&mut self, bus: &mut dyn Bus, advanced: &Advanced) -> Result<Next, NodeError> {
         let now = bus.now();
+        self.wall = now.saturating_sub(self.began);
         if advanced.packing_due
             && let Err(error) = self.post_packing()
         {
@@ -316,16 +320,17 @@ impl DemSimulator {
         }
         if self.settings.exit_when_finished {
             self.farewell(bus);
-            return Ok(Next::Exit(Exit::Done));
+            return Ok(Next::Finished(Exit::Done));
         }
         Ok(Next::Wait(self.next_beat.saturating_sub(bus.now())))
     }
 
     /// Saves the last finite state and ends. A failing run is back there by itself.
     fn fail(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<Next, NodeError> {
-        log::error!("the run ends at step {}: {reason}", self.run.engine().steps());
         self.save(bus, reason)?;
-        Ok(Next::Exit(Exit::PhysicsInvalid))
+        let step = self.run.engine().steps();
+        let message = format!("{reason}. The state of step {step} is saved as the last packing");
+        Err(NodeError::new(Exit::PhysicsInvalid, message))
     }
 
     fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), BusError> {
@@ -360,6 +365,47 @@ impl Node for DemSimulator {
             Stage::Starting => self.start(bus, now),
             Stage::Running => self.exchange(bus, now),
             Stage::Finished => self.rest(bus),
+        }
+    }
+
+    fn health(&self) -> Health {
+        let phase = self.run.path().phase(self.run.scene()).map_or("none", |p| p.name.as_str());
+        let (counts, steps) = (self.barrier.counts, self.run.engine().steps().saturating_sub(self.first_step));
+        let computing = self.computing.as_secs_f64();
+        let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
+        let message = match self.stage {
+            Stage::Starting => "starting".into(),
+            Stage::Running => format!("phase {phase}"),
+            Stage::Finished => "finished".into(),
+        };
+        Health::ok(message)
+            .with("phase", phase)
+            .with("step", self.run.engine().steps())
+            .with("steps", steps)
+            .with("exchanges", counts.exchanges)
+            .with("resends", counts.resends)
+            .with("refused", counts.refused)
+            .with("stale", counts.stale)
+            .with("held_up", self.outbox.held_up())
+            .with("packings", self.packings.count)
+            .with("waiting_s", counts.waiting.as_secs_f64())
+            .with("computing_s", computing)
+            .with("wall_s", self.wall.as_secs_f64())
+            .with("particle_steps_per_s", if computing > 0.0 { particle_steps / computing } else { 0.0 })
+    }
+
+    /// Saves the state of a run that is under way, so that it can be resumed.
+    fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
+        match self.stage {
+            Stage::Starting => Ok(Exit::Interrupted),
+            Stage::Running => {
+                self.save(bus, "interrupted; the last packing is where the run stands")?;
+                Ok(Exit::Interrupted)
+            }
+            Stage::Finished => {
+                self.farewell(bus);
+                Ok(Exit::Done)
+            }
         }
     }
 }

@@ -5,6 +5,7 @@
 //! - [`node`]: a node as a state machine; [`run`]: running it as a process
 //! - [`diagnostics`]: what a process reports of itself; [`peers`]: who lives; [`watchdog`]: whether DDS lives
 //! - [`args`], [`names`], [`parameters`]: the ROS 2 command line, names and remaps, parameters
+//! - [`pingpong`]: the bare exchange, to measure
 //! - [`exit`]: exit codes; [`signals`]: SIGINT and SIGTERM; [`logging`]: stderr and `/rosout`
 
 pub mod args;
@@ -18,6 +19,7 @@ pub mod names;
 pub mod node;
 pub mod parameters;
 pub mod peers;
+pub mod pingpong;
 pub mod run;
 pub mod signals;
 pub mod typed;

@@ -6,7 +6,7 @@ use grainlab_msgs::rcl_interfaces::Log;
 use log::{Level, LevelFilter, Metadata, Record};
 use std::collections::VecDeque;
 use std::io::{IsTerminal, Write};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, Once, PoisonError};
 use std::time::SystemTime;
 
 /// Lines kept for `/rosout` until they are published; the oldest give way.
@@ -15,7 +15,17 @@ const BACKLOG: usize = 1000;
 /// Libraries below us: their errors matter, their warnings are about packets.
 const LIBRARIES: [&str; 3] = ["rustdds", "ros2_client", "mio"];
 
-static LOGGER: OnceLock<Logger> = OnceLock::new();
+static LOGGER: Logger = Logger {
+    settings: Mutex::new(Settings {
+        name: String::new(),
+        level: LevelFilter::Off,
+        logger_levels: Vec::new(),
+        stderr: false,
+        rosout: false,
+        colour: false,
+        queue: VecDeque::new(),
+    }),
+};
 
 /// Everything that can change after the logger is installed.
 struct Settings {
@@ -47,20 +57,16 @@ impl Logger {
             colour: colour_wanted(|name| std::env::var(name).ok(), std::io::stderr().is_terminal()),
             queue: VecDeque::new(),
         };
-        let most =
-            settings.logger_levels.iter().map(|(_, level)| *level).fold(settings.level, LevelFilter::max);
-        let mut fresh = Some(settings);
-        let logger = LOGGER.get_or_init(|| Logger {
-            settings: Mutex::new(fresh.take().unwrap_or_else(unreachable_settings)),
+        let most = settings.logger_levels.iter().map(|(_, level)| *level).fold(settings.level, Ord::max);
+        *LOGGER.lock() = settings;
+        static SET: Once = Once::new();
+        SET.call_once(|| {
+            if log::set_logger(&LOGGER).is_err() {
+                LOGGER.lock().stderr = false;
+            }
         });
-        if let Some(settings) = fresh {
-            *logger.lock() = settings;
-        } else if let Err(error) = log::set_logger(logger) {
-            logger.lock().stderr = false;
-            log::debug!("another logger is installed already: {error}");
-        }
         log::set_max_level(most);
-        logger
+        &LOGGER
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Settings> {
@@ -78,10 +84,6 @@ impl Logger {
         settings.rosout = false;
         settings.queue.clear();
     }
-}
-
-fn unreachable_settings() -> Settings {
-    unreachable!("the settings are taken only once")
 }
 
 /// Colour only for people: a terminal, `NO_COLOR` unset, `RCUTILS_COLORIZED_OUTPUT` not 0 (1 forces it, as in ROS 2).

@@ -83,7 +83,13 @@ where
             error.exit()
         })?;
         let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
-        let exit = refused(Exit::Failure, drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop))?;
+        let driven = drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop);
+        if let Err(DriveError::Dead(dead)) = driven {
+            log::error!("{dead}");
+            // Dropping the bus would wait for the dead threads.
+            std::process::exit(i32::from(Exit::Failure.code()));
+        }
+        let exit = refused(Exit::Failure, driven)?;
         std::thread::sleep(GRACE);
         Ok(exit)
     };
@@ -98,17 +104,11 @@ pub fn drive(
     node_name: &str,
     logger: Option<&Logger>,
     stop: &dyn Fn() -> bool,
-) -> Result<Exit, BusError> {
+) -> Result<Exit, DriveError> {
     let mut tender = Tender::new(bus, node_name, logger)?;
     let mut asked = false;
     let exit = loop {
-        let until_beat = match tender.tend(node, bus) {
-            Ok(until_beat) => until_beat,
-            Err(dead) => {
-                log::error!("{dead}");
-                return Ok(Exit::Failure);
-            }
-        };
+        let until_beat = tender.tend(node, bus)?;
         if asked || stop() {
             log::info!("asked to stop");
             break settle(node.on_shutdown(bus));
@@ -133,9 +133,11 @@ fn settle(result: Result<Exit, NodeError>) -> Exit {
 
 /// Why the run loop gives up on its bus.
 #[derive(Debug, thiserror::Error)]
-enum TendError {
+pub enum DriveError {
+    /// The DDS threads of this process are dead or stuck; the bus must not even be dropped, which would wait for them.
     #[error(transparent)]
     Dead(#[from] watchdog::Dead),
+    /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
 }
@@ -171,7 +173,7 @@ impl<'a> Tender<'a> {
     }
 
     /// Does what is due and returns the time until the next heartbeat.
-    fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, TendError> {
+    fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, DriveError> {
         let mut heard = false;
         let (own, watchdog) = (self.diagnostics_writer, &mut self.watchdog);
         self.watch.update(bus, |info, _| {

@@ -1,5 +1,10 @@
-//! Claims about recordings, tested on whole files.
+//! Claims about recordings and imports, tested on whole files.
 
+mod contact_search;
 mod damage;
+mod imports;
+mod playback;
+mod reference_packing;
+mod round_trips;
 mod support;
 mod write_and_read;

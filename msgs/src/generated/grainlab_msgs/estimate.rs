@@ -3,7 +3,7 @@
 use crate::message::{Message, definition};
 use serde::{Deserialize, Serialize};
 
-/// What one model infers. Values hold for STATUS_OK and STATUS_EXTRAPOLATED, else they are 0.
+/// What one model infers. k to credible_level hold for STATUS_OK and STATUS_EXTRAPOLATED, else they are 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// for example "ratio"
@@ -12,6 +12,10 @@ pub struct Estimate {
     pub calibration: String,
     /// one of STATUS_\*
     pub status: u8,
+    /// strain ratio that the model was fed with, whatever the status
+    pub gamma_over_delta: f64,
+    /// which of the three it is: total, elastic, contact; given; zero = not known, taken as 0
+    pub gamma_over_delta_source: String,
     /// coordination number in the calibration's sense
     pub k: f64,
     /// of the equivalent isotropic packing
@@ -46,6 +50,6 @@ impl Message for Estimate {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Estimate";
     const TYPE: &'static str = "grainlab_msgs/msg/Estimate";
-    const HASH: &'static str = "RIHS01_a33156b3b57b60099ee365976594326a04d037551d9c5d38f44efa2744ab5b51";
+    const HASH: &'static str = "RIHS01_ca943e34744656daac12ce9530a7a4d5004e1976f547945bd5faa77cf931f494";
     const DEFINITION: &'static str = definition!("msg/Estimate.msg");
 }

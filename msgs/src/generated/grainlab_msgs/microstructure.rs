@@ -22,7 +22,7 @@ impl Message for Microstructure {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
-    const HASH: &'static str = "RIHS01_9fa9f1bc4cd9fea30f1eda8ce1f39741d8672b7383a61b8cbd051b79ce2baa80";
+    const HASH: &'static str = "RIHS01_9835dadc0df2eb2cd814bfe9fb7e8a0aec0b0f73d875f67e294e29a0e1f11b26";
     const DEFINITION: &'static str = definition!(
         "msg/Microstructure.msg",
         "grainlab_msgs/Estimate" => "msg/Estimate.msg",

@@ -17,8 +17,8 @@ use rustdds::dds::WriteError;
 use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
 use rustdds::no_key::DataWriter;
 use rustdds::{
-    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusListener, GUID, QosPolicyBuilder,
-    RTPSEntity, StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
+    DomainParticipant, DomainParticipantStatusListener, GUID, QosPolicyBuilder, RTPSEntity, StatusEvented,
+    Timestamp, TopicKind, WriteOptionsBuilder,
 };
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -84,11 +84,7 @@ pub struct DdsBus {
 impl DdsBus {
     /// Joins the domain. Peers are known some 0.2 s later.
     pub fn open(network: Network, names: Names) -> Result<Self, BusError> {
-        let mut builder = DomainParticipantBuilder::new(network.domain);
-        if let Some(interfaces) = network.interfaces() {
-            builder = builder.with_only_networks(interfaces);
-        }
-        let participant = builder.build().map_err(|e| create_error("DDS participant", &e))?;
+        let participant = network.participant().map_err(|e| create_error("DDS participant", &e))?;
         let none = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
         let subscriber =

@@ -1,5 +1,7 @@
 //! Which network and which domain: the ROS 2 environment variables, as far as RustDDS can honour them.
 
+use rustdds::dds::CreateResult;
+use rustdds::{DomainParticipant, DomainParticipantBuilder};
 use std::net::Ipv4Addr;
 
 /// How far discovery reaches.
@@ -93,11 +95,12 @@ impl Network {
         Ok(Self { domain, range })
     }
 
-    /// The interfaces to use; `None` for all of them.
-    pub(super) fn interfaces(&self) -> Option<[Ipv4Addr; 1]> {
+    /// A DDS participant of this network.
+    pub(crate) fn participant(&self) -> CreateResult<DomainParticipant> {
+        let builder = DomainParticipantBuilder::new(self.domain);
         match self.range {
-            Range::Localhost => Some([Ipv4Addr::LOCALHOST]),
-            Range::Subnet => None,
+            Range::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]).build(),
+            Range::Subnet => builder.build(),
         }
     }
 }

@@ -1,0 +1,130 @@
+//! How processes end, and what their peers see of it.
+
+use super::{PATIENCE, Role, domain};
+use grainlab_msgs::topics;
+use node_kit::{Bus, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// Watches a child as the launcher and the recorder do.
+struct Observer {
+    bus: DdsBus,
+    watch: PeerWatch,
+    subscriptions: Vec<node_kit::SubscriptionId>,
+    /// Highest sequence number and count of samples of each writer.
+    seen: BTreeMap<WriterId, (i64, u64)>,
+    last: Option<Report>,
+}
+
+impl Observer {
+    fn open(network: Network) -> Self {
+        let mut bus = DdsBus::open(network, Names::new("observer").unwrap()).unwrap();
+        let all = [topics::RUN_STATE, topics::ROSOUT, topics::DIAGNOSTICS];
+        let subscriptions = all.iter().map(|t| bus.subscribe(t, Demand::reliable(2000)).unwrap()).collect();
+        let watch = PeerWatch::subscribe(&mut bus).unwrap();
+        Self { bus, watch, subscriptions, seen: BTreeMap::new(), last: None }
+    }
+
+    fn look(&mut self) {
+        self.bus.wait(Duration::from_millis(20));
+        for subscription in &self.subscriptions {
+            while let Some(sample) = self.bus.take(*subscription).unwrap() {
+                let entry = self.seen.entry(sample.info.writer).or_default();
+                entry.0 = entry.0.max(sample.info.sequence);
+                entry.1 += 1;
+            }
+        }
+        let last = &mut self.last;
+        self.watch.update(&mut self.bus, |_, report| *last = Some(report.clone())).unwrap();
+    }
+
+    fn until(&mut self, what: &str, mut done: impl FnMut(&Self) -> bool) {
+        let start = Instant::now();
+        while !done(self) {
+            assert!(start.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+            self.look();
+        }
+    }
+
+    fn until_third_report(&mut self) {
+        let beats = |o: &Self| {
+            o.last
+                .as_ref()
+                .is_some_and(|r| r.published.iter().any(|p| p.topic == "/diagnostics" && p.count >= 3))
+        };
+        self.until("three heartbeats", beats);
+    }
+}
+
+#[test]
+fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received() {
+    for (role, signal, exit) in
+        [("talker", libc::SIGINT, Exit::Done), ("incomplete_talker", libc::SIGTERM, Exit::Interrupted)]
+    {
+        let network = domain(3);
+        let mut observer = Observer::open(network);
+        let child = Role::start(role, network);
+        observer.until_third_report();
+        child.signal(signal);
+        observer.until("the final report", |o| o.last.as_ref().is_some_and(Report::is_final));
+        let (code, _, stderr) = child.end();
+        assert_eq!(code, Some(i32::from(exit.code())), "{stderr}");
+        assert!(stderr.contains(&format!("[{role}]: asked to stop")), "{stderr}");
+
+        observer.until("the leave", |o| o.bus.foreign_writers(&topics::RUN_STATE).is_empty());
+        let last = observer.last.clone().unwrap();
+        assert_eq!(last.exit, Some(exit));
+        assert_eq!(last.published.len(), 3, "run_state, diagnostics, rosout");
+        for writer in &last.published {
+            let (highest, count) = observer.seen[&writer.writer];
+            assert_eq!((highest as u64, count), (writer.count, writer.count), "{}", writer.topic);
+        }
+        let peer = observer.watch.peers().find(&format!("/{role}")).unwrap();
+        assert_eq!(peer.life(observer.bus.now()), Life::Left(exit));
+    }
+}
+
+#[test]
+fn a_second_signal_ends_the_process_at_once() {
+    let network = domain(4);
+    let mut observer = Observer::open(network);
+    let child = Role::start("slow_talker", network);
+    observer.until_third_report();
+    child.signal(libc::SIGINT);
+    std::thread::sleep(Duration::from_millis(500));
+    let second = Instant::now();
+    child.signal(libc::SIGINT);
+    let (code, _, _) = child.end();
+    assert_eq!(code, Some(130));
+    assert!(second.elapsed() < Duration::from_secs(10), "the farewell would have taken 60 s");
+}
+
+#[test]
+fn a_dead_dds_thread_ends_the_process_instead_of_leaving_it_deaf() {
+    let child = Role::start("talker_without_dds_thread", domain(5));
+    let (code, _, stderr) = child.end();
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(stderr.contains("heartbeat did not come back"), "{stderr}");
+}
+
+#[test]
+fn a_panic_is_a_failure_that_peers_hear_of() {
+    let network = domain(6);
+    let child = Role::start("panicking_node", network);
+    let (code, _, stderr) = child.end();
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(stderr.contains("the bug") && stderr.contains("panicked (see above)"), "{stderr}");
+}
+
+#[test]
+fn a_killed_process_falls_silent_while_dds_still_shows_it() {
+    let network = domain(7);
+    let mut observer = Observer::open(network);
+    let child = Role::start("talker", network);
+    observer.until_third_report();
+    child.signal(libc::SIGKILL);
+    child.end();
+    let life = |o: &Observer| o.watch.peers().find("/talker").map(|p| p.life(o.bus.now()));
+    observer.until("silence", |o| matches!(life(o), Some(Life::Silent(_))));
+    assert_eq!(observer.bus.foreign_writers(&topics::RUN_STATE).len(), 1, "its lease has not ended yet");
+}

@@ -1,0 +1,70 @@
+//! Real processes: signals, exit codes, final counts, a dead DDS thread, the exchange's latency.
+//!
+//! A child is this test executable again, running one ignored test named by its role.
+
+mod latency;
+mod leaving;
+mod roles;
+
+use node_kit::Network;
+use std::io::Read;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A domain that other tests and other users of this machine hardly share; below 101, where Linux has no ephemeral ports.
+fn domain(offset: u16) -> Network {
+    Network::localhost(28 + (std::process::id() as u16 % 8) * 9 + offset)
+}
+
+/// A child process that is killed when the test fails.
+struct Role {
+    child: Child,
+    name: &'static str,
+}
+
+impl Role {
+    fn start(name: &'static str, network: Network) -> Self {
+        let child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", &format!("roles::{name}"), "--ignored", "--nocapture", "--test-threads=1"])
+            .env("ROS_DOMAIN_ID", network.domain.to_string())
+            .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
+            .env_remove("ROS_LOCALHOST_ONLY")
+            .env_remove("ROS_STATIC_PEERS")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        Self { child, name }
+    }
+
+    fn signal(&self, signal: i32) {
+        // SAFETY: kill has no memory effects; the pid is our own child's, which was not reaped.
+        assert_eq!(unsafe { libc::kill(self.child.id() as i32, signal) }, 0);
+    }
+
+    /// Waits for its end; returns exit code, stdout and stderr.
+    fn end(mut self) -> (Option<i32>, String, String) {
+        let start = Instant::now();
+        let status = loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(start.elapsed() < PATIENCE * 2, "{} did not end", self.name);
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        let (mut out, mut err) = (String::new(), String::new());
+        self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
+        self.child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        (status.code(), out, err)
+    }
+}
+
+impl Drop for Role {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

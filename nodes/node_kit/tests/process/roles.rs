@@ -1,0 +1,152 @@
+//! What the children do. Each is ignored: it runs only when a test starts it by name.
+
+use grainlab_msgs::msg::RunState;
+use grainlab_msgs::topics;
+use node_kit::pingpong::{bare_ping, bare_pong, bus_listen, bus_ping, bus_pong};
+use node_kit::{
+    Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, run_node,
+};
+use std::time::Duration;
+
+const EXCHANGES: u64 = 5000;
+
+/// Publishes a state now and then.
+struct Talker {
+    publisher: Publisher<RunState>,
+    step: u64,
+    at_end: Exit,
+    /// How long the farewell takes.
+    dawdle: Duration,
+}
+
+impl Node for Talker {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        self.step += 1;
+        self.publisher.publish(bus, &RunState { step: self.step, ..RunState::default() })?;
+        Ok(Next::Wait(Duration::from_millis(50)))
+    }
+
+    fn health(&self) -> Health {
+        Health::ok("talking").with("step", self.step)
+    }
+
+    fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
+        self.publisher.publish(bus, &RunState { step: 0, ..RunState::default() })?;
+        std::thread::sleep(self.dawdle);
+        Ok(self.at_end)
+    }
+}
+
+fn talk(name: &'static str, at_end: Exit, dawdle: Duration) -> ! {
+    let spec = NodeSpec { name, summary: "talks", parameters: Vec::new() };
+    let exit = run_node(&spec, &RosArgs::default(), |bus, _| {
+        let publisher = Publisher::advertise(bus, &topics::RUN_STATE)?;
+        Ok(Box::new(Talker { publisher, step: 0, at_end, dawdle }))
+    });
+    std::process::exit(i32::from(exit.code()))
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn talker() {
+    talk("talker", Exit::Done, Duration::ZERO)
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn incomplete_talker() {
+    talk("incomplete_talker", Exit::Interrupted, Duration::ZERO)
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn slow_talker() {
+    talk("slow_talker", Exit::Done, Duration::from_secs(60))
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn talker_without_dds_thread() {
+    std::thread::spawn(|| {
+        std::thread::sleep(Duration::from_secs(2));
+        end_dds_thread();
+    });
+    talk("deaf_talker", Exit::Done, Duration::ZERO)
+}
+
+/// Ends the event loop's thread alone, as a bug in it would: its next signal handler leaves through `SYS_exit`.
+fn end_dds_thread() {
+    extern "C" fn leave(_: i32) {
+        // SAFETY: ends the calling thread without unwinding; that is the fault to be found.
+        unsafe { libc::syscall(libc::SYS_exit, 0) };
+    }
+    for task in std::fs::read_dir("/proc/self/task").unwrap().flatten() {
+        let name = std::fs::read_to_string(task.path().join("comm")).unwrap();
+        if name.starts_with("RustDDS Partici") {
+            let thread: i32 = task.file_name().to_str().unwrap().parse().unwrap();
+            // SAFETY: the handler is async-signal-safe, and the thread is one of ours.
+            unsafe {
+                libc::signal(libc::SIGUSR1, leave as *const () as libc::sighandler_t);
+                libc::syscall(libc::SYS_tgkill, std::process::id(), thread, libc::SIGUSR1);
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn panicking_node() {
+    struct Panics;
+    impl Node for Panics {
+        fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
+            panic!("the bug")
+        }
+        fn health(&self) -> Health {
+            Health::default()
+        }
+    }
+    let spec = NodeSpec { name: "panicking", summary: "panics", parameters: Vec::new() };
+    let exit = run_node(&spec, &RosArgs::default(), |_, _| Ok(Box::new(Panics)));
+    std::process::exit(i32::from(exit.code()))
+}
+
+fn bus(name: &str) -> DdsBus {
+    DdsBus::open(Network::from_env().unwrap(), Names::new(name).unwrap()).unwrap()
+}
+
+fn print_quantiles(label: &str, mut micros: Vec<f64>) {
+    micros.sort_by(f64::total_cmp);
+    let at = |share: f64| micros[((micros.len() - 1) as f64 * share) as usize];
+    println!("{label}: n {} p50 {:.1} p90 {:.1} p99 {:.1} us", micros.len(), at(0.5), at(0.9), at(0.99));
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn our_ping() {
+    print_quantiles("ours", bus_ping(&mut bus("ping"), EXCHANGES).unwrap());
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn our_pong() {
+    bus_pong(&mut bus("pong")).unwrap();
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn our_listener() {
+    let (received, missing) = bus_listen(&mut bus("listener")).unwrap();
+    println!("listener: received {received} missing {missing}");
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn their_ping() {
+    print_quantiles("bare", bare_ping(Network::from_env().unwrap(), EXCHANGES).unwrap());
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn their_pong() {
+    bare_pong(Network::from_env().unwrap()).unwrap();
+}

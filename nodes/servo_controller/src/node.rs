@@ -1,0 +1,75 @@
+//! The node.
+
+use crate::{Refusal, answer};
+use grainlab_msgs::msg::{StrainRate, Stress};
+use grainlab_msgs::topics;
+use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
+use std::time::Duration;
+
+/// There is nothing to do between two questions.
+const IDLE: Duration = Duration::from_secs(3600);
+
+/// The servo: answers every stress, remembers nothing.
+#[derive(Debug)]
+pub struct ServoController {
+    stress: Subscription<Stress>,
+    strain_rate: Publisher<StrainRate>,
+    answered: u64,
+    unanswered: u64,
+    /// What was wrong with the latest stress, if something was.
+    trouble: Option<String>,
+}
+
+impl ServoController {
+    /// Joins the lockstep. It asks for best effort: the simulator repeats what gets lost, and a dead servo must not fill
+    /// the simulator's window.
+    pub fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
+        Ok(Self {
+            stress: Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(16))?,
+            strain_rate: Publisher::advertise(bus, &topics::STRAIN_RATE)?,
+            answered: 0,
+            unanswered: 0,
+            trouble: None,
+        })
+    }
+
+    fn refuse(&mut self, bus: &mut dyn Bus, refusal: &Refusal) {
+        if matches!(refusal, Refusal::Boundary(_)) {
+            bus.count_refused(self.stress.id());
+        }
+        self.unanswered += 1;
+        // A repeated question would fill the log with the same line.
+        if self.unanswered.is_power_of_two() {
+            log::warn!("{refusal} ({} unanswered so far)", self.unanswered);
+        }
+        self.trouble = Some(refusal.to_string());
+    }
+}
+
+impl Node for ServoController {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        while let Some((stress, _)) = self.stress.take_valid(bus)? {
+            match answer(&stress) {
+                Ok(message) => match self.strain_rate.publish(bus, &message) {
+                    Ok(_) => {
+                        self.answered += 1;
+                        self.trouble = None;
+                    }
+                    // The question comes again; the kit counts the answer lost.
+                    Err(full @ BusError::Full { .. }) => self.trouble = Some(full.to_string()),
+                    Err(error) => return Err(error.into()),
+                },
+                Err(refusal) => self.refuse(bus, &refusal),
+            }
+        }
+        Ok(Next::Wait(IDLE))
+    }
+
+    fn health(&self) -> Health {
+        let health = match &self.trouble {
+            None => Health::ok(format!("{} answers", self.answered)),
+            Some(trouble) => Health::warn(trouble.clone()),
+        };
+        health.with("answered", self.answered).with("unanswered", self.unanswered)
+    }
+}

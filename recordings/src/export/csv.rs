@@ -1,0 +1,55 @@
+//! The CSV format of [`crate::import::csv`], exact: numbers are written with as many digits as bring them back.
+
+use std::fmt::Write as _;
+
+use grains::{Mat3, Packing};
+use serde_json::{Value, json};
+
+/// Grains and contacts of a packing as CSV; [`sidecar`] gives the rest. Reading both back gives the same packing, bit for bit.
+pub fn csv(packing: &Packing) -> String {
+    let mut text = String::from("# particles: id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz\n");
+    // Writing to a String cannot fail.
+    for k in 0..packing.grains() {
+        let (x, v, w) = (&packing.positions[k], &packing.velocities[k], &packing.spins[k]);
+        let (id, radius) = (packing.ids[k], packing.radii[k]);
+        let mass = packing.material.sphere_mass(radius);
+        let _ = write!(text, "p,{id}");
+        for value in [x.x, x.y, x.z, radius, mass, v.x, v.y, v.z, w.x, w.y, w.z] {
+            let _ = write!(text, ",{value:e}");
+        }
+        text.push('\n');
+    }
+    text.push_str("# contacts: i,j,nx,ny,nz,delta,fn,ftx,fty,ftz (n from j to i; force on i = fn*n+ft)\n");
+    for c in &packing.contacts {
+        let (i, j) = (packing.ids[c.i as usize], packing.ids[c.j as usize]);
+        let (n, t) = (-c.normal, &c.tangential_force);
+        let _ = write!(text, "c,{i},{j}");
+        for value in [n.x, n.y, n.z, c.overlap, c.normal_force, t.x, t.y, t.z] {
+            let _ = write!(text, ",{value:e}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Cell, material and state of a packing, as the JSON beside its CSV.
+pub fn sidecar(packing: &Packing) -> String {
+    let rows = |m: &Mat3| -> Vec<Vec<f64>> { m.row_iter().map(|r| r.iter().copied().collect()).collect() };
+    // JSON has no infinity.
+    let friction = if packing.friction.is_finite() { json!(packing.friction) } else { json!("inf") };
+    let value: Value = json!({
+        "description": "packing exported by grainlab; SI units; compression positive; force on i; n from j to i",
+        "N": packing.grains(),
+        "G": packing.material.shear_modulus,
+        "nu": packing.material.poisson_ratio,
+        "density": packing.material.density,
+        "mu_prep": friction,
+        "cell": rows(packing.cell.matrix()),
+        "step": packing.step,
+        "time": packing.time,
+        "time_step": packing.time_step,
+        "deformation": rows(&packing.deformation),
+        "n_contacts": packing.contacts.len(),
+    });
+    format!("{value:#}\n")
+}

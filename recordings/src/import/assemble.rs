@@ -1,0 +1,243 @@
+//! Grains, settings and contacts to a packing.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use grains::{Cell, Contact, Mat3, Packing, Vec3};
+
+use super::Imported;
+use super::contacts::{self, SearchError};
+use super::error::ImportError;
+use super::settings::Settings;
+
+/// Grains as a file lists them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GrainTable {
+    pub(super) ids: Vec<u32>,
+    /// m.
+    pub(super) radii: Vec<f64>,
+    /// m.
+    pub(super) positions: Vec<Vec3>,
+    /// m/s.
+    pub(super) velocities: Vec<Vec3>,
+    /// rad/s.
+    pub(super) spins: Vec<Vec3>,
+}
+
+/// A contact as a file lists it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ListedContact {
+    pub(super) line: usize,
+    /// Ids of the two grains, in the file's order.
+    pub(super) ids: (u32, u32),
+    /// From the second to the first grain, if the file has it.
+    pub(super) normal: Option<Vec3>,
+    /// m, if the file has it.
+    pub(super) overlap: Option<f64>,
+    /// On the first grain, N.
+    pub(super) force: ListedForce,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ListedForce {
+    /// Along the normal, and across it.
+    Split {
+        normal: f64,
+        tangential: Vec3,
+    },
+    Total(Vec3),
+}
+
+/// What is known of the state besides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    pub(super) step: u64,
+    /// s.
+    pub(super) time: f64,
+    pub(super) deformation: Mat3,
+    /// s; 0 if the packing was not made by a simulation of ours.
+    pub(super) time_step: f64,
+}
+
+impl State {
+    pub(super) fn at(step: u64) -> Self {
+        Self { step, time: 0.0, deformation: Mat3::identity(), time_step: 0.0 }
+    }
+}
+
+impl GrainTable {
+    pub(super) fn push(&mut self, id: u32, radius: f64, [x, v, w]: [Vec3; 3]) {
+        self.ids.push(id);
+        self.radii.push(radius);
+        self.positions.push(x);
+        self.velocities.push(v);
+        self.spins.push(w);
+    }
+
+    /// In order of id: other programs list grains in whatever order they hold them.
+    pub(super) fn sorted_by_id(self) -> Self {
+        let mut order: Vec<usize> = (0..self.ids.len()).collect();
+        order.sort_by_key(|&k| self.ids[k]);
+        let vectors = |v: &[Vec3]| order.iter().map(|&k| v[k]).collect();
+        Self {
+            ids: order.iter().map(|&k| self.ids[k]).collect(),
+            radii: order.iter().map(|&k| self.radii[k]).collect(),
+            positions: vectors(&self.positions),
+            velocities: vectors(&self.velocities),
+            spins: vectors(&self.spins),
+        }
+    }
+
+    /// Folds grains that have wandered further than 60 cells back into the cell: image indices end at 127.
+    pub(super) fn folded_if_far(mut self, cell: &Cell) -> Self {
+        for x in &mut self.positions {
+            let copy = cell.fractional(x).map(f64::floor);
+            if copy.amax() > 60.0 {
+                *x -= cell.matrix() * copy;
+            }
+        }
+        self
+    }
+}
+
+/// The packing of these grains; contacts that are not listed (`None`) are found.
+pub(super) fn packing(
+    grains: GrainTable,
+    settings: &Settings,
+    listed: Option<&[ListedContact]>,
+    state: State,
+    source: String,
+    mut notes: Vec<String>,
+) -> Result<Imported, ImportError> {
+    if grains.ids.is_empty() {
+        return Err(ImportError::Empty);
+    }
+    let mut packing = Packing {
+        step: state.step,
+        time: state.time,
+        cell: settings.cell,
+        deformation: state.deformation,
+        ids: grains.ids,
+        radii: grains.radii,
+        positions: grains.positions,
+        velocities: grains.velocities,
+        spins: grains.spins,
+        contacts: Vec::new(),
+        material: settings.material,
+        friction: settings.friction,
+        time_step: state.time_step,
+    }
+    .validated()?;
+    let mut index = BTreeMap::new();
+    for (k, id) in packing.ids.iter().enumerate() {
+        if index.insert(*id, k).is_some() {
+            return Err(ImportError::DuplicateId(*id));
+        }
+    }
+    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material);
+    let id = |k: usize| packing.ids[k];
+    let found = found.map_err(|e| match e {
+        SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
+        SearchError::FarImage(i, j) => ImportError::FarImage(id(i), id(j)),
+    })?;
+    packing.contacts = match listed {
+        None => {
+            notes
+                .push("contacts were found from positions: Hertz normal forces, no tangential forces".into());
+            found
+        }
+        Some(listed) => {
+            let contacts =
+                listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<Vec<_>, _>>()?;
+            compare(&packing, &contacts, &found, &mut notes);
+            contacts
+        }
+    };
+    packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    let packing = packing.validated()?;
+    Ok(Imported { packing, step: state.step, source, notes })
+}
+
+/// The contact in our convention, checked against the positions.
+fn listed_contact(
+    p: &Packing,
+    index: &BTreeMap<u32, usize>,
+    c: &ListedContact,
+) -> Result<Contact, ImportError> {
+    let find = |id: u32| index.get(&id).copied().ok_or(ImportError::UnknownId { line: c.line, id });
+    let (first, second) = (find(c.ids.0)?, find(c.ids.1)?);
+    // The file's first grain is our i unless its index is the larger one; then everything changes sides.
+    let swapped = first > second;
+    let (i, j) = if swapped { (second, first) } else { (first, second) };
+    let side = if swapped { -1.0 } else { 1.0 };
+    let radii = p.radii[i] + p.radii[j];
+    let apart = p.positions[j] - p.positions[i];
+    // Where the image of j is expected; without a normal, the nearest one.
+    let steps = match (c.normal, c.overlap) {
+        (Some(normal), overlap) => {
+            let expected = normal * (-side * (radii - overlap.unwrap_or(0.0)));
+            (p.cell.inverse() * (expected - apart)).map(f64::round)
+        }
+        (None, _) => -(p.cell.inverse() * apart).map(f64::round),
+    };
+    if steps.amax() > f64::from(i8::MAX) || !steps.amax().is_finite() {
+        return Err(ImportError::FarImage(c.ids.0, c.ids.1));
+    }
+    let image = [steps.x as i8, steps.y as i8, steps.z as i8];
+    let branch = apart + p.cell.shift(image);
+    let distance = branch.norm();
+    if distance == 0.0 {
+        return Err(ImportError::Coincident(c.ids.0, c.ids.1));
+    }
+    let measured = branch / distance;
+    let contradiction = |quantity, given, found| ImportError::Contradiction {
+        line: c.line,
+        i: c.ids.0,
+        j: c.ids.1,
+        quantity,
+        given,
+        found,
+    };
+    // What 17 digits leave open: a few units in the last place of the coordinates.
+    let rounding =
+        16.0 * f64::EPSILON * (p.positions[i].amax() + p.positions[j].amax() + p.cell.matrix().amax());
+    let overlap = c.overlap.unwrap_or(radii - distance);
+    if (overlap - (radii - distance)).abs() > 1e-9 * overlap.abs() + rounding {
+        return Err(contradiction("overlap (m)", overlap, radii - distance));
+    }
+    let normal = c.normal.map_or(measured, |n| n * -side);
+    let angle = (normal - measured).norm();
+    if angle > 1e-9 + rounding / distance {
+        return Err(contradiction("angle of the normal (rad)", 0.0, angle));
+    }
+    let (normal_force, tangential_force) = match c.force {
+        ListedForce::Split { normal, tangential } => (normal, tangential * side),
+        ListedForce::Total(force) => {
+            let on_i = force * side;
+            let pressing = -on_i.dot(&normal);
+            (pressing, on_i + normal * pressing)
+        }
+    };
+    // Other codes turn the tangential force with the contact only so well; a wrong convention is wrong by much more.
+    let along = tangential_force.dot(&normal).abs();
+    if along > 1e-3 * (normal_force.abs() + tangential_force.norm()) {
+        return Err(contradiction("tangential force along the normal (N)", along, 0.0));
+    }
+    let (i, j) = (i as u32, j as u32);
+    Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
+}
+
+/// Notes contacts that only one of list and positions has.
+fn compare(p: &Packing, listed: &[Contact], found: &[Contact], notes: &mut Vec<String>) {
+    let key = |c: &Contact| (c.i, c.j, c.image);
+    let (a, b): (BTreeSet<_>, BTreeSet<_>) =
+        (listed.iter().map(key).collect(), found.iter().map(key).collect());
+    let name =
+        |k: &(u32, u32, [i8; 3])| format!("grains {} and {}", p.ids[k.0 as usize], p.ids[k.1 as usize]);
+    let mut note = |mut missing: std::collections::btree_set::Difference<'_, _>, what: &str| {
+        if let Some(first) = missing.next() {
+            notes.push(format!("{} contact(s) {what}, the first of {}", missing.count() + 1, name(first)));
+        }
+    };
+    note(b.difference(&a), "overlap by position but are not listed");
+    note(a.difference(&b), "are listed but do not overlap by position");
+}

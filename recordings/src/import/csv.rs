@@ -1,0 +1,87 @@
+//! A packing as CSV with a JSON sidecar.
+//!
+//! Rows, SI units, ids are persistent:
+//!
+//! - `p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz`, a grain;
+//! - `c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz`, a contact of the grains with ids `i` and `j`: unit vector n from `j` to `i`, full
+//!   overlap, and the force on `i`, fn·n + ft.
+//!
+//! Lines that start with `#` are comments. A file without contact rows has its contacts found from positions.
+//!
+//! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of three; columns are
+//! the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s), `time_step` (s), `deformation` (three
+//! rows of three). Other keys are left alone.
+
+use grains::Vec3;
+
+use super::Imported;
+use super::assemble::{self, GrainTable, ListedContact, ListedForce};
+use super::error::ImportError;
+use super::settings::ImportOptions;
+use super::text::{Line, lines};
+
+mod sidecar;
+
+use sidecar::Sidecar;
+
+/// The packing of a CSV text and the text of its sidecar, if there is one.
+///
+/// # Errors
+/// If a row or the sidecar is malformed, something is missing, or contacts contradict the positions.
+pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Result<Imported, ImportError> {
+    let sidecar = Sidecar::parse(sidecar)?;
+    let settings = sidecar.known()?.complete(options)?;
+    let (mut grains, mut contacts, mut masses) = (GrainTable::default(), Vec::new(), Vec::new());
+    for line in lines(csv).filter(|l| !l.text.trim().is_empty() && !l.text.starts_with('#')) {
+        let fields: Vec<&str> = line.text.trim().split(',').collect();
+        match fields.as_slice() {
+            ["p", rest @ ..] => masses.push(grain(&line, rest, &mut grains)?),
+            ["c", rest @ ..] => contacts.push(contact(&line, rest)?),
+            other => return Err(line.error(format!("a row starts with p or c, not {:?}", other[0]))),
+        }
+    }
+    let mut notes = Vec::new();
+    let wrong = |(mass, radius): &(&f64, &f64)| {
+        let expected = settings.material.sphere_mass(**radius);
+        (**mass / expected - 1.0).abs() > 1e-6
+    };
+    let heavier = masses.iter().zip(&grains.radii).filter(wrong).count();
+    if heavier > 0 {
+        notes.push(format!(
+            "{heavier} grain(s) have another mass than density and radius give; the density is used"
+        ));
+    }
+    let listed = (!contacts.is_empty()).then_some(contacts.as_slice());
+    assemble::packing(grains, &settings, listed, sidecar.state()?, "CSV".into(), notes)
+}
+
+/// Adds a grain; returns its mass, kg.
+fn grain(line: &Line<'_>, fields: &[&str], grains: &mut GrainTable) -> Result<f64, ImportError> {
+    let [id, x, y, z, radius, mass, vx, vy, vz, wx, wy, wz] = *fields else {
+        let n = fields.len();
+        return Err(line
+            .error(format!("p is followed by id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz: 12 fields, not {n}")));
+    };
+    let position = line.vector("position", [x, y, z])?;
+    let velocity = line.vector("velocity", [vx, vy, vz])?;
+    let spin = line.vector("angular velocity", [wx, wy, wz])?;
+    grains.push(line.id("id", id)?, line.number("radius", radius)?, [position, velocity, spin]);
+    line.number("mass", mass)
+}
+
+fn contact(line: &Line<'_>, fields: &[&str]) -> Result<ListedContact, ImportError> {
+    let [i, j, nx, ny, nz, delta, normal, ftx, fty, ftz] = *fields else {
+        let n = fields.len();
+        return Err(
+            line.error(format!("c is followed by i,j,nx,ny,nz,delta,fn,ftx,fty,ftz: 10 fields, not {n}"))
+        );
+    };
+    let tangential: Vec3 = line.vector("ft", [ftx, fty, ftz])?;
+    Ok(ListedContact {
+        line: line.number,
+        ids: (line.id("i", i)?, line.id("j", j)?),
+        normal: Some(line.vector("n", [nx, ny, nz])?),
+        overlap: Some(line.number("delta", delta)?),
+        force: ListedForce::Split { normal: line.number("fn", normal)?, tangential },
+    })
+}

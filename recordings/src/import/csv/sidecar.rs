@@ -1,0 +1,73 @@
+//! The JSON beside a CSV.
+
+use grains::Mat3;
+use serde::Deserialize;
+
+use crate::import::assemble::State;
+use crate::import::error::ImportError;
+use crate::import::settings::Known;
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Sidecar {
+    #[serde(rename = "G")]
+    shear_modulus: Option<f64>,
+    nu: Option<f64>,
+    density: Option<f64>,
+    mu_prep: Option<Friction>,
+    cell: Option<[[f64; 3]; 3]>,
+    #[serde(rename = "box_L")]
+    box_lengths: Option<[f64; 3]>,
+    step: Option<u64>,
+    time: Option<f64>,
+    time_step: Option<f64>,
+    deformation: Option<[[f64; 3]; 3]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Friction {
+    Number(f64),
+    Word(String),
+}
+
+impl Sidecar {
+    pub(super) fn parse(text: Option<&str>) -> Result<Self, ImportError> {
+        let Some(text) = text else { return Ok(Self::default()) };
+        serde_json::from_str(text).map_err(|e| ImportError::Sidecar(e.to_string()))
+    }
+
+    pub(super) fn known(&self) -> Result<Known, ImportError> {
+        let friction = match &self.mu_prep {
+            None => None,
+            Some(Friction::Number(mu)) => Some(*mu),
+            Some(Friction::Word(word)) if word == "inf" => Some(f64::INFINITY),
+            Some(Friction::Word(word)) => {
+                return Err(ImportError::Sidecar(format!(
+                    "mu_prep is {word:?}: a number or \"inf\" is needed"
+                )));
+            }
+        };
+        let diagonal = |l: [f64; 3]| Mat3::from_diagonal(&l.into());
+        Ok(Known {
+            cell: self.cell.map(matrix).or_else(|| self.box_lengths.map(diagonal)),
+            shear_modulus: self.shear_modulus,
+            poisson_ratio: self.nu,
+            density: self.density,
+            friction,
+        })
+    }
+
+    pub(super) fn state(&self) -> Result<State, ImportError> {
+        let state = State::at(self.step.unwrap_or(0));
+        Ok(State {
+            time: self.time.unwrap_or(state.time),
+            deformation: self.deformation.map_or(state.deformation, matrix),
+            time_step: self.time_step.unwrap_or(state.time_step),
+            ..state
+        })
+    }
+}
+
+fn matrix(rows: [[f64; 3]; 3]) -> Mat3 {
+    Mat3::from_fn(|r, c| rows[r][c])
+}

@@ -1,0 +1,123 @@
+//! Why an import fails.
+
+use std::io;
+use std::path::PathBuf;
+
+use grains::PackingError;
+
+use super::settings::Setting;
+use crate::reader::ReadError;
+
+/// Why something is not a packing that can be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// A file cannot be read.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] ReadError),
+    /// The error, and the file it is in.
+    #[error("{path}: {source}")]
+    In {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong in it.
+        source: Box<ImportError>,
+    },
+    /// No parser knows this file.
+    #[error(
+        "not a packing that can be read: neither CSV (.csv), nor a LAMMPS dump (.dump, .lammpstrj) or data file (.data), nor a recording (.mcap or its directory), each also as .gz"
+    )]
+    UnknownFormat,
+    /// A line is not what the format says.
+    #[error("line {line}: {problem}")]
+    Syntax {
+        /// Line, counted from 1.
+        line: usize,
+        /// What was expected and what was found.
+        problem: String,
+    },
+    /// Nothing in the file, its sidecar or the options says this.
+    #[error("the file does not say {}", list(.0))]
+    Missing(Vec<Setting>),
+    /// The sidecar is not what it should be.
+    #[error("sidecar: {0}")]
+    Sidecar(String),
+    /// The cell is not one.
+    #[error("the cell {0:?} (row-major, columns are the edge vectors, m) has no positive volume")]
+    Cell([f64; 9]),
+    /// The file describes something that this laboratory does not have.
+    #[error("line {line}: {what} is not supported: {reason}")]
+    Unsupported {
+        /// Line, counted from 1.
+        line: usize,
+        /// What was found.
+        what: String,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// An id occurs twice.
+    #[error("grain {0} occurs twice")]
+    DuplicateId(u32),
+    /// A contact names a grain that does not exist.
+    #[error("line {line}: a contact names grain {id}, which does not exist")]
+    UnknownId {
+        /// Line, counted from 1.
+        line: usize,
+        /// The id.
+        id: u32,
+    },
+    /// A contact contradicts the positions.
+    #[error(
+        "line {line}: {quantity} of the contact of grains {i} and {j} is {given:e}, but positions give {found:e}: positions, cell and contacts are not of the same state, or have too few digits (17 are needed)"
+    )]
+    Contradiction {
+        /// Line, counted from 1.
+        line: usize,
+        /// Id of the first grain.
+        i: u32,
+        /// Id of the second grain.
+        j: u32,
+        /// What disagrees, with its unit.
+        quantity: &'static str,
+        /// As the file has it.
+        given: f64,
+        /// As positions have it.
+        found: f64,
+    },
+    /// Two grains have the same centre.
+    #[error("grains {0} and {1} have the same centre: their contact has no direction")]
+    Coincident(u32, u32),
+    /// An image index does not fit.
+    #[error(
+        "grains {0} and {1} touch across more than 127 cells: fold positions into the cell, or check its size"
+    )]
+    FarImage(u32, u32),
+    /// The numbers are no packing.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// A recorded message is no packing.
+    #[error("message {sequence} on {topic}: {problem}")]
+    Message {
+        /// Topic.
+        topic: String,
+        /// Low half of its sequence number.
+        sequence: u32,
+        /// Why not.
+        problem: String,
+    },
+    /// There is no packing in the file.
+    #[error("there is no packing in it")]
+    Empty,
+}
+
+fn list(settings: &[Setting]) -> String {
+    let names: Vec<String> = settings.iter().map(|s| format!("{} (give {})", s.what(), s.flag())).collect();
+    names.join(", ")
+}

@@ -1,0 +1,179 @@
+//! LAMMPS data files of `atom_style sphere`, as `write_data` makes them.
+//!
+//! Taken: the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are left alone) and `Velocities` (id, v, ω), in SI
+//! units. Contacts are found from positions.
+
+use std::collections::BTreeMap;
+
+use grains::{Mat3, Vec3};
+
+use super::assemble::{self, GrainTable, State};
+use super::error::ImportError;
+use super::settings::{ImportOptions, Known};
+use super::text::{Line, lines};
+use super::{Imported, lammps_cell};
+
+/// The packing of a data file.
+///
+/// # Errors
+/// If the text is malformed, of another style or unit, has mixed densities, or settings are missing.
+pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
+    let mut file = DataFile::default();
+    let mut section = Section::Header;
+    for line in lines(text) {
+        // A section's name may be followed by a comment that names the style.
+        let (content, comment) = line.text.split_once('#').unwrap_or((line.text, ""));
+        let words: Vec<&str> = content.split_whitespace().collect();
+        if line.number == 1 {
+            file.title(&line)?;
+        } else if let Some(first) = words.first() {
+            if first.starts_with(|c: char| c.is_ascii_alphabetic()) {
+                section = Section::of(&line, first, comment.trim())?;
+            } else {
+                match section {
+                    Section::Header => file.header(&line, &words)?,
+                    Section::Atoms => file.atom(&line, &words)?,
+                    Section::Velocities => file.velocity(&line, &words)?,
+                    Section::Other => {}
+                }
+            }
+        }
+    }
+    file.finish(options)
+}
+
+#[derive(Clone, Copy)]
+enum Section {
+    Header,
+    Atoms,
+    Velocities,
+    Other,
+}
+
+impl Section {
+    fn of(line: &Line<'_>, name: &str, style: &str) -> Result<Self, ImportError> {
+        match name {
+            "Atoms" if matches!(style, "" | "sphere") => Ok(Self::Atoms),
+            "Atoms" => {
+                let (line, what) = (line.number, format!("atom_style {style}"));
+                Err(ImportError::Unsupported { line, what, reason: "only spheres are (atom_style sphere)" })
+            }
+            "Velocities" => Ok(Self::Velocities),
+            _ => Ok(Self::Other),
+        }
+    }
+}
+
+#[derive(Default)]
+struct DataFile {
+    step: u64,
+    expected: Option<usize>,
+    bounds: [Option<f64>; 3],
+    tilt: [f64; 3],
+    grains: GrainTable,
+    densities: Vec<f64>,
+    motion: BTreeMap<u32, (usize, Vec3, Vec3)>,
+}
+
+impl DataFile {
+    /// `LAMMPS data file via write_data, version …, timestep = 100000, units = si`: read where it says so.
+    fn title(&mut self, line: &Line<'_>) -> Result<(), ImportError> {
+        let value = |key: &str| {
+            line.text.split(',').find_map(|p| p.trim().strip_prefix(key)?.trim().strip_prefix('='))
+        };
+        if let Some(step) = value("timestep").and_then(|t| t.trim().parse().ok()) {
+            self.step = step;
+        }
+        match value("units").map(str::trim) {
+            None | Some("si") => Ok(()),
+            Some(other) => Err(ImportError::Unsupported {
+                line: line.number,
+                what: format!("units {other}"),
+                reason: "only SI units are: convert with LAMMPS (units si)",
+            }),
+        }
+    }
+
+    fn header(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
+        match *words {
+            [n, "atoms"] => self.expected = Some(line.number("number of atoms", n)?),
+            [lo, hi, "xlo", "xhi"] => self.bounds[0] = Some(edge(line, lo, hi)?),
+            [lo, hi, "ylo", "yhi"] => self.bounds[1] = Some(edge(line, lo, hi)?),
+            [lo, hi, "zlo", "zhi"] => self.bounds[2] = Some(edge(line, lo, hi)?),
+            [xy, xz, yz, "xy", "xz", "yz"] => self.tilt = line.vector("tilt", [xy, xz, yz])?.into(),
+            [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
+                let (line, what) = (line.number, "a general triclinic box".into());
+                let reason = "write it as a restricted triclinic one (write_data without triclinic/general)";
+                return Err(ImportError::Unsupported { line, what, reason });
+            }
+            // Numbers of types, bonds and so on.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
+        let [id, _, diameter, density, x, y, z] = match *words {
+            [id, t, d, rho, x, y, z] | [id, t, d, rho, x, y, z, _, _, _] => [id, t, d, rho, x, y, z],
+            _ => {
+                let problem = "an atom is id type diameter density x y z, and three image flags or none";
+                return Err(line.error(format!("{problem}: 7 or 10 fields, not {}", words.len())));
+            }
+        };
+        let radius = 0.5 * line.number::<f64>("diameter", diameter)?;
+        self.densities.push(line.number("density", density)?);
+        let position = line.vector("position", [x, y, z])?;
+        self.grains.push(line.id("id", id)?, radius, [position, Vec3::zeros(), Vec3::zeros()]);
+        Ok(())
+    }
+
+    fn velocity(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {
+        let [id, vx, vy, vz, wx, wy, wz] = *words else {
+            return Err(
+                line.error(format!("a velocity is id vx vy vz wx wy wz: 7 fields, not {}", words.len()))
+            );
+        };
+        let (v, w) = (line.vector("velocity", [vx, vy, vz])?, line.vector("angular velocity", [wx, wy, wz])?);
+        self.motion.insert(line.id("id", id)?, (line.number, v, w));
+        Ok(())
+    }
+
+    fn finish(mut self, options: &ImportOptions) -> Result<Imported, ImportError> {
+        for (k, id) in self.grains.ids.iter().enumerate() {
+            if let Some((_, v, w)) = self.motion.remove(id) {
+                (self.grains.velocities[k], self.grains.spins[k]) = (v, w);
+            }
+        }
+        if let Some((id, (line, ..))) = self.motion.pop_first() {
+            return Err(ImportError::UnknownId { line, id });
+        }
+        let found = self.grains.ids.len();
+        if let Some(expected) = self.expected.filter(|n| *n != found) {
+            let problem = format!("the file ends after {found} of {expected} atoms");
+            return Err(ImportError::Syntax { line: 1, problem });
+        }
+        let cell: Option<Mat3> = match self.bounds {
+            [Some(lx), Some(ly), Some(lz)] => Some(lammps_cell([lx, ly, lz], self.tilt)),
+            _ => None,
+        };
+        let density = self.densities.first().copied();
+        if options.density.is_none() && self.densities.iter().any(|d| Some(*d) != density) {
+            let reason = "all grains must be of one material: give --density to use one for all";
+            return Err(ImportError::Unsupported { line: 1, what: "a mixture of densities".into(), reason });
+        }
+        let settings = Known { cell, density, ..Known::default() }.complete(options)?;
+        let grains = self.grains.sorted_by_id();
+        assemble::packing(
+            grains,
+            &settings,
+            None,
+            State::at(self.step),
+            "LAMMPS data file".into(),
+            Vec::new(),
+        )
+    }
+}
+
+fn edge(line: &Line<'_>, lo: &str, hi: &str) -> Result<f64, ImportError> {
+    Ok(line.number::<f64>("upper bound", hi)? - line.number::<f64>("lower bound", lo)?)
+}

@@ -1,0 +1,45 @@
+//! Packings of recordings of ours.
+
+use grainlab_msgs::{Message as _, from_cdr, msg, topics};
+use grains::Packing;
+
+use super::error::ImportError;
+use super::{ImportOptions, Imported};
+use crate::reader::{Message, ReadError, Recording, Selection};
+
+/// The packings of a recording, in order of log time. A message that is not a packing is an error; a damaged or truncated
+/// recording gives what is left of it, and says so in its warnings.
+///
+/// # Errors
+/// If the topic does not exist, carries another type, or a message on it is not a packing.
+pub fn packings(recording: &Recording, options: &ImportOptions) -> Result<Vec<Imported>, ImportError> {
+    let topic = options.topic.as_deref().unwrap_or(topics::PACKING.name);
+    let channel = recording.channel(topic)?;
+    if channel.ros_type != msg::Packing::TYPE {
+        let channels = recording.channels();
+        let known = channels.iter().filter(|c| c.ros_type == msg::Packing::TYPE).map(|c| c.topic.as_str());
+        let known = known.collect::<Vec<_>>().join(", ");
+        let (path, topic) = (recording.path().to_owned(), format!("{topic} of type {}", msg::Packing::TYPE));
+        return Err(ReadError::NoSuchTopic { path, topic, known }.into());
+    }
+    let packings: Result<Vec<_>, _> =
+        recording.messages(&Selection::topics([topic]))?.map(|m| packing(&m)).collect();
+    packings.and_then(|p| if p.is_empty() { Err(ImportError::Empty) } else { Ok(p) })
+}
+
+/// The packing of one recorded message.
+///
+/// # Errors
+/// If the message is not one, or what it holds is not a packing.
+pub fn packing(message: &Message) -> Result<Imported, ImportError> {
+    let fail = |problem: String| ImportError::Message {
+        topic: message.channel.topic.clone(),
+        sequence: message.sequence,
+        problem,
+    };
+    let decoded: msg::Packing = from_cdr(&message.payload).map_err(|e| fail(e.to_string()))?;
+    let packing = Packing::try_from(&decoded).map_err(|e| fail(e.to_string()))?;
+    let scene = if decoded.scene.is_empty() { "a scene without name" } else { &decoded.scene };
+    let source = format!("recording, {scene}, step {}", packing.step);
+    Ok(Imported { step: packing.step, packing, source, notes: Vec::new() })
+}

@@ -1,0 +1,115 @@
+//! What a file does not say about a packing.
+
+use grains::{Cell, Mat3, Material};
+
+use super::error::ImportError;
+
+/// Values given by hand; each one goes before what the file or its sidecar says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImportOptions {
+    /// The cell: edge vectors as columns, m.
+    pub cell: Option<Mat3>,
+    /// Shear modulus of the grain, Pa.
+    pub shear_modulus: Option<f64>,
+    /// Poisson ratio of the grain.
+    pub poisson_ratio: Option<f64>,
+    /// Density of the grain, kg/m³.
+    pub density: Option<f64>,
+    /// Friction coefficient; may be infinite.
+    pub friction: Option<f64>,
+    /// Radius of every grain, m, for files that have none.
+    pub radius: Option<f64>,
+    /// Topic of a recording; `packing` if not given.
+    pub topic: Option<String>,
+    /// Text of a LAMMPS `dump local` with the contact forces of the one frame of a dump.
+    pub contact_forces: Option<String>,
+}
+
+/// Something that must be known of a packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Setting {
+    /// The periodic cell.
+    Cell,
+    /// Shear modulus of the grain.
+    ShearModulus,
+    /// Poisson ratio of the grain.
+    PoissonRatio,
+    /// Density of the grain.
+    Density,
+    /// Friction coefficient.
+    Friction,
+    /// Radius of the grains.
+    Radius,
+}
+
+impl Setting {
+    /// In words.
+    pub fn what(self) -> &'static str {
+        match self {
+            Self::Cell => "the cell",
+            Self::ShearModulus => "the grain's shear modulus",
+            Self::PoissonRatio => "the grain's Poisson ratio",
+            Self::Density => "the grain's density",
+            Self::Friction => "the friction coefficient",
+            Self::Radius => "the radius of the grains",
+        }
+    }
+
+    /// The command-line flag that gives it, with its unit.
+    pub fn flag(self) -> &'static str {
+        match self {
+            Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",
+            Self::ShearModulus => "--shear-modulus PA",
+            Self::PoissonRatio => "--poisson NU",
+            Self::Density => "--density KG_PER_M3",
+            Self::Friction => "--friction MU",
+            Self::Radius => "--radius M",
+        }
+    }
+}
+
+/// What a file says, to be completed by the options.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    pub(super) cell: Option<Mat3>,
+    pub(super) shear_modulus: Option<f64>,
+    pub(super) poisson_ratio: Option<f64>,
+    pub(super) density: Option<f64>,
+    pub(super) friction: Option<f64>,
+}
+
+/// All that a packing needs beside its grains.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    pub(super) cell: Cell,
+    pub(super) material: Material,
+    pub(super) friction: f64,
+}
+
+impl Known {
+    /// All settings, or the list of those that are missing.
+    pub(super) fn complete(&self, options: &ImportOptions) -> Result<Settings, ImportError> {
+        let mut missing = Vec::new();
+        let mut need = |given: Option<f64>, known: Option<f64>, setting| {
+            given.or(known).unwrap_or_else(|| {
+                missing.push(setting);
+                f64::NAN
+            })
+        };
+        let shear_modulus = need(options.shear_modulus, self.shear_modulus, Setting::ShearModulus);
+        let poisson_ratio = need(options.poisson_ratio, self.poisson_ratio, Setting::PoissonRatio);
+        let density = need(options.density, self.density, Setting::Density);
+        let friction = need(options.friction, self.friction, Setting::Friction);
+        let matrix = options.cell.or(self.cell);
+        if matrix.is_none() {
+            missing.push(Setting::Cell);
+        }
+        let Some(matrix) = matrix.filter(|_| missing.is_empty()) else {
+            missing.sort();
+            return Err(ImportError::Missing(missing));
+        };
+        let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
+        let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
+        Ok(Settings { cell, material: Material { shear_modulus, poisson_ratio, density }, friction })
+    }
+}

@@ -1,0 +1,86 @@
+//! Why a recording fails.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use mcap::McapError;
+
+/// Why a recording cannot be begun, continued or ended.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// There is a recording already.
+    #[error("{path} exists: choose another run directory; a recording is never overwritten")]
+    Exists {
+        /// The file in the way.
+        path: PathBuf,
+    },
+    /// Not enough space to begin or to go on.
+    #[error(
+        "{path}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space and run again"
+    )]
+    NoSpace {
+        /// The recording.
+        path: PathBuf,
+        /// Bytes free.
+        free: u64,
+        /// Bytes that must be free.
+        needed: u64,
+        /// `not begun`, or `stopped (what is recorded stays readable)`.
+        state: &'static str,
+    },
+    /// The file system refused.
+    #[error("{path}: cannot {action}: {source}")]
+    Io {
+        /// The file or directory.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// What it said.
+        source: io::Error,
+    },
+    /// The MCAP writer refused.
+    #[error("{path}: cannot {action}: {source}; what was written before stays readable")]
+    Format {
+        /// The recording.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// What it said.
+        source: McapError,
+    },
+    /// A sample came on a topic that was never declared.
+    #[error("topic {0} was not declared to the recording: add it with its type before its first message")]
+    UnknownTopic(String),
+    /// A topic was declared twice, differently.
+    #[error("topic {0} is already recorded with another type, schema or QoS")]
+    ConflictingTopic(String),
+    /// A sample is too short to be CDR.
+    #[error("message {sequence} on {topic} has {bytes} bytes: CDR starts with a 4-byte encapsulation header")]
+    NotCdr {
+        /// Topic it came on.
+        topic: String,
+        /// Its RTPS sequence number.
+        sequence: i64,
+        /// Its length.
+        bytes: usize,
+    },
+    /// An earlier failure ended the recording.
+    #[error("{path}: an earlier error ended this recording: {reason}")]
+    Ended {
+        /// The recording.
+        path: PathBuf,
+        /// The earlier error.
+        reason: String,
+    },
+}
+
+impl WriteError {
+    /// The file system's own words where it was the file system.
+    pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
+        let path = path.to_owned();
+        match source {
+            McapError::Io(source) => Self::Io { path, action, source },
+            source => Self::Format { path, action, source },
+        }
+    }
+}

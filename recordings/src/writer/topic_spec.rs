@@ -1,0 +1,38 @@
+//! What a recording says about a topic.
+
+use grainlab_msgs::{Topic, TypeInfo};
+
+/// What a channel of the recording declares.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TopicSpec {
+    /// Absolute name, `/stress`.
+    pub name: String,
+    /// ROS type, `grainlab_msgs/msg/Stress`.
+    pub ros_type: String,
+    /// Schema: the `.msg` text followed by those it depends on, as `ros2msg`.
+    pub definition: String,
+    /// `RIHS01_<64 hexadecimal digits>`, or empty if unknown.
+    pub type_hash: String,
+    /// QoS offered, as the YAML list of rosbag2 with integers, or empty if unknown.
+    pub qos: String,
+}
+
+impl TopicSpec {
+    /// The channel of a topic of the contract, under its full name (with the namespace, if it has one).
+    pub fn of_contract(topic: &Topic, full_name: &str) -> Self {
+        let mut spec = Self::of_type(&topic.info, full_name);
+        spec.qos = topic.qos.offered_qos_profiles();
+        spec
+    }
+
+    /// A channel of any type known to the laboratory; its QoS is unknown.
+    pub fn of_type(info: &TypeInfo, full_name: &str) -> Self {
+        Self {
+            name: full_name.to_owned(),
+            ros_type: info.type_name.to_owned(),
+            definition: info.definition.to_owned(),
+            type_hash: info.hash.to_owned(),
+            qos: String::new(),
+        }
+    }
+}

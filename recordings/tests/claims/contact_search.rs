@@ -1,0 +1,82 @@
+//! The search finds every contact, in every cell.
+
+use grains::{Cell, Contact, Mat3, Material, Vec3};
+use proptest::prelude::*;
+use recordings::import::contacts::{SearchError, find};
+
+/// Every pair, every image within four cells: slow and plain.
+fn all_pairs(cell: &Cell, x: &[Vec3], r: &[f64]) -> Vec<(u32, u32, [i8; 3])> {
+    let mut found = Vec::new();
+    for i in 0..x.len() {
+        for j in i..x.len() {
+            for k in 0..729 {
+                let image = [(k / 81) as i8 - 4, (k / 9 % 9) as i8 - 4, (k % 9) as i8 - 4];
+                if (j > i || image > [0, 0, 0]) && (x[j] - x[i] + cell.shift(image)).norm() < r[i] + r[j] {
+                    found.push((i as u32, j as u32, image));
+                }
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn keys(contacts: &[Contact]) -> Vec<(u32, u32, [i8; 3])> {
+    contacts.iter().map(|c| (c.i, c.j, c.image)).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+    #[test]
+    fn it_agrees_with_all_pairs(
+        tilt in proptest::array::uniform6(-0.5f64..0.5),
+        size in 0.6f64..6.0,
+        grains in proptest::collection::vec((proptest::array::uniform3(-0.7f64..1.7), 0.1f64..0.5), 1..25),
+    ) {
+        let [a, b, c, d, e, f] = tilt;
+        let cell = Cell::new(Mat3::new(1.0, a, b, c, 1.0, d, e, f, 1.0) * size);
+        prop_assume!(cell.is_some());
+        let cell = cell.unwrap();
+        // Where the widths are tiny, more than four cells would have to be searched by the plain method.
+        prop_assume!((0..3).all(|k| cell.width(k) > 0.55));
+        let x: Vec<Vec3> = grains.iter().map(|(f, _)| cell.matrix() * Vec3::from(*f)).collect();
+        let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
+        let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+        prop_assert_eq!(keys(&found), all_pairs(&cell, &x, &r));
+        for c in &found {
+            let branch = x[c.j as usize] - x[c.i as usize] + cell.shift(c.image);
+            prop_assert!((branch - c.normal * (r[c.i as usize] + r[c.j as usize] - c.overlap)).norm() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn one_grain_in_a_small_cell_touches_its_own_images() {
+    let cell = Cell::cube(1.0).unwrap();
+    let found = find(&cell, &[Vec3::zeros()], &[0.51], &Material::GLASS).unwrap();
+    assert_eq!(keys(&found), [(0, 0, [0, 0, 1]), (0, 0, [0, 1, 0]), (0, 0, [1, 0, 0])]);
+}
+
+#[test]
+fn time_grows_with_the_number_of_grains_not_its_square() {
+    // A cubic lattice of 40³ = 64,000 touching spheres: 192,000 contacts. All pairs would be 2·10⁹ distances.
+    let n = 40usize;
+    let cell = Cell::cube(n as f64).unwrap();
+    let place = |k: usize| Vec3::new((k % n) as f64, (k / n % n) as f64, (k / n / n) as f64);
+    let x: Vec<Vec3> = (0..n * n * n).map(place).collect();
+    let r = vec![0.500_001; x.len()];
+    let start = std::time::Instant::now();
+    let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+    assert_eq!(found.len(), 3 * x.len());
+    assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
+}
+
+#[test]
+fn what_cannot_be_a_contact_is_refused() {
+    let cell = Cell::cube(1.0).unwrap();
+    let find = |b: Vec3| find(&cell, &[Vec3::zeros(), b], &[0.1, 0.1], &Material::GLASS);
+    assert_eq!(find(Vec3::zeros()).unwrap_err(), SearchError::Coincident(0, 1));
+    assert_eq!(find(Vec3::new(200.05, 0.0, 0.0)).unwrap_err(), SearchError::FarImage(0, 1));
+    assert_eq!(find(Vec3::new(200.5, 0.0, 0.0)).unwrap(), []);
+    assert_eq!(find(Vec3::new(100.05, 0.0, 0.0)).unwrap()[0].image, [-100, 0, 0]);
+}

@@ -1,0 +1,269 @@
+//! Text of other programs: read by the rules, refused with line and reason.
+
+use std::path::Path;
+
+use grains::Vec3;
+use recordings::import::{ImportError, ImportOptions, Setting, csv, lammps_data, lammps_dump, load};
+
+use crate::reference_packing::{golden, reference};
+
+fn glass() -> ImportOptions {
+    ImportOptions {
+        shear_modulus: Some(29e9),
+        poisson_ratio: Some(0.2),
+        density: Some(2500.0),
+        friction: Some(0.1),
+        ..ImportOptions::default()
+    }
+}
+
+fn in_cube(edge: f64) -> ImportOptions {
+    ImportOptions { cell: Some(grains::Mat3::identity() * edge), ..glass() }
+}
+
+const PAIR: &str =
+    "p,1,0.1,0,0,0.1,10.471975511965978,0,0,0,0,0,0\np,2,0.95,0,0,0.1,10.471975511965978,0,0,0,0,0,0\n";
+
+fn pair(contact: &str) -> Result<recordings::import::Imported, ImportError> {
+    csv::packing(&format!("{PAIR}{contact}"), None, &in_cube(1.0))
+}
+
+#[test]
+fn a_listed_contact_is_turned_to_our_convention() {
+    // Grain 2 lies at x = −0.05 of the next cell: overlap 0.05, direction from j = 1 to i = 2 is −x, across the boundary.
+    let p = pair("c,2,1,-1,0,0,0.05,3,0,0.5,0").unwrap().packing;
+    let c = p.contacts[0];
+    assert_eq!((c.i, c.j, c.image, c.normal_force), (0, 1, [-1, 0, 0], 3.0));
+    assert_eq!((c.normal, c.tangential_force), (-Vec3::x(), Vec3::new(0.0, -0.5, 0.0)));
+    let same = pair("c,1,2,1,0,0,0.05,3,0,-0.5,0").unwrap().packing;
+    assert_eq!(same.contacts, p.contacts);
+}
+
+#[test]
+fn contacts_that_contradict_positions_are_refused() {
+    for (row, quantity) in [
+        ("c,2,1,-1,0,0,0.0500001,3,0,0.5,0", "overlap"),
+        ("c,2,1,-0.99995000041666528,0.0099998333341666645,0,0.05,3,0,0,0.5", "angle"),
+        ("c,2,1,1,0,0,0.05,3,0,0.5,0", "angle"),
+        ("c,2,1,-1,0,0,0.05,3,0.5,0,0", "tangential"),
+    ] {
+        let error = pair(row).unwrap_err().to_string();
+        assert!(error.contains(quantity) && error.starts_with("line 3"), "{row}: {error}");
+    }
+    assert!(matches!(pair("c,2,7,-1,0,0,0.05,3,0,0.5,0"), Err(ImportError::UnknownId { line: 3, id: 7 })));
+}
+
+#[test]
+fn malformed_rows_are_named_by_line() {
+    for (row, expected) in [
+        ("x,1", "p or c"),
+        ("p,3,1,2", "12 fields, not 3"),
+        ("c,1,2", "10 fields, not 2"),
+        ("p,-3,0,0,0,1,1,0,0,0,0,0,0", "id is -3"),
+        ("p,3,0,zero,0,1,1,0,0,0,0,0,0", "position is \"zero\""),
+        ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "position[2] is not finite"),
+        ("p,2,0.5,0.5,0,0.1,1,0,0,0,0,0,0", "grain 2 occurs twice"),
+        ("p,3,0.1,0,0,0.1,1,0,0,0,0,0,0", "grains 1 and 3 have the same centre"),
+    ] {
+        let error = pair(row).unwrap_err().to_string();
+        assert!(error.contains(expected), "{row}: {error}");
+    }
+    assert!(matches!(csv::packing("", None, &in_cube(1.0)), Err(ImportError::Empty)));
+}
+
+#[test]
+fn a_missing_sidecar_is_answered_with_the_flags_that_replace_it() {
+    let root = tempfile::tempdir().unwrap();
+    let alone = root.path().join("alone.csv.gz");
+    std::fs::copy(golden("ref_packing_500.csv.gz"), &alone).unwrap();
+    let error = load(&alone, &ImportOptions::default()).unwrap_err().to_string();
+    for flag in ["alone.csv.gz", "--cell", "--shear-modulus", "--poisson", "--density", "--friction"] {
+        assert!(error.contains(flag), "{error}");
+    }
+    let ImportError::Missing(missing) = csv::packing(PAIR, None, &glass()).unwrap_err() else { panic!() };
+    assert_eq!(missing, [Setting::Cell]);
+    let cell = Some(*reference().packing.cell.matrix());
+    let loaded = load(&alone, &ImportOptions { cell, ..glass() }).unwrap();
+    assert_eq!(loaded.packings[0].packing, reference().packing);
+}
+
+#[test]
+fn a_bad_sidecar_is_named() {
+    for (text, expected) in
+        [("{", "sidecar"), (r#"{"mu_prep": "much"}"#, "much"), (r#"{"G": "29"}"#, "sidecar")]
+    {
+        let error = csv::packing(PAIR, Some(text), &in_cube(1.0)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let flat = csv::packing(PAIR, Some(r#"{"box_L": [1, 0, 1]}"#), &glass());
+    assert!(matches!(flat, Err(ImportError::Cell(_))));
+}
+
+/// In the form that `write_data` gives.
+const DATA: &str = "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 100000, units = si
+
+3 atoms
+1 atom types
+
+-0.5 0.5 xlo xhi
+-0.5 0.5 ylo yhi
+-0.5 0.5 zlo zhi
+0.25 0 0 xy xz yz
+
+Atoms # sphere
+
+30 1 0.2 2500 0.45 0 0 0 0 0
+10 1 0.2 2500 -0.4 0 0 1 0 0
+20 1 0.3 2500 0.3 0.45 0 0 0 0
+
+Velocities
+
+10 1 2 3 4 5 6
+20 0 0 0 0 0 0
+30 0 0 0 0 0 0
+";
+
+#[test]
+fn a_data_file_is_read_with_its_tilted_box_and_sorted_by_id() {
+    let imported = lammps_data::packing(DATA, &glass()).unwrap();
+    let p = &imported.packing;
+    assert_eq!(
+        (imported.step, p.ids.as_slice(), p.radii.as_slice()),
+        (100_000, &[10, 20, 30][..], &[0.1, 0.15, 0.1][..])
+    );
+    assert_eq!((p.velocities[0], p.spins[0]), (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0)));
+    assert_eq!(p.cell.matrix().column(1).into_owned(), Vec3::new(0.25, 1.0, 0.0));
+    // 10 and 30 across x: 0.15 apart.
+    assert_eq!(p.contacts.len(), 1);
+    assert_eq!((p.contacts[0].i, p.contacts[0].j, p.contacts[0].image), (0, 2, [-1, 0, 0]));
+    assert!((p.contacts[0].overlap - 0.05).abs() < 1e-15);
+    let expected = p.material.normal_force(0.05, p.contacts[0].overlap);
+    assert!((p.contacts[0].normal_force / expected - 1.0).abs() < 1e-14);
+    assert_eq!(imported.notes.len(), 1, "that contacts were found is said");
+}
+
+#[test]
+fn what_a_data_file_must_not_be_is_refused() {
+    for (from, to, expected) in [
+        ("units = si", "units = lj", "units lj"),
+        ("# sphere", "# ellipsoid", "atom_style ellipsoid"),
+        ("3 atoms", "4 atoms", "after 3 of 4 atoms"),
+        ("0.25 0 0 xy xz yz", "1 0 0 avec", "triclinic"),
+        ("20 1 0.3 2500", "20 1 0.3 2600", ""),
+        ("10 1 2 3 4 5 6", "11 1 2 3 4 5 6", "11"),
+        ("10 1 0.2", "10 1", "7 or 10 fields"),
+        ("-0.5 0.5 zlo zhi", "", "--cell"),
+        ("-0.5 0.5 zlo zhi", "0.5 -0.5 zlo zhi", "no positive volume"),
+    ] {
+        assert!(DATA.contains(from), "{from}");
+        let options = ImportOptions { density: (!expected.is_empty()).then_some(2500.0), ..glass() };
+        let error = lammps_data::packing(&DATA.replacen(from, to, 1), &options).unwrap_err().to_string();
+        assert!(
+            error.contains(if expected.is_empty() { "mixture of densities" } else { expected }),
+            "{to}: {error}"
+        );
+    }
+}
+
+const DUMP: &str = "ITEM: TIMESTEP
+10
+ITEM: NUMBER OF ATOMS
+2
+ITEM: BOX BOUNDS pp pp pp
+-1 1
+-1 1
+-1 1
+ITEM: ATOMS id type xs ys zs diameter vx vy vz
+2 1 0.95 0.5 0.5 0.3 0 0 7
+1 1 0.05 0.5 0.5 0.3 0 0 0
+ITEM: TIMESTEP
+20
+ITEM: NUMBER OF ATOMS
+2
+ITEM: BOX BOUNDS xy xz yz pp pp pp
+-1 1.5 0.5
+-1 1 0
+-1 1 0
+ITEM: ATOMS id x y z radius
+1 0 0 0 0.3
+2 0.5 0 0 0.3
+";
+
+#[test]
+fn a_dump_is_read_frame_by_frame() {
+    let frames = lammps_dump::packings(DUMP, &glass()).unwrap();
+    assert_eq!(frames.iter().map(|f| f.step).collect::<Vec<_>>(), [10, 20]);
+    let first = &frames[0].packing;
+    assert_eq!((first.ids.as_slice(), first.velocities[1].z), (&[1, 2][..], 7.0));
+    assert!((first.positions[0] - Vec3::new(-0.9, 0.0, 0.0)).norm() < 1e-15);
+    assert_eq!((first.contacts.len(), first.contacts[0].image), (1, [-1, 0, 0]));
+    let second = &frames[1].packing;
+    // The bounds are those of the tilted cell: 2 wide, not 2.5.
+    assert_eq!(second.cell.matrix(), &grains::Mat3::new(2.0, 0.5, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0));
+    assert_eq!(second.contacts.len(), 1);
+    assert!(frames[1].source.contains("frame 2 of 2"));
+}
+
+#[test]
+fn what_a_dump_must_not_be_is_refused() {
+    for (from, to, expected) in [
+        ("pp pp pp", "pp pp ff", "periodic"),
+        ("xs ys zs", "a b c", "no positions"),
+        ("2 1 0.95 0.5 0.5 0.3 0 0 7\n", "", "1 atoms follow, 2 were announced"),
+        ("0.3 0 0 7", "0.3 0 0", "8 columns, 9 were announced"),
+        ("diameter", "size", "--radius"),
+        ("ITEM: NUMBER", "NUMBER", "ITEM"),
+        ("-1 1\n", "-1\n", "a bound has 2 numbers"),
+        ("BOX BOUNDS pp", "BOX BOUNDS abc origin pp", "triclinic"),
+        ("ITEM: TIMESTEP\n10", "ITEM: UNITS\nlj\nITEM: TIMESTEP\n10", "units lj"),
+    ] {
+        assert!(DUMP.contains(from), "{from}");
+        let error = lammps_dump::packings(&DUMP.replacen(from, to, 1), &glass()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    assert!(matches!(lammps_dump::packings("", &glass()), Err(ImportError::Empty)));
+    for cut in (0..DUMP.len()).step_by(7) {
+        // Never a panic; a cut frame is an error, not a smaller packing.
+        if let Ok(frames) = lammps_dump::packings(&DUMP[..cut], &glass()) {
+            assert!(frames.iter().all(|f| f.packing.grains() == 2), "cut at {cut}");
+        }
+    }
+}
+
+#[test]
+fn contact_forces_of_a_dump_local_are_taken() {
+    let frame = &DUMP[..DUMP.rfind("ITEM: TIMESTEP").unwrap()];
+    let local = "ITEM: TIMESTEP\n10\nITEM: NUMBER OF ENTRIES\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\
+        ITEM: ENTRIES index c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4]\n1 2 1 0.2 -4 0.5 0\n";
+    let options = ImportOptions { contact_forces: Some(local.into()), ..glass() };
+    let p = lammps_dump::packings(frame, &options).unwrap().remove(0).packing;
+    // The force on 2 is −4 along x: 2 lies at smaller x than 1, across the boundary, and is pushed away.
+    let c = p.contacts[0];
+    assert_eq!((c.i, c.j, c.image, c.normal_force), (0, 1, [-1, 0, 0], 4.0));
+    assert!((c.tangential_force - Vec3::new(0.0, -0.5, 0.0)).norm() < 1e-15);
+    assert!(lammps_dump::packings(DUMP, &options).unwrap_err().to_string().contains("one frame"));
+}
+
+#[test]
+fn the_format_is_told_by_name_and_then_by_content() {
+    let root = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = root.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    for (name, text) in
+        [("dump.shear", DUMP), ("x.lammpstrj", DUMP), ("x.txt", DUMP), ("data.x", DATA), ("y.data", DATA)]
+    {
+        assert!(!load(&write(name, text), &glass()).unwrap().packings.is_empty(), "{name}");
+    }
+    let unknown = load(&write("notes.txt", "hello"), &glass()).unwrap_err().to_string();
+    assert!(unknown.contains("notes.txt") && unknown.contains("LAMMPS"), "{unknown}");
+    assert!(matches!(load(Path::new("/no/such/file.csv"), &glass()), Err(ImportError::Io { .. })));
+    let binary = write("x.dump", "");
+    std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
+    assert!(matches!(load(&binary, &glass()), Err(ImportError::Io { .. })));
+    let broken = root.path().join("z.csv.gz");
+    std::fs::write(&broken, [0x1f, 0x8b, 8, 0, 1]).unwrap();
+    assert!(matches!(load(&broken, &glass()), Err(ImportError::Io { .. })));
+}

@@ -1,0 +1,95 @@
+//! What is exported comes back.
+
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::{Topic, to_cdr, topics};
+use grains::{Cell, Mat3, Packing};
+use recordings::import::{ImportOptions, csv, lammps_dump, load};
+use recordings::{RunWriter, TopicSpec, export};
+
+use crate::reference_packing::reference;
+use crate::support::{SIMULATOR, START, options, sample};
+
+/// The reference with everything that it leaves at a default set to something else.
+fn rich() -> Packing {
+    let mut p = reference().packing;
+    (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
+    p.deformation = Mat3::new(0.99, 1e-3, 0.0, 0.0, 0.98, -2e-4, 1e-9, 0.0, 0.97);
+    for (k, spin) in p.spins.iter_mut().enumerate() {
+        spin.x = 1.0 / (k as f64 + 3.0);
+    }
+    p.validated().unwrap()
+}
+
+#[test]
+fn csv_and_sidecar_bring_back_the_packing_bit_for_bit() {
+    let p = rich();
+    let back = csv::packing(&export::csv(&p), Some(&export::sidecar(&p)), &ImportOptions::default()).unwrap();
+    assert_eq!(back.packing, p);
+    assert_eq!((back.step, back.notes.len()), (p.step, 0));
+}
+
+#[test]
+fn a_recorded_packing_comes_back_bit_for_bit() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let p = rich();
+    let row: &Topic = &topics::PACKING;
+    let spec = TopicSpec::of_contract(row, &row.absolute_name());
+    let mut run = RunWriter::create(&directory, "r", &[spec], options()).unwrap();
+    for (n, step) in [(1, 10), (2, 20)] {
+        let body = to_cdr(&packing_message(&Packing { step, ..p.clone() }, "demo", vec![1, 2]));
+        run.write("/packing", &sample(SIMULATOR, n, START, &body)).unwrap();
+    }
+    run.finish().unwrap();
+    let loaded = load(&directory, &ImportOptions::default()).unwrap();
+    assert_eq!(loaded.packings.iter().map(|i| i.step).collect::<Vec<_>>(), [10, 20]);
+    assert_eq!(loaded.packings[0].packing, Packing { step: 10, ..p.clone() });
+    // Cut off in the last chunk, the first packing is still there and the loss is named.
+    let file = directory.join("r_0.mcap");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() * 6 / 10]).unwrap();
+    let loaded = load(&directory, &ImportOptions::default()).unwrap();
+    assert_eq!((loaded.packings.len(), loaded.warnings.len()), (1, 1));
+}
+
+#[test]
+fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
+    let straight = rich();
+    let mut tilted = rich();
+    let shear = Mat3::new(1.0, 0.02, -0.01, 0.0, 1.0, 0.03, 0.0, 0.0, 1.0);
+    tilted.cell = Cell::new(shear * straight.cell.matrix()).unwrap();
+    tilted.positions.iter_mut().for_each(|x| *x = shear * *x);
+    tilted.contacts =
+        recordings::import::contacts::find(&tilted.cell, &tilted.positions, &tilted.radii, &tilted.material)
+            .unwrap();
+    assert!(tilted.contacts.len() > 100);
+    for p in [straight, tilted] {
+        let material = p.material;
+        let options = ImportOptions {
+            shear_modulus: Some(material.shear_modulus),
+            poisson_ratio: Some(material.poisson_ratio),
+            friction: Some(p.friction),
+            ..ImportOptions::default()
+        };
+        let text = export::lammps_dump(&p).unwrap();
+        let back = lammps_dump::packings(&text, &options).unwrap().remove(0).packing;
+        assert_eq!(
+            (back.step, &back.ids, &back.positions, &back.spins),
+            (p.step, &p.ids, &p.positions, &p.spins)
+        );
+        // The box is written as bounds of the tilted cell, which costs a rounding.
+        assert!((back.cell.matrix() - p.cell.matrix()).amax() < 1e-18);
+        // Mass and radius give the density to rounding.
+        assert!((back.material.density / material.density - 1.0).abs() < 1e-14);
+        let keys = |p: &Packing| p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect::<Vec<_>>();
+        assert_eq!(keys(&back), keys(&p));
+    }
+}
+
+#[test]
+fn a_cell_that_a_dump_cannot_hold_is_refused() {
+    let mut p = rich();
+    p.cell = Cell::new(Mat3::new(1.0, 0.0, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0, 1.0)).unwrap();
+    let error = export::lammps_dump(&p).unwrap_err();
+    assert_eq!((error.row, error.column, error.value), (1, 0, 0.1));
+}

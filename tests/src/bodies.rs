@@ -1,0 +1,31 @@
+//! What a recording holds, topic by topic, repeats removed.
+
+use recordings::{Recording, Selection};
+use std::path::Path;
+
+/// The first six rows of the contract table that this version writes: what must not depend on timing.
+pub const REPRODUCIBLE: [&str; 6] =
+    ["/stress", "/strain_rate", "/packing", "/fabric", "/moduli", "/microstructure"];
+
+/// Distinct message bodies of one topic, in the order in which each first appears.
+///
+/// A request repeated because its answer was late, or a result published again by a restarted node, carries the same
+/// bytes; what is left is what was said, however often.
+pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
+    let recording = Recording::open(run).unwrap_or_else(|e| panic!("{}: {e}", run.display()));
+    let messages = recording.messages(&Selection::topics([topic]));
+    let messages = messages.unwrap_or_else(|e| panic!("{topic} of {}: {e}", run.display()));
+    let mut seen = std::collections::HashSet::new();
+    messages.map(|m| m.payload.to_vec()).filter(|b| seen.insert(b.clone())).collect()
+}
+
+/// Fails the test unless both runs say the same, byte for byte, on every reproducible topic.
+pub fn assert_same(first: &Path, second: &Path) {
+    for topic in REPRODUCIBLE {
+        let (a, b) = (distinct(first, topic), distinct(second, topic));
+        assert!(!a.is_empty(), "{topic}: nothing recorded");
+        assert_eq!(a.len(), b.len(), "{topic}: {} and {} distinct messages", a.len(), b.len());
+        let difference = a.iter().zip(&b).position(|(x, y)| x != y);
+        assert_eq!(difference, None, "{topic}: the first difference is in message {difference:?}");
+    }
+}

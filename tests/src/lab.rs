@@ -1,0 +1,106 @@
+//! The `grainlab` binary under test, in a folder and a DDS domain of its own.
+
+use crate::process::{Ended, Process};
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicU16, Ordering};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Longest time any one command of a test may take.
+pub const LIMIT: Duration = Duration::from_secs(120);
+
+/// A laboratory: working folder and domain.
+#[derive(Debug)]
+pub struct Lab {
+    folder: TempDir,
+    /// DDS domain that nobody else on this host uses.
+    pub domain: u16,
+}
+
+impl Lab {
+    /// A new folder and a free domain.
+    pub fn new() -> Self {
+        let folder = tempfile::Builder::new().prefix("grainlab-").tempdir();
+        Self { folder: folder.unwrap_or_else(|e| panic!("no temporary folder: {e}")), domain: free_domain() }
+    }
+
+    /// The working folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// `grainlab` with these arguments, in the folder and domain.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(grainlab());
+        command
+            .args(arguments)
+            .current_dir(self.folder())
+            .env("ROS_DOMAIN_ID", self.domain.to_string())
+            .env_remove("ROS_STATIC_PEERS")
+            .env("NO_COLOR", "1");
+        command
+    }
+
+    /// Starts `grainlab` with these arguments.
+    pub fn start(&self, arguments: &[&str]) -> Process {
+        Process::start(&mut self.command(arguments))
+    }
+
+    /// Runs `grainlab` with these arguments to its end.
+    pub fn run(&self, arguments: &[&str]) -> Ended {
+        self.start(arguments).ended(LIMIT)
+    }
+
+    /// Runs a whole scene with the launcher; returns the run's folder. Fails the test unless the exit code is 0.
+    pub fn launch(&self, scene: &Path, extra: &[&str]) -> PathBuf {
+        let scene = scene.to_string_lossy();
+        let mut arguments = vec!["launch", "--scene", &scene];
+        arguments.extend(extra);
+        let ended = self.run(&arguments);
+        assert_eq!(ended.code, Some(0), "launch failed\n{}\n{}", ended.stdout, ended.stderr);
+        self.last_run()
+    }
+
+    /// The newest run in the folder.
+    pub fn last_run(&self) -> PathBuf {
+        let runs = self.folder().join("recordings/runs");
+        let entries = std::fs::read_dir(&runs).unwrap_or_else(|e| panic!("{}: {e}", runs.display()));
+        let newest = entries.flatten().max_by_key(|e| e.metadata().and_then(|m| m.modified()).ok());
+        newest.unwrap_or_else(|| panic!("no run in {}", runs.display())).path()
+    }
+}
+
+impl Default for Lab {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The binary, beside the folder of the running test.
+pub fn grainlab() -> PathBuf {
+    let test = std::env::current_exe().unwrap_or_else(|e| panic!("no path of this test: {e}"));
+    let found = test.ancestors().skip(1).take(2).map(|d| d.join("grainlab")).find(|p| p.is_file());
+    found.unwrap_or_else(|| panic!("no grainlab binary beside {}: build the whole workspace", test.display()))
+}
+
+/// A file under `tests/golden`.
+pub fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(name)
+}
+
+/// A domain whose first participant's ports are free on loopback.
+fn free_domain() -> u16 {
+    static NEXT: AtomicU16 = AtomicU16::new(0);
+    // Domains above 101 would reach into the ephemeral ports.
+    let start = (std::process::id() % 97) as u16;
+    for _ in 0..100 {
+        let domain = 1 + (start + 13 * NEXT.fetch_add(1, Ordering::Relaxed)) % 100;
+        let port = 7400 + 250 * domain + 10;
+        if UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).is_ok() {
+            return domain;
+        }
+    }
+    panic!("no free DDS domain on this host");
+}

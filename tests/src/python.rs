@@ -1,0 +1,33 @@
+//! The independent tools, where they are installed.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A Python that has `module`. Without one the test is skipped, loudly; if `GRAINLAB_PYTHON` names a Python (as the
+/// project's checks do), the module must be there.
+pub fn with(module: &str) -> Option<PathBuf> {
+    let named = std::env::var_os("GRAINLAB_PYTHON").map(PathBuf::from);
+    let python = named.clone().unwrap_or_else(|| "python3".into());
+    let imports = Command::new(&python).args(["-c", &format!("import {module}")]).output();
+    if imports.is_ok_and(|o| o.status.success()) {
+        return Some(python);
+    }
+    assert!(
+        named.is_none(),
+        "{} cannot import {module}: install tests/tools/requirements.txt",
+        python.display()
+    );
+    // Past the test harness, which hides the output of passing tests.
+    let _ = std::fs::write(
+        "/dev/stderr",
+        format!("SKIPPED, Python has no {module}: see tests/tools/requirements.txt\n"),
+    );
+    None
+}
+
+/// Runs a script of `tests/tools`.
+pub fn tool(python: &Path, script: &str, arguments: &[&str]) -> Output {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools").join(script);
+    let output = Command::new(python).arg(&script).args(arguments).output();
+    output.unwrap_or_else(|e| panic!("{}: {e}", script.display()))
+}

@@ -1,0 +1,86 @@
+//! Bad input of every kind: a clear message, the right exit code, no panic, nothing lost.
+
+use std::time::Duration;
+use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::process::Ended;
+
+fn refused(lab: &Lab, arguments: &[&str], code: i32, words: &[&str]) -> Ended {
+    let ended = lab.run(arguments);
+    assert_eq!(ended.code, Some(code), "{arguments:?}\n{}\n{}", ended.stdout, ended.stderr);
+    for word in words {
+        assert!(
+            ended.stderr.contains(word),
+            "{word:?} is missing from the message of {arguments:?}:\n{}",
+            ended.stderr
+        );
+    }
+    assert!(!ended.stderr.contains("panicked"), "{}", ended.stderr);
+    ended
+}
+
+/// The small scene with one text replaced.
+fn scene(lab: &Lab, from: &str, to: &str) -> String {
+    let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
+    assert!(text.contains(from));
+    let path = lab.folder().join("bad.toml");
+    std::fs::write(&path, text.replace(from, to)).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+#[test]
+fn faults_of_a_scene_end_with_exit_code_2() {
+    let lab = Lab::new();
+    let path = scene(&lab, "name = \"rest\"", "name = \"rest\"\nfriktion = 0.1");
+    refused(&lab, &["launch", "--scene", &path], 2, &["friktion", "unknown key", "phase[1]"]);
+    let path = scene(&lab, "friction = 10.0", "friction = -0.5");
+    refused(&lab, &["launch", "--scene", &path], 2, &["friction", "-0.5", "0 or more"]);
+    refused(&lab, &["launch", "--scene", "no-such-scene"], 2, &["no-such-scene", "demo"]);
+}
+
+#[test]
+fn unknown_parameters_and_commands_end_with_exit_code_2() {
+    let lab = Lab::new();
+    let unknown = ["run", "fabric_analyzer", "--ros-args", "-p", "tolerence:=1e-8"];
+    refused(&lab, &unknown, 2, &["tolerence", "tolerance"]);
+    refused(&lab, &["run", "no_such_node"], 2, &["no_such_node", "dem_simulator"]);
+    refused(&lab, &["invert", "--g12", "1e8"], 2, &["--g13"]);
+    refused(&lab, &["analyse-this"], 2, &[]);
+}
+
+#[test]
+fn missing_and_foreign_files_end_with_exit_code_1() {
+    let lab = Lab::new();
+    refused(&lab, &["analyze", "nowhere.mcap"], 1, &["nowhere.mcap"]);
+    refused(&lab, &["bag", "info", "nowhere"], 1, &["nowhere"]);
+    let path = lab.folder().join("text.mcap");
+    std::fs::write(&path, "not a recording").unwrap();
+    refused(&lab, &["bag", "info", &path.to_string_lossy()], 1, &["text.mcap"]);
+}
+
+#[test]
+fn a_truncated_recording_is_read_as_far_as_it_goes_with_exit_code_3() {
+    let lab = Lab::new();
+    let run = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let name = format!("{}_0.mcap", run.file_name().unwrap().to_string_lossy());
+    let bytes = std::fs::read(run.join(&name)).unwrap();
+    let cut = lab.folder().join("cut.mcap");
+    // Summary, footer and the last chunks are gone.
+    std::fs::write(&cut, &bytes[..bytes.len() * 9 / 10]).unwrap();
+    let cut = cut.to_string_lossy();
+    let ended = refused(&lab, &["analyze", &cut, "--format", "json"], 3, &["cut.mcap"]);
+    let states: serde_json::Value = serde_json::from_str(&ended.stdout).unwrap();
+    assert!(!states.as_array().unwrap().is_empty(), "what is readable is measured");
+    refused(&lab, &["bag", "info", &cut], 3, &["cut.mcap"]);
+}
+
+#[test]
+fn a_second_simulator_on_the_same_topic_is_refused_and_harms_nothing() {
+    let lab = Lab::new();
+    let launcher = lab.start(&["launch", "--scene", "demo"]);
+    std::thread::sleep(Duration::from_secs(4));
+    let second = golden("scenes/tiny.toml");
+    let parameter = format!("scene:={}", second.display());
+    refused(&lab, &["run", "dem_simulator", "--ros-args", "-p", &parameter], 1, &["stress", "ROS_DOMAIN_ID"]);
+    launcher.signal(libc::SIGINT);
+    assert_eq!(launcher.ended(LIMIT).code, Some(130), "the first run was still going");
+}

@@ -1,0 +1,122 @@
+//! The main job as a newcomer sees it: every node a process, a table, a recording that others can read.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::process::{Process, children};
+use system_tests::python;
+
+const NODES: [&str; 5] =
+    ["dem_simulator", "servo_controller", "fabric_analyzer", "emt_inversion", "recorder"];
+const TOPICS: [&str; 10] = [
+    "/stress",
+    "/strain_rate",
+    "/packing",
+    "/fabric",
+    "/moduli",
+    "/microstructure",
+    "/run_state",
+    "/clock",
+    "/rosout",
+    "/diagnostics",
+];
+
+fn summary(run: &std::path::Path) -> Value {
+    let path = run.join("summary.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn a_launch_runs_one_process_a_node_and_records_every_message() {
+    let lab = Lab::new();
+    let scene = golden("scenes/tiny.toml");
+    let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
+    let mut most: BTreeMap<&str, usize> = BTreeMap::new();
+    let pid = launcher.pid();
+    let watch = std::thread::spawn(move || {
+        let begin = Instant::now();
+        while begin.elapsed() < LIMIT && std::path::Path::new(&format!("/proc/{pid}/fd")).exists() {
+            for node in NODES {
+                let count = children(pid, &format!("run {node}")).len();
+                most.entry(node).and_modify(|m| *m = count.max(*m)).or_insert(count);
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        most
+    });
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    let most = watch.join().unwrap();
+    for node in NODES {
+        assert_eq!(most.get(node), Some(&1), "processes of {node}");
+    }
+    for word in ["G12", "G13", "Theta", "ratio", "eps", "lost"] {
+        assert!(ended.stdout.contains(word), "{word} is missing from the table:\n{}", ended.stdout);
+    }
+    for phase in ["gas", "rest", "uniaxial", "load", "settle"] {
+        assert!(ended.stderr.contains(phase), "no progress line of {phase}:\n{}", ended.stderr);
+    }
+
+    let run = lab.last_run();
+    let summary = summary(&run);
+    let topics = summary["topics"].as_array().unwrap();
+    for name in TOPICS {
+        let topic = topics
+            .iter()
+            .find(|t| t["name"] == name)
+            .unwrap_or_else(|| panic!("{name} is not in {topics:?}"));
+        assert!(topic["recorded"].as_u64().unwrap() > 0, "{topic}");
+        assert_eq!(topic["lost"], 0, "{topic}");
+        assert_eq!(topic["published"], topic["recorded"], "{topic}");
+    }
+    let states = summary["states"].as_array().unwrap();
+    assert_eq!(states.len(), 2, "the scene publishes two packings");
+    let last = &states[1];
+    let number = |key: &str| last[key].as_f64().unwrap_or_else(|| panic!("{key} in {last}"));
+    // The servo lands every component on target before anything is measured.
+    for (i, s) in last["stress_pa"].as_array().unwrap().iter().enumerate() {
+        let target = if i < 3 { 50e3 } else { 0.0 };
+        assert!((s.as_f64().unwrap() - target).abs() <= 50.0, "stress component {i} is {s}");
+    }
+    assert!(number("k") > 4.0 && number("z") > number("k") && number("phi") > 0.6);
+    assert!(number("g12_pa") > 5e7 && number("theta_pa") > number("g12_pa"));
+    let results = last["results"].as_array().unwrap();
+    assert!(
+        results.iter().any(|r| r["model"] == "ratio")
+            && results.iter().any(|r| r["model"] == "ratio-as-printed")
+    );
+    assert!(run.join("metadata.yaml").is_file());
+
+    if let Some(python) = python::with("mcap_ros2, rosbags, zstandard, lz4, yaml") {
+        let mut arguments = vec![run.to_str().unwrap(), "--require"];
+        arguments.extend(TOPICS);
+        let check = python::tool(&python, "check_mcap.py", &arguments);
+        let (out, err) = (String::from_utf8_lossy(&check.stdout), String::from_utf8_lossy(&check.stderr));
+        assert!(check.status.success(), "{out}\n{err}");
+    }
+}
+
+#[test]
+fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
+    let lab = Lab::new();
+    let mut launcher: Process = lab.start(&["launch", "--scene", "demo"]);
+    let pid = launcher.pid();
+    let begin = Instant::now();
+    while children(pid, "run dem_simulator").is_empty() && begin.elapsed() < LIMIT {
+        assert!(launcher.runs());
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_secs(3));
+    let nodes: Vec<u32> = NODES.iter().flat_map(|n| children(pid, &format!("run {n}"))).collect();
+    assert_eq!(nodes.len(), NODES.len());
+    launcher.signal(libc::SIGINT);
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(130), "{}\n{}", ended.stdout, ended.stderr);
+    for pid in nodes {
+        assert!(!std::path::Path::new(&format!("/proc/{pid}/exe")).exists(), "process {pid} is left behind");
+    }
+    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
+}

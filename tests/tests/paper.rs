@@ -1,0 +1,90 @@
+//! The paper and an independent code, by the commands a user types.
+
+use serde_json::Value;
+use system_tests::lab::{Lab, golden};
+
+#[test]
+fn invert_reproduces_table_iii_from_the_moduli_it_implies() {
+    let lab = Lab::new();
+    let table = golden("table3.csv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    let mut lines = text.lines().filter(|l| !l.starts_with('#'));
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |row: &[&str], name: &str| -> f64 {
+        let at = header.iter().position(|h| *h == name).unwrap_or_else(|| panic!("no column {name}"));
+        row[at].parse().unwrap()
+    };
+    let mut rows = 0;
+    for line in lines {
+        let row: Vec<&str> = line.split(',').collect();
+        for (model, theta) in [("ratio", "theta_pa"), ("ratio-as-printed", "theta_printed_pa")] {
+            let given = |name: &str| format!("{:e}", column(&row, name));
+            let arguments = [
+                "invert".to_string(),
+                format!("--g12={}", given("g12_pa")),
+                format!("--g13={}", given("g13_pa")),
+                format!("--theta={}", given(theta)),
+                format!("--pressure={:e}", 1e3 * column(&row, "p_kpa")),
+                format!("--gamma-over-delta={}", given("gamma_over_delta")),
+                format!("--model={model}"),
+                "--format=json".to_string(),
+            ];
+            let ended = lab.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+            assert_eq!(ended.code, Some(0), "{line}\n{}", ended.stderr);
+            let answer: Value = serde_json::from_str(&ended.stdout).unwrap();
+            let result = &answer["results"][0];
+            assert_eq!(result["model"], model);
+            for key in ["k", "k_hat", "eps"] {
+                let (found, printed) = (result[key].as_f64().unwrap(), column(&row, key));
+                assert!((found - printed).abs() < 1e-6, "{model} {key} of {line}: {found}");
+            }
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 16);
+    let all = lab.run(&["invert", "--table", &table.to_string_lossy(), "--format", "csv"]);
+    assert_eq!(all.code, Some(0), "{}", all.stderr);
+    assert_eq!(all.stdout.lines().count(), 1 + 2 * 16, "a header, and two models a row:\n{}", all.stdout);
+}
+
+#[test]
+fn analyze_reproduces_the_numbers_of_lammps_on_its_own_packing() {
+    let lab = Lab::new();
+    let ended = lab.run(&[
+        "analyze",
+        &golden("reference/ref_packing_500.csv.gz").to_string_lossy(),
+        "--format",
+        "json",
+    ]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let found: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let found = &found[0];
+    let sidecar: Value =
+        serde_json::from_slice(&std::fs::read(golden("reference/ref_packing_500.json")).unwrap()).unwrap();
+    assert_eq!(found["grains"], 500);
+    assert_eq!(found["contacts"], 1277);
+    assert_eq!(found["rattlers"], 24);
+    assert_eq!(found["k"], sidecar["Z_all"]);
+    assert_eq!(found["z"], sidecar["Z_no_rattlers"]);
+    let pressure = sidecar["pressure_from_contacts"].as_f64().unwrap();
+    let s = &sidecar["stress_from_contacts"];
+    for (i, (a, b)) in [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)].into_iter().enumerate() {
+        let (ours, theirs) = (found["stress_pa"][i].as_f64().unwrap(), s[a][b].as_f64().unwrap());
+        assert!((ours - theirs).abs() < 1e-9 * pressure, "stress {i}: {ours} {theirs}");
+    }
+    let c = |m: &Value, i: usize, j: usize| m[i][j].as_f64().unwrap();
+    let sparse = &sidecar["C_relaxed_matrix_Pa_stiffness_matrix_mu_inf"];
+    let c11 = c(sparse, 0, 0);
+    // LAMMPS's columns: response to a strain, rows xx yy zz xy xz yz.
+    let raw = &sidecar["lammps_static_moduli"]["raw"];
+    let rows = [0, 1, 2, 5, 4, 3];
+    for i in 0..6 {
+        for j in 0..6 {
+            let ours = c(&found["stiffness_pa"], i, j);
+            assert!((ours - c(sparse, i, j)).abs() < 1e-5 * c11, "C[{i}][{j}] against the sparse solve");
+            let column = ["xx", "yy", "zz", "yz", "xz", "xy"][j];
+            let probe = raw[column]["1e-7"][rows[i]].as_f64().unwrap_or_else(|| panic!("no probe {column}"));
+            assert!((ours - probe).abs() < 1e-3 * c11, "C[{i}][{j}] {ours} against the probe {probe}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! A run is a pure function of scene and seed, whatever dies on the way.
+
+use std::time::{Duration, Instant};
+use system_tests::bodies::{assert_same, distinct};
+use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::process::{children, send};
+
+/// The small scene with more grains: long enough for three deaths.
+fn longer_scene(lab: &Lab) -> std::path::PathBuf {
+    let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
+    let path = lab.folder().join("longer.toml");
+    std::fs::write(&path, text.replace("count = 80", "count = 300")).unwrap();
+    path
+}
+
+#[test]
+fn two_runs_of_one_scene_and_seed_are_byte_identical_and_another_seed_is_not() {
+    let (first, second, other) = (Lab::new(), Lab::new(), Lab::new());
+    let scene = golden("scenes/tiny.toml");
+    let (a, b) = (first.launch(&scene, &[]), second.launch(&scene, &[]));
+    assert_same(&a, &b);
+    let c = other.launch(&scene, &["--seed", "2"]);
+    assert_ne!(distinct(&a, "/packing"), distinct(&c, "/packing"));
+}
+
+#[test]
+fn deaths_of_servo_analyzer_and_inversion_change_no_byte() {
+    let (quiet, deadly) = (Lab::new(), Lab::new());
+    let expected = quiet.launch(&longer_scene(&quiet), &[]);
+
+    let scene = longer_scene(&deadly);
+    let mut launcher = deadly.start(&["launch", "--scene", &scene.to_string_lossy()]);
+    let pid = launcher.pid();
+    let mut victims =
+        vec!["servo_controller", "fabric_analyzer", "servo_controller", "emt_inversion", "servo_controller"];
+    let begin = Instant::now();
+    let mut last_kill = Instant::now();
+    while let Some(node) = victims.first() {
+        assert!(launcher.runs(), "the run ended with {victims:?} still to be killed");
+        assert!(begin.elapsed() < LIMIT, "{victims:?} never appeared");
+        // Long enough for a servo just started to be found and to answer.
+        let due = last_kill.elapsed() > Duration::from_millis(900);
+        if let (true, [child]) = (due, children(pid, &format!("run {node}")).as_slice()) {
+            send(*child, libc::SIGKILL);
+            last_kill = Instant::now();
+            victims.remove(0);
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    assert_same(&expected, &deadly.last_run());
+}
