@@ -1,9 +1,9 @@
 //! Packings from elsewhere: CSV with a JSON sidecar, LAMMPS dump and data files, and recordings of ours.
 //!
-//! The parsers take text; [`load`] takes a path, decompresses `.gz` and picks the parser. Whatever the source, the result is a
-//! validated [`grains::Packing`] in its conventions: contacts `i < j` by index, normal from `i` to the image of `j`, tangential
-//! force on `i`. Where a source does not list contacts they are found from positions, with Hertz normal forces and no
-//! tangential force.
+//! The parsers take text; [`load`] takes a path, decompresses `.gz` and picks the parser. Whatever the
+//! source, the result is a validated [`grains::Packing`] in its conventions: contacts `i < j` by index,
+//! normal from `i` to the image of `j`, tangential force on `i`. Where a source does not list contacts they
+//! are found from positions, with Hertz normal forces and no tangential force.
 
 use grains::{Mat3, Packing};
 

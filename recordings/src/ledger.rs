@@ -1,8 +1,8 @@
 //! What was recorded, lost and repeated, per topic and per writer.
 //!
-//! Loss is judged by RTPS sequence numbers, which count every message of one writer from 1: a number that never came is
-//! a message that was lost, whoever lost it. What a writer sent after the last number seen, only that writer knows; it
-//! reports its count when it ends ([`Ledger::report`]).
+//! Loss is judged by RTPS sequence numbers, which count every message of one writer from 1: a number that
+//! never came is a message that was lost, whoever lost it. What a writer sent after the last number seen,
+//! only that writer knows; it reports its count when it ends ([`Ledger::report`]).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -83,8 +83,8 @@ pub struct WriterTally {
     pub last: Option<i64>,
     /// Published but not recorded.
     pub lost: u64,
-    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most 32 are kept
-    /// here; `lost` counts all.
+    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most
+    /// 32 are kept here; `lost` counts all.
     pub gaps: Vec<(i64, i64)>,
     /// Deliveries of a message that was already recorded.
     pub repeated: u64,
@@ -142,8 +142,8 @@ impl Ledger {
         self.nodes.insert(guid, node.to_owned());
     }
 
-    /// Messages that writers report as published and that have not come: what a recorder that is about to end may still
-    /// wait for.
+    /// Messages that writers report as published and that have not come: what a recorder that is about to end
+    /// may still wait for.
     pub fn outstanding(&self) -> u64 {
         self.topics
             .values()

@@ -1,4 +1,5 @@
-//! Recordings of runs: MCAP files in the conventions of rosbag2, written so that a crash costs half a second at most.
+//! Recordings of runs: MCAP files in the conventions of rosbag2, written so that a crash costs half a second
+//! at most.
 //!
 //! - [`writer`]: a run directory (`<name>_0.mcap` and `metadata.yaml`) written crash-safe
 //! - [`ledger`]: what was recorded, lost and repeated, per topic and per writer
@@ -22,7 +23,8 @@ pub use player::{Play, PlayError, PlayOptions, Player};
 pub use reader::{Message, ReadError, Recording, Selection, Warning};
 pub use writer::{Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};
 
-/// Name of the metadata record that holds what the laboratory knows about a run: the caller's keys, and [`LEDGER_KEY`].
+/// Name of the metadata record that holds what the laboratory knows about a run: the caller's keys, and
+/// [`LEDGER_KEY`].
 pub const METADATA_RECORD: &str = "grainlab";
 
 /// Key, in the metadata record [`METADATA_RECORD`], of the ledger as JSON.

@@ -1,9 +1,9 @@
 //! When to send which recorded message: a schedule without a clock or a socket of its own.
 //!
-//! The caller says what time it is and does as told. Messages keep their order and their distances in log time. If the caller
-//! falls behind, the whole schedule slips, so that topics stay in proportion, and [`Player::slipped`] says by how much.
-//! Playback that starts in the middle begins with the last earlier message of every latched topic, as a node that joins late would
-//! get it.
+//! The caller says what time it is and does as told. Messages keep their order and their distances in log
+//! time. If the caller falls behind, the whole schedule slips, so that topics stay in proportion, and
+//! [`Player::slipped`] says by how much. Playback that starts in the middle begins with the last earlier
+//! message of every latched topic, as a node that joins late would get it.
 
 use std::collections::VecDeque;
 use std::iter::Peekable;
@@ -82,8 +82,9 @@ pub struct Player<'r> {
     rate: f64,
     patience: Duration,
     paused: bool,
-    /// Log time (ns since 1970) that belongs to `anchor`, in the caller's time; `None` before the first question.
+    /// Log time reached at `anchor`, ns since 1970.
     position: u64,
+    /// In the caller's time; `None` before the first question.
     anchor: Option<Duration>,
     slipped: Duration,
 }
@@ -203,7 +204,8 @@ impl<'r> Player<'r> {
         Ok(())
     }
 
-    /// How much later than it should be the schedule has become because messages were not taken in time, all told.
+    /// How much later than it should be the schedule has become because messages were not taken in time, all
+    /// told.
     pub fn slipped(&self) -> Duration {
         self.slipped
     }

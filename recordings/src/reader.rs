@@ -1,8 +1,8 @@
 //! Recordings: one MCAP file or a run directory, read by topic and time.
 //!
-//! A complete file is read through its index. A file that was cut off, or whose index is damaged, is read from its start as
-//! far as it goes. A chunk whose checksum fails is left out. Whatever could not be read is named by
-//! [`Recording::warnings`]; bytes never make it panic.
+//! A complete file is read through its index. A file that was cut off, or whose index is damaged, is read
+//! from its start as far as it goes. A chunk whose checksum fails is left out. Whatever could not be read is
+//! named by [`Recording::warnings`]; bytes never make it panic.
 //!
 //! The file is mapped into memory: it must not be shortened by somebody else meanwhile (growing is fine).
 
@@ -98,10 +98,12 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` names, else all that it holds.
+    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` names, else all that it
+    /// holds.
     ///
     /// # Errors
-    /// If there is nothing, or what is there is not MCAP. A damaged recording is no error: see [`Recording::warnings`].
+    /// If there is nothing, or what is there is not MCAP. A damaged recording is no error: see
+    /// [`Recording::warnings`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut warnings = BTreeSet::new();
         let paths = files::of_recording(path, &mut warnings)?;
@@ -127,7 +129,8 @@ impl Recording {
         &self.path
     }
 
-    /// What could not be read so far: damage inside a chunk shows when the chunk is read. Data was lost if this is not empty.
+    /// What could not be read so far: damage inside a chunk shows when the chunk is read. Data was lost if
+    /// this is not empty.
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
@@ -215,7 +218,8 @@ impl Recording {
         info::of(self)
     }
 
-    /// Reads everything and returns all that is wrong: every checksum, and the counts of the index against the messages.
+    /// Reads everything and returns all that is wrong: every checksum, and the counts of the index against
+    /// the messages.
     pub fn verify(&self) -> Vec<Warning> {
         for file in &self.files {
             verify::file(file, |w| self.warn(w));

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 /// Where runs land under the current folder.
 pub const RUNS: &str = "recordings/runs";
 
-/// Makes the next free directory `<root>/<scene>-<seed>-<n>`, n = 1, 2, …, and returns it. Two processes that ask at
-/// once get two directories.
+/// Makes the next free directory `<root>/<scene>-<seed>-<n>`, n = 1, 2, …, and returns it. Two processes that
+/// ask at once get two directories.
 ///
 /// # Errors
 /// When a directory cannot be made for any other reason than that it exists.

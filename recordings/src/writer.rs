@@ -1,9 +1,10 @@
 //! A run directory, written so that a crash costs the open chunk at most.
 //!
-//! The file follows rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation header,
-//! QoS and type hash in the channel's metadata. Chunks are built in memory and written whole, with their CRC; a chunk
-//! that is not empty is closed at the latest after [`WriterOptions::flush_interval`]. So what is on disk is at every moment
-//! a clean prefix, which [`crate::reader`] reads. A file is pushed to the device about once a second from another thread.
+//! The file follows rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation
+//! header, QoS and type hash in the channel's metadata. Chunks are built in memory and written whole, with
+//! their CRC; a chunk that is not empty is closed at the latest after [`WriterOptions::flush_interval`]. So
+//! what is on disk is at every moment a clean prefix, which [`crate::reader`] reads. A file is pushed to the
+//! device about once a second from another thread.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -62,8 +63,8 @@ pub enum Outcome {
 pub struct WriterOptions {
     /// Uncompressed bytes after which a chunk is closed.
     pub chunk_size: u64,
-    /// Age of the oldest message at which an open chunk is closed and handed to the system. [`RunWriter::tick`] must be
-    /// called often enough for the sum to stay below what a crash may cost.
+    /// Age of the oldest message at which an open chunk is closed and handed to the system.
+    /// [`RunWriter::tick`] must be called often enough for the sum to stay below what a crash may cost.
     pub flush_interval: Duration,
     /// Time between two pushes to the device.
     pub sync_interval: Duration,
@@ -108,8 +109,8 @@ struct Channel {
     messages: u64,
 }
 
-/// Writes one run. Call [`RunWriter::tick`] at least every 100 ms and [`RunWriter::finish`] at the end; a writer that is
-/// dropped instead finishes its file as well as it can and marks it `finished = false`.
+/// Writes one run. Call [`RunWriter::tick`] at least every 100 ms and [`RunWriter::finish`] at the end; a
+/// writer that is dropped instead finishes its file as well as it can and marks it `finished = false`.
 pub struct RunWriter {
     directory: PathBuf,
     file: PathBuf,
@@ -133,8 +134,8 @@ pub struct RunWriter {
 const CHECK_EVERY: u64 = 1 << 20;
 
 impl RunWriter {
-    /// Begins `<directory>/<name>_0.mcap` with these topics; the directory is made if need be. For rosbag2, `name` should be the
-    /// directory's own name.
+    /// Begins `<directory>/<name>_0.mcap` with these topics; the directory is made if need be. For rosbag2,
+    /// `name` should be the directory's own name.
     ///
     /// # Errors
     /// If the file exists, space is short, or the file system refuses.
@@ -195,7 +196,8 @@ impl RunWriter {
         for topic in topics {
             writer.declare(topic)?;
         }
-        // Schemas are written once: were they lost with the first chunk, every later message would be an orphan.
+        // Schemas are written once: were they lost with the first chunk, every later message would be an
+        // orphan.
         writer.flush()?;
         Ok(writer)
     }
@@ -227,11 +229,13 @@ impl RunWriter {
         Ok(())
     }
 
-    /// Records a sample. Its log time is the time of arrival, moved forward as far as it takes to be later than the last one
-    /// and not earlier than the source time's own; its `sequence` is the low half of the RTPS sequence number.
+    /// Records a sample. Its log time is the time of arrival, moved forward as far as it takes to be later
+    /// than the last one and not earlier than the source time's own; its `sequence` is the low half of the
+    /// RTPS sequence number.
     ///
     /// # Errors
-    /// If the topic was not declared, the sample is no CDR, or the recording has ended (disk full, write failure).
+    /// If the topic was not declared, the sample is no CDR, or the recording has ended (disk full, write
+    /// failure).
     pub fn write(&mut self, topic: &str, sample: &Incoming<'_>) -> Result<Outcome, WriteError> {
         let Some(channel_id) = self.topics.get(topic).map(|t| t.channel) else {
             return Err(WriteError::UnknownTopic(topic.to_owned()));
@@ -263,8 +267,8 @@ impl RunWriter {
         Ok(Outcome::Recorded { log_time })
     }
 
-    /// Hands the open chunk to the system if its oldest message is older than the flush interval, and has the file pushed to
-    /// the device from time to time. Cheap when there is nothing to do.
+    /// Hands the open chunk to the system if its oldest message is older than the flush interval, and has the
+    /// file pushed to the device from time to time. Cheap when there is nothing to do.
     ///
     /// # Errors
     /// If the file cannot be written, or a push to the device failed.
@@ -329,8 +333,9 @@ impl RunWriter {
         &self.file
     }
 
-    /// Writes the account, the indexes and `metadata.yaml`, and returns when all of it is on the device. After a disk that
-    /// filled up this still works; after a write failure it says so, and what was written before stays readable.
+    /// Writes the account, the indexes and `metadata.yaml`, and returns when all of it is on the device.
+    /// After a disk that filled up this still works; after a write failure it says so, and what was written
+    /// before stays readable.
     ///
     /// # Errors
     /// If the recording cannot be completed. It then has no `metadata.yaml`.
@@ -358,8 +363,14 @@ impl RunWriter {
             source: e.into(),
         })?;
         metadata.insert(LEDGER_KEY.into(), tallies);
-        mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata })
-            .map_err(format("write the account"))?;
+        if let Err(source) = mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata }) {
+            // After a failed write the MCAP writer only says that it failed; the reason is the first error.
+            return Err(if self.ended.is_some() {
+                self.already_ended()
+            } else {
+                format("write the account")(source)
+            });
+        }
         mcap.finish().map_err(format("write the index"))?;
         let io = |action: &'static str| {
             let path = path.clone();
@@ -445,7 +456,8 @@ impl RunWriter {
 
 impl Drop for RunWriter {
     fn drop(&mut self) {
-        // No caller is left to take an error: the missing end of the file and of metadata.yaml tell it to every reader.
+        // No caller is left to take an error: the missing end of the file and of metadata.yaml tell it to
+        // every reader.
         if self.mcap.is_some() {
             let _ = self.close(false);
         }

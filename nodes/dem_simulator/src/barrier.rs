@@ -134,7 +134,12 @@ mod tests {
     }
 
     fn answer(sequence: u64, nanosec: u32) -> StrainRateAnswer {
-        StrainRateAnswer { stamp: Time { sec: 1, nanosec }, sequence, rate: [sequence as f64; 6], saturated: [false; 6] }
+        StrainRateAnswer {
+            stamp: Time { sec: 1, nanosec },
+            sequence,
+            rate: [sequence as f64; 6],
+            saturated: [false; 6],
+        }
     }
 
     #[test]

@@ -162,7 +162,10 @@ impl DemSimulator {
     fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
             if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
-                log::error!("a second simulator ({}) speaks on our topics; it should end by itself", info.writer);
+                log::error!(
+                    "a second simulator ({}) speaks on our topics; it should end by itself",
+                    info.writer
+                );
             }
         }
         Ok(())
@@ -186,7 +189,9 @@ impl DemSimulator {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
                 if self.notice_due(now) {
-                    log::warn!("another writer of stress ({writer}) is there and silent; waiting for it to speak or go");
+                    log::warn!(
+                        "another writer of stress ({writer}) is there and silent; waiting for it to speak or go"
+                    );
                 }
                 return Ok(Next::Wait(LOOK_AGAIN));
             }
@@ -206,7 +211,8 @@ impl DemSimulator {
         }
         self.began = now;
         if std::mem::take(&mut self.resumed) {
-            let message = messages::packing(&self.run).map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
+            let message = messages::packing(&self.run)
+                .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
             self.post(self.packing.id(), &message);
         }
         self.go_on(bus, now)
@@ -226,7 +232,9 @@ impl DemSimulator {
             }
         }
         let servo = bus.readers(self.stress.id()) > 0 && bus.writers(self.strain_rate.id()) > 0;
-        (!servo).then(|| "a servo: a reader of stress that writes strain_rate (same domain and namespace?)".into())
+        (!servo).then(|| {
+            "a servo: a reader of stress that writes strain_rate (same domain and namespace?)".into()
+        })
     }
 
     /// The next request, or the end.
@@ -268,7 +276,9 @@ impl DemSimulator {
                         log::warn!("answer {} of writer {}: {error}", message.sequence, info.writer);
                     }
                     if over {
-                        let text = format!("{REFUSALS_ALLOWED} answers in a row were refused, the last one: {error}");
+                        let text = format!(
+                            "{REFUSALS_ALLOWED} answers in a row were refused, the last one: {error}"
+                        );
                         return self.fail(bus, &text);
                     }
                 }
@@ -291,7 +301,10 @@ impl DemSimulator {
         }
         if self.barrier.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
             let waited = self.barrier.waited(now).as_secs();
-            log::warn!("no answer to request {} for {waited} s: is servo_controller running?", self.barrier.sequence());
+            log::warn!(
+                "no answer to request {} for {waited} s: is servo_controller running?",
+                self.barrier.sequence()
+            );
         }
         Ok(Next::Wait(self.barrier.patience(now)))
     }
@@ -370,7 +383,8 @@ impl Node for DemSimulator {
 
     fn health(&self) -> Health {
         let phase = self.run.path().phase(self.run.scene()).map_or("none", |p| p.name.as_str());
-        let (counts, steps) = (self.barrier.counts, self.run.engine().steps().saturating_sub(self.first_step));
+        let (counts, steps) =
+            (self.barrier.counts, self.run.engine().steps().saturating_sub(self.first_step));
         let computing = self.computing.as_secs_f64();
         let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
         let message = match self.stage {

@@ -1,14 +1,19 @@
 //! From one `Moduli` to one `Microstructure`.
 
 use crate::Settings;
-use emt::{CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, GammaSource, Observation, Status, infer_all};
+use emt::{
+    CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, GammaSource, Observation, Status, infer_all,
+};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading};
 use grainlab_msgs::{msg, topics};
 use grains::Mat3;
 
 /// What every model infers from one set of moduli with the paper's calibration: one estimate a model, in the order of
 /// [`emt::models`]. Header and step are copied; nothing but the two arguments enters.
-pub fn microstructure_message(moduli: &msg::Moduli, settings: &Settings) -> Result<msg::Microstructure, BoundaryError> {
+pub fn microstructure_message(
+    moduli: &msg::Moduli,
+    settings: &Settings,
+) -> Result<msg::Microstructure, BoundaryError> {
     let reading = ModuliReading::try_from(moduli)?;
     let observation = observation(&reading, settings);
     let calibration = Calibration::PAPER;

@@ -55,7 +55,10 @@ impl FabricAnalyzer {
             Ok(moduli) => {
                 self.moduli.publish(bus, moduli)?;
                 let (k, z, eps) = (moduli.k, moduli.z, moduli.eps);
-                log::info!("packing of step {step}: k {k:.3}, z {z:.3}, eps {eps:.4}, p {:.4e} Pa", moduli.pressure);
+                log::info!(
+                    "packing of step {step}: k {k:.3}, z {z:.3}, eps {eps:.4}, p {:.4e} Pa",
+                    moduli.pressure
+                );
             }
             Err(none) => {
                 self.without_network += 1;

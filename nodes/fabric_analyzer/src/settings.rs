@@ -45,6 +45,10 @@ impl TryFrom<&Parameters> for Settings {
         let axis: Vec<f64> = parameters.get("axis");
         let direction = <[f64; 3]>::try_from(axis.as_slice()).ok().map(Vec3::from).filter(|v| v.norm() > 0.0);
         let axis = direction.ok_or(SettingsError(axis))?;
-        Ok(Self(micro::Settings { tolerance: parameters.get("tolerance"), axis, ..micro::Settings::default() }))
+        Ok(Self(micro::Settings {
+            tolerance: parameters.get("tolerance"),
+            axis,
+            ..micro::Settings::default()
+        }))
     }
 }

@@ -19,8 +19,12 @@ use grainlab_msgs::topics;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
-/// Time between two heartbeats.
+/// Time between two heartbeats, and from the start to the first: `/diagnostics` keeps nothing for late joiners, and a
+/// recorder that is still being discovered would miss it and count it as lost.
 pub const HEARTBEAT: Duration = Duration::from_secs(1);
+
+/// A node that never waits looks at the graph this often.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// How long a leaving process waits for its readers' acknowledgements.
 const LAST_WORDS: Duration = Duration::from_millis(300);
@@ -114,6 +118,9 @@ pub fn drive(
             break settle(node.on_shutdown(bus));
         }
         match node.step(bus) {
+            Ok(Next::Again) if tender.look_due(bus.now()) => {
+                asked = bus.wait(Duration::ZERO) == Wake::Shutdown
+            }
             Ok(Next::Again) => {}
             Ok(Next::Wait(time)) => asked = bus.wait(time.min(until_beat)) == Wake::Shutdown,
             Ok(Next::Finished(exit)) => break exit,
@@ -153,6 +160,7 @@ struct Tender<'a> {
     watch: PeerWatch,
     watchdog: Watchdog,
     next_beat: Duration,
+    next_look: Duration,
 }
 
 impl<'a> Tender<'a> {
@@ -168,7 +176,8 @@ impl<'a> Tender<'a> {
             logger,
             watch: PeerWatch::subscribe(bus)?,
             watchdog: Watchdog::default(),
-            next_beat: bus.now(),
+            next_beat: bus.now() + HEARTBEAT,
+            next_look: bus.now() + LOOK,
         })
     }
 
@@ -194,6 +203,15 @@ impl<'a> Tender<'a> {
             self.next_beat = now + HEARTBEAT;
         }
         Ok(self.next_beat.saturating_sub(now))
+    }
+
+    /// Whether a node that never waits has to look at the bus for once, so that it follows the graph.
+    fn look_due(&mut self, now: Duration) -> bool {
+        let due = now >= self.next_look;
+        if due {
+            self.next_look = now + LOOK;
+        }
+        due
     }
 
     fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {

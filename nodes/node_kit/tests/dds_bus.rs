@@ -222,6 +222,39 @@ fn seven_participants_find_each_other_on_plain_loopback() {
     }
 }
 
+#[test]
+fn the_ros_graph_shows_the_node_and_its_endpoints() {
+    use ros2_client::builtin_topics::ros_discovery::{QOS_PUB, TOPIC_NAME, TYPE_NAME};
+    use ros2_client::entities_info::ParticipantEntitiesInfo;
+    let network = domain(7);
+    let mut a = open(network, "talker");
+    a.advertise(&topics::STRESS).unwrap();
+    a.subscribe(&topics::STRAIN_RATE, Demand::reliable(10)).unwrap();
+
+    let participant = rustdds::DomainParticipantBuilder::new(network.domain)
+        .with_only_networks([std::net::Ipv4Addr::LOCALHOST])
+        .build()
+        .unwrap();
+    let topic = participant
+        .create_topic(TOPIC_NAME.into(), TYPE_NAME.into(), &QOS_PUB, rustdds::TopicKind::NoKey)
+        .unwrap();
+    let reader = participant
+        .create_subscriber(&QOS_PUB)
+        .unwrap()
+        .create_datareader_no_key_cdr::<ParticipantEntitiesInfo>(&topic, Some(QOS_PUB.clone()));
+    let mut reader = reader.unwrap();
+    let mut nodes = Vec::new();
+    until(&mut a, "the node in the graph", |_| {
+        while let Ok(Some(sample)) = reader.take_next_sample() {
+            nodes = sample.value().nodes().iter().map(|n| format!("{n:?}")).collect();
+        }
+        nodes.len() == 1
+    });
+    let stress = a.published()[0].writer.to_string();
+    assert!(nodes[0].contains("talker") && nodes[0].contains("/lab"), "{}", nodes[0]);
+    assert!(nodes[0].contains(&stress), "the writer of stress, {stress}, in {}", nodes[0]);
+}
+
 /// Processor time of this process, all threads.
 fn cpu_time() -> Duration {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap();

@@ -1,11 +1,13 @@
-//! The CSV format of [`crate::import::csv`], exact: numbers are written with as many digits as bring them back.
+//! The CSV format of [`crate::import::csv`], exact: numbers are written with as many digits as bring them
+//! back.
 
 use std::fmt::Write as _;
 
 use grains::{Mat3, Packing};
 use serde_json::{Value, json};
 
-/// Grains and contacts of a packing as CSV; [`sidecar`] gives the rest. Reading both back gives the same packing, bit for bit.
+/// Grains and contacts of a packing as CSV; [`sidecar`] gives the rest. Reading both back gives the same
+/// packing, bit for bit.
 pub fn csv(packing: &Packing) -> String {
     let mut text = String::from("# particles: id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz\n");
     // Writing to a String cannot fail.

@@ -18,8 +18,9 @@ pub struct DumpError {
     pub value: f64,
 }
 
-/// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities, and the number of
-/// contacts as `c_contacts`. Frames may be put one after the other. Contact forces are not part of the format.
+/// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
+/// and the number of contacts as `c_contacts`. Frames may be put one after the other. Contact forces are not
+/// part of the format.
 ///
 /// # Errors
 /// If the cell is not in LAMMPS's restricted triclinic form.
@@ -58,14 +59,14 @@ pub fn lammps_dump(packing: &Packing) -> Result<String, DumpError> {
         contacts[c.j as usize] += 1;
     }
     text.push_str("ITEM: ATOMS id type radius mass xu yu zu vx vy vz omegax omegay omegaz c_contacts\n");
-    for k in 0..packing.grains() {
+    for (k, contacts) in contacts.into_iter().enumerate() {
         let radius = packing.radii[k];
         let _ = write!(text, "{} 1 {radius:e} {:e}", packing.ids[k], packing.material.sphere_mass(radius));
         let vectors: [&Vec3; 3] = [&packing.positions[k], &packing.velocities[k], &packing.spins[k]];
         for value in vectors.into_iter().flatten() {
             let _ = write!(text, " {value:e}");
         }
-        let _ = writeln!(text, " {}", contacts[k]);
+        let _ = writeln!(text, " {contacts}");
     }
     Ok(text)
 }

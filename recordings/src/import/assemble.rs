@@ -217,7 +217,8 @@ fn listed_contact(
             (pressing, on_i + normal * pressing)
         }
     };
-    // Other codes turn the tangential force with the contact only so well; a wrong convention is wrong by much more.
+    // Other codes turn the tangential force with the contact only so well; a wrong convention is wrong by
+    // much more.
     let along = tangential_force.dot(&normal).abs();
     if along > 1e-3 * (normal_force.abs() + tangential_force.norm()) {
         return Err(contradiction("tangential force along the normal (N)", along, 0.0));

@@ -14,10 +14,10 @@ pub enum SearchError {
     FarImage(usize, usize),
 }
 
-/// Every contact (positive overlap) of spheres of `radii` (m) at `positions` (m, folded or not) in `cell`, sorted by
-/// `(i, j, image)`: Hertz normal force from the overlap, no tangential force. Contacts across periodic images are found in any
-/// cell, also one so small that a grain touches an image of itself or several images of another. Positions and radii must be
-/// finite and radii positive.
+/// Every contact (positive overlap) of spheres of `radii` (m) at `positions` (m, folded or not) in `cell`,
+/// sorted by `(i, j, image)`: Hertz normal force from the overlap, no tangential force. Contacts across
+/// periodic images are found in any cell, also one so small that a grain touches an image of itself or
+/// several images of another. Positions and radii must be finite and radii positive.
 ///
 /// # Errors
 /// If two centres coincide, or an image is too far away to be named.
@@ -137,7 +137,8 @@ impl Grid {
         ((home[0] * self.boxes[1] + home[1]) * self.boxes[2] + home[2]) as usize
     }
 
-    /// Calls `each` with every grain in reach of grain `i`, and the copy of the cell in which it is seen from the home of `i`.
+    /// Calls `each` with every grain in reach of grain `i`, and the copy of the cell in which it is seen from
+    /// the home of `i`.
     fn visit<E>(&self, i: usize, mut each: impl FnMut(usize, [i64; 3]) -> Result<(), E>) -> Result<(), E> {
         let (home, r) = (self.homes[i], self.reach);
         for a in -r[0]..=r[0] {

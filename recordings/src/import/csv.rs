@@ -3,14 +3,14 @@
 //! Rows, SI units, ids are persistent:
 //!
 //! - `p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz`, a grain;
-//! - `c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz`, a contact of the grains with ids `i` and `j`: unit vector n from `j` to `i`, full
-//!   overlap, and the force on `i`, fn·n + ft.
+//! - `c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz`, a contact of the grains with ids `i` and `j`: unit vector n from
+//!   `j` to `i`, full overlap, and the force on `i`, fn·n + ft.
 //!
 //! Lines that start with `#` are comments. A file without contact rows has its contacts found from positions.
 //!
-//! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of three; columns are
-//! the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s), `time_step` (s), `deformation` (three
-//! rows of three). Other keys are left alone.
+//! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of
+//! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
+//! `time_step` (s), `deformation` (three rows of three). Other keys are left alone.
 
 use grains::Vec3;
 

@@ -1,7 +1,7 @@
 //! LAMMPS data files of `atom_style sphere`, as `write_data` makes them.
 //!
-//! Taken: the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are left alone) and `Velocities` (id, v, ω), in SI
-//! units. Contacts are found from positions.
+//! Taken: the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are left alone) and
+//! `Velocities` (id, v, ω), in SI units. Contacts are found from positions.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,9 @@
 //! LAMMPS dump files in text form, one packing a frame.
 //!
-//! Taken: the time step, the box (orthogonal or restricted triclinic, periodic), and from the columns `id`, `radius` or
-//! `diameter`, positions as `x`, `xu`, `xs` or `xsu` …, `mass`, `vx` …, `omegax` …. Contacts are found from positions, unless a
-//! `dump local` with their forces is given beside a single frame ([`ImportOptions::contact_forces`]).
+//! Taken: the time step, the box (orthogonal or restricted triclinic, periodic), and from the columns `id`,
+//! `radius` or `diameter`, positions as `x`, `xu`, `xs` or `xsu` …, `mass`, `vx` …, `omegax` …. Contacts are
+//! found from positions, unless a `dump local` with their forces is given beside a single frame
+//! ([`ImportOptions::contact_forces`]).
 
 use std::collections::BTreeMap;
 use std::iter::Peekable;

@@ -24,8 +24,9 @@ enum Format {
     Data,
 }
 
-/// The packings of a file or run directory: a recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump
-/// or data file; `.gz` is decompressed. The name decides, and where it does not, the first line.
+/// The packings of a file or run directory: a recording, a CSV (with the sidecar `<stem>.json` if there is
+/// one), a LAMMPS dump or data file; `.gz` is decompressed. The name decides, and where it does not, the
+/// first line.
 ///
 /// # Errors
 /// With the path in front of the reason: see [`ImportError`].

@@ -7,8 +7,8 @@ use super::error::ImportError;
 use super::{ImportOptions, Imported};
 use crate::reader::{Message, ReadError, Recording, Selection};
 
-/// The packings of a recording, in order of log time. A message that is not a packing is an error; a damaged or truncated
-/// recording gives what is left of it, and says so in its warnings.
+/// The packings of a recording, in order of log time. A message that is not a packing is an error; a damaged
+/// or truncated recording gives what is left of it, and says so in its warnings.
 ///
 /// # Errors
 /// If the topic does not exist, carries another type, or a message on it is not a packing.

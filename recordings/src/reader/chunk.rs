@@ -6,7 +6,8 @@ use mcap::records::{ChunkHeader, Record};
 
 use super::records::RawRecord;
 
-/// Chunks that claim more uncompressed bytes than this are taken for damaged: a wrong length must not exhaust the memory.
+/// Chunks that claim more uncompressed bytes than this are taken for damaged: a wrong length must not exhaust
+/// the memory.
 const LARGEST: u64 = 1 << 30;
 
 /// The records of a chunk, as bytes to walk over; or what is wrong with the chunk.

@@ -37,7 +37,8 @@ impl OpenFile {
         if file.metadata().map_err(io)?.len() == 0 {
             return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
         }
-        // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user (module text).
+        // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user
+        // (module text).
         let map = unsafe { Mmap::map(&file) }.map_err(io)?;
         Self::new(path, Bytes::Mapped(map), warnings)
     }

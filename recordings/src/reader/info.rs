@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::{Recording, Warning};
 use crate::ledger::TopicTally;
 
-/// Overview of a recording; its `Display` is the table for people, its `Serialize` the stable form for programs.
+/// Overview of a recording; its `Display` is the table for people, its `Serialize` the stable form for
+/// programs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Info {
     /// The recording.

@@ -160,7 +160,8 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
     channels.iter().any(|c| file.index.channels.get(c).is_some_and(|c| topics.contains(&c.topic)))
 }
 
-/// Gives each message of a block to `take`, with its position in the block; what cannot be read becomes a warning.
+/// Gives each message of a block to `take`, with its position in the block; what cannot be read becomes a
+/// warning.
 fn decode(recording: &Recording, file: &OpenFile, block: &Block, mut take: impl FnMut(usize, Message)) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
     let content: Arc<[u8]> = if block.is_chunk {

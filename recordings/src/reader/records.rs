@@ -32,7 +32,8 @@ impl<'a> RawRecord<'a> {
     }
 }
 
-/// Whether the fixed and variable parts of an attachment fit its body: `mcap::parse_record` takes that for granted.
+/// Whether the fixed and variable parts of an attachment fit its body: `mcap::parse_record` takes that for
+/// granted.
 fn attachment_fits(body: &[u8]) -> bool {
     let text_end = |start: usize| {
         let length = body.get(start..start.checked_add(4)?)?;

@@ -1,8 +1,9 @@
-//! Pushes a file to the device from a thread of its own: inline it would stall the recorder for tens of milliseconds.
+//! Pushes a file to the device from a thread of its own: inline it would stall the recorder for tens of
+//! milliseconds.
 
 use std::fs::File;
 use std::io;
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -49,10 +50,7 @@ impl DeviceSync {
     }
 
     pub(super) fn failure(&self) -> Option<io::Error> {
-        match self.failures.try_recv() {
-            Ok(e) => Some(e),
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => None,
-        }
+        self.failures.try_recv().ok()
     }
 
     pub(super) fn stop(&mut self) {

@@ -30,7 +30,8 @@ fn pair(contact: &str) -> Result<recordings::import::Imported, ImportError> {
 
 #[test]
 fn a_listed_contact_is_turned_to_our_convention() {
-    // Grain 2 lies at x = −0.05 of the next cell: overlap 0.05, direction from j = 1 to i = 2 is −x, across the boundary.
+    // Grain 2 lies at x = −0.05 of the next cell: overlap 0.05, direction from j = 1 to i = 2 is −x, across
+    // the boundary.
     let p = pair("c,2,1,-1,0,0,0.05,3,0,0.5,0").unwrap().packing;
     let c = p.contacts[0];
     assert_eq!((c.i, c.j, c.image, c.normal_force), (0, 1, [-1, 0, 0], 3.0));

@@ -35,7 +35,8 @@ pub(crate) fn sample<'a>(guid: Guid, sequence: i64, time: u64, payload: &'a [u8]
     Incoming { guid, sequence, source_time: Some(time.saturating_sub(30_000)), receive_time: time, payload }
 }
 
-/// Writes `count` stress messages, a clock message with every tenth, a latched packing at 100, and two attachments.
+/// Writes `count` stress messages, a clock message with every tenth, a latched packing at 100, and two
+/// attachments.
 pub(crate) fn write_run(directory: &Path, count: u64) -> Finished {
     let name = directory.file_name().unwrap().to_str().unwrap();
     let mut run = RunWriter::create(directory, name, &contract(), options()).unwrap();

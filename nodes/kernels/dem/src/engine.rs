@@ -198,8 +198,8 @@ impl Engine {
         let moved = kick_and_drift(&mut self.state, &mut self.travel, &self.setting);
         let limit =
             0.1 * self.state.radius.iter().copied().fold(f64::INFINITY, f64::min) / self.state.time_step;
-        // Also true if the speed is not a number.
-        if !(moved.largest_square_speed <= limit * limit) {
+        // A sum that is not finite betrays any speed that is not.
+        if !moved.sum_square_speed.is_finite() || moved.largest_square_speed > limit * limit {
             return Err(self.unstable());
         }
         if let Some(cap) = self.setting.speed_cap {
@@ -295,8 +295,11 @@ impl Engine {
     fn unstable(&self) -> DemError {
         let s = &self.state;
         // The first grain that is too fast, or not finite.
-        let limit = |i: usize| 0.1 * s.radius[i] / s.time_step;
-        let grain = (0..s.grains()).find(|i| !(s.velocity.get(*i).norm() <= limit(*i))).unwrap_or(0);
+        let too_fast = |i: usize| {
+            let speed = s.velocity.get(i).norm();
+            !speed.is_finite() || speed > 0.1 * s.radius[i] / s.time_step
+        };
+        let grain = (0..s.grains()).find(|i| too_fast(*i)).unwrap_or(0);
         let contact = (0..self.pairs.len())
             .filter(|p| self.pairs.i[*p] as usize == grain || self.pairs.j[*p] as usize == grain)
             .max_by(|a, b| self.pairs.overlap[*a].total_cmp(&self.pairs.overlap[*b]));

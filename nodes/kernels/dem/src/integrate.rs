@@ -7,11 +7,11 @@ use grains::Mat3;
 /// What one step did, for the checks that follow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
-    /// Largest v² of a grain, m²/s²; not finite if the state is lost.
+    /// Largest v² of a grain, m²/s², among those that are numbers.
     pub(crate) largest_square_speed: f64,
     /// Largest |displacement|² relative to the affine motion since the neighbour list was built, m².
     pub(crate) largest_square_travel: f64,
-    /// Sum of v² over grains, m²/s².
+    /// Sum of v² over grains, m²/s²; not finite if the state is lost.
     pub(crate) sum_square_speed: f64,
 }
 
@@ -33,10 +33,7 @@ pub(crate) fn kick_and_drift(state: &mut State, travel: &mut Soa, setting: &Sett
         travel.set(i, d);
         let speed = v.norm_squared();
         moved.sum_square_speed += speed;
-        // A NaN must survive the comparison.
-        if !(speed <= moved.largest_square_speed) {
-            moved.largest_square_speed = speed;
-        }
+        moved.largest_square_speed = moved.largest_square_speed.max(speed);
         moved.largest_square_travel = moved.largest_square_travel.max(d.norm_squared());
     }
     moved

@@ -61,7 +61,7 @@ impl RunState {
                 return Err(resume(format!("run state version {v}, this program knows version {VERSION}")));
             }
         }
-        if words.len() != 26 || bytes.len() % 8 != 0 {
+        if words.len() != 26 || !bytes.len().is_multiple_of(8) {
             return Err(resume(format!("the run state has {} bytes, 208 expected", bytes.len())));
         }
         let real = |k: usize| f64::from_bits(words[k]);

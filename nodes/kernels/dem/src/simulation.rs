@@ -172,7 +172,7 @@ impl Simulation {
     }
 
     /// Obeys one answer: strains at `rate` (Voigt order, 1/s) for one control period. On failure the run is back at the
-    /// last state kept, at most [`KEEP_INTERVAL`] steps ago.
+    /// last state kept, at most a hundred steps and one control period ago.
     pub fn answer(&mut self, rate: &[f64; 6]) -> Result<Advanced, DemError> {
         let none = Advanced { ended: None, packing_due: false, finished: self.finished() };
         let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };

@@ -1,0 +1,138 @@
+//! Messages that must not be believed, and runs that cannot go on.
+
+use crate::bench::{Bench, FOREVER, exit_of};
+use dem_simulator::Settings;
+use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
+use grainlab_msgs::{to_cdr, topics};
+use grains::Packing;
+use node_kit::memory::{Actor, run_until};
+use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
+use std::time::Duration;
+
+/// A servo that answers `honest` requests as it should and then something else.
+struct BadServo {
+    stress: Subscription<Stress>,
+    strain_rate: Publisher<StrainRate>,
+    honest: u64,
+    lies: u32,
+    lie: f64,
+}
+
+impl BadServo {
+    fn new(bus: &mut dyn Bus, honest: u64, lies: u32, lie: f64) -> Self {
+        let stress = Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(16)).unwrap();
+        let strain_rate = Publisher::advertise(bus, &topics::STRAIN_RATE).unwrap();
+        Self { stress, strain_rate, honest, lies, lie }
+    }
+}
+
+impl Node for BadServo {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        while let Some((stress, _)) = self.stress.take_valid(bus)? {
+            let mut answer = servo_controller::answer(&stress).expect("an answer");
+            if stress.sequence >= self.honest && self.lies > 0 {
+                self.lies -= 1;
+                answer.rate[2] = self.lie;
+            }
+            self.strain_rate.publish(bus, &answer)?;
+        }
+        Ok(Next::Wait(Duration::from_secs(3600)))
+    }
+
+    fn health(&self) -> Health {
+        Health::default()
+    }
+}
+
+/// How a run with this servo ends, if it does within some seconds, and what was recorded.
+fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, crate::bench::Record) {
+    let bench = Bench::new(0);
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let mut servo_bus = bench.bus("servo_controller");
+    let mut servo = BadServo::new(&mut servo_bus, honest, lies, lie);
+    let mut actors = vec![
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut simulator, simulator_bus),
+        Actor::new(&mut servo, servo_bus),
+    ];
+    run_until(&bench.hub, &mut actors, FOREVER, |actors| {
+        let end = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
+        actors[1].ended().is_some() || end.is_some_and(|s| s.state == RunState::FINISHED)
+    });
+    // What the simulator said last is still on its way.
+    run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
+    let exit = exit_of(&actors[1]);
+    drop(actors);
+    (exit, bench.record.take())
+}
+
+#[test]
+fn ten_answers_that_are_not_numbers_end_the_run_with_its_state_saved() {
+    let (exit, record) = run_with(200, 10, f64::NAN);
+    assert_eq!(exit, Some(Exit::PhysicsInvalid));
+    let end: RunState = record.last(&topics::RUN_STATE).unwrap();
+    assert_eq!(end.state, RunState::FAILED);
+    assert!(end.message.contains("rate[2] (zz) = NaN"), "{}", end.message);
+    let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
+    assert_eq!((saved.step, end.last_packing_step), (end.step, end.step));
+    // The state is that of request 200: it can be resumed, and gives what an undisturbed run gives.
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    let resume = (Packing::try_from(&saved).unwrap(), saved.run_state);
+    let resumed = Bench::new(0).whole_run(&Settings::default(), Some(resume)).without_repeats();
+    let rest = resumed.bodies(&topics::STRESS);
+    assert!(rest.len() > 100 && clean.bodies(&topics::STRESS)[200..] == *rest);
+    assert_eq!(clean.bodies(&topics::MICROSTRUCTURE).last(), resumed.bodies(&topics::MICROSTRUCTURE).last());
+}
+
+#[test]
+fn nine_answers_that_are_not_numbers_change_no_byte() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    let (exit, record) = run_with(200, 9, f64::NAN);
+    assert_eq!(exit, None);
+    for topic in [topics::STRESS, topics::PACKING] {
+        assert!(record.without_repeats().bodies(&topic) == clean.bodies(&topic), "{}", topic.name);
+    }
+    assert_eq!(
+        record.bodies(&topics::STRESS).len() - clean.bodies(&topics::STRESS).len(),
+        9,
+        "asked again nine times"
+    );
+}
+
+#[test]
+fn a_rate_that_tears_the_packing_apart_ends_the_run_with_the_last_finite_state() {
+    // 10⁸ per second moves a grain by more than its size within one step of some 10⁻⁸ s.
+    let (exit, record) = run_with(400, u32::MAX, -1e8);
+    assert_eq!(exit, Some(Exit::PhysicsInvalid));
+    let end: RunState = record.last(&topics::RUN_STATE).unwrap();
+    assert!(end.state == RunState::FAILED && end.message.contains("step"), "{}", end.message);
+    let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
+    assert_eq!(saved.step, end.last_packing_step);
+    assert!(Packing::try_from(&saved).is_ok());
+}
+
+#[test]
+fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_lives() {
+    let record = Bench::new(0).whole_run(&Settings::default(), None);
+    let good: msg::Packing = record.last(&topics::PACKING).unwrap();
+    let mut broken = good.clone();
+    broken.contact_pair[1] = 40;
+
+    let bench = Bench::new(0);
+    let mut source = bench.bus("source");
+    let packings: Publisher<msg::Packing> = Publisher::advertise(&mut source, &topics::PACKING).unwrap();
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let mut actors = [Actor::new(&mut recorder, recorder_bus), Actor::new(&mut analyzer, analyzer_bus)];
+    packings.publish(&mut source, &broken).unwrap();
+    source.publish(packings.id(), &to_cdr(&good)[..1000]).unwrap();
+    run_until(&bench.hub, &mut actors, Duration::from_secs(1), |_| false);
+    assert!(bench.record.borrow().bodies(&topics::FABRIC).is_empty());
+    assert_eq!(actors[1].bus().received()[0].refused, 2);
+    packings.publish(&mut source, &good).unwrap();
+    run_until(&bench.hub, &mut actors, Duration::from_secs(2), |_| false);
+    let fabric: Fabric = bench.record.borrow().last(&topics::FABRIC).unwrap();
+    assert_eq!(fabric.source_step, good.step);
+    assert_eq!(bench.record.borrow().bodies(&topics::MODULI).last(), record.bodies(&topics::MODULI).last());
+}

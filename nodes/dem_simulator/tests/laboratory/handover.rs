@@ -1,0 +1,214 @@
+//! Nodes that come, go, and come again in the middle of a run.
+
+use crate::bench::{Bench, FOREVER, Record, exit_of, scene};
+use dem_simulator::{DemSimulator, Settings};
+use grainlab_msgs::boundary::BoundaryError;
+use grainlab_msgs::msg::{self, RunState};
+use grainlab_msgs::topics;
+use grains::Packing;
+use node_kit::memory::{Actor, run_until};
+use node_kit::{Bus, Exit, Faults, Health, Next, Node, NodeError};
+use std::time::Duration;
+
+fn state_in(message: &msg::Packing) -> Result<(Packing, Vec<u8>), BoundaryError> {
+    Ok((Packing::try_from(message)?, message.run_state.clone()))
+}
+
+fn requests(record: &Record) -> usize {
+    record.bodies(&topics::STRESS).len()
+}
+
+#[test]
+fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    let bench = Bench::new(0);
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let (mut inversion, inversion_bus) = bench.inversion();
+    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let (mut first, first_bus) = bench.servo();
+    let mut actors = vec![
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut analyzer, analyzer_bus),
+        Actor::new(&mut inversion, inversion_bus),
+        Actor::new(&mut simulator, simulator_bus),
+        Actor::new(&mut first, first_bus),
+    ];
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 300));
+    actors.pop();
+    let death = bench.hub.now();
+    run_until(&bench.hub, &mut actors, death + Duration::from_secs(3), |_| false);
+    assert!(!bench.record.borrow().complete(), "the simulator waits");
+    let (mut second, second_bus) = bench.servo();
+    actors.push(Actor::new(&mut second, second_bus));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
+    assert!(bench.record.borrow().without_repeats() == clean);
+}
+
+#[test]
+fn a_run_resumed_from_any_packing_continues_bit_for_bit() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    for (place, packing) in clean.messages::<msg::Packing>(&topics::PACKING).iter().enumerate() {
+        let resume = state_in(packing).unwrap();
+        let record = Bench::new(1).whole_run(&Settings::default(), Some(resume)).without_repeats();
+        for topic in [topics::STRESS, topics::STRAIN_RATE, topics::PACKING, topics::MICROSTRUCTURE] {
+            let (all, again) = (clean.bodies(&topic), record.bodies(&topic));
+            assert!(all.ends_with(again), "{} after packing {place}", topic.name);
+        }
+        let packings = record.bodies(&topics::PACKING).len();
+        assert_eq!(packings, 3 - place, "the packing resumed from is there again");
+    }
+}
+
+/// A simulator that is asked to stop before its n-th step.
+struct Stopped {
+    simulator: DemSimulator,
+    steps_left: u32,
+}
+
+impl Node for Stopped {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        if self.steps_left == 0 {
+            return Ok(Next::Finished(self.simulator.on_shutdown(bus)?));
+        }
+        self.steps_left -= 1;
+        self.simulator.step(bus)
+    }
+
+    fn health(&self) -> Health {
+        self.simulator.health()
+    }
+}
+
+#[test]
+fn an_interrupted_run_saves_its_state_and_goes_on_from_there() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    let bench = Bench::new(0);
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut servo, servo_bus) = bench.servo();
+    let (simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let mut stopped = Stopped { simulator, steps_left: 500 };
+    let mut actors = [
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut stopped, simulator_bus),
+    ];
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[2].ended().is_some()));
+    assert_eq!(exit_of(&actors[2]), Some(Exit::Interrupted));
+    run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
+    drop(actors);
+    let (saved, end): (msg::Packing, RunState) = {
+        let record = bench.record.borrow();
+        (record.last(&topics::PACKING).unwrap(), record.last(&topics::RUN_STATE).unwrap())
+    };
+    assert!(saved.step > 0 && end.last_packing_step == saved.step && end.message.starts_with("interrupted"));
+    let rest =
+        Bench::new(0).whole_run(&Settings::default(), Some(state_in(&saved).unwrap())).without_repeats();
+    assert!(rest.bodies(&topics::STRESS).len() > 100, "it was stopped under way");
+    assert!(clean.bodies(&topics::STRESS).ends_with(rest.bodies(&topics::STRESS)));
+    assert_eq!(clean.bodies(&topics::MICROSTRUCTURE).last(), rest.bodies(&topics::MICROSTRUCTURE).last());
+}
+
+#[test]
+fn an_analyzer_that_comes_late_gets_the_last_packing_and_makes_the_same_bytes() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None);
+    let bench = Bench::new(0);
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut servo, servo_bus) = bench.servo();
+    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let mut actors = vec![
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut simulator, simulator_bus),
+    ];
+    let finished = |record: &Record| {
+        record.last::<RunState>(&topics::RUN_STATE).is_some_and(|s| s.state == RunState::FINISHED)
+    };
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| finished(&bench.record.borrow())));
+    let ((mut analyzer, analyzer_bus), (mut inversion, inversion_bus)) =
+        (bench.analyzer(), bench.inversion());
+    actors.push(Actor::new(&mut analyzer, analyzer_bus));
+    actors.push(Actor::new(&mut inversion, inversion_bus));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
+    for topic in [topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE] {
+        assert!(
+            bench.record.borrow().bodies(&topic) == &clean.bodies(&topic)[clean.bodies(&topic).len() - 1..]
+        );
+    }
+}
+
+#[test]
+fn a_run_waits_for_the_readers_it_was_told_to_wait_for() {
+    let bench = Bench::new(0);
+    let settings =
+        Settings { wait_for: vec![topics::STRESS, topics::PACKING], min_readers: 2, ..Settings::default() };
+    let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
+    let (mut servo, servo_bus) = bench.servo();
+    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let mut actors = vec![
+        Actor::new(&mut simulator, simulator_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut analyzer, analyzer_bus),
+    ];
+    run_until(&bench.hub, &mut actors, Duration::from_secs(60), |_| false);
+    assert_eq!(actors[0].bus().published()[0].count, 0, "there is one reader of each only");
+    let (mut recorder, recorder_bus) = bench.recorder();
+    actors.push(Actor::new(&mut recorder, recorder_bus));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
+    let first: Vec<msg::Stress> = bench.record.borrow().messages(&topics::STRESS);
+    assert_eq!(first[0].sequence, 0, "the recorder missed nothing");
+}
+
+#[test]
+fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
+    let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
+    let bench = Bench::new(0);
+    // The intruder joins first, so that its GUID is the smaller one: who runs already stays nevertheless.
+    let mut intruder_bus = bench.bus("dem_simulator");
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let (mut inversion, inversion_bus) = bench.inversion();
+    let (mut servo, servo_bus) = bench.servo();
+    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let mut actors = vec![
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut analyzer, analyzer_bus),
+        Actor::new(&mut inversion, inversion_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut simulator, simulator_bus),
+    ];
+    // Delays give the intruder time to look around while the run lasts.
+    bench.hub.set_faults("/stress", Faults { delay: Duration::from_millis(20), ..Default::default() });
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 100));
+    let mut intruder = DemSimulator::new(&mut intruder_bus, scene(), None, Settings::default()).unwrap();
+    actors.push(Actor::new(&mut intruder, intruder_bus));
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[5].ended().is_some()));
+    assert!(!bench.record.borrow().complete(), "the run was still under way");
+    assert_eq!(exit_of(&actors[5]), Some(Exit::Failure));
+    let message = actors[5].ended().map(|e| format!("{}", e.as_ref().unwrap_err())).unwrap();
+    let ours = actors[4].bus().published()[0].writer.to_string();
+    assert!(message.contains(&ours) && message.contains("ROS_DOMAIN_ID"), "{message}");
+    actors.pop();
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
+    assert!(bench.record.borrow().without_repeats() == clean);
+}
+
+#[test]
+fn of_two_simulators_that_start_at_once_one_runs() {
+    let bench = Bench::new(0);
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut servo, servo_bus) = bench.servo();
+    let (mut smaller, smaller_bus) = bench.simulator(&Settings::default(), None);
+    let (mut larger, larger_bus) = bench.simulator(&Settings::default(), None);
+    let mut actors = vec![
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut smaller, smaller_bus),
+        Actor::new(&mut larger, larger_bus),
+    ];
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |actors| actors.iter().any(|a| a.ended().is_some())));
+    assert_eq!(exit_of(&actors[3]), Some(Exit::Failure), "the larger GUID gives way");
+    // Its process ends, and its endpoints leave the graph.
+    actors.pop();
+    assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 10));
+}

@@ -1,0 +1,101 @@
+//! A run from beginning to end.
+
+use crate::bench::{Bench, Record};
+use dem_simulator::{Mode, Settings};
+use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::{stamp, topics};
+use std::time::Duration;
+
+fn clean_run() -> Record {
+    Bench::new(0).whole_run(&Settings::default(), None)
+}
+
+#[test]
+fn every_packing_is_measured_and_inverted_with_its_stamp_and_step() {
+    let record = clean_run();
+    let packings: Vec<Packing> = record.messages(&topics::PACKING);
+    let fabrics: Vec<Fabric> = record.messages(&topics::FABRIC);
+    let moduli: Vec<Moduli> = record.messages(&topics::MODULI);
+    let inferred: Vec<Microstructure> = record.messages(&topics::MICROSTRUCTURE);
+    assert_eq!((packings.len(), fabrics.len(), moduli.len(), inferred.len()), (3, 3, 2, 2));
+    for (packing, fabric) in packings.iter().zip(&fabrics) {
+        assert_eq!(packing.header.stamp, stamp(packing.time));
+        assert_eq!((&packing.header, packing.step), (&fabric.header, fabric.source_step));
+    }
+    // The first one has no contact network, hence a fabric and no moduli.
+    for ((packing, moduli), inferred) in packings[1..].iter().zip(&moduli).zip(&inferred) {
+        assert_eq!((&packing.header, packing.step), (&moduli.header, moduli.source_step));
+        assert_eq!((&packing.header, packing.step), (&inferred.header, inferred.source_step));
+        assert_eq!(inferred.source, "moduli");
+        let models: Vec<&str> = inferred.estimates.iter().map(|e| e.model.as_str()).collect();
+        assert_eq!(models, ["ratio", "ratio-as-printed"]);
+        for e in &inferred.estimates {
+            assert!(matches!(e.status, Estimate::STATUS_OK | Estimate::STATUS_EXTRAPOLATED), "{e:?}");
+            assert_eq!(
+                (e.gamma_over_delta_source.as_str(), e.gamma_over_delta),
+                ("total", moduli.gamma_over_delta_total)
+            );
+            assert!(e.credible_level > 0.0 && e.interval[0] < e.k && e.k < e.interval[1], "{e:?}");
+        }
+    }
+    let pressure = moduli[1].pressure;
+    // The scene stops its servo at 2 percent of 100 kPa.
+    assert!((pressure - 100e3).abs() < 2e3, "{pressure}");
+}
+
+#[test]
+fn requests_count_from_zero_and_each_is_answered_once_where_nothing_gets_lost() {
+    let record = clean_run();
+    let requests: Vec<Stress> = record.messages(&topics::STRESS);
+    let answers: Vec<StrainRate> = record.messages(&topics::STRAIN_RATE);
+    assert_eq!(requests.len(), answers.len());
+    for (n, (request, answer)) in requests.iter().zip(&answers).enumerate() {
+        assert_eq!((request.sequence, answer.sequence), (n as u64, n as u64));
+        assert_eq!(request.header, answer.header);
+    }
+}
+
+#[test]
+fn run_state_names_every_phase_and_the_step_of_the_last_packing() {
+    let record = clean_run();
+    let states: Vec<RunState> = record.messages(&topics::RUN_STATE);
+    let mut phases: Vec<&str> = states.iter().map(|s| s.phase_name.as_str()).collect();
+    phases.dedup();
+    assert_eq!(phases, ["gas", "relax", "compress", "load"]);
+    let (end, last): (&RunState, Packing) = (states.last().unwrap(), record.last(&topics::PACKING).unwrap());
+    assert_eq!((end.state, end.progress, end.packings), (RunState::FINISHED, 1.0, 3));
+    assert_eq!((end.step, end.last_packing_step), (last.step, last.step));
+}
+
+#[test]
+fn two_runs_are_the_same_bytes() {
+    let [first, second] = [clean_run(), clean_run()].map(|r| r.without_repeats());
+    assert!(first == second);
+}
+
+#[test]
+fn loss_repetition_and_delay_change_no_byte() {
+    let clean = clean_run().without_repeats();
+    for seed in 1..=12 {
+        let record = Bench::faulty(seed).whole_run(&Settings::default(), None);
+        let repeats = record.bodies(&topics::STRESS).len() - clean.bodies(&topics::STRESS).len();
+        assert!(repeats > 0, "seed {seed} put nothing to the test");
+        assert!(record.without_repeats() == clean, "seed {seed}");
+    }
+}
+
+#[test]
+fn free_run_does_not_wait_for_each_answer_and_arrives_at_the_same_pressure() {
+    let run = |mode| {
+        let bench = Bench::faulty(5);
+        let hub = bench.hub.clone();
+        let record = bench.whole_run(&Settings { mode, ..Settings::default() }, None);
+        let pressure = record.last::<Moduli>(&topics::MODULI).unwrap().pressure;
+        (hub.now(), pressure)
+    };
+    let (in_step, _) = run(Mode::Lockstep);
+    let (free, pressure) = run(Mode::FreeRun { lag: 5 });
+    assert!(free < in_step / 2, "{free:?} and {in_step:?} of virtual time");
+    assert!((pressure - 100e3).abs() < 2e3, "{pressure}");
+    assert!(in_step > Duration::from_secs(1), "the delays put the lockstep to no test");
+}

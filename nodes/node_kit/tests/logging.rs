@@ -1,0 +1,42 @@
+//! Log lines on `/rosout`. Alone in its process: there is one logger in each.
+
+use grainlab_msgs::rcl_interfaces::Log;
+use grainlab_msgs::topics;
+use node_kit::logging::Logger;
+use node_kit::{Bus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, RosArgs, Subscription, drive};
+
+struct Idle;
+
+impl Node for Idle {
+    fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
+        Ok(Next::Finished(Exit::Done))
+    }
+
+    fn health(&self) -> Health {
+        Health::default()
+    }
+}
+
+#[test]
+fn log_lines_go_to_rosout_with_the_nodes_name_and_none_after_the_last_report() {
+    let quiet = RosArgs { stderr: false, ..RosArgs::default() };
+    let logger = Logger::install("/lab/ticker", &quiet);
+    log::info!("the gas is {} dense", 0.5);
+    log::debug!("too quiet to be heard");
+
+    let hub = Hub::new(1);
+    let mut bus = hub.bus(Names::in_namespace("ticker", "/lab").unwrap());
+    drive(&mut Idle, &mut bus, "/lab/ticker", Some(logger), &|| false).unwrap();
+    log::error!("after the end");
+    assert!(logger.drain().is_empty(), "closed");
+
+    let mut observer = hub.bus(Names::new("late_observer").unwrap());
+    let rosout =
+        Subscription::<Log>::subscribe(&mut observer, &topics::ROSOUT, Demand::reliable(1000)).unwrap();
+    let lines: Vec<Log> =
+        std::iter::from_fn(|| rosout.take(&mut observer).unwrap()).map(|(line, _)| line).collect();
+    let texts: Vec<&str> = lines.iter().map(|l| l.msg.as_str()).collect();
+    assert_eq!(texts, ["the gas is 0.5 dense", "leaving: done (exit 0)"]);
+    assert_eq!((lines[0].name.as_str(), lines[0].level), ("lab.ticker", Log::INFO));
+    assert!(lines[0].file.ends_with("logging.rs") && lines[0].line > 0 && lines[0].stamp.sec > 1_600_000_000);
+}
