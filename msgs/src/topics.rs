@@ -36,8 +36,8 @@ impl Qos {
     pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };
     /// States of which the latest is what counts.
     pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
-    /// ROS 2's for `/clock`.
-    pub const CLOCK: Self = Self { reliable: false, depth: 1, transient_local: false };
+    /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it all the same.
+    pub const CLOCK: Self = Self { reliable: true, depth: 10, transient_local: false };
     /// ROS 2's for `/rosout`.
     pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
 

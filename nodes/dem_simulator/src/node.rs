@@ -1,12 +1,11 @@
 //! The node.
 
-use crate::barrier::{Barrier, REFUSALS_ALLOWED};
+use crate::barrier::Barrier;
 use crate::messages::{self, Packings};
 use crate::outbox::Outbox;
-use crate::rivals::{Rivals, Verdict};
-use crate::settings::{Mode, Settings};
-use dem::{Advanced, DemError, Simulation};
-use grainlab_msgs::boundary::StrainRateAnswer;
+use crate::rivals::Rivals;
+use crate::settings::Settings;
+use dem::{DemError, Simulation};
 use grainlab_msgs::msg::{Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
@@ -16,14 +15,13 @@ use scene::Scene;
 use std::time::Duration;
 
 /// Period of `run_state` where nothing happens, wall time.
-const BEAT: Duration = Duration::from_secs(1);
+pub(crate) const BEAT: Duration = Duration::from_secs(1);
 /// Least period of `/clock`, wall time.
 const CLOCK_PERIOD: Duration = Duration::from_millis(10);
-/// How often a start that waits looks again and how often it says what it waits for.
-const LOOK_AGAIN: Duration = Duration::from_millis(50);
-const NOTICE_PERIOD: Duration = Duration::from_secs(5);
+/// How often a run that waits says what it waits for.
+pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
 /// How long an outbox that a slow reader holds up rests.
-const HOLD: Duration = Duration::from_millis(5);
+pub(crate) const HOLD: Duration = Duration::from_millis(5);
 /// How long the last messages may take to be acknowledged.
 const FAREWELL: Duration = Duration::from_secs(2);
 
@@ -39,7 +37,7 @@ pub enum SimulatorError {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+pub(crate) enum Stage {
     /// Looks for rivals, readers and a servo.
     Starting,
     /// Asks and obeys.
@@ -50,30 +48,30 @@ enum Stage {
 
 /// The simulator: owns the run and moves only when it is answered.
 pub struct DemSimulator {
-    run: Simulation,
-    settings: Settings,
-    stress: Publisher<Stress>,
-    packing: Publisher<Packing>,
-    run_state: Publisher<RunState>,
-    clock: Publisher<Clock>,
-    strain_rate: Subscription<StrainRate>,
-    run_states: Subscription<RunState>,
-    stage: Stage,
-    rivals: Rivals,
-    barrier: Barrier,
-    outbox: Outbox,
-    packings: Packings,
+    pub(crate) run: Simulation,
+    pub(crate) settings: Settings,
+    pub(crate) stress: Publisher<Stress>,
+    pub(crate) packing: Publisher<Packing>,
+    pub(crate) run_state: Publisher<RunState>,
+    pub(crate) clock: Publisher<Clock>,
+    pub(crate) strain_rate: Subscription<StrainRate>,
+    pub(crate) run_states: Subscription<RunState>,
+    pub(crate) stage: Stage,
+    pub(crate) rivals: Rivals,
+    pub(crate) barrier: Barrier,
+    pub(crate) outbox: Outbox,
+    pub(crate) packings: Packings,
     /// The packing that the run goes on from, until it is published again for those who missed it.
-    resumed: bool,
-    born: Duration,
-    began: Duration,
-    first_step: u64,
-    computing: Duration,
+    pub(crate) resumed: bool,
+    pub(crate) born: Duration,
+    pub(crate) began: Duration,
+    pub(crate) first_step: u64,
+    pub(crate) computing: Duration,
     /// From the first request to the latest answer obeyed.
-    wall: Duration,
-    next_beat: Duration,
-    next_clock: Duration,
-    next_notice: Duration,
+    pub(crate) wall: Duration,
+    pub(crate) next_beat: Duration,
+    pub(crate) next_clock: Duration,
+    pub(crate) next_notice: Duration,
 }
 
 impl DemSimulator {
@@ -128,17 +126,17 @@ impl DemSimulator {
         })
     }
 
-    fn post<T: Message>(&mut self, publisher: node_kit::PublisherId, message: &T) {
+    pub(crate) fn post<T: Message>(&mut self, publisher: node_kit::PublisherId, message: &T) {
         self.outbox.post(publisher, to_cdr(message));
     }
 
-    fn post_run_state(&mut self, state: u8, text: &str) {
+    pub(crate) fn post_run_state(&mut self, state: u8, text: &str) {
         let message = messages::run_state(&self.run, state, self.packings, text);
         self.post(self.run_state.id(), &message);
     }
 
     /// The packing as it is now, once.
-    fn post_packing(&mut self) -> Result<(), grains::PackingError> {
+    pub(crate) fn post_packing(&mut self) -> Result<(), grains::PackingError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };
         self.post(self.packing.id(), &message);
@@ -159,20 +157,8 @@ impl DemSimulator {
         Ok(())
     }
 
-    fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
-        while let Some((_, info)) = self.run_states.take_valid(bus)? {
-            if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
-                log::error!(
-                    "a second simulator ({}) speaks on our topics; it should end by itself",
-                    info.writer
-                );
-            }
-        }
-        Ok(())
-    }
-
     /// Whether it is time to say again what is waited for.
-    fn notice_due(&mut self, now: Duration) -> bool {
+    pub(crate) fn notice_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_notice;
         if due {
             self.next_notice = now + NOTICE_PERIOD;
@@ -180,166 +166,8 @@ impl DemSimulator {
         due
     }
 
-    fn start(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
-        let looked = now.saturating_sub(self.born);
-        if looked < self.settings.look_around {
-            return Ok(Next::Wait(self.settings.look_around - looked));
-        }
-        match self.rivals.verdict(&bus.foreign_writers(&topics::STRESS), now) {
-            Verdict::Clear => {}
-            Verdict::Wait(writer) => {
-                if self.notice_due(now) {
-                    log::warn!(
-                        "another writer of stress ({writer}) is there and silent; waiting for it to speak or go"
-                    );
-                }
-                return Ok(Next::Wait(LOOK_AGAIN));
-            }
-            Verdict::Refuse(writer) => {
-                let message = format!(
-                    "another simulator (writer {writer}) is on topic stress; two would mix their runs. Stop it, or start \
-                     this one in another ROS_DOMAIN_ID or namespace (--ros-args -r __ns:=/other)"
-                );
-                return Err(NodeError::new(Exit::Failure, message));
-            }
-        }
-        if let Some(missing) = self.missing(bus) {
-            if self.notice_due(now) {
-                log::info!("waiting for {missing}");
-            }
-            return Ok(Next::Wait(LOOK_AGAIN));
-        }
-        self.began = now;
-        if std::mem::take(&mut self.resumed) {
-            let message = messages::packing(&self.run)
-                .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
-            self.post(self.packing.id(), &message);
-        }
-        self.go_on(bus, now)
-    }
-
-    /// What the start still lacks.
-    fn missing(&self, bus: &dyn Bus) -> Option<String> {
-        for topic in &self.settings.wait_for {
-            let publisher = match topic.name {
-                name if name == topics::STRESS.name => self.stress.id(),
-                name if name == topics::PACKING.name => self.packing.id(),
-                _ => self.run_state.id(),
-            };
-            let (found, needed) = (bus.readers(publisher), self.settings.min_readers);
-            if found < needed {
-                return Some(format!("{needed} readers of {}; there are {found}", topic.name));
-            }
-        }
-        let servo = bus.readers(self.stress.id()) > 0 && bus.writers(self.strain_rate.id()) > 0;
-        (!servo).then(|| {
-            "a servo: a reader of stress that writes strain_rate (same domain and namespace?)".into()
-        })
-    }
-
-    /// The next request, or the end.
-    fn go_on(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
-        let Some(request) = self.run.request() else {
-            self.stage = Stage::Finished;
-            self.next_beat = now + BEAT;
-            self.post_run_state(RunState::FINISHED, "");
-            log::info!("the loading path is done at step {}", self.run.engine().steps());
-            return self.rest(bus);
-        };
-        let message = match messages::stress(&request) {
-            Ok(message) => message,
-            Err(error) => return self.fail(bus, &error.to_string()),
-        };
-        self.stage = Stage::Running;
-        let body = to_cdr(&message);
-        self.outbox.post(self.stress.id(), body.clone());
-        self.barrier.ask(request.sequence, message.header.stamp, body, now);
-        let delivered = self.outbox.deliver(bus)?;
-        // Free run needs no answer to go on.
-        let free = self.settings.mode != Mode::Lockstep;
-        Ok(match delivered {
-            false => Next::Wait(HOLD),
-            true if free => Next::Again,
-            true => Next::Wait(self.barrier.patience(now)),
-        })
-    }
-
-    /// One exchange at most.
-    fn exchange(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
-        while let Some((message, info)) = self.strain_rate.take_valid(bus)? {
-            match StrainRateAnswer::try_from(&message) {
-                Ok(answer) => self.barrier.hear(&answer),
-                Err(error) => {
-                    bus.count_refused(self.strain_rate.id());
-                    let over = self.barrier.refuse(now);
-                    if over || self.barrier.counts.refused.is_power_of_two() {
-                        log::warn!("answer {} of writer {}: {error}", message.sequence, info.writer);
-                    }
-                    if over {
-                        let text = format!(
-                            "{REFUSALS_ALLOWED} answers in a row were refused, the last one: {error}"
-                        );
-                        return self.fail(bus, &text);
-                    }
-                }
-            }
-        }
-        if let Some(rate) = self.barrier.pass(now) {
-            let result = self.run.answer(&rate);
-            self.computing += bus.now().saturating_sub(now);
-            return match result {
-                Ok(advanced) => self.advanced(bus, &advanced),
-                Err(error) => self.fail(bus, &error.to_string()),
-            };
-        }
-        if let Some(body) = self.barrier.resend(now) {
-            match bus.publish(self.stress.id(), body) {
-                // It is due again anyway.
-                Ok(_) | Err(BusError::Full { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
-        }
-        if self.barrier.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
-            let waited = self.barrier.waited(now).as_secs();
-            log::warn!(
-                "no answer to request {} for {waited} s: is servo_controller running?",
-                self.barrier.sequence()
-            );
-        }
-        Ok(Next::Wait(self.barrier.patience(now)))
-    }
-
-    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &Advanced) -> Result<Next, NodeError> {
-        let now = bus.now();
-        self.wall = now.saturating_sub(self.began);
-        if advanced.packing_due
-            && let Err(error) = self.post_packing()
-        {
-            return self.fail(bus, &error.to_string());
-        }
-        if let Some(phase) = &advanced.ended {
-            log::info!("phase {phase} ended at step {}", self.run.engine().steps());
-            if !advanced.finished {
-                self.next_beat = now + BEAT;
-                self.post_run_state(RunState::RUNNING, "");
-            }
-        }
-        self.go_on(bus, now)
-    }
-
-    fn rest(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        if !self.outbox.deliver(bus)? {
-            return Ok(Next::Wait(HOLD));
-        }
-        if self.settings.exit_when_finished {
-            self.farewell(bus);
-            return Ok(Next::Finished(Exit::Done));
-        }
-        Ok(Next::Wait(self.next_beat.saturating_sub(bus.now())))
-    }
-
     /// Saves the last finite state and ends. A failing run is back there by itself.
-    fn fail(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<Next, NodeError> {
+    pub(crate) fn fail(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<Next, NodeError> {
         self.save(bus, reason)?;
         let step = self.run.engine().steps();
         let message = format!("{reason}. The state of step {step} is saved as the last packing");
@@ -359,7 +187,7 @@ impl DemSimulator {
         Ok(())
     }
 
-    fn farewell(&self, bus: &mut dyn Bus) {
+    pub(crate) fn farewell(&self, bus: &mut dyn Bus) {
         if !bus.flush(FAREWELL) {
             log::warn!("a reader has not acknowledged the last messages");
         }
@@ -370,6 +198,9 @@ impl Node for DemSimulator {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         let now = bus.now();
         self.hear_rivals(bus, now)?;
+        if let Some(reason) = self.hear_answers(bus, now)? {
+            return self.fail(bus, &reason);
+        }
         self.beat(bus, now)?;
         if !self.outbox.deliver(bus)? {
             return Ok(Next::Wait(HOLD));

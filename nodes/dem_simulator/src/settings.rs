@@ -127,3 +127,13 @@ impl From<&Parameters> for Settings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_declared_defaults_are_the_typed_ones() {
+        assert_eq!(Settings::from(&Parameters::defaults(&parameters())), Settings::default());
+    }
+}

@@ -1,6 +1,6 @@
 //! The command line, as typed.
 
-use crate::commands::invert;
+use crate::commands::{analyze, bag, invert, launch, run};
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use node_kit::Exit;
@@ -23,16 +23,29 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Run a scene: every node as its own process, recorded, measured, inverted. The default.
+    Launch(launch::Args),
+    /// Run one node as this process, with ROS 2 arguments.
+    Run(run::Args),
+    /// Record, play and inspect recordings.
+    #[command(subcommand)]
+    Bag(bag::Command),
     /// Infer the microstructure from moduli: numbers in, coordination and anisotropy with uncertainty out.
     Invert(invert::Args),
+    /// Measure packings from files: structure, stress and the full stiffness.
+    Analyze(analyze::Args),
 }
 
 /// Parses, runs, reports.
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match cli.command {
-        None => Err(Failure::usage("no command")),
+        None => launch::run(&launch::Args::default()),
+        Some(Command::Launch(args)) => launch::run(&args),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
+        Some(Command::Analyze(args)) => analyze::run(&args),
     };
     match outcome {
         Ok(exit) => exit.into(),

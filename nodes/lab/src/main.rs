@@ -5,13 +5,20 @@
 //! - [`results`]: what is printed and stored: states, inferences, tables
 //! - [`failure`], [`output`]: how a command ends, and where its result goes
 //! - [`scenes`]: the scenes built in
+//! - [`launch`]: the launcher
+//! - [`launch`]: launch files, processes and their supervision
+//! - [`recorder`]: the recorder node
 //! - [`network`]: buses of tools, free domains
 
 mod cli;
 mod commands;
 mod failure;
+mod launch;
+mod network;
 mod output;
+mod recorder;
 mod results;
+mod scenes;
 
 fn main() -> std::process::ExitCode {
     cli::main()

@@ -2,15 +2,15 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::{Topic, topics};
+use node_kit::dds::ClaimedDomain;
 use node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
 use std::time::{Duration, Instant};
 
 /// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A domain that other tests and other users of this machine hardly share: below 101, where Linux has no ephemeral ports.
-fn domain(offset: u16) -> Network {
-    Network::localhost(20 + (std::process::id() as u16 % 8) * 10 + offset)
+fn claim() -> ClaimedDomain {
+    ClaimedDomain::claim().expect("a free DDS domain")
 }
 
 fn open(network: Network, node: &str) -> DdsBus {
@@ -36,7 +36,8 @@ fn rate(sequence: u64) -> StrainRate {
 
 #[test]
 fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
-    let network = domain(0);
+    let claimed = claim();
+    let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
     let subscription =
@@ -71,7 +72,8 @@ fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
 
 #[test]
 fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
-    let network = domain(1);
+    let claimed = claim();
+    let network = claimed.network();
     let mut a = open(network, "a");
     let publisher = Publisher::<RunState>::advertise(&mut a, &topics::RUN_STATE).unwrap();
     publisher.publish(&mut a, &state(7)).unwrap();
@@ -92,8 +94,32 @@ fn a_late_joiner_gets_what_was_latched_with_its_first_sequence_numbers() {
 }
 
 #[test]
+fn packings_of_megabytes_arrive_whole_live_and_latched() {
+    const SIZE: usize = 2_000_000;
+    let claimed = claim();
+    let network = claimed.network();
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let publisher = a.advertise(&topics::PACKING).unwrap();
+    let live = b.subscribe(&topics::PACKING, Demand::reliable(10)).unwrap();
+    until(&mut b, "match", |b| b.writers(live) == 1);
+    until(&mut a, "match", |a| a.readers(publisher) == 1);
+    let body: Vec<u8> = [0, 1, 0, 0].into_iter().chain((0..SIZE).map(|i| (i * 7 + i / 251) as u8)).collect();
+    let whole = |bus: &mut DdsBus, id, what: &str| {
+        let start = Instant::now();
+        until(bus, what, |bus| bus.take(id).unwrap().is_some_and(|s| s.body == body));
+        println!("{what}: {:?}", start.elapsed());
+    };
+    a.publish(publisher, &body).unwrap();
+    whole(&mut b, live, "the live one");
+    let mut late = open(network, "late");
+    let latched = late.subscribe(&topics::PACKING, Demand::reliable(10)).unwrap();
+    whole(&mut late, latched, "the latched one, discovery included");
+}
+
+#[test]
 fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
-    let network = domain(2);
+    let claimed = claim();
+    let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
     let subscription =
@@ -124,7 +150,8 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
 
 #[test]
 fn waiting_blocks_until_data_and_returns_on_time_without_it() {
-    let network = domain(3);
+    let claimed = claim();
+    let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
     let subscription =
@@ -157,7 +184,8 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
 
 #[test]
 fn two_subscriptions_to_one_topic_share_what_arrives_the_stronger_one_first() {
-    let network = domain(4);
+    let claimed = claim();
+    let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let publisher = Publisher::<StrainRate>::advertise(&mut a, &topics::STRAIN_RATE).unwrap();
     let subscribe =
@@ -186,7 +214,8 @@ fn two_subscriptions_to_one_topic_share_what_arrives_the_stronger_one_first() {
 
 #[test]
 fn bodies_that_are_not_messages_are_refused_on_both_sides() {
-    let network = domain(5);
+    let claimed = claim();
+    let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let id = a.advertise(&topics::STRAIN_RATE).unwrap();
     for bad in [&[][..], &[0, 1], &[0, 0, 0, 0, 1], b"text"] {
@@ -210,7 +239,8 @@ fn bodies_that_are_not_messages_are_refused_on_both_sides() {
 #[test]
 fn seven_participants_find_each_other_on_plain_loopback() {
     const EACH: usize = 7;
-    let network = domain(6);
+    let claimed = claim();
+    let network = claimed.network();
     let topic: &Topic = &topics::DIAGNOSTICS;
     let mut buses: Vec<DdsBus> = (0..EACH).map(|n| open(network, &format!("n{n}"))).collect();
     let handles: Vec<_> = buses
@@ -226,7 +256,8 @@ fn seven_participants_find_each_other_on_plain_loopback() {
 fn the_ros_graph_shows_the_node_and_its_endpoints() {
     use ros2_client::builtin_topics::ros_discovery::{QOS_PUB, TOPIC_NAME, TYPE_NAME};
     use ros2_client::entities_info::ParticipantEntitiesInfo;
-    let network = domain(7);
+    let claimed = claim();
+    let network = claimed.network();
     let mut a = open(network, "talker");
     a.advertise(&topics::STRESS).unwrap();
     a.subscribe(&topics::STRAIN_RATE, Demand::reliable(10)).unwrap();

@@ -17,7 +17,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 /// What "byte-identical" is said of.
-pub const REPRODUCIBLE: [Topic; 6] = [
+pub(crate) const REPRODUCIBLE: [Topic; 6] = [
     topics::STRESS,
     topics::STRAIN_RATE,
     topics::PACKING,
@@ -27,31 +27,31 @@ pub const REPRODUCIBLE: [Topic; 6] = [
 ];
 
 /// Virtual time that no run needs.
-pub const FOREVER: Duration = Duration::from_secs(10_000);
+pub(crate) const FOREVER: Duration = Duration::from_secs(10_000);
 
-pub fn scene() -> Scene {
+pub(crate) fn scene() -> Scene {
     Scene::parse(include_str!("tiny.toml")).expect("a valid scene")
 }
 
 /// Whole bodies by topic, in the order in which they came.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Record(pub BTreeMap<&'static str, Vec<Vec<u8>>>);
+pub(crate) struct Record(pub(crate) BTreeMap<&'static str, Vec<Vec<u8>>>);
 
 impl Record {
-    pub fn bodies(&self, topic: &Topic) -> &[Vec<u8>] {
+    pub(crate) fn bodies(&self, topic: &Topic) -> &[Vec<u8>] {
         self.0.get(topic.name).map_or(&[], Vec::as_slice)
     }
 
-    pub fn messages<T: Message>(&self, topic: &Topic) -> Vec<T> {
+    pub(crate) fn messages<T: Message>(&self, topic: &Topic) -> Vec<T> {
         self.bodies(topic).iter().map(|body| from_cdr(body).expect("a message of the topic's type")).collect()
     }
 
-    pub fn last<T: Message>(&self, topic: &Topic) -> Option<T> {
+    pub(crate) fn last<T: Message>(&self, topic: &Topic) -> Option<T> {
         self.bodies(topic).last().map(|body| from_cdr(body).expect("a message of the topic's type"))
     }
 
     /// The reproducible topics, every body once, where it came first.
-    pub fn without_repeats(&self) -> Record {
+    pub(crate) fn without_repeats(&self) -> Record {
         let once = |bodies: &[Vec<u8>]| {
             let mut seen = std::collections::BTreeSet::new();
             bodies.iter().filter(|body| seen.insert(*body)).cloned().collect::<Vec<_>>()
@@ -59,8 +59,13 @@ impl Record {
         Record(REPRODUCIBLE.iter().map(|t| (t.name, once(self.bodies(t)))).collect())
     }
 
+    /// The first topic on which two records differ.
+    pub(crate) fn difference(&self, other: &Record) -> Option<&'static str> {
+        REPRODUCIBLE.iter().map(|t| t.name).find(|name| self.0.get(name) != other.0.get(name))
+    }
+
     /// A microstructure of the last packing of a finished run is there.
-    pub fn complete(&self) -> bool {
+    pub(crate) fn complete(&self) -> bool {
         let Some(end) = self.last::<RunState>(&topics::RUN_STATE) else { return false };
         let last = self.last::<Microstructure>(&topics::MICROSTRUCTURE).map(|m| m.source_step);
         end.state == RunState::FINISHED && last == Some(end.last_packing_step)
@@ -68,13 +73,13 @@ impl Record {
 }
 
 /// Records every topic of ours.
-pub struct Recorder {
+pub(crate) struct Recorder {
     subscriptions: Vec<(&'static str, SubscriptionId)>,
     record: Rc<RefCell<Record>>,
 }
 
 impl Recorder {
-    pub fn new(bus: &mut dyn Bus, record: &Rc<RefCell<Record>>) -> Self {
+    pub(crate) fn new(bus: &mut dyn Bus, record: &Rc<RefCell<Record>>) -> Self {
         let all = REPRODUCIBLE.into_iter().chain([topics::RUN_STATE]);
         let subscriptions =
             all.map(|t| (t.name, bus.subscribe(&t, Demand::reliable(100_000)).expect("a topic"))).collect();
@@ -98,18 +103,18 @@ impl Node for Recorder {
 }
 
 /// A network with the four nodes' names, and what is recorded on it.
-pub struct Bench {
-    pub hub: Hub,
-    pub record: Rc<RefCell<Record>>,
+pub(crate) struct Bench {
+    pub(crate) hub: Hub,
+    pub(crate) record: Rc<RefCell<Record>>,
 }
 
 impl Bench {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self { hub: Hub::new(seed), record: Rc::default() }
     }
 
     /// A bench on which much gets lost, comes twice, and comes late.
-    pub fn faulty(seed: u64) -> Self {
+    pub(crate) fn faulty(seed: u64) -> Self {
         let bench = Self::new(seed);
         let faults = Faults { drop: 0.1, duplicate: 0.2, delay: Duration::from_millis(30) };
         for topic in REPRODUCIBLE {
@@ -118,11 +123,11 @@ impl Bench {
         bench
     }
 
-    pub fn bus(&self, node: &str) -> MemoryBus {
+    pub(crate) fn bus(&self, node: &str) -> MemoryBus {
         self.hub.bus(Names::new(node).expect("a name"))
     }
 
-    pub fn simulator(
+    pub(crate) fn simulator(
         &self,
         settings: &Settings,
         resume: Option<(grains::Packing, Vec<u8>)>,
@@ -131,28 +136,28 @@ impl Bench {
         (DemSimulator::new(&mut bus, scene(), resume, settings.clone()).expect("a simulator"), bus)
     }
 
-    pub fn servo(&self) -> (ServoController, MemoryBus) {
+    pub(crate) fn servo(&self) -> (ServoController, MemoryBus) {
         let mut bus = self.bus("servo_controller");
         (ServoController::new(&mut bus).expect("a servo"), bus)
     }
 
-    pub fn analyzer(&self) -> (FabricAnalyzer, MemoryBus) {
+    pub(crate) fn analyzer(&self) -> (FabricAnalyzer, MemoryBus) {
         let mut bus = self.bus("fabric_analyzer");
         (FabricAnalyzer::new(&mut bus, fabric_analyzer::Settings::default()).expect("an analyzer"), bus)
     }
 
-    pub fn inversion(&self) -> (EmtInversion, MemoryBus) {
+    pub(crate) fn inversion(&self) -> (EmtInversion, MemoryBus) {
         let mut bus = self.bus("emt_inversion");
         (EmtInversion::new(&mut bus, emt_inversion::Settings::default()).expect("an inversion"), bus)
     }
 
-    pub fn recorder(&self) -> (Recorder, MemoryBus) {
+    pub(crate) fn recorder(&self) -> (Recorder, MemoryBus) {
         let mut bus = self.bus("recorder");
         (Recorder::new(&mut bus, &self.record), bus)
     }
 
     /// The whole laboratory from beginning to end.
-    pub fn whole_run(self, settings: &Settings, resume: Option<(grains::Packing, Vec<u8>)>) -> Record {
+    pub(crate) fn whole_run(self, settings: &Settings, resume: Option<(grains::Packing, Vec<u8>)>) -> Record {
         let (mut recorder, recorder_bus) = self.recorder();
         let (mut analyzer, analyzer_bus) = self.analyzer();
         let (mut inversion, inversion_bus) = self.inversion();
@@ -168,11 +173,14 @@ impl Bench {
         let complete = run_until(&self.hub, &mut actors, FOREVER, |_| self.record.borrow().complete());
         let ends: Vec<_> = actors.iter().filter_map(Actor::ended).collect();
         assert!(complete, "the run did not end; nodes ended: {ends:?}");
+        // What is still on its way belongs to the record.
+        let end = self.hub.now() + Duration::from_secs(1);
+        run_until(&self.hub, &mut actors, end, |_| false);
         self.record.take()
     }
 }
 
 /// How an actor ended.
-pub fn exit_of(actor: &Actor) -> Option<Exit> {
+pub(crate) fn exit_of(actor: &Actor) -> Option<Exit> {
     actor.ended().map(|end| end.as_ref().map_or_else(NodeError::exit, |exit| *exit))
 }

@@ -42,7 +42,7 @@ fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
     let (mut second, second_bus) = bench.servo();
     actors.push(Actor::new(&mut second, second_bus));
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
-    assert!(bench.record.borrow().without_repeats() == clean);
+    assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     assert!(message.contains(&ours) && message.contains("ROS_DOMAIN_ID"), "{message}");
     actors.pop();
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| bench.record.borrow().complete()));
-    assert!(bench.record.borrow().without_repeats() == clean);
+    assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }
 
 #[test]

@@ -1,3 +1,7 @@
 //! The commands, one module each.
 
+pub(crate) mod analyze;
+pub(crate) mod bag;
 pub(crate) mod invert;
+pub(crate) mod launch;
+pub(crate) mod run;

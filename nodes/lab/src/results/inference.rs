@@ -1,7 +1,9 @@
 //! What the models infer, with the stable keys of `results[]`.
 
 use crate::output::{Table, exact, fixed};
-use emt::{CREDIBLE_LEVEL, EmtError, Estimate};
+use emt::{CREDIBLE_LEVEL, EmtError, Estimate, GammaSource};
+use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
+use grainlab_msgs::msg;
 use serde::Serialize;
 
 /// One model's result.
@@ -25,6 +27,9 @@ pub(crate) struct Inference {
     pub(crate) interval: Interval,
     /// `ok`, `extrapolated`, `undetermined` or `failed`.
     pub(crate) status: &'static str,
+    /// The strain ratio that the model was fed with, and which of the three it is.
+    pub(crate) gamma_over_delta: Option<f64>,
+    pub(crate) gamma_over_delta_source: Option<String>,
     /// For a reader.
     pub(crate) warnings: Vec<String>,
 }
@@ -59,8 +64,35 @@ impl Inference {
             sigma: Triple::default(),
             interval: Interval::default(),
             status,
+            gamma_over_delta: None,
+            gamma_over_delta_source: None,
             warnings,
         }
+    }
+
+    /// What was read from a recording: the message, and the same checked.
+    pub(crate) fn of_reading(message: &msg::Estimate, e: &EstimateReading) -> Self {
+        let status = match e.status {
+            EstimateStatus::Ok => "ok",
+            EstimateStatus::Extrapolated => "extrapolated",
+            EstimateStatus::Undetermined => "undetermined",
+            EstimateStatus::Failed => "failed",
+        };
+        let mut inference = Self::failed(&e.model, &e.calibration, status, e.warnings.clone());
+        inference.gamma_over_delta = Some(message.gamma_over_delta);
+        inference.gamma_over_delta_source = Some(message.gamma_over_delta_source.clone());
+        let Some(found) = &e.inferred else { return inference };
+        (inference.k, inference.k_hat, inference.eps) = (Some(found.k), Some(found.k_hat), Some(found.eps));
+        if let Some(c) = &found.covariance {
+            let sigma = |i: usize| Some(c[4 * i].max(0.0).sqrt());
+            inference.sigma = Triple { k: sigma(0), k_hat: sigma(1), eps: sigma(2) };
+        }
+        if let Some(i) = &found.interval {
+            let pair = |(low, high): (f64, f64)| Some([low, high]);
+            let bounds = Triple { k: pair(i.k), k_hat: pair(i.k_hat), eps: pair(i.eps) };
+            inference.interval = Interval { level: Some(i.level), bounds };
+        }
+        inference
     }
 
     /// What a model of the kernel says.
@@ -92,6 +124,8 @@ impl Inference {
                 emt::Status::Ok => "ok",
                 emt::Status::Extrapolated => "extrapolated",
             },
+            gamma_over_delta: Some(estimate.gamma.value),
+            gamma_over_delta_source: Some(source_name(estimate.gamma.source).to_owned()),
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
         }
     }
@@ -142,6 +176,17 @@ impl Inference {
         }
         cells.push(self.status.to_owned());
         cells
+    }
+}
+
+/// As the messages name it.
+fn source_name(source: GammaSource) -> &'static str {
+    match source {
+        GammaSource::Total => "total",
+        GammaSource::Elastic => "elastic",
+        GammaSource::Contact => "contact",
+        GammaSource::Given => "given",
+        GammaSource::Zero => "zero",
     }
 }
 

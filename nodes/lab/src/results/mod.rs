@@ -1,3 +1,8 @@
 //! What commands find, in the forms in which it is printed and stored.
 
 pub(crate) mod inference;
+pub(crate) mod read_back;
+pub(crate) mod state;
+pub(crate) mod state_text;
+pub(crate) mod summary;
+pub(crate) mod summary_text;

@@ -1,12 +1,13 @@
 //! The bus over DDS, through RustDDS.
 //!
-//! - [`bus`]: the [`crate::Bus`] itself and its one place to wait
-//! - [`inbox`]: a reader and what was read but not taken; [`caretaker`]: empties readers while a node computes
-//! - [`graph`]: who else is there; [`presence`]: this node in the ROS graph
-//! - [`network`]: domain and reach; [`qos`]: the contract as policies; [`raw`]: bytes in and out
+//! - `bus`: the [`crate::Bus`] itself and its one place to wait
+//! - `inbox`: a reader and what was read but not taken; `caretaker`: empties readers while a node computes
+//! - `graph`: who else is there; `presence`: this node in the ROS graph
+//! - `network`: domain and reach; `claim`: domains for tests; `qos`: the contract as policies; `raw`: bytes in and out
 
 mod bus;
 mod caretaker;
+mod claim;
 mod graph;
 mod inbox;
 mod network;
@@ -15,6 +16,7 @@ mod qos;
 mod raw;
 
 pub use bus::DdsBus;
+pub use claim::ClaimedDomain;
 pub use network::{MAX_DOMAIN, Network, NetworkError, Range};
 
 use crate::bus::BusError;

@@ -1,8 +1,9 @@
 //! How processes end, and what their peers see of it.
 
-use super::{PATIENCE, Role, domain};
+use super::{PATIENCE, Role, claim};
+use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::topics;
-use node_kit::{Bus, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId};
+use node_kit::{Bus, BusError, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -61,7 +62,8 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
     for (role, signal, exit) in
         [("talker", libc::SIGINT, Exit::Done), ("incomplete_talker", libc::SIGTERM, Exit::Interrupted)]
     {
-        let network = domain(3);
+        let claimed = claim();
+        let network = claimed.network();
         let mut observer = Observer::open(network);
         let child = Role::start(role, network);
         observer.until_third_report();
@@ -86,7 +88,8 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
 
 #[test]
 fn a_second_signal_ends_the_process_at_once() {
-    let network = domain(4);
+    let claimed = claim();
+    let network = claimed.network();
     let mut observer = Observer::open(network);
     let child = Role::start("slow_talker", network);
     observer.until_third_report();
@@ -101,7 +104,8 @@ fn a_second_signal_ends_the_process_at_once() {
 
 #[test]
 fn a_dead_dds_thread_ends_the_process_instead_of_leaving_it_deaf() {
-    let child = Role::start("talker_without_dds_thread", domain(5));
+    let claimed = claim();
+    let child = Role::start("talker_without_dds_thread", claimed.network());
     let (code, _, stderr) = child.end();
     assert_eq!(code, Some(1), "{stderr}");
     assert!(stderr.contains("heartbeat did not come back"), "{stderr}");
@@ -109,7 +113,8 @@ fn a_dead_dds_thread_ends_the_process_instead_of_leaving_it_deaf() {
 
 #[test]
 fn a_panic_is_a_failure_that_peers_hear_of() {
-    let network = domain(6);
+    let claimed = claim();
+    let network = claimed.network();
     let child = Role::start("panicking_node", network);
     let (code, _, stderr) = child.end();
     assert_eq!(code, Some(1), "{stderr}");
@@ -118,7 +123,8 @@ fn a_panic_is_a_failure_that_peers_hear_of() {
 
 #[test]
 fn a_killed_process_falls_silent_while_dds_still_shows_it() {
-    let network = domain(7);
+    let claimed = claim();
+    let network = claimed.network();
     let mut observer = Observer::open(network);
     let child = Role::start("talker", network);
     observer.until_third_report();
@@ -127,4 +133,37 @@ fn a_killed_process_falls_silent_while_dds_still_shows_it() {
     let life = |o: &Observer| o.watch.peers().find("/talker").map(|p| p.life(o.bus.now()));
     observer.until("silence", |o| matches!(life(o), Some(Life::Silent(_))));
     assert_eq!(observer.bus.foreign_writers(&topics::RUN_STATE).len(), 1, "its lease has not ended yet");
+}
+
+#[test]
+fn a_dead_reliable_reader_delays_a_writer_but_never_stops_it() {
+    let claimed = claim();
+    let network = claimed.network();
+    let mut bus = DdsBus::open(network, Names::new("writer").unwrap()).unwrap();
+    let publisher = bus.advertise(&topics::STRAIN_RATE).unwrap();
+    let body = grainlab_msgs::to_cdr(&StrainRate::default());
+    let reader = Role::start("our_listener", network);
+    let start = Instant::now();
+    while bus.readers(publisher) == 0 {
+        assert!(start.elapsed() < PATIENCE);
+        bus.wait(Duration::from_millis(20));
+    }
+    bus.publish(publisher, &body).unwrap();
+    reader.signal(libc::SIGKILL);
+    reader.end();
+
+    let mut accepted = 0;
+    let refusal = loop {
+        let start = Instant::now();
+        match bus.publish(publisher, &body) {
+            Ok(_) => accepted += 1,
+            Err(error) => break (error, start.elapsed()),
+        }
+        assert!(accepted < 20_000, "the window never filled");
+    };
+    assert!(matches!(refusal.0, BusError::Full { .. }), "{}", refusal.0);
+    // The bounded wait is 20 ms; a loaded machine may add some scheduling.
+    assert!(refusal.1 >= Duration::from_millis(20) && refusal.1 < Duration::from_secs(2), "{:?}", refusal.1);
+    assert!(accepted > 8000, "the window is 8192: {accepted}");
+    assert_eq!(bus.published()[0].full, 1);
 }

@@ -7,16 +7,19 @@ mod leaving;
 mod roles;
 
 use node_kit::Network;
+use node_kit::dds::ClaimedDomain;
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+/// Set for children.
+const CHILD: &str = "NODE_KIT_TEST_CHILD";
+
 /// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A domain that other tests and other users of this machine hardly share; below 101, where Linux has no ephemeral ports.
-fn domain(offset: u16) -> Network {
-    Network::localhost(28 + (std::process::id() as u16 % 8) * 9 + offset)
+fn claim() -> ClaimedDomain {
+    ClaimedDomain::claim().expect("a free DDS domain")
 }
 
 /// A child process that is killed when the test fails.
@@ -29,6 +32,7 @@ impl Role {
     fn start(name: &'static str, network: Network) -> Self {
         let child = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", &format!("roles::{name}"), "--ignored", "--nocapture", "--test-threads=1"])
+            .env(CHILD, "1")
             .env("ROS_DOMAIN_ID", network.domain.to_string())
             .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
             .env_remove("ROS_LOCALHOST_ONLY")

@@ -10,6 +10,11 @@ use std::time::Duration;
 
 const EXCHANGES: u64 = 5000;
 
+/// Whether this process is a child; `--ignored` without a name must not start the roles.
+fn is_child() -> bool {
+    std::env::var_os(super::CHILD).is_some()
+}
+
 /// Publishes a state now and then.
 struct Talker {
     publisher: Publisher<RunState>,
@@ -49,24 +54,36 @@ fn talk(name: &'static str, at_end: Exit, dawdle: Duration) -> ! {
 #[test]
 #[ignore = "a role, started by other tests"]
 fn talker() {
+    if !is_child() {
+        return;
+    }
     talk("talker", Exit::Done, Duration::ZERO)
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn incomplete_talker() {
+    if !is_child() {
+        return;
+    }
     talk("incomplete_talker", Exit::Interrupted, Duration::ZERO)
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn slow_talker() {
+    if !is_child() {
+        return;
+    }
     talk("slow_talker", Exit::Done, Duration::from_secs(60))
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn talker_without_dds_thread() {
+    if !is_child() {
+        return;
+    }
     std::thread::spawn(|| {
         std::thread::sleep(Duration::from_secs(2));
         end_dds_thread();
@@ -96,6 +113,9 @@ fn end_dds_thread() {
 #[test]
 #[ignore = "a role, started by other tests"]
 fn panicking_node() {
+    if !is_child() {
+        return;
+    }
     struct Panics;
     impl Node for Panics {
         fn step(&mut self, _: &mut dyn Bus) -> Result<Next, NodeError> {
@@ -123,18 +143,27 @@ fn print_quantiles(label: &str, mut micros: Vec<f64>) {
 #[test]
 #[ignore = "a role, started by other tests"]
 fn our_ping() {
+    if !is_child() {
+        return;
+    }
     print_quantiles("ours", bus_ping(&mut bus("ping"), EXCHANGES).unwrap());
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn our_pong() {
+    if !is_child() {
+        return;
+    }
     bus_pong(&mut bus("pong")).unwrap();
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn our_listener() {
+    if !is_child() {
+        return;
+    }
     let (received, missing) = bus_listen(&mut bus("listener")).unwrap();
     println!("listener: received {received} missing {missing}");
 }
@@ -142,11 +171,17 @@ fn our_listener() {
 #[test]
 #[ignore = "a role, started by other tests"]
 fn their_ping() {
+    if !is_child() {
+        return;
+    }
     print_quantiles("bare", bare_ping(Network::from_env().unwrap(), EXCHANGES).unwrap());
 }
 
 #[test]
 #[ignore = "a role, started by other tests"]
 fn their_pong() {
+    if !is_child() {
+        return;
+    }
     bare_pong(Network::from_env().unwrap()).unwrap();
 }

@@ -1,0 +1,126 @@
+//! After the start: one exchange after the other, to the end of the path or to the failure.
+
+use crate::DemSimulator;
+use crate::barrier::REFUSALS_ALLOWED;
+use crate::messages;
+use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
+use crate::settings::Mode;
+use dem::Advanced;
+use grainlab_msgs::boundary::StrainRateAnswer;
+use grainlab_msgs::msg::RunState;
+use grainlab_msgs::to_cdr;
+use node_kit::{Bus, BusError, Exit, Next, NodeError};
+use std::time::Duration;
+
+impl DemSimulator {
+    /// Takes every answer; the reason to end the run, if there is one. What other simulators are answered is heard before
+    /// the start, too, and dropped.
+    pub(crate) fn hear_answers(
+        &mut self,
+        bus: &mut dyn Bus,
+        now: Duration,
+    ) -> Result<Option<String>, BusError> {
+        while let Some((message, info)) = self.strain_rate.take_valid(bus)? {
+            match StrainRateAnswer::try_from(&message) {
+                Ok(answer) => self.barrier.hear(&answer),
+                Err(error) => {
+                    bus.count_refused(self.strain_rate.id());
+                    let over = self.barrier.refuse(now) && self.stage == Stage::Running;
+                    if over || self.barrier.counts.refused.is_power_of_two() {
+                        log::warn!("answer {} of writer {}: {error}", message.sequence, info.writer);
+                    }
+                    if over {
+                        let reason = format!(
+                            "{REFUSALS_ALLOWED} answers in a row were refused, the last one: {error}"
+                        );
+                        return Ok(Some(reason));
+                    }
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next request, or the end.
+    pub(crate) fn go_on(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
+        let Some(request) = self.run.request() else {
+            self.stage = Stage::Finished;
+            self.next_beat = now + BEAT;
+            self.post_run_state(RunState::FINISHED, "");
+            log::info!("the loading path is done at step {}", self.run.engine().steps());
+            return self.rest(bus);
+        };
+        let message = match messages::stress(&request) {
+            Ok(message) => message,
+            Err(error) => return self.fail(bus, &error.to_string()),
+        };
+        self.stage = Stage::Running;
+        let body = to_cdr(&message);
+        self.outbox.post(self.stress.id(), body.clone());
+        self.barrier.ask(request.sequence, message.header.stamp, body, now);
+        let delivered = self.outbox.deliver(bus)?;
+        // Free run needs no answer to go on.
+        let free = self.settings.mode != Mode::Lockstep;
+        Ok(match delivered {
+            false => Next::Wait(HOLD),
+            true if free => Next::Again,
+            true => Next::Wait(self.barrier.patience(now)),
+        })
+    }
+
+    /// One exchange at most.
+    pub(crate) fn exchange(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
+        if let Some(rate) = self.barrier.pass(now) {
+            let result = self.run.answer(&rate);
+            self.computing += bus.now().saturating_sub(now);
+            return match result {
+                Ok(advanced) => self.advanced(bus, &advanced),
+                Err(error) => self.fail(bus, &error.to_string()),
+            };
+        }
+        if let Some(body) = self.barrier.resend(now) {
+            match bus.publish(self.stress.id(), body) {
+                // It is due again anyway.
+                Ok(_) | Err(BusError::Full { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        if self.barrier.waited(now) > NOTICE_PERIOD && self.notice_due(now) {
+            let waited = self.barrier.waited(now).as_secs();
+            log::warn!(
+                "no answer to request {} for {waited} s: is servo_controller running?",
+                self.barrier.sequence()
+            );
+        }
+        Ok(Next::Wait(self.barrier.patience(now)))
+    }
+
+    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &Advanced) -> Result<Next, NodeError> {
+        let now = bus.now();
+        self.wall = now.saturating_sub(self.began);
+        if advanced.packing_due
+            && let Err(error) = self.post_packing()
+        {
+            return self.fail(bus, &error.to_string());
+        }
+        if let Some(phase) = &advanced.ended {
+            log::info!("phase {phase} ended at step {}", self.run.engine().steps());
+            if !advanced.finished {
+                self.next_beat = now + BEAT;
+                self.post_run_state(RunState::RUNNING, "");
+            }
+        }
+        self.go_on(bus, now)
+    }
+
+    pub(crate) fn rest(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        if !self.outbox.deliver(bus)? {
+            return Ok(Next::Wait(HOLD));
+        }
+        if self.settings.exit_when_finished {
+            self.farewell(bus);
+            return Ok(Next::Finished(Exit::Done));
+        }
+        Ok(Next::Wait(self.next_beat.saturating_sub(bus.now())))
+    }
+}

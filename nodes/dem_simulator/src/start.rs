@@ -1,0 +1,83 @@
+//! Before the first request: is another simulator there, are the readers there, is there a servo?
+
+use crate::DemSimulator;
+use crate::messages;
+use crate::node::Stage;
+use crate::rivals::Verdict;
+use grainlab_msgs::topics;
+use node_kit::{Bus, BusError, Exit, Next, NodeError};
+use std::time::Duration;
+
+/// How often a start that waits looks again.
+const LOOK_AGAIN: Duration = Duration::from_millis(50);
+
+impl DemSimulator {
+    pub(crate) fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
+        while let Some((_, info)) = self.run_states.take_valid(bus)? {
+            if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
+                log::error!(
+                    "a second simulator ({}) speaks on our topics; it should end by itself",
+                    info.writer
+                );
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn start(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
+        let looked = now.saturating_sub(self.born);
+        if looked < self.settings.look_around {
+            return Ok(Next::Wait(self.settings.look_around - looked));
+        }
+        match self.rivals.verdict(&bus.foreign_writers(&topics::STRESS), now) {
+            Verdict::Clear => {}
+            Verdict::Wait(writer) => {
+                if self.notice_due(now) {
+                    log::warn!(
+                        "another writer of stress ({writer}) is there and silent; waiting for it to speak or go"
+                    );
+                }
+                return Ok(Next::Wait(LOOK_AGAIN));
+            }
+            Verdict::Refuse(writer) => {
+                let message = format!(
+                    "another simulator (writer {writer}) is on topic stress; two would mix their runs. Stop it, or start \
+                     this one in another ROS_DOMAIN_ID or namespace (--ros-args -r __ns:=/other)"
+                );
+                return Err(NodeError::new(Exit::Failure, message));
+            }
+        }
+        if let Some(missing) = self.missing(bus) {
+            if self.notice_due(now) {
+                log::info!("waiting for {missing}");
+            }
+            return Ok(Next::Wait(LOOK_AGAIN));
+        }
+        self.began = now;
+        if std::mem::take(&mut self.resumed) {
+            let message = messages::packing(&self.run)
+                .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
+            self.post(self.packing.id(), &message);
+        }
+        self.go_on(bus, now)
+    }
+
+    /// What the start still lacks.
+    fn missing(&self, bus: &dyn Bus) -> Option<String> {
+        for topic in &self.settings.wait_for {
+            let publisher = match topic.name {
+                name if name == topics::STRESS.name => self.stress.id(),
+                name if name == topics::PACKING.name => self.packing.id(),
+                _ => self.run_state.id(),
+            };
+            let (found, needed) = (bus.readers(publisher), self.settings.min_readers);
+            if found < needed {
+                return Some(format!("{needed} readers of {}; there are {found}", topic.name));
+            }
+        }
+        let servo = bus.readers(self.stress.id()) > 0 && bus.writers(self.strain_rate.id()) > 0;
+        (!servo).then(|| {
+            "a servo: a reader of stress that writes strain_rate (same domain and namespace?)".into()
+        })
+    }
+}

@@ -1,0 +1,125 @@
+//! The analyzer node on the bus in memory, with a packing that can be reckoned by hand.
+
+use fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
+use grainlab_msgs::boundary::packing_message;
+use grainlab_msgs::msg::{Fabric, Moduli, Packing};
+use grainlab_msgs::topics;
+use grains::{Cell, Contact, Mat3, Material, Vec3};
+use node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
+
+const DIAMETER: f64 = 2e-4;
+const OVERLAP: f64 = 2e-8;
+
+/// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
+fn lattice(overlap: f64) -> grains::Packing {
+    let cell = Cell::cube(DIAMETER - overlap).unwrap();
+    let contact = |axis: usize| {
+        let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+        (image[axis], normal[axis]) = (1, 1.0);
+        let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
+        Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+    };
+    grains::Packing {
+        step: 12,
+        time: 0.5,
+        cell,
+        deformation: Mat3::identity(),
+        ids: vec![0],
+        radii: vec![DIAMETER / 2.0],
+        positions: vec![Vec3::zeros()],
+        velocities: vec![Vec3::zeros()],
+        spins: vec![Vec3::zeros()],
+        contacts: if overlap > 0.0 { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
+        material: Material::GLASS,
+        friction: 0.3,
+        time_step: 1e-8,
+    }
+    .validated()
+    .unwrap()
+}
+
+fn message(overlap: f64) -> Packing {
+    packing_message(&lattice(overlap), "lattice", vec![1, 2, 3])
+}
+
+#[test]
+fn a_simple_cubic_lattice_has_the_moduli_of_its_springs() {
+    let packing = message(OVERLAP);
+    let measured = measure(&packing, &Settings::default()).unwrap();
+    let (fabric, moduli) = (measured.fabric, measured.moduli.unwrap());
+    assert_eq!((&fabric.header, fabric.source_step), (&packing.header, 12));
+    assert_eq!((&moduli.header, moduli.source_step), (&packing.header, 12));
+    assert_eq!((fabric.k, fabric.z, fabric.rattlers, moduli.k), (6.0, 6.0, 0, 6.0));
+    // C_iiii = k_n l²/V = k_n/l with l = V^(1/3); nothing relaxes by symmetry. The solve stops at 1e-9.
+    let edge = DIAMETER - OVERLAP;
+    let c11 = Material::GLASS.normal_stiffness(DIAMETER / 4.0, OVERLAP) / edge;
+    assert!((moduli.stiffness[0] / c11 - 1.0).abs() < 1e-8, "{} {c11}", moduli.stiffness[0]);
+    // Three contacts of force F over the faces: p = F/l².
+    let pressure = Material::GLASS.normal_force(DIAMETER / 4.0, OVERLAP) / (edge * edge);
+    assert!((moduli.pressure / pressure - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_measurement_is_a_pure_function_of_the_message() {
+    let first = measure(&message(OVERLAP), &Settings::default()).unwrap();
+    assert_eq!(measure(&message(OVERLAP), &Settings::default()).unwrap(), first);
+}
+
+#[test]
+fn a_packing_that_is_none_or_cannot_be_analysed_says_why() {
+    let mut broken = message(OVERLAP);
+    broken.contact_pair[1] = 1;
+    let error = measure(&broken, &Settings::default()).unwrap_err();
+    assert!(
+        matches!(error, MeasureError::Refused(_)) && error.to_string().contains("names grain 1"),
+        "{error}"
+    );
+    let mut broken = message(OVERLAP);
+    (broken.contact_normal[0], broken.contact_normal[2]) = (1.0, 0.0);
+    let error = measure(&broken, &Settings::default()).unwrap_err();
+    assert!(error.to_string().contains("normal"), "{error}");
+}
+
+#[test]
+fn without_a_network_there_is_a_fabric_and_a_warning_and_no_moduli() {
+    let hub = Hub::new(1);
+    let mut bus = hub.bus(Names::new("source").unwrap());
+    let source: Publisher<Packing> = Publisher::advertise(&mut bus, &topics::PACKING).unwrap();
+    let fabrics: Subscription<Fabric> =
+        Subscription::subscribe(&mut bus, &topics::FABRIC, Demand::reliable(8)).unwrap();
+    let moduli: Subscription<Moduli> =
+        Subscription::subscribe(&mut bus, &topics::MODULI, Demand::reliable(8)).unwrap();
+    source.publish(&mut bus, &message(-OVERLAP)).unwrap();
+    let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
+    let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
+    node.step(&mut node_bus).unwrap();
+    assert_eq!(fabrics.take_valid(&mut bus).unwrap().unwrap().0.contacts, 0);
+    assert!(moduli.take_valid(&mut bus).unwrap().is_none());
+    let health = node.health();
+    assert!(health.level == Level::Warn && health.message.contains("no contact network"), "{health:?}");
+    source.publish(&mut bus, &message(OVERLAP)).unwrap();
+    node.step(&mut node_bus).unwrap();
+    assert!(moduli.take_valid(&mut bus).unwrap().is_some());
+    assert_eq!((node.health().level, node_bus.received()[0].refused), (Level::Ok, 0));
+}
+
+#[test]
+fn the_declared_defaults_are_the_typed_ones() {
+    let settings = Settings::try_from(&Parameters::defaults(&parameters())).unwrap();
+    assert_eq!(settings, Settings::default());
+}
+
+#[test]
+fn an_axis_that_is_no_direction_is_refused() {
+    let set = |axis: &str| {
+        let args = ["--ros-args", "-p", axis].map(String::from);
+        let (ros, _) = RosArgs::parse(&args).unwrap();
+        let names = Names::from_args("fabric_analyzer", &ros).unwrap();
+        let parameters = Parameters::resolve(&parameters(), "fabric_analyzer", &names, &ros).unwrap();
+        Settings::try_from(&parameters)
+    };
+    assert!(set("axis:=[1, 0, 1]").is_ok());
+    for axis in ["axis:=[0, 0, 0]", "axis:=[1, 0]"] {
+        assert!(set(axis).unwrap_err().to_string().contains("not a direction"), "{axis}");
+    }
+}

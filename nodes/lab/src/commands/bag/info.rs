@@ -1,0 +1,52 @@
+//! `grainlab bag info`.
+
+use crate::failure::Failure;
+use crate::output::{Format, Table, json, print};
+use node_kit::Exit;
+use recordings::Recording;
+use recordings::reader::Info;
+use std::path::PathBuf;
+
+/// Which recording.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json")]
+pub(crate) struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let recording = Recording::open(&args.path).map_err(Failure::failure)?;
+    let info = recording.info();
+    let text = match args.format {
+        Format::Table => format!("{info}\n"),
+        Format::Json => json(&info)?,
+        Format::Csv => csv(&info),
+    };
+    print(&text)?;
+    let warnings = recording.warnings();
+    warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    let lost = info.topics.iter().any(|t| t.lost.is_some_and(|n| n > 0));
+    Ok(if warnings.is_empty() && !lost { Exit::Done } else { Exit::DataLoss })
+}
+
+fn csv(info: &Info) -> String {
+    let mut t = Table::new(["topic", "type", "messages", "published", "lost", "repeated", "latched"]);
+    let count = |n: Option<u64>| n.map_or_else(String::new, |n| n.to_string());
+    for topic in &info.topics {
+        t.row([
+            topic.name.clone(),
+            topic.ros_type.clone(),
+            topic.messages.to_string(),
+            count(topic.published),
+            count(topic.lost),
+            count(topic.repeated),
+            topic.latched.to_string(),
+        ]);
+    }
+    t.csv()
+}

@@ -1,0 +1,195 @@
+//! `grainlab bag play`.
+
+use crate::failure::Failure;
+use crate::network::tool_bus;
+use grainlab_msgs::Topic;
+use node_kit::{Bus, BusError, DdsBus, Exit, PublisherId, Wake};
+use recordings::{Play, PlayOptions, Player, Recording};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag play recordings/runs/demo-1-1 --topics packing
+  grainlab bag play recordings/runs/demo-1-1 --rate 10 --start-offset 2.5
+
+Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
+publishes is left out and named: two writers would mix their messages.";
+
+/// Time to learn who publishes what, and for subscriptions to be complete after the first.
+const LOOK_AROUND: Duration = Duration::from_millis(700);
+const SETTLE: Duration = Duration::from_millis(1000);
+/// Pause before a message is offered again that a slow reader held up.
+const HOLD: Duration = Duration::from_millis(5);
+/// How long the last messages may take, and how long this process then stays: readers lose what they have not taken when
+/// their writer goes.
+const FAREWELL: Duration = Duration::from_secs(5);
+const GRACE: Duration = Duration::from_millis(300);
+
+/// What to play, and how fast.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// Topics to play [default: all]
+    #[arg(long, num_args = 1.., value_name = "TOPIC")]
+    topics: Vec<String>,
+    /// Recorded seconds per second; inf is as fast as the readers take
+    #[arg(short, long, value_name = "RATE", default_value_t = 1.0)]
+    rate: f64,
+    /// Where to start, s after the first message
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    start_offset: f64,
+    /// How much to play, s of the recording [default: to the end]
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+    /// Wait at most this long for a subscriber of every topic before sending, s; 0 does not wait
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    wait_for_subscribers: f64,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let seconds = |flag: &str, value: f64| {
+        let message = |_| Failure::usage(format!("--{flag} {value} is out of range: seconds, 0 or more"));
+        Duration::try_from_secs_f64(value).map_err(message)
+    };
+    let mut options = PlayOptions {
+        topics: (!args.topics.is_empty()).then(|| args.topics.clone()),
+        rate: args.rate,
+        start_offset: seconds("start-offset", args.start_offset)?,
+        duration: args.duration.map(|d| seconds("duration", d)).transpose()?,
+        ..PlayOptions::default()
+    };
+    let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
+    let recording = Recording::open(&args.path).map_err(Failure::failure)?;
+    // Faults of the options show before anything is published.
+    let wanted: Vec<String> =
+        Player::new(&recording, &options).map_err(play_failure)?.channels().iter().map(|c| c.topic.clone()).collect();
+
+    let mut bus = tool_bus("player")?;
+    pause(&mut bus, LOOK_AROUND);
+    let mut publishers = BTreeMap::new();
+    for name in wanted {
+        match offer(&mut bus, &name)? {
+            Ok(publisher) => {
+                publishers.insert(name, publisher);
+            }
+            Err(reason) => {
+                eprintln!("grainlab: {name} is left out: {reason}");
+                options.exclude.push(name);
+            }
+        }
+    }
+    if publishers.is_empty() {
+        return Err(Failure::failure("nothing is left to play"));
+    }
+    if !wait_for_readers(&mut bus, &publishers, patience) {
+        return Ok(Exit::Interrupted);
+    }
+    let mut player = Player::new(&recording, &options).map_err(play_failure)?;
+    let sent = send(&mut bus, &mut player, &publishers)?;
+    let acknowledged = bus.flush(FAREWELL);
+    std::thread::sleep(GRACE);
+    let warnings = recording.warnings();
+    warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    if player.slipped() > Duration::from_millis(100) {
+        eprintln!("grainlab: the readers are slower than the recording: {:.1} s late in all", player.slipped().as_secs_f64());
+    }
+    let Some(sent) = sent else { return Ok(Exit::Interrupted) };
+    eprintln!("grainlab: {sent} messages sent");
+    if !acknowledged {
+        eprintln!("grainlab: a reader has not acknowledged the last messages");
+    }
+    Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+}
+
+fn play_failure(error: recordings::PlayError) -> Failure {
+    match &error {
+        recordings::PlayError::Read(_) => Failure::failure(error),
+        _ => Failure::usage(error),
+    }
+}
+
+/// Offers one recorded topic under its recorded name, or says why not.
+fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<PublisherId, String>, Failure> {
+    let Some(row) = Topic::by_name(name) else {
+        return Ok(Err("its type is not one of the laboratory".to_owned()));
+    };
+    // A topic of the contract lives as long as the program; these few names do, too.
+    let topic = Topic { name: Box::leak(name.to_owned().into_boxed_str()), ..*row };
+    let writers = bus.foreign_writers(&topic);
+    if let Some(writer) = writers.first() {
+        return Ok(Err(format!("a live node publishes it (writer {writer})")));
+    }
+    Ok(Ok(bus.advertise(&topic).map_err(Failure::failure)?))
+}
+
+/// Lets the graph be followed for `time`.
+fn pause(bus: &mut DdsBus, time: Duration) {
+    let end = bus.now() + time;
+    while let Some(left) = end.checked_sub(bus.now()).filter(|left| !left.is_zero()) {
+        bus.wait(left);
+    }
+}
+
+/// Waits until every topic has a reader and no more appear for a moment; false if a signal came.
+fn wait_for_readers(bus: &mut DdsBus, publishers: &BTreeMap<String, PublisherId>, patience: Duration) -> bool {
+    let end = bus.now() + patience;
+    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(*p)).collect::<Vec<_>>();
+    let (mut known, mut since) = (count(bus), bus.now());
+    loop {
+        let now = bus.now();
+        let counts = count(bus);
+        if counts != known {
+            (known, since) = (counts, now);
+        }
+        let complete = known.iter().all(|n| *n > 0) && now - since >= SETTLE;
+        if complete || now >= end {
+            let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n == 0);
+            let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
+            if !lonely.is_empty() && !patience.is_zero() {
+                eprintln!("grainlab: nobody subscribes to {}", lonely.join(", "));
+            }
+            return true;
+        }
+        if bus.wait(Duration::from_millis(100)) == Wake::Shutdown {
+            return false;
+        }
+    }
+}
+
+/// Sends all that is due, when it is due; the count of messages, or `None` if a signal came.
+fn send(
+    bus: &mut DdsBus,
+    player: &mut Player<'_>,
+    publishers: &BTreeMap<String, PublisherId>,
+) -> Result<Option<u64>, Failure> {
+    let mut sent = 0;
+    loop {
+        let wait = match player.poll(bus.now()) {
+            Play::Done | Play::Paused => return Ok(Some(sent)),
+            Play::Wait(time) => time,
+            Play::Send(message) => {
+                let Some(publisher) = publishers.get(&message.channel.topic) else { continue };
+                loop {
+                    match bus.publish(*publisher, &message.payload) {
+                        Ok(_) => break,
+                        Err(BusError::Full { .. }) => {}
+                        Err(error) => return Err(Failure::failure(error)),
+                    }
+                    if bus.wait(HOLD) == Wake::Shutdown {
+                        return Ok(None);
+                    }
+                }
+                sent += 1;
+                Duration::ZERO
+            }
+        };
+        if bus.wait(wait) == Wake::Shutdown {
+            return Ok(None);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! `grainlab launch`: the main job.
+
+use crate::failure::{Failure, worse};
+use crate::launch::plan::{DEFAULT, LaunchFile};
+use crate::launch::supervisor::{Supervised, Supervisor};
+use crate::network::FreeDomain;
+use crate::output::{Format, json, print};
+use crate::results::read_back::{self, ReadBack};
+use crate::results::state;
+use crate::results::summary::{Launched, NodeEnd, Summary};
+use crate::results::summary_text;
+use crate::scenes::{self, SceneText};
+use node_kit::{Exit, Network};
+use recordings::Recording;
+use recordings::runs::{RUNS, create_run_directory};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab                                  the demo scene
+  grainlab launch --scene s2 --seed 3       a scene of the paper
+  grainlab launch my.launch.yaml --scene my_scene.toml
+
+The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
+Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
+
+/// What to launch.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Launch file, in the YAML form of ROS 2 launch [default: the laboratory with the demo scene]
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
+    /// Seed of every random choice [default: the one of the scene]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Folder in which the run gets a directory of its own
+    #[arg(long, value_name = "DIR", default_value = RUNS)]
+    out: PathBuf,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+impl Default for Args {
+    fn default() -> Self {
+        Self { file: None, scene: None, seed: None, out: RUNS.into(), format: Format::Table }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let file = read_file(args.file.as_deref())?;
+    let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
+    let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
+    let scene = scenes::load(name, seed)?;
+    let (domain, _lock) = domain()?;
+    let directory = run_directory(&args.out, &scene)?;
+    let path = |p: &Path| p.to_string_lossy().into_owned();
+    let values = BTreeMap::from([
+        ("scene", path(&directory.join("scene.toml"))),
+        ("seed", scene.scene.seed.to_string()),
+        ("out", path(&directory)),
+    ]);
+    let plans = file.nodes(&values).map_err(Failure::usage)?;
+    eprintln!(
+        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}; run {}",
+        scene.scene.name,
+        scene.scene.seed,
+        scene.scene.grains,
+        directory.display()
+    );
+    let supervised = supervise(plans, domain, &directory, scene.scene.phases.len())?;
+    finish(args.format, &directory, &scene, domain, supervised)
+}
+
+fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
+    let Some(path) = path else { return LaunchFile::parse(DEFAULT).map_err(Failure::usage) };
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+    LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
+}
+
+/// The domain of the environment, else a free one, kept while the second value lives.
+fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
+    let network = Network::from_env().map_err(Failure::usage)?;
+    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
+        return Ok((network.domain, None));
+    }
+    let free = FreeDomain::take()?;
+    Ok((free.id, Some(free)))
+}
+
+/// The run's directory, with the scene as it is now: a file edited later changes neither the run nor a restart.
+fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
+    let failed = |e: std::io::Error| Failure::failure(format!("{}: {e}", root.display()));
+    let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;
+    let directory = directory.canonicalize().map_err(failed)?;
+    std::fs::write(directory.join("scene.toml"), &scene.text).map_err(failed)?;
+    Ok(directory)
+}
+
+fn supervise(
+    plans: Vec<crate::launch::plan::NodePlan>,
+    domain: u16,
+    directory: &Path,
+    phases: usize,
+) -> Result<Supervised, Failure> {
+    // One thread, this one: the children are tied to the life of the thread that starts them.
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|e| Failure::failure(format!("tokio: {e}")))?;
+    let logs = directory.join("logs");
+    runtime.block_on(async { Supervisor::new(plans, domain, &logs, phases)?.run().await })
+}
+
+/// Reads the recording back, prints the result and writes it beside the recording.
+fn finish(
+    format: Format,
+    directory: &Path,
+    scene: &SceneText,
+    domain: u16,
+    supervised: Supervised,
+) -> Result<Exit, Failure> {
+    let mut exit = supervised.exit;
+    let recording = Recording::open(directory);
+    let (back, tallies) = match &recording {
+        Ok(recording) => (read_back::read(recording), recording.ledger()),
+        Err(error) => (ReadBack { complaints: vec![error.to_string()], ..ReadBack::default() }, None),
+    };
+    if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
+        exit = worse(exit, Exit::DataLoss);
+    }
+    let nodes = supervised.children.iter().map(|c| NodeEnd {
+        name: c.plan.name.clone(),
+        pid: c.last_pid,
+        exit: c.code,
+        restarts: c.restarts.len(),
+    });
+    let launched = Launched {
+        scene: scene.scene.name.clone(),
+        seed: scene.scene.seed,
+        domain,
+        wall_seconds: supervised.wall.as_secs_f64(),
+        nodes: nodes.collect(),
+        recording: recording.is_ok().then(|| directory.display().to_string()),
+        exit,
+    };
+    let summary = Summary::new(launched, back, tallies.as_deref());
+    let path = directory.join("summary.json");
+    let text = json(&summary)?;
+    std::fs::write(&path, &text).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+    summary.warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
+    print(&match format {
+        Format::Json => text,
+        Format::Csv => state::csv(&states),
+        Format::Table => {
+            let text = summary_text::text(&summary);
+            format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())
+        }
+    })?;
+    Ok(exit)
+}

@@ -1,0 +1,110 @@
+//! `grainlab run`: one node as this process.
+
+use crate::failure::Failure;
+use crate::output::print;
+use crate::recorder::{self, Recorder};
+use crate::scenes;
+use dem_simulator::DemSimulator;
+use emt_inversion::EmtInversion;
+use fabric_analyzer::FabricAnalyzer;
+use node_kit::run::NodeSpec;
+use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, run_node};
+use servo_controller::ServoController;
+
+/// Every node: its name, what it does, its parameters.
+pub(crate) fn nodes() -> Vec<NodeSpec> {
+    let node = |name, summary, parameters| NodeSpec { name, summary, parameters };
+    let mut simulator = vec![
+        ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
+        ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
+    ];
+    simulator.extend(dem_simulator::parameters());
+    vec![
+        node("dem_simulator", "owns the run: publishes stress and packings, obeys strain rates", simulator),
+        node("servo_controller", "answers every stress with a strain rate", servo_controller::parameters()),
+        node("fabric_analyzer", "turns packings into fabric and moduli", fabric_analyzer::parameters()),
+        node("emt_inversion", "turns moduli into microstructure", emt_inversion::parameters()),
+        node("recorder", "records every topic to MCAP", recorder::parameters()),
+    ]
+}
+
+/// One node, with ROS 2 arguments.
+#[derive(Debug, clap::Args)]
+#[command(after_help = help(), override_usage = "grainlab run NODE [--ros-args -p NAME:=VALUE -r FROM:=TO ...]")]
+pub(crate) struct Args {
+    /// dem_simulator, servo_controller, fabric_analyzer, emt_inversion or recorder
+    #[arg(value_name = "NODE")]
+    node: String,
+    /// ROS 2 arguments: --ros-args -p, -r, --params-file, --log-level
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
+    rest: Vec<String>,
+}
+
+fn help() -> String {
+    let mut text = String::from("Nodes and their parameters (set with -p NAME:=VALUE):\n");
+    for node in nodes() {
+        text += &format!("\n  {}: {}\n", node.name, node.summary);
+        node.parameters.iter().for_each(|p| text += &format!("    {p}\n"));
+    }
+    text + "\nExamples:\n  grainlab run dem_simulator --ros-args -p scene:=s2 -p seed:=3 -r __ns:=/left\n  \
+            grainlab run fabric_analyzer --ros-args -p tolerance:=1e-10 --log-level debug"
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let mut nodes = nodes();
+    let known = nodes.iter().map(|n| n.name).collect::<Vec<_>>().join(", ");
+    let Some(at) = nodes.iter().position(|n| n.name == args.node) else {
+        return Err(Failure::usage(format!("no node {:?}; there are: {known}", args.node)));
+    };
+    let spec = nodes.swap_remove(at);
+    let (ros, plain) = RosArgs::parse(&args.rest).map_err(Failure::usage)?;
+    if let Some(stranger) = plain.first() {
+        let message = format!("unexpected argument {stranger:?}; ROS arguments come after --ros-args");
+        return Err(Failure::usage(message));
+    }
+    if spec.name == "recorder" {
+        return record(&spec, &ros, |parameters| recorder::Settings::of(parameters));
+    }
+    Ok(run_node(&spec, &ros, |bus, parameters| {
+        let node: Box<dyn Node> = match spec.name {
+            "dem_simulator" => {
+                let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
+                let name: String = parameters.get("scene");
+                let scene = scenes::load(&name, seed).map_err(|e| node_error(&e))?.scene;
+                let simulator = DemSimulator::new(bus, scene, None, parameters.into());
+                Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
+            }
+            "servo_controller" => Box::new(ServoController::new(bus)?),
+            "fabric_analyzer" => {
+                let settings = fabric_analyzer::Settings::try_from(parameters);
+                let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+                Box::new(FabricAnalyzer::new(bus, settings)?)
+            }
+            _ => Box::new(EmtInversion::new(bus, parameters.into())?),
+        };
+        Ok(node)
+    }))
+}
+
+/// Runs the recorder and prints what it recorded.
+pub(crate) fn record(
+    spec: &NodeSpec,
+    ros: &RosArgs,
+    settings: impl FnOnce(&node_kit::Parameters) -> Result<recorder::Settings, Failure>,
+) -> Result<Exit, Failure> {
+    let result = recorder::Result::default();
+    let exit = run_node(spec, ros, |bus, parameters| {
+        let settings = settings(parameters).map_err(|e| node_error(&e))?;
+        Ok(Box::new(Recorder::new(bus, &settings, result.clone())?))
+    });
+    if let Some(finished) = result.borrow().as_ref() {
+        let (tallies, file) = (finished.ledger.tallies(), finished.file.display());
+        print(&format!("{}{file}: {} messages, {} bytes\n", recorder::counts(&tallies), finished.messages, finished.bytes))?;
+    }
+    Ok(exit)
+}
+
+fn node_error(failure: &Failure) -> NodeError {
+    NodeError::new(failure.exit, failure.to_string())
+}

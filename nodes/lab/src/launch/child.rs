@@ -1,0 +1,102 @@
+//! One process of a run, which cannot outlive the launcher.
+
+use super::plan::NodePlan;
+use crate::failure::Failure;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::Path;
+use std::process::{ExitStatus, Stdio};
+use std::time::Instant;
+use tokio::process::Command;
+use tokio::sync::mpsc::UnboundedSender;
+
+/// A process that ended.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// Its place in the plan.
+    pub(crate) index: usize,
+    /// How it ended.
+    pub(crate) status: io::Result<ExitStatus>,
+}
+
+/// A node and the process that runs it.
+#[derive(Debug)]
+pub(crate) struct Child {
+    /// What was planned.
+    pub(crate) plan: NodePlan,
+    /// Process id while it runs.
+    pub(crate) pid: Option<u32>,
+    /// Process id of the latest process.
+    pub(crate) last_pid: u32,
+    /// Exit code of the last process that ended by itself; `None` if it runs or a signal ended it.
+    pub(crate) code: Option<i32>,
+    /// When it was started again.
+    pub(crate) restarts: Vec<Instant>,
+}
+
+impl Child {
+    /// Nothing is started yet.
+    pub(crate) fn new(plan: NodePlan) -> Self {
+        Self { plan, pid: None, last_pid: 0, code: None, restarts: Vec::new() }
+    }
+
+    /// Starts the node with its output in `<logs>/<name>.log`. Its end is sent to `ended`. To be called from the thread
+    /// that lives as long as the launcher: the child is told to end when that thread does.
+    pub(crate) fn start(
+        &mut self,
+        index: usize,
+        domain: u16,
+        logs: &Path,
+        ended: &UnboundedSender<Ended>,
+    ) -> Result<(), Failure> {
+        let failed = |e: io::Error| Failure::failure(format!("{}: cannot be started: {e}", self.plan.name));
+        let log = open_log(logs, &self.plan.name).map_err(failed)?;
+        let launcher = std::process::id();
+        let mut command = Command::new(std::env::current_exe().map_err(failed)?);
+        command
+            .args(&self.plan.arguments)
+            .env("ROS_DOMAIN_ID", domain.to_string())
+            .stdin(Stdio::null())
+            .stdout(log.try_clone().map_err(failed)?)
+            .stderr(log)
+            // A group of its own: Ctrl-C reaches the launcher alone, which ends the children in their order.
+            .process_group(0);
+        // SAFETY: between fork and exec only these two system calls are made, which are safe there.
+        unsafe {
+            command.pre_exec(move || {
+                if libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) != 0 {
+                    return Err(io::Error::last_os_error());
+                }
+                // The launcher may have died before that.
+                if libc::getppid() as u32 != launcher {
+                    return Err(io::Error::other("the launcher is gone"));
+                }
+                Ok(())
+            });
+        }
+        let mut process = command.spawn().map_err(failed)?;
+        self.pid = process.id();
+        self.last_pid = self.pid.unwrap_or(0);
+        self.code = None;
+        let ended = ended.clone();
+        tokio::spawn(async move {
+            let status = process.wait().await;
+            // Nobody listens any more only when the launcher itself ends.
+            let _ = ended.send(Ended { index, status });
+        });
+        Ok(())
+    }
+
+    /// Sends `signal` if it runs.
+    pub(crate) fn signal(&self, signal: i32) {
+        if let Some(pid) = self.pid.and_then(|p| i32::try_from(p).ok()) {
+            // SAFETY: kill takes two integers. The process is ours and was not yet waited for, so the id is its own.
+            unsafe { libc::kill(pid, signal) };
+        }
+    }
+}
+
+fn open_log(logs: &Path, name: &str) -> io::Result<File> {
+    std::fs::create_dir_all(logs)?;
+    OpenOptions::new().create(true).append(true).open(logs.join(format!("{name}.log")))
+}

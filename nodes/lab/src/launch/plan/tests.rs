@@ -1,0 +1,56 @@
+use super::*;
+
+fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, PlanError> {
+    let values = values.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
+    LaunchFile::parse(text)?.nodes(&values)
+}
+
+#[test]
+fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
+    let ours = [
+        ("demo", DEFAULT),
+        ("s1", include_str!("../../../../launch/s1.launch.yaml")),
+        ("s2", include_str!("../../../../launch/s2.launch.yaml")),
+        ("s3", include_str!("../../../../launch/s3.launch.yaml")),
+        ("s4", include_str!("../../../../launch/s4.launch.yaml")),
+    ];
+    for (scene, text) in ours {
+        let file = LaunchFile::parse(text).unwrap();
+        assert_eq!(file.default_of("scene"), Some(scene));
+        let plans = file.nodes(&BTreeMap::new()).unwrap();
+        let names: Vec<&str> = plans.iter().map(|p| p.node.as_str()).collect();
+        let expected = ["recorder", "emt_inversion", "fabric_analyzer", "servo_controller", "dem_simulator"];
+        assert_eq!(names, expected);
+        let same = nodes(DEFAULT, &[("scene", scene)]).unwrap();
+        assert_eq!(plans, same, "{scene}");
+        assert!(plans.iter().all(|p| p.respawn != ["recorder", "dem_simulator"].contains(&p.node.as_str())));
+    }
+}
+
+#[test]
+fn a_value_with_blanks_stays_one_word() {
+    let plans = nodes(DEFAULT, &[("out", "/tmp/my runs/$(x)"), ("scene", "a b.toml")]).unwrap();
+    assert!(plans[0].arguments.contains(&"output:=/tmp/my runs/$(x)".to_owned()), "{:?}", plans[0]);
+    assert!(plans[0].arguments.contains(&"scene:=a b.toml".to_owned()));
+}
+
+#[test]
+fn what_is_not_supported_is_refused_and_named() {
+    let one = |entry: &str| format!("launch:\n- {entry}\n");
+    for (text, needle) in [
+        (one("node: {pkg: a, exec: b}"), "node"),
+        (one("executable: {cmd: grainlab run recorder, shell: true}"), "shell"),
+        (one("executable: {cmd: rviz2}"), "rviz2"),
+        (one("executable: {cmd: 'grainlab run recorder -p x:=$(env HOME)'}"), "$(var NAME)"),
+        (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
+        (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
+        (one("executable: {cmd: grainlab run recorder}"), "0 of dem_simulator"),
+        (one("arg: {name: scene}"), "no default"),
+        ("lunch: []".to_owned(), "lunch"),
+    ] {
+        let error = nodes(&text, &[]).expect_err(&text).to_string();
+        assert!(error.contains(needle), "{text}: {error}");
+    }
+    let error = nodes("launch: []", &[("seed", "3")]).unwrap_err();
+    assert!(matches!(error, PlanError::NoSuchArgument { .. }), "{error}");
+}

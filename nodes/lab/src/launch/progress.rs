@@ -1,0 +1,49 @@
+//! What the user sees of a run under way: a line for each phase, on stderr.
+
+use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use std::time::{Duration, Instant};
+
+/// A phase that takes longer says so this often.
+const STILL: Duration = Duration::from_secs(10);
+
+/// Prints lines with the time since the start.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    begin: Instant,
+    phases: usize,
+    phase: Option<u32>,
+    finished: bool,
+    said: Instant,
+}
+
+impl Progress {
+    /// Of a path with this many phases.
+    pub(crate) fn new(phases: usize) -> Self {
+        let now = Instant::now();
+        Self { begin: now, phases, phase: None, finished: false, said: now }
+    }
+
+    /// A line, with the time.
+    pub(crate) fn say(&self, text: &str) {
+        eprintln!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+    }
+
+    /// A line if a phase began or takes long.
+    pub(crate) fn show(&mut self, state: &RunStateReading) {
+        let step = state.step;
+        if state.status == RunStatus::Finished {
+            if !std::mem::replace(&mut self.finished, true) {
+                self.say(&format!("the loading path is done at step {step}"));
+            }
+            return;
+        }
+        if state.status == RunStatus::Failed || (self.phase == Some(state.phase) && self.said.elapsed() < STILL) {
+            return;
+        }
+        let verb = if self.phase == Some(state.phase) { "goes on at" } else { "from" };
+        self.phase = Some(state.phase);
+        self.said = Instant::now();
+        let (number, of) = (state.phase + 1, self.phases);
+        self.say(&format!("phase {number} of {of}, {} {verb} step {step}", state.phase_name));
+    }
+}

@@ -1,0 +1,288 @@
+//! Who is restarted, whose death ends the run, and in which order all end.
+
+use super::child::{Child, Ended};
+use super::plan::NodePlan;
+use super::progress::Progress;
+use super::watch::{Event, Watch};
+use crate::failure::{Failure, worse};
+use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use node_kit::Exit;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::time::{sleep, sleep_until, timeout};
+
+/// A node that ends this often within this time is not started again.
+const RESTARTS: usize = 10;
+const RESTART_WINDOW: Duration = Duration::from_secs(30);
+/// Pause before a start after an end.
+const RESTART_PAUSE: Duration = Duration::from_millis(100);
+
+/// How long the last packing may take to be measured, and its moduli to be inverted.
+const MEASURED_WITHIN: Duration = Duration::from_secs(600);
+const INVERTED_WITHIN: Duration = Duration::from_secs(10);
+
+/// How long a process that was asked to end may take before it is asked again, more firmly.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The node whose end is the end of the record.
+const RECORDER: &str = "recorder";
+/// The node whose end is the end of the run.
+const SIMULATOR: &str = "dem_simulator";
+
+/// A run from its first process to its last.
+pub(crate) struct Supervisor<'a> {
+    children: Vec<Child>,
+    domain: u16,
+    logs: &'a Path,
+    ended: UnboundedReceiver<Ended>,
+    report_end: UnboundedSender<Ended>,
+    interrupt: Signal,
+    terminate: Signal,
+    progress: Progress,
+    finished: Option<RunStateReading>,
+    failed: Option<String>,
+    measured: BTreeSet<u64>,
+    inverted: BTreeSet<u64>,
+}
+
+/// What a run came to.
+#[derive(Debug)]
+pub(crate) struct Supervised {
+    /// How it ended.
+    pub(crate) exit: Exit,
+    /// Every node with its last process.
+    pub(crate) children: Vec<Child>,
+    /// From the first start to the last end.
+    pub(crate) wall: Duration,
+}
+
+impl<'a> Supervisor<'a> {
+    /// To be made inside the runtime.
+    pub(crate) fn new(plans: Vec<NodePlan>, domain: u16, logs: &'a Path, phases: usize) -> Result<Self, Failure> {
+        let handler = |kind| signal(kind).map_err(|e| Failure::failure(format!("signal handler: {e}")));
+        let (report_end, ended) = unbounded_channel();
+        Ok(Self {
+            children: plans.into_iter().map(Child::new).collect(),
+            domain,
+            logs,
+            ended,
+            report_end,
+            interrupt: handler(SignalKind::interrupt())?,
+            terminate: handler(SignalKind::terminate())?,
+            progress: Progress::new(phases),
+            finished: None,
+            failed: None,
+            measured: BTreeSet::new(),
+            inverted: BTreeSet::new(),
+        })
+    }
+
+    /// Starts every node, waits for the end, ends every node.
+    pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
+        let begin = Instant::now();
+        let (watch, mut events) = Watch::start(self.domain)?;
+        let mut exit = match self.start_all() {
+            Ok(()) => self.attend(&mut events).await,
+            Err(failure) => {
+                eprintln!("grainlab: {failure}");
+                failure.exit
+            }
+        };
+        // Nodes first: their last reports belong into the recording.
+        for recorder in [false, true] {
+            if self.end(recorder).await {
+                exit = Exit::Interrupted;
+            }
+        }
+        let recorder = self.children.iter().find(|c| c.plan.node == RECORDER).and_then(|c| c.code);
+        if recorder != Some(0) {
+            exit = worse(exit, Exit::DataLoss);
+        }
+        drop(watch);
+        Ok(Supervised { exit, children: self.children, wall: begin.elapsed() })
+    }
+
+    fn start_all(&mut self) -> Result<(), Failure> {
+        (0..self.children.len()).try_for_each(|index| self.start(index))
+    }
+
+    fn start(&mut self, index: usize) -> Result<(), Failure> {
+        self.children[index].start(index, self.domain, self.logs, &self.report_end)
+    }
+
+    /// Follows the run until it is over; the children still run then.
+    async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
+        let mut deadline: Option<(tokio::time::Instant, Exit, &str)> = None;
+        loop {
+            let due = deadline.map_or_else(|| tokio::time::Instant::now() + PATIENCE, |(at, ..)| at);
+            tokio::select! {
+                Some(event) = events.recv() => self.take(event),
+                Some(ended) = self.ended.recv() => {
+                    if let Some(exit) = self.on_end(&ended).await {
+                        return exit;
+                    }
+                }
+                _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
+                _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
+                () = sleep_until(due) => {
+                    if let Some((_, exit, message)) = deadline {
+                        eprintln!("grainlab: {message}");
+                        return exit;
+                    }
+                }
+            }
+            let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
+            match last {
+                None => return Exit::Done,
+                Some(step) if self.inverted.contains(&step) => return Exit::Done,
+                Some(step) => {
+                    let now = tokio::time::Instant::now();
+                    let measured = self.measured.contains(&step);
+                    deadline = match deadline {
+                        Some(known @ (_, Exit::PhysicsInvalid, _)) => Some(known),
+                        _ if measured => Some((
+                            now + INVERTED_WITHIN,
+                            Exit::PhysicsInvalid,
+                            "the last packing has no stiffness to invert: see logs/fabric_analyzer.log",
+                        )),
+                        None => Some((
+                            now + MEASURED_WITHIN,
+                            Exit::Failure,
+                            "the last packing was not measured: see logs/fabric_analyzer.log",
+                        )),
+                        other => other,
+                    };
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        match event {
+            Event::State(state) => {
+                self.progress.show(&state);
+                match state.status {
+                    RunStatus::Running => {}
+                    RunStatus::Finished => self.finished = Some(state),
+                    RunStatus::Failed => self.failed = Some(state.message),
+                }
+            }
+            Event::Fabric(step) => {
+                self.measured.insert(step);
+            }
+            Event::Microstructure(step) => {
+                self.inverted.insert(step);
+                self.progress.say(&format!("packing of step {step} measured and inverted"));
+            }
+            Event::Failed(message) => eprintln!("grainlab: the launcher's own watch failed: {message}"),
+        }
+    }
+
+    fn interrupted(&self, name: &str) -> Exit {
+        self.progress.say(&format!("{name}: ending every process and finishing the recording"));
+        Exit::Interrupted
+    }
+
+    /// A process ended by itself. How the run ends because of that, if it does.
+    async fn on_end(&mut self, ended: &Ended) -> Option<Exit> {
+        let how = self.note_end(ended);
+        let child = &self.children[ended.index];
+        let (name, node, code) = (child.plan.name.clone(), child.plan.node.as_str(), child.code);
+        let meant = code.and_then(Exit::from_code);
+        if node == SIMULATOR && self.finished.is_some() && code == Some(0) {
+            return None;
+        }
+        let exit = match (node, meant) {
+            (_, Some(Exit::Usage)) => Exit::Usage,
+            (RECORDER, _) => Exit::DataLoss,
+            (SIMULATOR, Some(Exit::PhysicsInvalid)) => Exit::PhysicsInvalid,
+            (SIMULATOR, _) => Exit::Failure,
+            _ if child.plan.respawn => return self.restart(ended.index, &how).await,
+            _ => Exit::Failure,
+        };
+        let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
+        eprintln!("grainlab: {name} {how}: {reason}");
+        self.quote_log(&name);
+        Some(exit)
+    }
+
+    async fn restart(&mut self, index: usize, how: &str) -> Option<Exit> {
+        let child = &mut self.children[index];
+        let name = child.plan.name.clone();
+        let now = Instant::now();
+        child.restarts.push(now);
+        let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count();
+        if recent > RESTARTS {
+            eprintln!("grainlab: {name} {how}, {recent} times within {} s: given up", RESTART_WINDOW.as_secs());
+            self.quote_log(&name);
+            return Some(Exit::Failure);
+        }
+        self.progress.say(&format!("{name} {how}: started again"));
+        sleep(RESTART_PAUSE).await;
+        let started = self.start(index);
+        started.err().map(|failure| {
+            eprintln!("grainlab: {failure}");
+            failure.exit
+        })
+    }
+
+    /// The errors that a process logged last.
+    fn quote_log(&self, name: &str) {
+        let text = std::fs::read_to_string(self.logs.join(format!("{name}.log"))).unwrap_or_default();
+        let errors: Vec<&str> = text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
+        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| eprintln!("  {l}"));
+    }
+
+    /// Books an end and says how it came.
+    fn note_end(&mut self, ended: &Ended) -> String {
+        use std::os::unix::process::ExitStatusExt;
+        let child = &mut self.children[ended.index];
+        child.pid = None;
+        match &ended.status {
+            Ok(status) => {
+                child.code = status.code();
+                match (status.code(), status.signal()) {
+                    (Some(code), _) => format!("ended with exit code {code}"),
+                    (None, Some(signal)) => format!("was ended by signal {signal}"),
+                    (None, None) => "ended".to_owned(),
+                }
+            }
+            Err(error) => format!("cannot be waited for ({error})"),
+        }
+    }
+
+    /// Ends the recorder, or every other process: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the
+    /// user asked to hurry, which kills what is left.
+    async fn end(&mut self, recorder: bool) -> bool {
+        let mut hurried = false;
+        for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGKILL] {
+            let signal = if hurried { libc::SIGKILL } else { signal };
+            self.children.iter().filter(|c| (c.plan.node == RECORDER) == recorder).for_each(|c| c.signal(signal));
+            let running = |s: &Self| {
+                s.children.iter().any(|c| (c.plan.node == RECORDER) == recorder && c.pid.is_some())
+            };
+            let deadline = tokio::time::Instant::now() + PATIENCE;
+            while running(self) && !hurried {
+                tokio::select! {
+                    Some(ended) = self.ended.recv() => { self.note_end(&ended); }
+                    _ = self.interrupt.recv() => hurried = true,
+                    _ = self.terminate.recv() => hurried = true,
+                    () = sleep_until(deadline) => break,
+                }
+            }
+            if !running(self) {
+                return hurried;
+            }
+            if hurried && signal == libc::SIGKILL {
+                while running(self) {
+                    let Ok(Some(ended)) = timeout(PATIENCE, self.ended.recv()).await else { break };
+                    self.note_end(&ended);
+                }
+            }
+        }
+        hurried
+    }
+}

@@ -1,0 +1,95 @@
+//! What the run says of itself over DDS, brought to the supervisor.
+
+use crate::failure::Failure;
+use crate::network::bus_in;
+use grainlab_msgs::boundary::RunStateReading;
+use grainlab_msgs::msg::{Fabric, Microstructure, RunState};
+use grainlab_msgs::topics;
+use node_kit::{Bus, BusError, DdsBus, Demand, Subscription};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+
+/// Messages that may wait; one comes a second and at each end of a phase.
+const BACKLOG: u32 = 256;
+
+/// How often the thread looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Something the supervisor has to know.
+#[derive(Debug)]
+pub(crate) enum Event {
+    /// Where the run stands.
+    State(RunStateReading),
+    /// The structure of the packing of this step was measured.
+    Fabric(u64),
+    /// The microstructure of the packing of this step was inferred.
+    Microstructure(u64),
+    /// The watch itself failed.
+    Failed(String),
+}
+
+/// A thread with a bus of its own.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Watch {
+    /// Joins the domain and listens until it is dropped.
+    pub(crate) fn start(domain: u16) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
+        let (events, receiver) = unbounded_channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&stop);
+        let thread = std::thread::Builder::new().name("watch".into()).spawn(move || {
+            let watched = bus_in(domain, "launcher").map_err(|e| e.to_string()).and_then(|mut bus| {
+                watch(&mut bus, &events, &asked).map_err(|e| e.to_string())
+            });
+            if let Err(message) = watched {
+                let _ = events.send(Event::Failed(message));
+            }
+        });
+        let thread = Some(thread.map_err(|e| Failure::failure(format!("thread: {e}")))?);
+        Ok((Self { stop, thread }, receiver))
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -> Result<(), BusError> {
+    let demand = Demand::reliable(BACKLOG);
+    let states = Subscription::<RunState>::subscribe(bus, &topics::RUN_STATE, demand)?;
+    let fabrics = Subscription::<Fabric>::subscribe(bus, &topics::FABRIC, demand)?;
+    let microstructures = Subscription::<Microstructure>::subscribe(bus, &topics::MICROSTRUCTURE, demand)?;
+    while !stop.load(Ordering::Relaxed) {
+        while let Some((state, _)) = states.take_valid(bus)? {
+            match RunStateReading::try_from(&state) {
+                Ok(reading) => send(events, Event::State(reading)),
+                Err(e) => log::warn!("{e}"),
+            }
+        }
+        while let Some((fabric, _)) = fabrics.take_valid(bus)? {
+            send(events, Event::Fabric(fabric.source_step));
+        }
+        while let Some((found, _)) = microstructures.take_valid(bus)? {
+            send(events, Event::Microstructure(found.source_step));
+        }
+        bus.wait(LOOK);
+    }
+    Ok(())
+}
+
+/// Nobody listens any more only when the launcher ends.
+fn send(events: &UnboundedSender<Event>, event: Event) {
+    let _ = events.send(event);
+}

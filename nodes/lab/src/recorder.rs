@@ -1,0 +1,174 @@
+//! The recorder node: every sample of every topic into one recording.
+//!
+//! - [`Settings`], [`parameters`]: what is recorded, and where to
+//! - [`Recorder`]: the node; [`Finished`]: what it leaves behind
+
+mod settings;
+
+pub(crate) use settings::{Settings, contract_topics, parameters};
+
+use crate::output::Table;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::{from_cdr, topics};
+use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, SubscriptionId};
+use recordings::ledger::Guid;
+use recordings::writer::Finished;
+use recordings::{Incoming, RunWriter, TopicSpec, TopicTally, WriterOptions};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// Samples that may wait while the disk is slow: some seconds of the fastest lockstep.
+const BACKLOG: u32 = 20_000;
+
+/// The writer wants to be called this often.
+const TICK: Duration = Duration::from_millis(100);
+
+/// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence.
+const LAST_CALL: Duration = Duration::from_secs(2);
+const SILENCE: Duration = Duration::from_millis(200);
+
+/// Where the recorder leaves what it finished, for whoever started it.
+pub(crate) type Result = Rc<RefCell<Option<Finished>>>;
+
+struct Channel {
+    subscription: SubscriptionId,
+    name: String,
+    reports: bool,
+}
+
+/// The recorder.
+pub(crate) struct Recorder {
+    /// `None` after the end.
+    writer: Option<RunWriter>,
+    channels: Vec<Channel>,
+    result: Result,
+    recorded: u64,
+}
+
+impl Recorder {
+    /// Subscribes, strongest demand first, and begins the recording.
+    pub(crate) fn new(bus: &mut dyn Bus, settings: &Settings, result: Result) -> std::result::Result<Self, NodeError> {
+        let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
+        let mut channels = Vec::new();
+        let mut specs = Vec::new();
+        for topic in &settings.topics {
+            let subscription = bus.subscribe(topic, Demand::reliable(BACKLOG))?;
+            let name = bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone());
+            specs.push(TopicSpec::of_contract(topic, &name));
+            channels.push(Channel { subscription, name, reports: topic.name == topics::DIAGNOSTICS.name });
+        }
+        let directory = settings.directory().map_err(|e| failed(&e))?;
+        let name = directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
+        let mut writer = RunWriter::create(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        if let Some(scene) = &settings.scene {
+            writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
+            writer.set_metadata("scene", &scene.scene.name);
+            writer.set_metadata("seed", &scene.scene.seed.to_string());
+        }
+        writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        log::info!("recording to {}", writer.file().display());
+        Ok(Self { writer: Some(writer), channels, result, recorded: 0 })
+    }
+
+    /// Everything that arrived; true if anything did.
+    fn take_all(&mut self, bus: &mut dyn Bus) -> std::result::Result<bool, NodeError> {
+        let Some(writer) = self.writer.as_mut() else { return Ok(false) };
+        let mut any = false;
+        for channel in &self.channels {
+            while let Some(sample) = bus.take(channel.subscription)? {
+                any = true;
+                if channel.reports {
+                    enter_reports(writer, &self.channels, &sample);
+                }
+                let incoming = Incoming {
+                    guid: Guid(sample.info.writer.0),
+                    sequence: sample.info.sequence,
+                    source_time: sample.info.source_time,
+                    receive_time: sample.info.received,
+                    payload: &sample.body,
+                };
+                writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
+                self.recorded += 1;
+            }
+        }
+        writer.tick(Instant::now()).map_err(|e| lost(&e))?;
+        Ok(any)
+    }
+
+    /// Waits for what is known to be on its way, then for a moment of silence.
+    fn last_call(&mut self, bus: &mut dyn Bus) -> std::result::Result<(), NodeError> {
+        let end = bus.now() + LAST_CALL;
+        let mut quiet_since = bus.now();
+        loop {
+            let now = bus.now();
+            if self.take_all(bus)? {
+                quiet_since = now;
+            }
+            let outstanding = self.writer.as_ref().map_or(0, |w| w.ledger().outstanding());
+            if now >= end || (outstanding == 0 && now - quiet_since >= SILENCE) {
+                return Ok(());
+            }
+            bus.wait(Duration::from_millis(20));
+        }
+    }
+}
+
+/// A recording that cannot go on has lost data.
+fn lost(error: &dyn std::fmt::Display) -> NodeError {
+    NodeError::new(Exit::DataLoss, error.to_string())
+}
+
+/// What each process says it published so far, and which node it is.
+fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) {
+    let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return };
+    for report in Report::from_message(&message) {
+        for published in &report.published {
+            let guid = Guid(published.writer.0);
+            writer.ledger_mut().name(guid, &report.node);
+            // Topics that are not recorded owe nothing.
+            if channels.iter().any(|c| c.name == published.topic) {
+                writer.ledger_mut().report(&published.topic, guid, published.count);
+            }
+        }
+    }
+}
+
+/// The counts of a recording for people.
+pub(crate) fn counts(tallies: &[TopicTally]) -> String {
+    let mut t = Table::new(["topic", "published", "recorded", "lost", "repeated"]);
+    for topic in tallies.iter().filter(|t| t.published > 0) {
+        let numbers = [topic.published, topic.recorded, topic.lost, topic.repeated];
+        t.row([topic.name.clone()].into_iter().chain(numbers.map(|n| n.to_string())));
+    }
+    t.text()
+}
+
+impl Node for Recorder {
+    fn step(&mut self, bus: &mut dyn Bus) -> std::result::Result<Next, NodeError> {
+        self.take_all(bus)?;
+        Ok(Next::Wait(TICK))
+    }
+
+    fn health(&self) -> Health {
+        let lost: u64 = self.writer.as_ref().map_or(0, |w| w.ledger().tallies().iter().map(|t| t.lost).sum());
+        let text = format!("{} messages", self.recorded);
+        if lost == 0 { Health::ok(text) } else { Health::warn(text) }
+            .with("recorded", self.recorded)
+            .with("missing", lost)
+    }
+
+    /// Finishes the file. What this process itself says after that, it cannot record.
+    fn on_shutdown(&mut self, bus: &mut dyn Bus) -> std::result::Result<Exit, NodeError> {
+        self.last_call(bus)?;
+        let Some(writer) = self.writer.take() else { return Ok(Exit::Done) };
+        let finished = writer.finish().map_err(|e| lost(&e))?;
+        let lost: u64 = finished.ledger.tallies().iter().map(|t| t.lost).sum();
+        *self.result.borrow_mut() = Some(finished);
+        if lost > 0 {
+            log::error!("{lost} messages were published and are not in the recording");
+            return Ok(Exit::DataLoss);
+        }
+        Ok(Exit::Done)
+    }
+}

@@ -1,0 +1,65 @@
+//! What is recorded, and where to.
+
+use crate::failure::Failure;
+use crate::scenes::{self, SceneText};
+use grainlab_msgs::{TOPICS, Topic};
+use node_kit::{ParameterSpec, Parameters};
+use recordings::runs::{RUNS, create_run_directory};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What is recorded, and where to.
+#[derive(Clone, Debug)]
+pub(crate) struct Settings {
+    /// The run directory; `None` makes the next one under `recordings/runs`.
+    pub(crate) output: Option<PathBuf>,
+    /// Rows of the contract.
+    pub(crate) topics: Vec<Topic>,
+    /// The scene of the run, which is attached.
+    pub(crate) scene: Option<SceneText>,
+}
+
+/// The parameters of the node.
+pub(crate) fn parameters() -> Vec<ParameterSpec> {
+    vec![
+        ParameterSpec::new("output", "", "directory to make and record into; empty: the next one under recordings/runs"),
+        ParameterSpec::new("topics", Vec::<String>::new(), "topics to record; empty: every topic of the laboratory"),
+        ParameterSpec::new("scene", "", "scene of the run, a built-in name or a file, attached to the recording"),
+        ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
+    ]
+}
+
+impl Settings {
+    /// From the parameters of [`parameters`].
+    pub(crate) fn of(parameters: &Parameters) -> Result<Self, Failure> {
+        let text = |name: &str| Some(parameters.get::<String>(name)).filter(|t| !t.is_empty());
+        let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
+        Ok(Self {
+            output: text("output").map(PathBuf::from),
+            topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
+            scene: text("scene").map(|s| scenes::load(&s, seed)).transpose()?,
+        })
+    }
+
+    /// The directory to record into.
+    pub(super) fn directory(&self) -> io::Result<PathBuf> {
+        match (&self.output, &self.scene) {
+            (Some(directory), _) => Ok(directory.clone()),
+            (None, Some(s)) => create_run_directory(Path::new(RUNS), &s.scene.name, s.scene.seed),
+            (None, None) => create_run_directory(Path::new(RUNS), "recording", 0),
+        }
+    }
+}
+
+/// Rows of the contract by name; all of them for no name.
+pub(crate) fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
+    if names.is_empty() {
+        return Ok(TOPICS.to_vec());
+    }
+    let known = || TOPICS.iter().map(|t| t.name).collect::<Vec<_>>().join(", ");
+    let row = |name: &String| {
+        let row = Topic::by_name(name).copied();
+        row.ok_or_else(|| Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known())))
+    };
+    names.iter().map(row).collect()
+}

@@ -1,0 +1,123 @@
+//! What a recording of a run says: its states, and the counters of its nodes.
+
+use super::inference::Inference;
+use super::state::State;
+use grainlab_msgs::boundary::MicrostructureReading;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
+use grains::{Fabric, Moduli, Packing};
+use node_kit::Report;
+use recordings::{Recording, Selection};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A state and what was inferred from it.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct InvertedState {
+    #[serde(flatten)]
+    pub(crate) state: State,
+    pub(crate) results: Vec<Inference>,
+}
+
+/// What was read back.
+#[derive(Debug, Default)]
+pub(crate) struct ReadBack {
+    /// Every packing, in order of steps.
+    pub(crate) states: Vec<InvertedState>,
+    /// The last report of each process, by node and process id.
+    pub(crate) reports: BTreeMap<(String, u32), Report>,
+    /// What could not be read.
+    pub(crate) complaints: Vec<String>,
+}
+
+/// The messages about one packing; a repeated one says the same.
+#[derive(Default)]
+struct About {
+    packing: Option<Packing>,
+    fabric: Option<Fabric>,
+    moduli: Option<Moduli>,
+    results: Vec<Inference>,
+}
+
+/// Reads a recording back.
+pub(crate) fn read(recording: &Recording) -> ReadBack {
+    let mut back = ReadBack::default();
+    let wanted = [topics::PACKING, topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE, topics::DIAGNOSTICS];
+    let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
+    let channels = recording.channels();
+    let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
+    let mut about: BTreeMap<u64, About> = BTreeMap::new();
+    let messages = match recording.messages(&Selection::topics(names)) {
+        Ok(messages) => messages,
+        Err(error) => {
+            back.complaints.push(error.to_string());
+            return back;
+        }
+    };
+    for message in messages {
+        let Some(topic) = of(&message.channel.topic) else { continue };
+        let taken = if topic.name == topics::DIAGNOSTICS.name {
+            reports(&mut back.reports, &message.payload)
+        } else {
+            enter(&mut about, topic, &message.payload)
+        };
+        if let Err(problem) = taken {
+            back.complaints.push(format!("message {} on {}: {problem}", message.sequence, message.channel.topic));
+        }
+    }
+    let source = recording.path().display().to_string();
+    for (step, about) in about {
+        match (about.packing, about.fabric) {
+            (Some(packing), Some(fabric)) => {
+                let mut state = State::new(source.clone(), &packing, &fabric, about.moduli.as_ref());
+                if about.moduli.is_none() {
+                    state.warnings.push("no moduli were published for this packing".to_owned());
+                }
+                back.states.push(InvertedState { state, results: about.results });
+            }
+            (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
+            (_, None) => back.complaints.push(format!("the packing of step {step} was not analysed")),
+        }
+    }
+    back.complaints.extend(recording.warnings().iter().map(ToString::to_string));
+    back
+}
+
+fn decoded<T: Message>(payload: &[u8]) -> Result<T, String> {
+    from_cdr(payload).map_err(|e| e.to_string())
+}
+
+fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Result<(), String> {
+    let text = |e: grainlab_msgs::boundary::BoundaryError| e.to_string();
+    match topic.name {
+        name if name == topics::PACKING.name => {
+            let packing = Packing::try_from(&decoded::<msg::Packing>(payload)?).map_err(text)?;
+            let step = packing.step;
+            about.entry(step).or_default().packing = Some(packing);
+        }
+        name if name == topics::FABRIC.name => {
+            let message: msg::Fabric = decoded(payload)?;
+            about.entry(message.source_step).or_default().fabric = Some(Fabric::try_from(&message).map_err(text)?);
+        }
+        name if name == topics::MODULI.name => {
+            let message: msg::Moduli = decoded(payload)?;
+            about.entry(message.source_step).or_default().moduli = Some(Moduli::try_from(&message).map_err(text)?);
+        }
+        _ => {
+            let message: msg::Microstructure = decoded(payload)?;
+            let reading = MicrostructureReading::try_from(&message).map_err(text)?;
+            let results = message.estimates.iter().zip(&reading.estimates);
+            about.entry(message.source_step).or_default().results =
+                results.map(|(m, e)| Inference::of_reading(m, e)).collect();
+        }
+    }
+    Ok(())
+}
+
+fn reports(known: &mut BTreeMap<(String, u32), Report>, payload: &[u8]) -> Result<(), String> {
+    let message: DiagnosticArray = decoded(payload)?;
+    for report in Report::from_message(&message) {
+        known.insert((report.node.clone(), report.pid), report);
+    }
+    Ok(())
+}

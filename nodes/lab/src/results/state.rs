@@ -1,0 +1,139 @@
+//! One measured packing, with the stable keys of `grainlab analyze`.
+
+use crate::output::{Table, exact};
+use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor};
+use serde::Serialize;
+
+/// What was measured on one packing. Undefined values are null, and `warnings` says why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct State {
+    pub(crate) source: String,
+    pub(crate) step: u64,
+    pub(crate) grains: u32,
+    pub(crate) phi: f64,
+    pub(crate) pressure_pa: f64,
+    /// Voigt order xx, yy, zz, yz, xz, xy, positive in compression.
+    pub(crate) stress_pa: [f64; 6],
+    pub(crate) k: f64,
+    pub(crate) z: f64,
+    pub(crate) rattlers: u32,
+    pub(crate) contacts: u32,
+    /// L, Voigt order, tensor components.
+    pub(crate) fabric: [f64; 6],
+    pub(crate) eps: f64,
+    pub(crate) axis: [f64; 3],
+    pub(crate) g: Ratios,
+    pub(crate) stiffness_pa: Option<[[f64; 6]; 6]>,
+    pub(crate) stiffness_affine_pa: Option<[[f64; 6]; 6]>,
+    pub(crate) g12_pa: Option<f64>,
+    pub(crate) g13_pa: Option<f64>,
+    pub(crate) theta_pa: Option<f64>,
+    pub(crate) theta_reuss_pa: Option<f64>,
+    pub(crate) residual: Option<f64>,
+    /// Wall time of the measurement; null where it was read from a recording.
+    pub(crate) seconds: Option<f64>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// The three ratios gamma/Delta.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Ratios {
+    pub(crate) total: Option<f64>,
+    pub(crate) elastic: Option<f64>,
+    pub(crate) contact: Option<f64>,
+}
+
+impl From<&Anisotropy> for Ratios {
+    fn from(a: &Anisotropy) -> Self {
+        Self { total: a.total, elastic: a.elastic, contact: a.contact }
+    }
+}
+
+/// G12, G13 and Theta of a stiffness, Pa.
+pub(crate) fn three_moduli(c: &Stiffness) -> [f64; 3] {
+    let t = c.transverse_isotropy();
+    [t.g12, t.g13, c.bulk_voigt()]
+}
+
+impl State {
+    /// Puts together what was measured.
+    pub(crate) fn new(source: String, packing: &Packing, fabric: &Fabric, moduli: Option<&Moduli>) -> Self {
+        let stress = grains::stress::stress(packing).tensor;
+        let three = moduli.map(|m| three_moduli(&m.stiffness));
+        let rows = |c: &Stiffness| std::array::from_fn(|i| std::array::from_fn(|j| c.0[(i, j)]));
+        Self {
+            source,
+            step: packing.step,
+            grains: fabric.grains,
+            phi: packing.solid_fraction(),
+            pressure_pa: stress.mean(),
+            stress_pa: stress.voigt(),
+            k: fabric.k,
+            z: fabric.z,
+            rattlers: fabric.rattlers,
+            contacts: fabric.contacts,
+            fabric: fabric.contact_fabric.voigt(),
+            eps: fabric.eps,
+            axis: fabric.axis.into(),
+            g: Ratios::from(&fabric.anisotropy),
+            stiffness_pa: moduli.map(|m| rows(&m.stiffness)),
+            stiffness_affine_pa: moduli.map(|m| rows(&m.affine)),
+            g12_pa: three.map(|m| m[0]),
+            g13_pa: three.map(|m| m[1]),
+            theta_pa: three.map(|m| m[2]),
+            theta_reuss_pa: moduli.and_then(|m| m.stiffness.bulk_reuss()),
+            residual: moduli.map(|m| m.residual),
+            seconds: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// q/p; `None` without pressure.
+    pub(crate) fn stress_ratio(&self) -> Option<f64> {
+        let q = SymTensor::from_voigt(self.stress_pa).deviatoric_invariant();
+        (self.pressure_pa > 0.0).then(|| q / self.pressure_pa)
+    }
+
+    /// G12, G13 and Theta: relaxed and affine, Pa.
+    pub(crate) fn moduli(&self) -> Option<([f64; 3], [f64; 3])> {
+        let of = |rows: &[[f64; 6]; 6]| {
+            three_moduli(&Stiffness::from_row_major(&std::array::from_fn(|n| rows[n / 6][n % 6])))
+        };
+        Some((of(self.stiffness_pa.as_ref()?), of(self.stiffness_affine_pa.as_ref()?)))
+    }
+}
+
+const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// States as CSV, one a line, at full precision.
+pub(crate) fn csv(states: &[State]) -> String {
+    let of = |prefix: &'static str| VOIGT.iter().map(move |c| format!("{prefix}_{c}"));
+    let entries = |prefix: &'static str| (0..36).map(move |n| format!("{prefix}{}{}_pa", n / 6 + 1, n % 6 + 1));
+    let mut header: Vec<String> = ["source", "step", "grains", "phi", "pressure_pa"].map(String::from).to_vec();
+    header.extend(of("stress_pa"));
+    header.extend(["k", "z", "rattlers", "contacts"].map(String::from));
+    header.extend(of("fabric"));
+    let rest = ["eps", "axis_x", "axis_y", "axis_z", "g_total", "g_elastic", "g_contact", "g12_pa", "g13_pa"];
+    header.extend(rest.map(String::from));
+    header.extend(["theta_pa", "theta_reuss_pa", "residual", "seconds"].map(String::from));
+    header.extend(entries("c"));
+    header.extend(entries("affine_c"));
+    let mut t = Table::new(header);
+    for s in states {
+        let number = |v: f64| exact(Some(v));
+        let mut cells = vec![s.source.clone(), s.step.to_string(), s.grains.to_string()];
+        cells.extend([s.phi, s.pressure_pa].map(number));
+        cells.extend(s.stress_pa.map(number));
+        cells.extend([number(s.k), number(s.z), s.rattlers.to_string(), s.contacts.to_string()]);
+        cells.extend(s.fabric.map(number));
+        cells.push(number(s.eps));
+        cells.extend(s.axis.map(number));
+        cells.extend([s.g.total, s.g.elastic, s.g.contact].map(exact));
+        cells.extend([s.g12_pa, s.g13_pa, s.theta_pa, s.theta_reuss_pa, s.residual, s.seconds].map(exact));
+        for matrix in [&s.stiffness_pa, &s.stiffness_affine_pa] {
+            cells.extend((0..36).map(|n| exact(matrix.as_ref().map(|m| m[n / 6][n % 6]))));
+        }
+        t.row(cells);
+    }
+    t.csv()
+}

@@ -1,0 +1,117 @@
+//! What a launched run came to, with the stable keys of `summary.json`.
+
+use super::read_back::{InvertedState, ReadBack};
+use node_kit::{Exit, Report};
+use recordings::TopicTally;
+use serde::Serialize;
+
+/// A run.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) scene: String,
+    pub(crate) seed: u64,
+    pub(crate) domain: u16,
+    pub(crate) wall_seconds: f64,
+    pub(crate) nodes: Vec<NodeEnd>,
+    pub(crate) topics: Vec<TopicCount>,
+    pub(crate) exchanges: Option<u64>,
+    pub(crate) exchanges_per_second: Option<f64>,
+    /// Share of the run's time that the simulator waited for answers.
+    pub(crate) waiting_fraction: Option<f64>,
+    /// While computing.
+    pub(crate) particle_steps_per_second: Option<f64>,
+    pub(crate) states: Vec<InvertedState>,
+    pub(crate) recording: Option<String>,
+    pub(crate) exit: u8,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// One node of a run.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct NodeEnd {
+    pub(crate) name: String,
+    /// Of its last process.
+    pub(crate) pid: u32,
+    /// Exit code; null if a signal ended it.
+    pub(crate) exit: Option<i32>,
+    pub(crate) restarts: usize,
+}
+
+/// Messages of one topic.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TopicCount {
+    pub(crate) name: String,
+    pub(crate) published: u64,
+    pub(crate) recorded: u64,
+    pub(crate) lost: u64,
+    pub(crate) repeated: u64,
+}
+
+impl From<&TopicTally> for TopicCount {
+    fn from(t: &TopicTally) -> Self {
+        let TopicTally { name, published, recorded, lost, repeated, .. } = t;
+        Self { name: name.clone(), published: *published, recorded: *recorded, lost: *lost, repeated: *repeated }
+    }
+}
+
+/// What the simulator counted, by its last report.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counters {
+    exchanges: Option<f64>,
+    wall: Option<f64>,
+    waiting: Option<f64>,
+    particle_steps: Option<f64>,
+}
+
+impl Counters {
+    fn of<'a>(reports: impl Iterator<Item = &'a Report>) -> Self {
+        let simulator = |r: &&Report| r.node.ends_with("/dem_simulator");
+        let Some(report) = reports.filter(simulator).last() else { return Self::default() };
+        let number = |key: &str| {
+            let (_, value) = report.health.values.iter().find(|(k, _)| k == key)?;
+            value.parse::<f64>().ok().filter(|v| v.is_finite())
+        };
+        Self {
+            exchanges: number("exchanges"),
+            wall: number("wall_s").filter(|s| *s > 0.0),
+            waiting: number("waiting_s"),
+            particle_steps: number("particle_steps_per_s"),
+        }
+    }
+}
+
+impl Summary {
+    /// Puts together what the launcher knows and what the recording says.
+    pub(crate) fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
+        let counters = Counters::of(back.reports.values());
+        let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
+        Self {
+            scene: launched.scene,
+            seed: launched.seed,
+            domain: launched.domain,
+            wall_seconds: launched.wall_seconds,
+            nodes: launched.nodes,
+            topics: tallies.unwrap_or_default().iter().map(TopicCount::from).collect(),
+            exchanges: counters.exchanges.map(|n| n as u64),
+            exchanges_per_second: per_wall(counters.exchanges),
+            waiting_fraction: per_wall(counters.waiting),
+            particle_steps_per_second: counters.particle_steps,
+            states: back.states,
+            recording: launched.recording,
+            exit: launched.exit.code(),
+            warnings: back.complaints,
+        }
+    }
+}
+
+/// What the launcher knows of a run.
+#[derive(Debug)]
+pub(crate) struct Launched {
+    pub(crate) scene: String,
+    pub(crate) seed: u64,
+    pub(crate) domain: u16,
+    pub(crate) wall_seconds: f64,
+    pub(crate) nodes: Vec<NodeEnd>,
+    pub(crate) recording: Option<String>,
+    pub(crate) exit: Exit,
+}

@@ -1,0 +1,36 @@
+#!/bin/sh
+# The same nodes as `grainlab launch` starts, as plain processes, for people who script.
+#
+#   nodes/launch/by_hand.sh [SCENE] [SEED] [DIRECTORY]
+#
+# GRAINLAB names the binary (default: grainlab on the PATH), ROS_DOMAIN_ID the domain (default: 0). Ends when the
+# loading path is done and the last packing is inverted; Ctrl-C ends it earlier. Exits with the recorder's code.
+set -eu
+grainlab=${GRAINLAB:-grainlab}
+scene=${1:-demo}
+seed=${2:--1}
+directory=${3:-}
+
+"$grainlab" run recorder --ros-args -p scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
+recorder=$!
+"$grainlab" run emt_inversion &
+others=$!
+"$grainlab" run fabric_analyzer &
+others="$others $!"
+"$grainlab" run servo_controller &
+others="$others $!"
+"$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
+    -p wait_for:=[stress,packing] -p min_readers:=2 -p exit_when_finished:=true &
+simulator=$!
+
+# Children in the background of a shell ignore SIGINT; SIGTERM ends every node just as well.
+trap 'kill -TERM $simulator 2>/dev/null || true' INT TERM
+code=0
+wait "$simulator" || code=$?
+# The last packing is measured and inverted in a few seconds.
+[ "$code" -ne 0 ] || sleep "${SETTLE:-10}"
+kill -TERM $others 2>/dev/null || true
+for process in $others; do wait "$process" || true; done
+kill -TERM "$recorder" 2>/dev/null || true
+wait "$recorder" || { recorded=$?; [ "$code" -ne 0 ] || code=$recorded; }
+exit "$code"

@@ -1,0 +1,115 @@
+//! The servo node on the bus in memory.
+
+use grainlab_msgs::boundary::StressRequest;
+use grainlab_msgs::msg::{StrainRate, Stress};
+use grainlab_msgs::{stamp, to_cdr, topics};
+use grains::{ComponentControl, ServoLaw, SymTensor};
+use node_kit::memory::{Actor, run_until};
+use node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use servo_controller::{Refusal, ServoController, answer};
+use std::time::Duration;
+
+/// 10 kPa too little compression on zz, 200 MPa of tangent stiffness and 0.1 ms of response time: −0.5 per second.
+fn question(sequence: u64) -> Stress {
+    let mut controls = [ComponentControl::Held; 6];
+    controls[2] = ComponentControl::Stress(50e3);
+    Stress::try_from(&StressRequest {
+        sequence,
+        step: 20 * sequence,
+        phase: 3,
+        stamp: stamp(1e-6 * sequence as f64),
+        stress: SymTensor::isotropic(40e3),
+        asymmetry: 0.0,
+        controls,
+        rate: [0.0; 6],
+        rate_limit: 10.0,
+        law: ServoLaw::Scaled { response_time: 1e-4 },
+        tangent: [200e6; 6],
+        control_interval: 1e-6,
+        strain: SymTensor::default(),
+        solid_fraction: 0.64,
+        coordination: 5.0,
+        unbalanced: 1e-3,
+    })
+    .unwrap()
+}
+
+/// A simulator that only asks.
+struct Asker {
+    bus: MemoryBus,
+    stress: Publisher<Stress>,
+    strain_rate: Subscription<StrainRate>,
+}
+
+impl Asker {
+    fn new(hub: &Hub) -> Self {
+        let mut bus = hub.bus(Names::new("asker").unwrap());
+        let stress = Publisher::advertise(&mut bus, &topics::STRESS).unwrap();
+        let strain_rate =
+            Subscription::subscribe(&mut bus, &topics::STRAIN_RATE, Demand::best_effort(64)).unwrap();
+        Self { bus, stress, strain_rate }
+    }
+
+    fn answers(&mut self) -> Vec<StrainRate> {
+        std::iter::from_fn(|| self.strain_rate.take_valid(&mut self.bus).unwrap()).map(|(a, _)| a).collect()
+    }
+}
+
+#[test]
+fn an_answer_carries_header_and_sequence_of_its_question() {
+    let mut stress = question(7);
+    stress.header.frame_id = "another".into();
+    let answered = answer(&stress).unwrap();
+    assert_eq!((&answered.header, answered.sequence), (&stress.header, 7));
+    // One division apart from exact.
+    assert!((answered.rate[2] + 0.5).abs() < 1e-15 && answered.rate[0] == 0.0);
+}
+
+#[test]
+fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
+    let hub = Hub::new(1);
+    let mut asker = Asker::new(&hub);
+    for sequence in [3, 1, 3] {
+        let mut bus = hub.bus(Names::new("servo_controller").unwrap());
+        let mut servo = ServoController::new(&mut bus).unwrap();
+        let mut actors = [Actor::new(&mut servo, bus)];
+        for sequence in [sequence, 2, sequence] {
+            asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
+        }
+        run_until(&hub, &mut actors, hub.now() + Duration::from_secs(1), |_| false);
+        let answers = asker.answers();
+        assert_eq!(answers.iter().map(|a| a.sequence).collect::<Vec<_>>(), [sequence, 2, sequence]);
+        for a in &answers {
+            assert_eq!(to_cdr(a), to_cdr(&answer(&question(a.sequence)).unwrap()));
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_answered_is_counted_and_the_node_lives() {
+    let hub = Hub::new(1);
+    let mut asker = Asker::new(&hub);
+    let mut bus = hub.bus(Names::new("servo_controller").unwrap());
+    let mut servo = ServoController::new(&mut bus).unwrap();
+    let not_finite = Stress {
+        stress: grainlab_msgs::msg::SymmetricTensor { zz: f64::NAN, ..Default::default() },
+        ..question(1)
+    };
+    // The law would overshoot: a response time of 0.1 ms asked every 0.3 ms.
+    let unstable = Stress { control_interval: 3e-4, ..question(2) };
+    assert!(matches!(answer(&not_finite), Err(Refusal::Boundary(_))));
+    assert!(matches!(answer(&unstable), Err(Refusal::Servo { sequence: 2, .. })));
+    asker.stress.publish(&mut asker.bus, &not_finite).unwrap();
+    asker.stress.publish(&mut asker.bus, &unstable).unwrap();
+    asker.bus.publish(asker.stress.id(), &[0, 1, 0, 0, 9]).unwrap();
+    servo.step(&mut bus).unwrap();
+    assert!(asker.answers().is_empty());
+    assert_eq!(bus.received()[0].refused, 2, "the unstable one is a message, and is not refused as such");
+    let health = servo.health();
+    assert_eq!(health.level, Level::Warn);
+    assert!(health.message.contains("request 2"), "{}", health.message);
+    asker.stress.publish(&mut asker.bus, &question(3)).unwrap();
+    servo.step(&mut bus).unwrap();
+    assert_eq!(asker.answers().len(), 1);
+    assert_eq!(servo.health().level, Level::Ok);
+}
