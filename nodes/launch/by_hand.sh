@@ -20,7 +20,7 @@ others="$others $!"
 "$grainlab" run servo_controller &
 others="$others $!"
 "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
-    -p wait_for:=[stress,packing] -p min_readers:=2 -p exit_when_finished:=true &
+    -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &
 simulator=$!
 
 # Children in the background of a shell ignore SIGINT; SIGTERM ends every node just as well.

@@ -145,7 +145,8 @@ impl DemSimulator {
 
     /// Progress once a second, simulated time at most every hundredth.
     fn beat(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
-        if now >= self.next_clock {
+        // Not before the run begins: who waits for readers would say it to nobody.
+        if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
             self.clock.publish(bus, &messages::clock(&self.run))?;
         }

@@ -28,7 +28,7 @@ impl Mode {
 }
 
 /// Topics of ours that a run may wait for readers of.
-const AWAITED: [Topic; 3] = [topics::STRESS, topics::PACKING, topics::RUN_STATE];
+const AWAITED: [Topic; 4] = [topics::STRESS, topics::PACKING, topics::RUN_STATE, topics::CLOCK];
 
 /// The parameters of the node; scene and packing to resume from come as values.
 pub fn parameters() -> Vec<ParameterSpec> {
@@ -62,8 +62,8 @@ pub fn parameters() -> Vec<ParameterSpec> {
             Vec::<String>::new(),
             "topics that need readers before the run starts, as in [stress, packing]",
         )
-        .within(Range::Choice(&["stress", "packing", "run_state"])),
-        ParameterSpec::new("min_readers", d.min_readers as i64, "readers that each topic of wait_for needs")
+        .within(Range::Choice(&["stress", "packing", "run_state", "clock"])),
+        ParameterSpec::new("min_readers", d.min_readers as i64, "readers that each topic of wait_for needs; clock needs one")
             .within(Range::Integer { min: 1, max: 1000 }),
         ParameterSpec::new(
             "exit_when_finished",
@@ -121,7 +121,10 @@ impl From<&Parameters> for Settings {
             look_around: seconds("look_around"),
             resend_after: seconds("resend_after"),
             resend_at_most: seconds("resend_at_most"),
-            wait_for: AWAITED.into_iter().filter(|t| wait_for.iter().any(|name| name == t.name)).collect(),
+            wait_for: AWAITED
+                .into_iter()
+                .filter(|t| wait_for.iter().any(|name| name == t.name.trim_start_matches('/')))
+                .collect(),
             min_readers: count("min_readers") as usize,
             exit_when_finished: parameters.get("exit_when_finished"),
         }

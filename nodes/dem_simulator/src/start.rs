@@ -65,12 +65,13 @@ impl DemSimulator {
     /// What the start still lacks.
     fn missing(&self, bus: &dyn Bus) -> Option<String> {
         for topic in &self.settings.wait_for {
-            let publisher = match topic.name {
-                name if name == topics::STRESS.name => self.stress.id(),
-                name if name == topics::PACKING.name => self.packing.id(),
-                _ => self.run_state.id(),
+            let (publisher, needed) = match topic.name {
+                name if name == topics::STRESS.name => (self.stress.id(), self.settings.min_readers),
+                name if name == topics::PACKING.name => (self.packing.id(), self.settings.min_readers),
+                name if name == topics::CLOCK.name => (self.clock.id(), 1),
+                _ => (self.run_state.id(), self.settings.min_readers),
             };
-            let (found, needed) = (bus.readers(publisher), self.settings.min_readers);
+            let found = bus.readers(publisher);
             if found < needed {
                 return Some(format!("{needed} readers of {}; there are {found}", topic.name));
             }

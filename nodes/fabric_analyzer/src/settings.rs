@@ -24,19 +24,13 @@ pub fn parameters() -> Vec<ParameterSpec> {
 }
 
 /// The parameters, typed: how a packing is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings(pub(crate) micro::Settings);
 
 /// Parameters that each are in range and together make no sense. The process then ends with [`node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]
 pub struct SettingsError(pub Vec<f64>);
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self(micro::Settings::default())
-    }
-}
 
 impl TryFrom<&Parameters> for Settings {
     type Error = SettingsError;

@@ -1,6 +1,6 @@
 //! The command line, as typed.
 
-use crate::commands::{analyze, bag, invert, launch, run};
+use crate::commands::{analyze, bag, bench, invert, launch, run};
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use node_kit::Exit;
@@ -34,6 +34,9 @@ enum Command {
     Invert(invert::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
+    /// Measure speed on this machine.
+    #[command(subcommand)]
+    Bench(bench::Command),
 }
 
 /// Parses, runs, reports.
@@ -46,6 +49,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
+        Some(Command::Bench(command)) => bench::run(&command),
     };
     match outcome {
         Ok(exit) => exit.into(),

@@ -5,7 +5,6 @@
 //! - [`results`]: what is printed and stored: states, inferences, tables
 //! - [`failure`], [`output`]: how a command ends, and where its result goes
 //! - [`scenes`]: the scenes built in
-//! - [`launch`]: the launcher
 //! - [`launch`]: launch files, processes and their supervision
 //! - [`recorder`]: the recorder node
 //! - [`network`]: buses of tools, free domains

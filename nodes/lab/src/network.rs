@@ -40,7 +40,9 @@ impl FreeDomain {
     /// The first free domain, 0 (the one that ROS 2 tools use unless told otherwise) if it is.
     pub(crate) fn take() -> Result<Self, Failure> {
         DOMAINS.into_iter().find_map(Self::try_take).ok_or_else(|| {
-            Failure::failure("every DDS domain from 0 to 101 is in use on this host: set ROS_DOMAIN_ID to share one")
+            Failure::failure(
+                "every DDS domain from 0 to 101 is in use on this host: set ROS_DOMAIN_ID to share one",
+            )
         })
     }
 

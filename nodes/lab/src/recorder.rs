@@ -24,6 +24,9 @@ const BACKLOG: u32 = 20_000;
 /// The writer wants to be called this often.
 const TICK: Duration = Duration::from_millis(100);
 
+/// Older than any message may become before it is handed to the system.
+const OLD_ENOUGH: Duration = Duration::from_secs(1);
+
 /// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence.
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
@@ -35,6 +38,8 @@ struct Channel {
     subscription: SubscriptionId,
     name: String,
     reports: bool,
+    /// A result: handed to the system at once.
+    precious: bool,
 }
 
 /// The recorder.
@@ -48,7 +53,11 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     /// Subscribes, strongest demand first, and begins the recording.
-    pub(crate) fn new(bus: &mut dyn Bus, settings: &Settings, result: Result) -> std::result::Result<Self, NodeError> {
+    pub(crate) fn new(
+        bus: &mut dyn Bus,
+        settings: &Settings,
+        result: Result,
+    ) -> std::result::Result<Self, NodeError> {
         let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
         let mut channels = Vec::new();
         let mut specs = Vec::new();
@@ -56,11 +65,15 @@ impl Recorder {
             let subscription = bus.subscribe(topic, Demand::reliable(BACKLOG))?;
             let name = bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone());
             specs.push(TopicSpec::of_contract(topic, &name));
-            channels.push(Channel { subscription, name, reports: topic.name == topics::DIAGNOSTICS.name });
+            let reports = topic.name == topics::DIAGNOSTICS.name;
+            let precious = topic.qos.transient_local && topic.reproducible;
+            channels.push(Channel { subscription, name, reports, precious });
         }
         let directory = settings.directory().map_err(|e| failed(&e))?;
-        let name = directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
-        let mut writer = RunWriter::create(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        let name =
+            directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
+        let mut writer =
+            RunWriter::create(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
         if let Some(scene) = &settings.scene {
             writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
             writer.set_metadata("scene", &scene.scene.name);
@@ -90,6 +103,10 @@ impl Recorder {
                 };
                 writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
                 self.recorded += 1;
+                if channel.precious {
+                    // To the writer, whatever waits is old enough then.
+                    writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
+                }
             }
         }
         writer.tick(Instant::now()).map_err(|e| lost(&e))?;

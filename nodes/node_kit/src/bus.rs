@@ -175,12 +175,6 @@ pub enum BusError {
         /// Its first bytes, at most four.
         found: Vec<u8>,
     },
-    /// A second subscription asks for more than the first one to the same topic got.
-    #[error("{topic}: already subscribed with a weaker demand; subscribe with the strongest demand first")]
-    Demand {
-        /// Resolved topic name.
-        topic: String,
-    },
     /// A handle of another bus.
     #[error("{0}: this handle does not belong to this bus")]
     Handle(&'static str),
@@ -201,7 +195,7 @@ pub trait Bus {
     /// Offers a topic with the QoS of the contract table. Each call makes a writer of its own.
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError>;
 
-    /// Subscribes to a topic. Several subscriptions to one topic share what arrives; the first has the strongest demand.
+    /// Subscribes to a topic. Each of several subscriptions to one topic gets everything that arrives.
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError>;
 
     /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.

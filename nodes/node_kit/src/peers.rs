@@ -91,7 +91,7 @@ pub struct PeerWatch {
 }
 
 impl PeerWatch {
-    /// Listens on `/diagnostics`. A node that subscribes to it with a stronger demand does so before.
+    /// Listens on `/diagnostics`.
     pub fn subscribe(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let subscription = Subscription::subscribe(bus, &topics::DIAGNOSTICS, Demand::best_effort(BACKLOG))?;
         Ok(Self { subscription, peers: Peers::default() })

@@ -184,14 +184,7 @@ impl<'a> Tender<'a> {
     /// Does what is due and returns the time until the next heartbeat.
     fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, DriveError> {
         let mut heard = false;
-        let (own, watchdog) = (self.diagnostics_writer, &mut self.watchdog);
-        self.watch.update(bus, |info, _| {
-            heard = true;
-            if Some(info.writer) == own {
-                watchdog.heard();
-            }
-        })?;
-        self.watchdog.check(bus.now())?;
+        self.watch.update(bus, |_, _| heard = true)?;
         if heard {
             node.on_peers(self.watch.peers());
         }
@@ -199,7 +192,7 @@ impl<'a> Tender<'a> {
         let now = bus.now();
         if now >= self.next_beat {
             self.report(node, bus, None)?;
-            self.watchdog.sent(now);
+            self.watchdog.check()?;
             self.next_beat = now + HEARTBEAT;
         }
         Ok(self.next_beat.saturating_sub(now))

@@ -1,14 +1,11 @@
 //! Finds a dead DDS thread: a process that looks alive and hears nothing is worse than one that ended.
 //!
-//! Two ways: a panic in one of RustDDS's threads is caught by a hook and reported at the next step; and every process
-//! listens to its own heartbeat, which travels through the event loop, the loopback interface and the event loop again.
+//! Two ways: a panic in one of RustDDS's threads is caught by a hook, and once a second the process counts those threads
+//! in `/proc/self/task`. Its own heartbeat would say more, but where loopback has no multicast (the default on Linux) a
+//! participant does not find itself, and nothing of its own comes back.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
-
-/// How long an own heartbeat may take: far above any delay of a loaded machine.
-pub const LIMIT: Duration = Duration::from_secs(10);
 
 /// RustDDS names its threads so.
 const DDS_THREAD: &str = "RustDDS";
@@ -35,42 +32,44 @@ pub enum Dead {
     /// One of its threads panicked.
     #[error("a DDS thread of this process panicked (see above): nothing is sent or received any more")]
     Panicked,
-    /// Our own heartbeats do not come back.
-    #[error(
-        "our own heartbeat did not come back for {0:?}: the DDS threads of this process are dead or stuck"
-    )]
-    NoEcho(Duration),
+    /// One of its threads is gone.
+    #[error("{left} of {started} DDS threads of this process are left: nothing is sent or received any more")]
+    Ended {
+        /// The most there were.
+        started: usize,
+        /// Those there are.
+        left: usize,
+    },
 }
 
-/// Compares heartbeats sent with heartbeats heard.
+/// Counts the DDS threads of this process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Watchdog {
-    /// Since when one is missing.
-    unanswered_since: Option<Duration>,
+    most: usize,
 }
 
 impl Watchdog {
-    /// A heartbeat was published at `now`.
-    pub fn sent(&mut self, now: Duration) {
-        self.unanswered_since.get_or_insert(now);
+    /// Whether the DDS layer lives. To be asked once a second.
+    pub fn check(&mut self) -> Result<(), Dead> {
+        self.judge(dds_threads())
     }
 
-    /// One of our own came back.
-    pub fn heard(&mut self) {
-        self.unanswered_since = None;
-    }
-
-    /// Whether the DDS layer lives. To be asked after everything that arrived was taken, so that a node that computed
-    /// for long does not suspect itself.
-    pub fn check(&self, now: Duration) -> Result<(), Dead> {
+    /// The same, `threads` being there now; `None` where they cannot be counted.
+    fn judge(&mut self, threads: Option<usize>) -> Result<(), Dead> {
         if DDS_THREAD_PANICKED.load(Ordering::Relaxed) {
             return Err(Dead::Panicked);
         }
-        match self.unanswered_since.map(|since| now.saturating_sub(since)) {
-            Some(silent) if silent > LIMIT => Err(Dead::NoEcho(silent)),
-            _ => Ok(()),
-        }
+        let left = threads.unwrap_or(self.most);
+        self.most = self.most.max(left);
+        if left < self.most { Err(Dead::Ended { started: self.most, left }) } else { Ok(()) }
     }
+}
+
+/// Threads of this process with RustDDS's names; `None` where the system does not tell.
+fn dds_threads() -> Option<usize> {
+    let tasks = std::fs::read_dir("/proc/self/task").ok()?;
+    let names = tasks.flatten().filter_map(|t| std::fs::read_to_string(t.path().join("comm")).ok());
+    Some(names.filter(|name| name.starts_with(DDS_THREAD)).count())
 }
 
 #[cfg(test)]
@@ -78,15 +77,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn silence_counts_from_the_first_unanswered_heartbeat() {
+    fn a_thread_that_is_gone_is_missed_and_one_that_comes_later_is_not() {
         let mut dog = Watchdog::default();
-        assert_eq!(dog.check(LIMIT * 5), Ok(()), "nothing sent, nothing missing");
-        for second in 1..=8 {
-            dog.sent(Duration::from_secs(second));
-        }
-        assert_eq!(dog.check(Duration::from_secs(11)), Ok(()));
-        assert_eq!(dog.check(Duration::from_secs(12)), Err(Dead::NoEcho(Duration::from_secs(11))));
-        dog.heard();
-        assert_eq!(dog.check(Duration::from_secs(60)), Ok(()));
+        assert_eq!(dog.judge(Some(1)), Ok(()));
+        assert_eq!(dog.judge(Some(2)), Ok(()));
+        assert_eq!(dog.judge(None), Ok(()), "no count is no death");
+        assert_eq!(dog.judge(Some(1)), Err(Dead::Ended { started: 2, left: 1 }));
     }
 }

@@ -4,8 +4,8 @@ use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use node_kit::memory::{Actor, run_until};
 use node_kit::{
-    Bus, BusError, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher,
-    Subscription, Wake,
+    Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher, Subscription,
+    Wake,
 };
 use std::time::Duration;
 
@@ -118,15 +118,6 @@ fn waiting_passes_virtual_time_to_the_next_arrival_or_the_timeout() {
     b.interrupt();
     assert_eq!(b.wait(MS), Wake::Shutdown);
     assert_eq!(b.wait(MS), Wake::Timeout, "a signal is reported once");
-}
-
-#[test]
-fn a_second_subscription_may_not_ask_for_more_than_the_first() {
-    let hub = Hub::new(1);
-    let mut b = bus(&hub, "b");
-    b.subscribe(&topics::STRESS, Demand::best_effort(10)).unwrap();
-    assert!(matches!(b.subscribe(&topics::STRESS, Demand::reliable(10)), Err(BusError::Demand { .. })));
-    assert!(b.subscribe(&topics::STRESS, Demand::best_effort(5)).is_ok());
 }
 
 /// Asks and repeats, as the simulator does.

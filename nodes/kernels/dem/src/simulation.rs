@@ -212,7 +212,7 @@ impl Simulation {
         match self.path.observe(&self.scene, &seen)? {
             PathEvent::Stay => Ok(Advanced { ended: None, packing_due: false, finished: false }),
             PathEvent::PhaseEnded { reference, publish, finished } => {
-                self.begin_phase(reference);
+                self.begin_phase(reference)?;
                 self.packings += u64::from(publish);
                 let ended = Some(self.scene.phases[before].name.clone());
                 Ok(Advanced { ended, packing_due: publish, finished })
@@ -220,7 +220,9 @@ impl Simulation {
         }
     }
 
-    fn begin_phase(&mut self, reference: bool) {
+    /// Takes up the setting of the phase now under way. Forces and stress are evaluated anew with it, as a resumed run
+    /// would, so that both go on alike.
+    fn begin_phase(&mut self, reference: bool) -> Result<(), DemError> {
         self.phase_deformation = Mat3::identity();
         if reference {
             self.has_reference = true;
@@ -228,8 +230,11 @@ impl Simulation {
         }
         if let Some(phase) = self.path.phase(&self.scene) {
             self.engine.set(setting(&self.scene, phase));
+            self.engine.prepare()?;
             self.engine.renew_time_step();
         }
+        self.seen = self.engine.snapshot()?;
+        Ok(())
     }
 
     /// The mechanical state.

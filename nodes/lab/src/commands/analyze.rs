@@ -51,7 +51,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
     /// Axis of eps and of the ratios gamma/Delta; stiffnesses stay in the frame of the cell
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        value_delimiter = ',',
+        num_args = 1,
+        default_value = "0,0,1",
+        allow_negative_numbers = true
+    )]
     axis: Vec<f64>,
     /// Relative residual at which the stiffness solve stops
     #[arg(long, value_name = "REL", default_value_t = micro::Settings::default().tolerance)]
@@ -91,7 +98,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let text = match args.format {
         Format::Json => json(&states)?,
         Format::Csv => state::csv(&states),
-        Format::Table => states.iter().map(|s| format!("{}, step {}\n{}", s.source, s.step, state_text::text(s))).collect(),
+        Format::Table => {
+            states.iter().map(|s| format!("{}, step {}\n{}", s.source, s.step, state_text::text(s))).collect()
+        }
     };
     print(&text)?;
     Ok(exit)

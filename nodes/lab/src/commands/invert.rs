@@ -109,6 +109,7 @@ fn invert(inputs: Inputs, models: &[&'static dyn Model]) -> Inverted {
         let outcome = model.infer(&inputs.observation(model.name()), &calibration);
         if let Err(error) = &outcome {
             exit = worse(exit, exit_of(error));
+            eprintln!("grainlab: {}: {error}", model.name());
         }
         let mut result = Inference::of(model.name(), calibration.name(), &outcome);
         result.warnings.extend(inputs.warnings());
@@ -150,7 +151,8 @@ fn people(inverted: &[Inverted]) -> String {
     let mut t = Table::new(["sample", "p/kPa"].into_iter().chain(Inference::COLUMNS));
     let mut warnings = String::new();
     for i in inverted {
-        let label = || [i.inputs.sample.clone().unwrap_or_default(), format!("{}", i.inputs.pressure_pa / 1e3)];
+        let label =
+            || [i.inputs.sample.clone().unwrap_or_default(), format!("{}", i.inputs.pressure_pa / 1e3)];
         i.results.iter().for_each(|r| t.row(label().into_iter().chain(r.cells())));
         let lines = inference::warning_lines(&i.results);
         if !lines.is_empty() {

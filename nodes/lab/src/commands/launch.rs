@@ -80,7 +80,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     let Some(path) = path else { return LaunchFile::parse(DEFAULT).map_err(Failure::usage) };
-    let text = std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 

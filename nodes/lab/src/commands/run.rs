@@ -100,7 +100,12 @@ pub(crate) fn record(
     });
     if let Some(finished) = result.borrow().as_ref() {
         let (tallies, file) = (finished.ledger.tallies(), finished.file.display());
-        print(&format!("{}{file}: {} messages, {} bytes\n", recorder::counts(&tallies), finished.messages, finished.bytes))?;
+        print(&format!(
+            "{}{file}: {} messages, {} bytes\n",
+            recorder::counts(&tallies),
+            finished.messages,
+            finished.bytes
+        ))?;
     }
     Ok(exit)
 }

@@ -13,7 +13,9 @@ pub(crate) enum PlanError {
     #[error("not a launch file that can be run here: {0}")]
     Format(String),
     /// A command that is not one of our nodes.
-    #[error("executable `{cmd}`: only `grainlab run NODE ...` is supported; use ros2 launch for anything else")]
+    #[error(
+        "executable `{cmd}`: only `grainlab run NODE ...` is supported; use ros2 launch for anything else"
+    )]
     Command { cmd: String },
     /// A substitution other than `$(var NAME)`.
     #[error("`{text}`: only $(var NAME) is supported of the substitutions of ROS 2 launch")]
@@ -139,7 +141,12 @@ impl Executable {
             return Err(PlanError::Command { cmd: self.cmd.clone() });
         }
         let name = self.name.clone().unwrap_or_else(|| node.clone());
-        let refuse = |key, value: &str, allowed| PlanError::Value { name: name.clone(), key, value: value.into(), allowed };
+        let refuse = |key, value: &str, allowed| PlanError::Value {
+            name: name.clone(),
+            key,
+            value: value.into(),
+            allowed,
+        };
         if let Some(output) = self.output.as_deref().filter(|o| !["screen", "log", "both"].contains(o)) {
             return Err(refuse("output", output, "screen, log or both"));
         }
@@ -190,8 +197,10 @@ fn substitute(word: &str, variables: &BTreeMap<&str, String>) -> Result<String, 
     let mut rest = word;
     while let Some((before, after)) = rest.split_once("$(") {
         let text = || word.to_owned();
-        let (inside, behind) = after.split_once(')').ok_or_else(|| PlanError::Substitution { text: text() })?;
-        let name = inside.strip_prefix("var ").ok_or_else(|| PlanError::Substitution { text: text() })?.trim();
+        let (inside, behind) =
+            after.split_once(')').ok_or_else(|| PlanError::Substitution { text: text() })?;
+        let name =
+            inside.strip_prefix("var ").ok_or_else(|| PlanError::Substitution { text: text() })?.trim();
         let value = variables.get(name).ok_or_else(|| PlanError::Undeclared {
             text: text(),
             name: name.to_owned(),

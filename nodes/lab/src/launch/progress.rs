@@ -37,7 +37,9 @@ impl Progress {
             }
             return;
         }
-        if state.status == RunStatus::Failed || (self.phase == Some(state.phase) && self.said.elapsed() < STILL) {
+        if state.status == RunStatus::Failed
+            || (self.phase == Some(state.phase) && self.said.elapsed() < STILL)
+        {
             return;
         }
         let verb = if self.phase == Some(state.phase) { "goes on at" } else { "from" };

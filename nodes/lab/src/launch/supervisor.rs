@@ -61,7 +61,12 @@ pub(crate) struct Supervised {
 
 impl<'a> Supervisor<'a> {
     /// To be made inside the runtime.
-    pub(crate) fn new(plans: Vec<NodePlan>, domain: u16, logs: &'a Path, phases: usize) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        plans: Vec<NodePlan>,
+        domain: u16,
+        logs: &'a Path,
+        phases: usize,
+    ) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failure(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         Ok(Self {
@@ -216,7 +221,10 @@ impl<'a> Supervisor<'a> {
         child.restarts.push(now);
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count();
         if recent > RESTARTS {
-            eprintln!("grainlab: {name} {how}, {recent} times within {} s: given up", RESTART_WINDOW.as_secs());
+            eprintln!(
+                "grainlab: {name} {how}, {recent} times within {} s: given up",
+                RESTART_WINDOW.as_secs()
+            );
             self.quote_log(&name);
             return Some(Exit::Failure);
         }
@@ -232,7 +240,8 @@ impl<'a> Supervisor<'a> {
     /// The errors that a process logged last.
     fn quote_log(&self, name: &str) {
         let text = std::fs::read_to_string(self.logs.join(format!("{name}.log"))).unwrap_or_default();
-        let errors: Vec<&str> = text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
+        let errors: Vec<&str> =
+            text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
         errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| eprintln!("  {l}"));
     }
 
@@ -260,7 +269,10 @@ impl<'a> Supervisor<'a> {
         let mut hurried = false;
         for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGKILL] {
             let signal = if hurried { libc::SIGKILL } else { signal };
-            self.children.iter().filter(|c| (c.plan.node == RECORDER) == recorder).for_each(|c| c.signal(signal));
+            self.children
+                .iter()
+                .filter(|c| (c.plan.node == RECORDER) == recorder)
+                .for_each(|c| c.signal(signal));
             let running = |s: &Self| {
                 s.children.iter().any(|c| (c.plan.node == RECORDER) == recorder && c.pid.is_some())
             };

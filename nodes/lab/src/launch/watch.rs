@@ -45,9 +45,9 @@ impl Watch {
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
         let thread = std::thread::Builder::new().name("watch".into()).spawn(move || {
-            let watched = bus_in(domain, "launcher").map_err(|e| e.to_string()).and_then(|mut bus| {
-                watch(&mut bus, &events, &asked).map_err(|e| e.to_string())
-            });
+            let watched = bus_in(domain, "launcher")
+                .map_err(|e| e.to_string())
+                .and_then(|mut bus| watch(&mut bus, &events, &asked).map_err(|e| e.to_string()));
             if let Err(message) = watched {
                 let _ = events.send(Event::Failed(message));
             }

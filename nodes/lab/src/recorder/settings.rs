@@ -22,9 +22,21 @@ pub(crate) struct Settings {
 /// The parameters of the node.
 pub(crate) fn parameters() -> Vec<ParameterSpec> {
     vec![
-        ParameterSpec::new("output", "", "directory to make and record into; empty: the next one under recordings/runs"),
-        ParameterSpec::new("topics", Vec::<String>::new(), "topics to record; empty: every topic of the laboratory"),
-        ParameterSpec::new("scene", "", "scene of the run, a built-in name or a file, attached to the recording"),
+        ParameterSpec::new(
+            "output",
+            "",
+            "directory to make and record into; empty: the next one under recordings/runs",
+        ),
+        ParameterSpec::new(
+            "topics",
+            Vec::<String>::new(),
+            "topics to record; empty: every topic of the laboratory",
+        ),
+        ParameterSpec::new(
+            "scene",
+            "",
+            "scene of the run, a built-in name or a file, attached to the recording",
+        ),
         ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
     ]
 }
@@ -59,7 +71,9 @@ pub(crate) fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
     let known = || TOPICS.iter().map(|t| t.name).collect::<Vec<_>>().join(", ");
     let row = |name: &String| {
         let row = Topic::by_name(name).copied();
-        row.ok_or_else(|| Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known())))
+        row.ok_or_else(|| {
+            Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))
+        })
     };
     names.iter().map(row).collect()
 }

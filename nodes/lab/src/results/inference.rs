@@ -53,7 +53,12 @@ pub(crate) struct Interval {
 
 impl Inference {
     /// A model that has no estimate, and why.
-    pub(crate) fn failed(model: &str, calibration: &str, status: &'static str, warnings: Vec<String>) -> Self {
+    pub(crate) fn failed(
+        model: &str,
+        calibration: &str,
+        status: &'static str,
+        warnings: Vec<String>,
+    ) -> Self {
         Self {
             model: model.to_owned(),
             calibration: calibration.to_owned(),

@@ -42,7 +42,8 @@ struct About {
 /// Reads a recording back.
 pub(crate) fn read(recording: &Recording) -> ReadBack {
     let mut back = ReadBack::default();
-    let wanted = [topics::PACKING, topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE, topics::DIAGNOSTICS];
+    let wanted =
+        [topics::PACKING, topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE, topics::DIAGNOSTICS];
     let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
     let channels = recording.channels();
     let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
@@ -62,7 +63,8 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
             enter(&mut about, topic, &message.payload)
         };
         if let Err(problem) = taken {
-            back.complaints.push(format!("message {} on {}: {problem}", message.sequence, message.channel.topic));
+            back.complaints
+                .push(format!("message {} on {}: {problem}", message.sequence, message.channel.topic));
         }
     }
     let source = recording.path().display().to_string();
@@ -97,11 +99,13 @@ fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Res
         }
         name if name == topics::FABRIC.name => {
             let message: msg::Fabric = decoded(payload)?;
-            about.entry(message.source_step).or_default().fabric = Some(Fabric::try_from(&message).map_err(text)?);
+            about.entry(message.source_step).or_default().fabric =
+                Some(Fabric::try_from(&message).map_err(text)?);
         }
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = decoded(payload)?;
-            about.entry(message.source_step).or_default().moduli = Some(Moduli::try_from(&message).map_err(text)?);
+            about.entry(message.source_step).or_default().moduli =
+                Some(Moduli::try_from(&message).map_err(text)?);
         }
         _ => {
             let message: msg::Microstructure = decoded(payload)?;

@@ -108,8 +108,10 @@ const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 /// States as CSV, one a line, at full precision.
 pub(crate) fn csv(states: &[State]) -> String {
     let of = |prefix: &'static str| VOIGT.iter().map(move |c| format!("{prefix}_{c}"));
-    let entries = |prefix: &'static str| (0..36).map(move |n| format!("{prefix}{}{}_pa", n / 6 + 1, n % 6 + 1));
-    let mut header: Vec<String> = ["source", "step", "grains", "phi", "pressure_pa"].map(String::from).to_vec();
+    let entries =
+        |prefix: &'static str| (0..36).map(move |n| format!("{prefix}{}{}_pa", n / 6 + 1, n % 6 + 1));
+    let mut header: Vec<String> =
+        ["source", "step", "grains", "phi", "pressure_pa"].map(String::from).to_vec();
     header.extend(of("stress_pa"));
     header.extend(["k", "z", "rattlers", "contacts"].map(String::from));
     header.extend(of("fabric"));

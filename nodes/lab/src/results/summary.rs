@@ -50,7 +50,13 @@ pub(crate) struct TopicCount {
 impl From<&TopicTally> for TopicCount {
     fn from(t: &TopicTally) -> Self {
         let TopicTally { name, published, recorded, lost, repeated, .. } = t;
-        Self { name: name.clone(), published: *published, recorded: *recorded, lost: *lost, repeated: *repeated }
+        Self {
+            name: name.clone(),
+            published: *published,
+            recorded: *recorded,
+            lost: *lost,
+            repeated: *repeated,
+        }
     }
 }
 

@@ -44,7 +44,18 @@ fn inferred(s: &InvertedState) -> String {
     if s.results.is_empty() {
         return String::new();
     }
-    let mut t = Table::new(["inferred by", "k", "sigma", "error", "k_hat", "sigma", "eps", "sigma", "error", "status"]);
+    let mut t = Table::new([
+        "inferred by",
+        "k",
+        "sigma",
+        "error",
+        "k_hat",
+        "sigma",
+        "eps",
+        "sigma",
+        "error",
+        "status",
+    ]);
     let off = |found: Option<f64>, truth: f64, digits: usize| {
         found.map_or_else(|| "-".to_owned(), |v| format!("{:+.digits$}", v - truth))
     };

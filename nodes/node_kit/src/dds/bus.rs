@@ -7,7 +7,8 @@ use super::presence::Presence;
 use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
 use super::{Network, create_error, qos};
 use crate::bus::{
-    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
+    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SampleInfo, SubscriptionId, Wake,
+    WriterId,
 };
 use crate::names::Names;
 use crate::signals::Signals;
@@ -150,16 +151,16 @@ impl DdsBus {
 
     /// The reader that serves `demand` on a topic, made if there is none.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
-        if let Some(index) = self.readers.iter().position(|r| r.topic == resolved) {
-            let covered = lock(&self.readers[index].inbox).demand().covers(demand);
-            return if covered { Ok(index) } else { Err(BusError::Demand { topic: resolved }) };
+        let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
+        if let Some(index) = self.readers.iter().position(serves) {
+            return Ok(index);
         }
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let reader = self
             .subscriber
             .create_simple_datareader_no_key(&dds_topic, Some(qos::requested(topic, demand)))
             .map_err(|e| create_error(&resolved, &e))?;
-        let mut inbox = Inbox::new(reader, resolved.clone(), demand);
+        let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
         let index = self.readers.len();
         self.poll
             .registry()
@@ -171,6 +172,16 @@ impl DdsBus {
         lock(&self.inboxes).push(Arc::clone(&inbox));
         self.readers.push(Reader { inbox, guid, topic: resolved, ready: false, notified: false });
         Ok(index)
+    }
+
+    /// Hands what we published to our own subscriptions: where loopback has no multicast, a participant does not find
+    /// itself, and DDS would bring it nothing of its own.
+    fn echo(&self, topic: &str, writer: WriterId, sequence: i64, body: &[u8]) {
+        for reader in self.readers.iter().filter(|r| r.topic == topic) {
+            let now = self.wall_nanos();
+            let info = SampleInfo { writer, sequence, source_time: Some(now), received: now };
+            lock(&reader.inbox).deliver(Sample { body: body.to_vec(), info });
+        }
     }
 
     /// Takes in what discovery reported; true if something changed.
@@ -264,7 +275,10 @@ impl Bus for DdsBus {
         match writer.data.write_with_options(payload, options) {
             Ok(identity) => {
                 writer.count += 1;
-                Ok(i64::from(identity.sequence_number))
+                let sequence = i64::from(identity.sequence_number);
+                let (topic, guid) = (writer.topic.clone(), WriterId(writer.guid.to_bytes()));
+                self.echo(&topic, guid, sequence, body);
+                Ok(sequence)
             }
             Err(WriteError::WouldBlock { .. }) => {
                 writer.full += 1;

@@ -14,13 +14,22 @@ pub(super) struct Inbox {
     topic: String,
     demand: Demand,
     queues: Vec<VecDeque<Sample>>,
+    /// Our own participant: what it publishes is delivered by the bus, and DDS's echo of it is dropped.
+    own: [u8; 12],
     /// Samples that RustDDS could not hand over: a representation that is not CDR.
     refused: u64,
 }
 
 impl Inbox {
-    pub(super) fn new(reader: RawReader, topic: String, demand: Demand) -> Self {
-        Self { reader, topic, demand, queues: Vec::new(), refused: 0 }
+    pub(super) fn new(reader: RawReader, topic: String, demand: Demand, own: [u8; 12]) -> Self {
+        Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
+    }
+
+    /// A sample that did not come through DDS.
+    pub(super) fn deliver(&mut self, sample: Sample) {
+        for queue in &mut self.queues {
+            push_bounded(queue, sample.clone(), self.demand.depth);
+        }
     }
 
     pub(super) fn guid(&self) -> GUID {
@@ -88,6 +97,7 @@ impl Inbox {
     fn read(&mut self) -> Result<Option<Sample>, BusError> {
         loop {
             match self.reader.try_take_one() {
+                Ok(Some(change)) if WriterId(change.writer_guid.to_bytes()).participant() == self.own => {}
                 Ok(change) => return Ok(change.map(sample)),
                 Err(rustdds::dds::ReadError::Deserialization { reason }) => {
                     self.refused += 1;

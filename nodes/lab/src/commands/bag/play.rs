@@ -66,8 +66,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
     let recording = Recording::open(&args.path).map_err(Failure::failure)?;
     // Faults of the options show before anything is published.
-    let wanted: Vec<String> =
-        Player::new(&recording, &options).map_err(play_failure)?.channels().iter().map(|c| c.topic.clone()).collect();
+    let wanted: Vec<String> = Player::new(&recording, &options)
+        .map_err(play_failure)?
+        .channels()
+        .iter()
+        .map(|c| c.topic.clone())
+        .collect();
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
@@ -96,7 +100,10 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
     if player.slipped() > Duration::from_millis(100) {
-        eprintln!("grainlab: the readers are slower than the recording: {:.1} s late in all", player.slipped().as_secs_f64());
+        eprintln!(
+            "grainlab: the readers are slower than the recording: {:.1} s late in all",
+            player.slipped().as_secs_f64()
+        );
     }
     let Some(sent) = sent else { return Ok(Exit::Interrupted) };
     eprintln!("grainlab: {sent} messages sent");
@@ -136,7 +143,11 @@ fn pause(bus: &mut DdsBus, time: Duration) {
 }
 
 /// Waits until every topic has a reader and no more appear for a moment; false if a signal came.
-fn wait_for_readers(bus: &mut DdsBus, publishers: &BTreeMap<String, PublisherId>, patience: Duration) -> bool {
+fn wait_for_readers(
+    bus: &mut DdsBus,
+    publishers: &BTreeMap<String, PublisherId>,
+    patience: Duration,
+) -> bool {
     let end = bus.now() + patience;
     let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(*p)).collect::<Vec<_>>();
     let (mut known, mut since) = (count(bus), bus.now());

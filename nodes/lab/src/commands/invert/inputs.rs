@@ -42,7 +42,11 @@ impl Inputs {
     }
 
     /// G12, G13, Θ and the pressure in Pa, with what the command line says of the grains and of the errors.
-    pub(super) fn new(args: &Args, [g12, g13, theta, pressure]: [f64; 4], g: Option<f64>) -> Result<Self, Failure> {
+    pub(super) fn new(
+        args: &Args,
+        [g12, g13, theta, pressure]: [f64; 4],
+        g: Option<f64>,
+    ) -> Result<Self, Failure> {
         let positive = |flag: &str, value: Option<f64>| match value {
             Some(v) if !(v > 0.0 && v.is_finite()) => {
                 Err(Failure::usage(format!("--{flag} {v} is out of range: more than 0 and finite")))
@@ -96,9 +100,8 @@ impl Inputs {
                 "C11, C33, G12 and Theta leave C13 = {c13:.4e} Pa, which no stable medium has: they are not of one state"
             ));
         }
-        let differs = |given: Option<f64>, reference: f64| {
-            given.is_some_and(|v| (v / reference - 1.0).abs() > 1e-6)
-        };
+        let differs =
+            |given: Option<f64>, reference: f64| given.is_some_and(|v| (v / reference - 1.0).abs() > 1e-6);
         if differs(self.grain_shear_modulus_pa, CALIBRATED.shear_modulus)
             || differs(self.poisson, CALIBRATED.poisson_ratio)
         {

@@ -7,7 +7,8 @@ use std::path::Path;
 
 /// Reads a table of states: a header line, then one state a line; lines that begin with `#` are comments.
 pub(super) fn read(path: &Path, args: &Args) -> Result<Vec<Inputs>, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
     parse(&text, args).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
@@ -16,7 +17,8 @@ fn parse(text: &str, args: &Args) -> Result<Vec<Inputs>, String> {
     let header: Vec<&str> =
         lines.next().map(|(_, l)| l.split(',').map(str::trim).collect()).ok_or("the table is empty")?;
     let at = |name: &str| header.iter().position(|h| *h == name);
-    let need = |name: &str| at(name).ok_or_else(|| format!("no column {name}; there are: {}", header.join(", ")));
+    let need =
+        |name: &str| at(name).ok_or_else(|| format!("no column {name}; there are: {}", header.join(", ")));
     let (g12, g13, theta) = (need("g12_pa")?, need("g13_pa")?, need("theta_pa")?);
     let (pressure, scale) = match at("p_pa") {
         Some(column) => (column, 1.0),
@@ -29,7 +31,9 @@ fn parse(text: &str, args: &Args) -> Result<Vec<Inputs>, String> {
             return Err(format!("line {}: {} cells under {} columns", number + 1, cells.len(), header.len()));
         }
         let value = |column: usize| -> Result<f64, String> {
-            let bad = |_| format!("line {}, column {}: {:?} is not a number", number + 1, header[column], cells[column]);
+            let bad = |_| {
+                format!("line {}, column {}: {:?} is not a number", number + 1, header[column], cells[column])
+            };
             cells[column].parse().map_err(bad)
         };
         let optional = |name: &str| match at(name).filter(|c| !cells[*c].is_empty()) {

@@ -1,0 +1,112 @@
+//! The binary as a user first meets it: help, usage errors, exit codes.
+
+use std::process::{Command, Output, Stdio};
+
+fn grainlab(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn help_goes_to_stdout_and_lists_every_command_and_exit_code() {
+    let help = grainlab(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    let out = text(&help.stdout);
+    for word in ["launch", "run", "bag", "analyze", "invert", "bench", "130 interrupted"] {
+        assert!(out.contains(word), "{word} is missing:\n{out}");
+    }
+    let help = text(&grainlab(&["run", "--help"]).stdout);
+    for word in ["dem_simulator", "look_around", "tolerance", "modulus_error", "recorder", "Examples"] {
+        assert!(help.contains(word), "{word} is missing:\n{help}");
+    }
+}
+
+#[test]
+fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
+    for (arguments, word) in [
+        (&["lunch"][..], "lunch"),
+        (&["run", "no_such_node"], "no_such_node"),
+        (&["run", "dem_simulator", "scene:=demo"], "scene:=demo"),
+        (&["run", "dem_simulator", "--ros-args", "-p", "scene"], "\"scene\""),
+        (&["launch", "--scene", "no-such-scene"], "demo, s1"),
+        (&["launch", "--seed", "-3"], "-3"),
+        (&["invert", "--g12", "1e8"], "--g13"),
+        (
+            &[
+                "invert",
+                "--g12",
+                "1e8",
+                "--g13",
+                "1e8",
+                "--theta",
+                "1e8",
+                "--pressure",
+                "5e4",
+                "--model",
+                "x",
+            ],
+            "ratio",
+        ),
+        (
+            &["invert", "--g12=-1e8", "--g13", "1e8", "--theta", "1e8", "--pressure", "5e4"],
+            "must be positive",
+        ),
+        (&["bag", "record", "--topics", "stres"], "stres"),
+        (&["analyze", "x.csv", "--cell", "1,2"], "3 or 9"),
+    ] {
+        let output = grainlab(arguments);
+        let err = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {err}");
+        assert!(err.contains(word), "{word:?} is missing for {arguments:?}: {err}");
+    }
+}
+
+#[test]
+fn missing_files_end_with_exit_code_1_and_are_named() {
+    for arguments in [
+        &["analyze", "nowhere.csv"][..],
+        &["bag", "info", "nowhere"],
+        &["bag", "play", "nowhere"],
+        &["launch", "nowhere/x.launch.yaml"],
+        &["invert", "--table", "nowhere.csv"],
+    ] {
+        let output = grainlab(arguments);
+        let err = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {err}");
+        assert!(err.contains("nowhere"), "{arguments:?}: {err}");
+    }
+}
+
+#[test]
+fn moduli_that_no_packing_has_end_with_exit_code_4() {
+    let output = grainlab(&[
+        "invert",
+        "--g12",
+        "1e8",
+        "--g13",
+        "3e8",
+        "--theta",
+        "1e8",
+        "--pressure",
+        "5e4",
+        "--format",
+        "json",
+    ]);
+    assert_eq!(output.status.code(), Some(4));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["results"][0]["status"], "failed");
+    assert!(answer["results"][0]["k"].is_null());
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(["invert", "--g12", "1e8", "--g13", "1e8", "--theta", "1.3e8", "--pressure", "5e4"]);
+    let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
