@@ -5,11 +5,12 @@ use system_tests::bodies::{assert_same, distinct};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{children, send};
 
-/// The small scene with more grains: long enough for three deaths.
+/// The small scene with more grains and a slower start: long enough for five deaths.
 fn longer_scene(lab: &Lab) -> std::path::PathBuf {
     let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
     let path = lab.folder().join("longer.toml");
-    std::fs::write(&path, text.replace("count = 80", "count = 300")).unwrap();
+    std::fs::write(&path, text.replace("count = 80", "count = 400").replace("rate = -60.0", "rate = -12.0"))
+        .unwrap();
     path
 }
 
@@ -39,7 +40,7 @@ fn deaths_of_servo_analyzer_and_inversion_change_no_byte() {
         assert!(launcher.runs(), "the run ended with {victims:?} still to be killed");
         assert!(begin.elapsed() < LIMIT, "{victims:?} never appeared");
         // Long enough for a servo just started to be found and to answer.
-        let due = last_kill.elapsed() > Duration::from_millis(900);
+        let due = last_kill.elapsed() > Duration::from_millis(500);
         if let (true, [child]) = (due, children(pid, &format!("run {node}")).as_slice()) {
             send(*child, libc::SIGKILL);
             last_kill = Instant::now();

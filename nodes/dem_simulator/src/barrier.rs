@@ -17,6 +17,8 @@ pub(crate) struct Barrier {
     sequence: u64,
     stamp: Time,
     body: Vec<u8>,
+    /// The request before: empty for the first one.
+    previous: Vec<u8>,
     asked: Duration,
     resend_at: Duration,
     pause: Duration,
@@ -44,6 +46,7 @@ impl Barrier {
             sequence: 0,
             stamp: Time::default(),
             body: Vec::new(),
+            previous: Vec::new(),
             asked: Duration::ZERO,
             resend_at: Duration::ZERO,
             pause: Duration::ZERO,
@@ -55,7 +58,8 @@ impl Barrier {
 
     /// A request has been published.
     pub(crate) fn ask(&mut self, sequence: u64, stamp: Time, body: Vec<u8>, now: Duration) {
-        (self.sequence, self.stamp, self.body, self.asked) = (sequence, stamp, body, now);
+        self.previous = std::mem::replace(&mut self.body, body);
+        (self.sequence, self.stamp, self.asked) = (sequence, stamp, now);
         self.pause = self.resend_after;
         self.resend_at = now + self.pause;
     }
@@ -93,15 +97,16 @@ impl Barrier {
         Some(rate)
     }
 
-    /// The request under way, if it is due again; and the time until it will be.
-    pub(crate) fn resend(&mut self, now: Duration) -> Option<&[u8]> {
+    /// What to publish again, if the request under way is due again: the one before it, too. A servo that was killed may
+    /// have handed its last answer to us and not to the recorder; the next servo says it again, in its place.
+    pub(crate) fn resend(&mut self, now: Duration) -> Option<[&[u8]; 2]> {
         if now < self.resend_at {
             return None;
         }
         self.pause = (2 * self.pause).min(self.resend_at_most);
         self.resend_at = now + self.pause;
         self.counts.resends += 1;
-        Some(&self.body)
+        Some([&self.previous, &self.body])
     }
 
     /// Time until the request is due again.
@@ -160,7 +165,7 @@ mod tests {
         let mut barrier = barrier(Mode::Lockstep);
         let mut at = Vec::new();
         for t in 0..1000 {
-            if barrier.resend(t * MS) == Some(&[7]) {
+            if barrier.resend(t * MS) == Some([&[], &[7]]) {
                 at.push(t);
             }
         }
@@ -171,7 +176,10 @@ mod tests {
     fn ten_refusals_in_a_row_end_a_run_and_an_answer_between_them_does_not_let_them_add_up() {
         let mut barrier = barrier(Mode::Lockstep);
         assert!((1..REFUSALS_ALLOWED).all(|_| !barrier.refuse(MS)));
-        assert_eq!(barrier.resend(MS), Some(&[7][..]), "a refused answer is asked for again at once");
+        assert_eq!(barrier.resend(MS), Some([&[][..], &[7]]), "a refused answer is asked for again at once");
+        barrier.ask(8, Time::default(), vec![8], MS);
+        assert_eq!(barrier.resend(100 * MS), Some([&[7][..], &[8]]), "with the request before it");
+        barrier.ask(7, Time { sec: 1, nanosec: 7 }, vec![7], MS);
         barrier.hear(&answer(7, 7));
         assert!((1..REFUSALS_ALLOWED).all(|_| !barrier.refuse(MS)));
         assert!(barrier.refuse(MS));

@@ -78,7 +78,7 @@ impl DemSimulator {
                 Err(error) => self.fail(bus, &error.to_string()),
             };
         }
-        if let Some(body) = self.barrier.resend(now) {
+        for body in self.barrier.resend(now).into_iter().flatten().filter(|body| !body.is_empty()) {
             match bus.publish(self.stress.id(), body) {
                 // It is due again anyway.
                 Ok(_) | Err(BusError::Full { .. }) => {}

@@ -23,7 +23,7 @@ impl Failure {
     }
 
     /// Something failed: exit 1.
-    pub(crate) fn failure(message: impl fmt::Display) -> Self {
+    pub(crate) fn failed(message: impl fmt::Display) -> Self {
         Self::new(Exit::Failure, message)
     }
 }

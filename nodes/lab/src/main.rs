@@ -6,6 +6,7 @@
 //! - [`failure`], [`output`]: how a command ends, and where its result goes
 //! - [`scenes`]: the scenes built in
 //! - [`launch`]: launch files, processes and their supervision
+//! - [`lifeline`]: ends a node whose launcher died
 //! - [`recorder`]: the recorder node
 //! - [`network`]: buses of tools, free domains
 
@@ -13,6 +14,7 @@ mod cli;
 mod commands;
 mod failure;
 mod launch;
+mod lifeline;
 mod network;
 mod output;
 mod recorder;

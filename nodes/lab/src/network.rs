@@ -10,9 +10,9 @@ use std::net::{Ipv4Addr, UdpSocket};
 /// Joins the domain that the environment names as `name`; SIGINT and SIGTERM wake its waits.
 pub(crate) fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
     let network = Network::from_env().map_err(Failure::usage)?;
-    let signals = Signals::install().map_err(Failure::failure)?;
+    let signals = Signals::install().map_err(Failure::failed)?;
     let mut bus = bus_in(network.domain, name)?;
-    bus.watch(signals).map_err(Failure::failure)?;
+    bus.watch(signals).map_err(Failure::failed)?;
     Ok(bus)
 }
 
@@ -22,7 +22,7 @@ pub(crate) fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
     Logger::install(name, &quiet);
     let network = Network { domain, ..Network::from_env().map_err(Failure::usage)? };
     let names = Names::new(name).map_err(Failure::usage)?;
-    DdsBus::open(network, names).map_err(Failure::failure)
+    DdsBus::open(network, names).map_err(Failure::failed)
 }
 
 /// A DDS domain that nobody on this host used when it was taken, kept from other launchers as long as this lives.
@@ -40,7 +40,7 @@ impl FreeDomain {
     /// The first free domain, 0 (the one that ROS 2 tools use unless told otherwise) if it is.
     pub(crate) fn take() -> Result<Self, Failure> {
         DOMAINS.into_iter().find_map(Self::try_take).ok_or_else(|| {
-            Failure::failure(
+            Failure::failed(
                 "every DDS domain from 0 to 101 is in use on this host: set ROS_DOMAIN_ID to share one",
             )
         })

@@ -21,14 +21,14 @@ pub(crate) enum Format {
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::failure(format!("stdout: {e}"))),
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::failed(format!("stdout: {e}"))),
         _ => Ok(()),
     }
 }
 
 /// Indented JSON with a newline at its end. Numbers that are not finite become null.
 pub(crate) fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failure(format!("JSON: {e}")))?;
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failed(format!("JSON: {e}")))?;
     Ok(text + "\n")
 }
 

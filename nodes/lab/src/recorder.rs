@@ -48,6 +48,7 @@ pub(crate) struct Recorder {
     writer: Option<RunWriter>,
     channels: Vec<Channel>,
     result: Result,
+    whole_run: bool,
     recorded: u64,
 }
 
@@ -81,7 +82,7 @@ impl Recorder {
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
         log::info!("recording to {}", writer.file().display());
-        Ok(Self { writer: Some(writer), channels, result, recorded: 0 })
+        Ok(Self { writer: Some(writer), channels, result, whole_run: settings.whole_run, recorded: 0 })
     }
 
     /// Everything that arrived; true if anything did.
@@ -151,6 +152,15 @@ fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) 
     }
 }
 
+/// Messages missing before the first one recorded of each writer, and those missing after it.
+pub(crate) fn losses(tallies: &[TopicTally]) -> (u64, u64) {
+    tallies.iter().flat_map(|t| &t.writers).fold((0, 0), |(before, after), w| {
+        // A writer of which nothing was recorded has no first message: all that it says it published is missing.
+        let early = w.first.map_or(0, |first| (first - 1).max(0) as u64).min(w.lost);
+        (before + early, after + w.lost - early)
+    })
+}
+
 /// The counts of a recording for people.
 pub(crate) fn counts(tallies: &[TopicTally]) -> String {
     let mut t = Table::new(["topic", "published", "recorded", "lost", "repeated"]);
@@ -180,8 +190,12 @@ impl Node for Recorder {
         self.last_call(bus)?;
         let Some(writer) = self.writer.take() else { return Ok(Exit::Done) };
         let finished = writer.finish().map_err(|e| lost(&e))?;
-        let lost: u64 = finished.ledger.tallies().iter().map(|t| t.lost).sum();
+        let (before, after) = losses(&finished.ledger.tallies());
         *self.result.borrow_mut() = Some(finished);
+        if before > 0 && !self.whole_run {
+            log::info!("{before} messages were published before the recording began");
+        }
+        let lost = if self.whole_run { before + after } else { after };
         if lost > 0 {
             log::error!("{lost} messages were published and are not in the recording");
             return Ok(Exit::DataLoss);

@@ -116,7 +116,7 @@ fn options(args: &Args) -> Result<ImportOptions, Failure> {
     let contact_forces = match &args.contact_forces {
         Some(path) => {
             let text = std::fs::read_to_string(path);
-            Some(text.map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?)
+            Some(text.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?)
         }
         None => None,
     };

@@ -81,7 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     let Some(path) = path else { return LaunchFile::parse(DEFAULT).map_err(Failure::usage) };
     let text =
-        std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+        std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
@@ -97,7 +97,7 @@ fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
 
 /// The run's directory, with the scene as it is now: a file edited later changes neither the run nor a restart.
 fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
-    let failed = |e: std::io::Error| Failure::failure(format!("{}: {e}", root.display()));
+    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", root.display()));
     let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;
     let directory = directory.canonicalize().map_err(failed)?;
     std::fs::write(directory.join("scene.toml"), &scene.text).map_err(failed)?;
@@ -110,9 +110,8 @@ fn supervise(
     directory: &Path,
     phases: usize,
 ) -> Result<Supervised, Failure> {
-    // One thread, this one: the children are tied to the life of the thread that starts them.
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|e| Failure::failure(format!("tokio: {e}")))?;
+    let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
     let logs = directory.join("logs");
     runtime.block_on(async { Supervisor::new(plans, domain, &logs, phases)?.run().await })
 }
@@ -152,7 +151,7 @@ fn finish(
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    std::fs::write(&path, &text).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+    std::fs::write(&path, &text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     summary.warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
     print(&match format {

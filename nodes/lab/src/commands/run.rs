@@ -1,6 +1,7 @@
 //! `grainlab run`: one node as this process.
 
 use crate::failure::Failure;
+use crate::lifeline;
 use crate::output::print;
 use crate::recorder::{self, Recorder};
 use crate::scenes;
@@ -52,6 +53,7 @@ fn help() -> String {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    lifeline::watch();
     let mut nodes = nodes();
     let known = nodes.iter().map(|n| n.name).collect::<Vec<_>>().join(", ");
     let Some(at) = nodes.iter().position(|n| n.name == args.node) else {
@@ -64,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(Failure::usage(message));
     }
     if spec.name == "recorder" {
-        return record(&spec, &ros, |parameters| recorder::Settings::of(parameters));
+        return record(&spec, &ros, recorder::Settings::of);
     }
     Ok(run_node(&spec, &ros, |bus, parameters| {
         let node: Box<dyn Node> = match spec.name {

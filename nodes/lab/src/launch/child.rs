@@ -2,6 +2,7 @@
 
 use super::plan::NodePlan;
 use crate::failure::Failure;
+use crate::lifeline::VARIABLE;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
@@ -40,8 +41,7 @@ impl Child {
         Self { plan, pid: None, last_pid: 0, code: None, restarts: Vec::new() }
     }
 
-    /// Starts the node with its output in `<logs>/<name>.log`. Its end is sent to `ended`. To be called from the thread
-    /// that lives as long as the launcher: the child is told to end when that thread does.
+    /// Starts the node with its output in `<logs>/<name>.log`. Its end is sent to `ended`.
     pub(crate) fn start(
         &mut self,
         index: usize,
@@ -49,38 +49,28 @@ impl Child {
         logs: &Path,
         ended: &UnboundedSender<Ended>,
     ) -> Result<(), Failure> {
-        let failed = |e: io::Error| Failure::failure(format!("{}: cannot be started: {e}", self.plan.name));
+        let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", self.plan.name));
         let log = open_log(logs, &self.plan.name).map_err(failed)?;
-        let launcher = std::process::id();
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command
             .args(&self.plan.arguments)
             .env("ROS_DOMAIN_ID", domain.to_string())
-            .stdin(Stdio::null())
+            .env(VARIABLE, "1")
+            .stdin(Stdio::piped())
             .stdout(log.try_clone().map_err(failed)?)
             .stderr(log)
             // A group of its own: Ctrl-C reaches the launcher alone, which ends the children in their order.
             .process_group(0);
-        // SAFETY: between fork and exec only these two system calls are made, which are safe there.
-        unsafe {
-            command.pre_exec(move || {
-                if libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) != 0 {
-                    return Err(io::Error::last_os_error());
-                }
-                // The launcher may have died before that.
-                if libc::getppid() as u32 != launcher {
-                    return Err(io::Error::other("the launcher is gone"));
-                }
-                Ok(())
-            });
-        }
         let mut process = command.spawn().map_err(failed)?;
         self.pid = process.id();
         self.last_pid = self.pid.unwrap_or(0);
         self.code = None;
         let ended = ended.clone();
+        // Held open as long as the process runs; `wait` alone would close it at once.
+        let lifeline = process.stdin.take();
         tokio::spawn(async move {
             let status = process.wait().await;
+            drop(lifeline);
             // Nobody listens any more only when the launcher itself ends.
             let _ = ended.send(Ended { index, status });
         });
@@ -90,7 +80,7 @@ impl Child {
     /// Sends `signal` if it runs.
     pub(crate) fn signal(&self, signal: i32) {
         if let Some(pid) = self.pid.and_then(|p| i32::try_from(p).ok()) {
-            // SAFETY: kill takes two integers. The process is ours and was not yet waited for, so the id is its own.
+            // SAFETY: kill takes two integers. The process is ours and its end was not reported yet, so the id is its own.
             unsafe { libc::kill(pid, signal) };
         }
     }

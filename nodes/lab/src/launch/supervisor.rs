@@ -67,7 +67,7 @@ impl<'a> Supervisor<'a> {
         logs: &'a Path,
         phases: usize,
     ) -> Result<Self, Failure> {
-        let handler = |kind| signal(kind).map_err(|e| Failure::failure(format!("signal handler: {e}")));
+        let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         Ok(Self {
             children: plans.into_iter().map(Child::new).collect(),

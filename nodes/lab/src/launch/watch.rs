@@ -52,7 +52,7 @@ impl Watch {
                 let _ = events.send(Event::Failed(message));
             }
         });
-        let thread = Some(thread.map_err(|e| Failure::failure(format!("thread: {e}")))?);
+        let thread = Some(thread.map_err(|e| Failure::failed(format!("thread: {e}")))?);
         Ok((Self { stop, thread }, receiver))
     }
 }

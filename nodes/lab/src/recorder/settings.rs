@@ -17,6 +17,8 @@ pub(crate) struct Settings {
     pub(crate) topics: Vec<Topic>,
     /// The scene of the run, which is attached.
     pub(crate) scene: Option<SceneText>,
+    /// Messages that were published before this recorder was there count as lost, too.
+    pub(crate) whole_run: bool,
 }
 
 /// The parameters of the node.
@@ -50,6 +52,7 @@ impl Settings {
             output: text("output").map(PathBuf::from),
             topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
             scene: text("scene").map(|s| scenes::load(&s, seed)).transpose()?,
+            whole_run: true,
         })
     }
 

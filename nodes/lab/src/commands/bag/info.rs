@@ -20,7 +20,7 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let recording = Recording::open(&args.path).map_err(Failure::failure)?;
+    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     let info = recording.info();
     let text = match args.format {
         Format::Table => format!("{info}\n"),
@@ -30,8 +30,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     print(&text)?;
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
-    let lost = info.topics.iter().any(|t| t.lost.is_some_and(|n| n > 0));
-    Ok(if warnings.is_empty() && !lost { Exit::Done } else { Exit::DataLoss })
+    Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
 fn csv(info: &Info) -> String {

@@ -64,7 +64,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         ..PlayOptions::default()
     };
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
-    let recording = Recording::open(&args.path).map_err(Failure::failure)?;
+    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     // Faults of the options show before anything is published.
     let wanted: Vec<String> = Player::new(&recording, &options)
         .map_err(play_failure)?
@@ -88,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         }
     }
     if publishers.is_empty() {
-        return Err(Failure::failure("nothing is left to play"));
+        return Err(Failure::failed("nothing is left to play"));
     }
     if !wait_for_readers(&mut bus, &publishers, patience) {
         return Ok(Exit::Interrupted);
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn play_failure(error: recordings::PlayError) -> Failure {
     match &error {
-        recordings::PlayError::Read(_) => Failure::failure(error),
+        recordings::PlayError::Read(_) => Failure::failed(error),
         _ => Failure::usage(error),
     }
 }
@@ -131,7 +131,7 @@ fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<PublisherId, String>, Fa
     if let Some(writer) = writers.first() {
         return Ok(Err(format!("a live node publishes it (writer {writer})")));
     }
-    Ok(Ok(bus.advertise(&topic).map_err(Failure::failure)?))
+    Ok(Ok(bus.advertise(&topic).map_err(Failure::failed)?))
 }
 
 /// Lets the graph be followed for `time`.
@@ -189,7 +189,7 @@ fn send(
                     match bus.publish(*publisher, &message.payload) {
                         Ok(_) => break,
                         Err(BusError::Full { .. }) => {}
-                        Err(error) => return Err(Failure::failure(error)),
+                        Err(error) => return Err(Failure::failed(error)),
                     }
                     if bus.wait(HOLD) == Wake::Shutdown {
                         return Ok(None);

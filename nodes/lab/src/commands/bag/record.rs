@@ -40,6 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         output: args.output.clone(),
         topics: recorder::contract_topics(&args.topics)?,
         scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
+        whole_run: false,
     };
     let spec = NodeSpec { name: "recorder", summary: "records topics to MCAP", parameters: Vec::new() };
     let (ros, plain) = RosArgs::parse(&args.ros).map_err(Failure::usage)?;

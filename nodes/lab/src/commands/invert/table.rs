@@ -8,7 +8,7 @@ use std::path::Path;
 /// Reads a table of states: a header line, then one state a line; lines that begin with `#` are comments.
 pub(super) fn read(path: &Path, args: &Args) -> Result<Vec<Inputs>, Failure> {
     let text =
-        std::fs::read_to_string(path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+        std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     parse(&text, args).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 

@@ -4,6 +4,7 @@ use super::Role;
 use crate::failure::Failure;
 use crate::network::{FreeDomain, bus_in};
 use crate::output::print;
+use crate::recorder::losses;
 use node_kit::{Exit, Network, pingpong};
 use recordings::Recording;
 use std::path::PathBuf;
@@ -26,7 +27,7 @@ struct Process(Child);
 
 impl Process {
     fn start(domain: &FreeDomain, arguments: &[&str]) -> Result<Self, Failure> {
-        let failed = |e: std::io::Error| Failure::failure(format!("{}: {e}", arguments.join(" ")));
+        let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", arguments.join(" ")));
         let binary = std::env::current_exe().map_err(failed)?;
         let mut command = Command::new(binary);
         command.args(arguments).env("ROS_DOMAIN_ID", domain.id.to_string());
@@ -40,12 +41,12 @@ impl Process {
 
     /// Waits for the end; its standard output.
     fn output(mut self) -> Result<String, Failure> {
-        let failed = |e: std::io::Error| Failure::failure(format!("a process of the measurement: {e}"));
+        let failed = |e: std::io::Error| Failure::failed(format!("a process of the measurement: {e}"));
         let text = self.0.stdout.take().map(std::io::read_to_string).transpose().map_err(failed)?;
         let status = self.0.wait().map_err(failed)?;
         match status.code() {
             Some(0 | 3) => Ok(text.unwrap_or_default()),
-            _ => Err(Failure::failure(format!("a process of the measurement failed: {status}"))),
+            _ => Err(Failure::failed(format!("a process of the measurement failed: {status}"))),
         }
     }
 
@@ -68,15 +69,17 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let domain = FreeDomain::take()?;
     let directory = TemporaryDirectory::new()?;
     let path = directory.0.join("run").to_string_lossy().into_owned();
-    let recorder =
-        Process::start(&domain, &["bag", "record", "--topics", "stress", "strain_rate", "-o", &path])?;
+    let quiet = ["--", "--ros-args", "--log-level", "error"];
+    let record = ["bag", "record", "--topics", "stress", "strain_rate", "-o", &path];
+    let recorder = Process::start(&domain, &[&record[..], &quiet[..]].concat())?;
     let _pong = Process::role(&domain, "pong", exchanges)?;
     std::thread::sleep(START);
     let micros = parse(&Process::role(&domain, "ping", exchanges)?.output()?)?;
     recorder.interrupt();
     recorder.output()?;
-    let tallies = Recording::open(directory.0.join("run").as_path()).map_err(Failure::failure)?.ledger();
-    let lost = tallies.unwrap_or_default().iter().map(|t| t.lost).sum();
+    let tallies = Recording::open(directory.0.join("run").as_path()).map_err(Failure::failed)?.ledger();
+    // What was said before the recorder was found belongs to the warm-up.
+    let (_, lost) = losses(&tallies.unwrap_or_default());
     Ok(Recorded { micros, lost })
 }
 
@@ -90,13 +93,13 @@ pub(super) fn bare(exchanges: u64) -> Result<Vec<f64>, Failure> {
 
 fn parse(text: &str) -> Result<Vec<f64>, Failure> {
     serde_json::from_str(text)
-        .map_err(|e| Failure::failure(format!("a process of the measurement printed no times: {e}")))
+        .map_err(|e| Failure::failed(format!("a process of the measurement printed no times: {e}")))
 }
 
 /// Does what one process does.
 pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     let network = Network::from_env().map_err(Failure::usage)?;
-    let failed = Failure::failure;
+    let failed = Failure::failed;
     let micros = match role {
         Role::Ping => pingpong::bus_ping(&mut bus_in(network.domain, "ping")?, exchanges).map_err(failed)?,
         Role::BarePing => pingpong::bare_ping(network, exchanges).map_err(failed)?,
@@ -111,9 +114,9 @@ pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     };
     if (micros.len() as u64) < exchanges {
         let count = micros.len();
-        return Err(Failure::failure(format!("the partner answered {count} of {exchanges} questions")));
+        return Err(Failure::failed(format!("the partner answered {count} of {exchanges} questions")));
     }
-    print(&serde_json::to_string(&micros).map_err(|e| Failure::failure(e.to_string()))?)?;
+    print(&serde_json::to_string(&micros).map_err(|e| Failure::failed(e.to_string()))?)?;
     Ok(Exit::Done)
 }
 
@@ -123,7 +126,7 @@ struct TemporaryDirectory(PathBuf);
 impl TemporaryDirectory {
     fn new() -> Result<Self, Failure> {
         let path = std::env::temp_dir().join(format!("grainlab-bench-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|e| Failure::failure(format!("{}: {e}", path.display())))?;
+        std::fs::create_dir_all(&path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
         Ok(Self(path))
     }
 }
