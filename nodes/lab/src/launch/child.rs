@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::lifeline::VARIABLE;
 use std::fs::{File, OpenOptions};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{ExitStatus, Stdio};
 use std::time::Instant;
 use tokio::process::Command;
@@ -77,6 +77,14 @@ impl Child {
         Ok(())
     }
 
+    /// Repeats the last errors of its log on stderr.
+    pub(crate) fn quote_log(&self, logs: &Path) {
+        let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
+        let errors: Vec<&str> =
+            text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
+        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| eprintln!("  {l}"));
+    }
+
     /// Sends `signal` if it runs.
     pub(crate) fn signal(&self, signal: i32) {
         if let Some(pid) = self.pid.and_then(|p| i32::try_from(p).ok()) {
@@ -88,5 +96,9 @@ impl Child {
 
 fn open_log(logs: &Path, name: &str) -> io::Result<File> {
     std::fs::create_dir_all(logs)?;
-    OpenOptions::new().create(true).append(true).open(logs.join(format!("{name}.log")))
+    OpenOptions::new().create(true).append(true).open(log_path(logs, name))
+}
+
+fn log_path(logs: &Path, name: &str) -> PathBuf {
+    logs.join(format!("{name}.log"))
 }

@@ -210,7 +210,7 @@ impl<'a> Supervisor<'a> {
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
         eprintln!("grainlab: {name} {how}: {reason}");
-        self.quote_log(&name);
+        self.children[ended.index].quote_log(self.logs);
         Some(exit)
     }
 
@@ -225,7 +225,7 @@ impl<'a> Supervisor<'a> {
                 "grainlab: {name} {how}, {recent} times within {} s: given up",
                 RESTART_WINDOW.as_secs()
             );
-            self.quote_log(&name);
+            self.children[index].quote_log(self.logs);
             return Some(Exit::Failure);
         }
         self.progress.say(&format!("{name} {how}: started again"));
@@ -235,14 +235,6 @@ impl<'a> Supervisor<'a> {
             eprintln!("grainlab: {failure}");
             failure.exit
         })
-    }
-
-    /// The errors that a process logged last.
-    fn quote_log(&self, name: &str) {
-        let text = std::fs::read_to_string(self.logs.join(format!("{name}.log"))).unwrap_or_default();
-        let errors: Vec<&str> =
-            text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
-        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| eprintln!("  {l}"));
     }
 
     /// Books an end and says how it came.

@@ -1,0 +1,66 @@
+//! Who may die, who may not, and what is left then.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+use system_tests::lab::{LIMIT, Lab};
+use system_tests::process::{Process, children, send};
+
+/// A run of the demo, some seconds under way; the launcher and the pid of `node`.
+fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
+    let launcher = lab.start(&["launch", "--scene", "demo"]);
+    let begin = Instant::now();
+    loop {
+        if let [pid] = children(launcher.pid(), &format!("run {node}")).as_slice() {
+            std::thread::sleep(Duration::from_secs(3));
+            return (launcher, *pid);
+        }
+        assert!(begin.elapsed() < LIMIT, "{node} never appeared");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn messages(run: &Path) -> usize {
+    let recording = recordings::Recording::open(run).unwrap();
+    recording.messages(&recordings::Selection::topics(["/stress"])).unwrap().count()
+}
+
+#[test]
+fn the_death_of_the_simulator_ends_the_run_with_exit_code_1_and_a_finished_recording() {
+    let lab = Lab::new();
+    let (launcher, simulator) = under_way(&lab, "dem_simulator");
+    send(simulator, libc::SIGKILL);
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(1), "{}\n{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("dem_simulator"), "{}", ended.stderr);
+    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
+    assert!(messages(&lab.last_run()) > 100);
+}
+
+#[test]
+fn the_death_of_the_recorder_ends_the_run_with_exit_code_3_and_keeps_what_was_recorded() {
+    let lab = Lab::new();
+    let (launcher, recorder) = under_way(&lab, "recorder");
+    send(recorder, libc::SIGKILL);
+    let ended = launcher.ended(LIMIT);
+    assert_eq!(ended.code, Some(3), "{}\n{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("recorder"), "{}", ended.stderr);
+    assert!(messages(&lab.last_run()) > 100, "half a second at most is lost");
+}
+
+#[test]
+fn the_death_of_the_launcher_ends_every_process_and_finishes_the_recording() {
+    let lab = Lab::new();
+    let (launcher, _) = under_way(&lab, "dem_simulator");
+    let all = children(launcher.pid(), "run ");
+    assert_eq!(all.len(), 5);
+    launcher.signal(libc::SIGKILL);
+    let begin = Instant::now();
+    let lives = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
+    while all.iter().any(lives) {
+        assert!(begin.elapsed() < Duration::from_secs(20), "processes outlive their launcher");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
+}
