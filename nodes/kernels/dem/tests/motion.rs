@@ -283,3 +283,62 @@ fn grains_placed_at_random_do_not_overlap() {
         assert_eq!(brute_force(&gas.cell, &gas.positions), []);
     }
 }
+
+#[test]
+fn a_grain_held_by_two_contacts_spins_for_ever_unless_spins_are_damped() {
+    let spin_after = |spin_drag: f64| {
+        let height = 2.0 * RADIUS - 4e-8;
+        let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(5.0 * RADIUS, 5.0 * RADIUS, height))).unwrap();
+        let mut s = setting(0.3, 1e-8);
+        (s.spin_drag, s.damping) = (spin_drag, 0.3);
+        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS], &[Vec3::zeros()], s);
+        e.set_spins(&[Vec3::z() * 1300.0]);
+        e.prepare().unwrap();
+        (0..1000).for_each(|_| e.step().map(|_| ()).unwrap());
+        e.packing(Mat3::identity()).spins[0]
+    };
+    assert!((spin_after(0.0) - Vec3::z() * 1300.0).norm() < 1e-9, "nothing resists twist");
+    let damped = spin_after(2e5);
+    assert!((damped.z / (1300.0 * (1.0f64 - 2e-3).powi(1000)) - 1.0).abs() < 1e-9, "{damped:?}");
+}
+
+/// Two grains in a row that touch each other directly and across the boundary: ω² = 4 k_n/m.
+fn chain(time_step: TimeStep) -> (Engine, f64) {
+    let overlap = 4e-8;
+    let height = 2.0 * (2.0 * RADIUS - overlap);
+    let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(5.0 * RADIUS, 5.0 * RADIUS, height))).unwrap();
+    let mut s = setting(0.0, 0.0);
+    s.time_step = time_step;
+    let positions = [Vec3::zeros(), Vec3::z() * (0.5 * height)];
+    let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, s);
+    // An amplitude far below the overlap: linear to 1e-5.
+    e.set_velocities(&[Vec3::z() * 1e-7, -Vec3::z() * 1e-7]);
+    e.prepare().unwrap();
+    let k_n = Material::GLASS.normal_stiffness(RADIUS / 2.0, overlap);
+    let critical = (Material::GLASS.sphere_mass(RADIUS) / k_n).sqrt();
+    (e, critical)
+}
+
+#[test]
+fn the_stability_bound_is_the_critical_time_step_of_a_chain() {
+    let (e, critical) = chain(TimeStep::Safety(1.0));
+    // Rounded down to the grid of 2^(1/4), and never above the Rayleigh time.
+    let chosen = e.time_step();
+    let rayleigh = 1.0108e-7;
+    let bound = critical.min(rayleigh);
+    assert!(chosen <= bound && chosen > bound / 2f64.powf(0.25) * 0.999, "{chosen} {bound}");
+    let growth = |share: f64| {
+        let (mut e, _) = chain(TimeStep::Fixed(share * critical));
+        let mut largest: f64 = 0.0;
+        for _ in 0..2000 {
+            e.step().unwrap();
+            largest = largest.max(e.speed());
+            if largest > 1e-2 {
+                break;
+            }
+        }
+        largest / 1e-7
+    };
+    assert!(growth(0.98) < 12.0, "stable just below: {}", growth(0.98));
+    assert!(growth(1.02) > 1e4, "unstable just above: {}", growth(1.02));
+}
