@@ -80,13 +80,13 @@ fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
         saves.extend([first, first + length / 2]);
     }
     let mut first = start();
-    for at in 0..phases.len() {
+    for (at, phase) in phases.iter().enumerate() {
         if saves.contains(&at) {
             let saved = (first.packing(), first.run_state());
             let mut second = Simulation::resume(Scene::parse(SCENE).unwrap(), &saved.0, &saved.1).unwrap();
             while advance(&mut second) {}
             // Every number of both states, contact history and run state included.
-            assert_eq!(second.packing(), end, "resumed at request {at}, in phase {}", phases[at]);
+            assert_eq!(second.packing(), end, "resumed at request {at}, in phase {phase}");
             assert_eq!(second.run_state(), run.run_state());
         }
         advance(&mut first);
