@@ -2,8 +2,11 @@
 
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
-use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::bodies::assert_same;
+use system_tests::lab::{LIMIT, Lab, golden, grainlab};
 use system_tests::process::{Process, children};
 use system_tests::python;
 
@@ -119,4 +122,27 @@ fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     }
     let recording = recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
+}
+
+#[test]
+fn the_same_nodes_run_by_hand_and_from_a_launch_file() {
+    let lab = Lab::new();
+    let launch = Path::new(env!("CARGO_MANIFEST_DIR")).join("../nodes/launch");
+    let scene = golden("scenes/tiny.toml");
+    let mut by_hand = Command::new("sh");
+    by_hand
+        .arg(launch.join("by_hand.sh"))
+        .args([scene.as_os_str(), "5".as_ref(), "by_hand".as_ref()])
+        .current_dir(lab.folder())
+        .env("GRAINLAB", grainlab())
+        .env("ROS_DOMAIN_ID", lab.domain.to_string())
+        .env("SETTLE", "3");
+    let ended = Process::start(&mut by_hand).ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+
+    let file = launch.join("s2.launch.yaml");
+    let run =
+        lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy(), "--seed", "5"]);
+    assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
+    assert_same(&lab.folder().join("by_hand"), &lab.last_run());
 }

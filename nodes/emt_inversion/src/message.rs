@@ -34,7 +34,7 @@ pub fn microstructure_message(
 }
 
 fn observation(reading: &ModuliReading, settings: &Settings) -> Observation {
-    let gamma = Gamma::preferred(&reading.gamma_over_delta);
+    let gamma = Gamma::of(&reading.gamma_over_delta, settings.gamma);
     let observed = Observation::new(reading.g12, reading.g13, reading.theta, reading.pressure, gamma);
     match &reading.covariance {
         Some(covariance) => observed.with_covariance(Mat3::from_row_slice(covariance)),

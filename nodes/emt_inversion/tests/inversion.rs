@@ -1,5 +1,6 @@
 //! The inversion node on the bus in memory, with the first row of the paper's Table III.
 
+use emt::GammaSource;
 use emt_inversion::{EmtInversion, Settings, microstructure_message, parameters};
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli};
@@ -54,10 +55,10 @@ fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
 
 #[test]
 fn the_uncertainty_is_that_of_the_data_else_that_of_the_parameter_else_unknown() {
-    let assumed = corrected(&s1(), Settings { modulus_error: 0.01 });
+    let assumed = corrected(&s1(), Settings { modulus_error: 0.01, ..Settings::default() });
     assert!(assumed.covariance[0] > 0.0 && assumed.credible_level == 0.95);
     assert!(assumed.interval[0] < assumed.k && assumed.k < assumed.interval[1]);
-    let unknown = corrected(&s1(), Settings { modulus_error: 0.0 });
+    let unknown = corrected(&s1(), Settings { modulus_error: 0.0, ..Settings::default() });
     assert_eq!((unknown.covariance, unknown.interval, unknown.credible_level), ([0.0; 9], [0.0; 6], 0.0));
     assert_eq!(unknown.k, assumed.k);
     let mut measured = s1();
@@ -65,7 +66,7 @@ fn the_uncertainty_is_that_of_the_data_else_that_of_the_parameter_else_unknown()
         measured.covariance[place] = (0.02 * modulus).powi(2);
     }
     // Twice the error, four times the variance, whatever the parameter; the propagation is linear.
-    let measured = corrected(&measured, Settings { modulus_error: 0.3 });
+    let measured = corrected(&measured, Settings { modulus_error: 0.3, ..Settings::default() });
     assert!((measured.covariance[0] / assumed.covariance[0] - 4.0).abs() < 1e-9);
 }
 
@@ -130,4 +131,20 @@ fn a_latched_set_of_moduli_is_inverted_by_a_node_that_comes_late_and_a_broken_on
 fn the_declared_defaults_are_the_typed_ones() {
     let settings = Settings::from(&Parameters::defaults(&parameters()));
     assert_eq!(settings, Settings::default());
+}
+
+#[test]
+fn the_strain_ratio_that_feeds_the_models_can_be_chosen_and_moves_eps_by_as_much() {
+    let with = |gamma| corrected(&s1(), Settings { gamma, ..Settings::default() });
+    let (total, contact, zero) =
+        (with(GammaSource::Total), with(GammaSource::Contact), with(GammaSource::Zero));
+    assert_eq!((contact.gamma_over_delta, contact.gamma_over_delta_source.as_str()), (-0.02, "contact"));
+    assert_eq!((zero.gamma_over_delta, zero.gamma_over_delta_source.as_str()), (0.0, "zero"));
+    // ε ≈ (5/3) a + g, and k̂ does not depend on g at all.
+    for (e, g) in [(&contact, -0.02), (&zero, 0.0)] {
+        assert!((e.eps - total.eps - (g + 0.0623)).abs() < 3e-3, "{e:?}");
+        assert!((e.k_hat - total.k_hat).abs() < 1e-12);
+    }
+    // An elastic ratio that nobody measured is replaced by that of the contacts.
+    assert_eq!(with(GammaSource::Elastic).gamma_over_delta_source, "contact");
 }

@@ -43,12 +43,19 @@ impl Gamma {
     /// What the paper's models take of a measured packing: the total ratio where it is known, else the one of the
     /// contacts, else zero.
     pub fn preferred(measured: &Anisotropy) -> Self {
-        let with = |value, source| Gamma { value, stddev: 0.0, source };
-        measured
-            .total
-            .map(|g| with(g, GammaSource::Total))
-            .or(measured.contact.map(|g| with(g, GammaSource::Contact)))
-            .unwrap_or(Self::ZERO)
+        Self::of(measured, GammaSource::Total)
+    }
+
+    /// The ratio of a measured packing that `source` names; where it is not known, the one of the contacts, else zero.
+    pub fn of(measured: &Anisotropy, source: GammaSource) -> Self {
+        let with = |value: Option<f64>, source| value.map(|value| Gamma { value, stddev: 0.0, source });
+        let wanted = match source {
+            GammaSource::Total => with(measured.total, source),
+            GammaSource::Elastic => with(measured.elastic, source),
+            GammaSource::Contact => with(measured.contact, source),
+            GammaSource::Given | GammaSource::Zero => Some(Self::ZERO),
+        };
+        wanted.or(with(measured.contact, GammaSource::Contact)).unwrap_or(Self::ZERO)
     }
 }
 
