@@ -11,19 +11,19 @@ scene=${1:-demo}
 seed=${2:--1}
 directory=${3:-}
 
-"$grainlab" run recorder --ros-args -p scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
+setsid "$grainlab" run recorder --ros-args -p scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
 recorder=$!
-"$grainlab" run emt_inversion &
+setsid "$grainlab" run emt_inversion &
 others=$!
-"$grainlab" run fabric_analyzer &
+setsid "$grainlab" run fabric_analyzer &
 others="$others $!"
-"$grainlab" run servo_controller &
+setsid "$grainlab" run servo_controller &
 others="$others $!"
-"$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
+setsid "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
     -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &
 simulator=$!
 
-# Children in the background of a shell ignore SIGINT; SIGTERM ends every node just as well.
+# Each node is in a session of its own: Ctrl-C reaches this script alone, which ends them in their order.
 trap 'kill -TERM $simulator 2>/dev/null || true' INT TERM
 code=0
 wait "$simulator" || code=$?

@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU16, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// Longest time any one command of a test may take.
@@ -39,6 +39,8 @@ impl Lab {
             .current_dir(self.folder())
             .env("ROS_DOMAIN_ID", self.domain.to_string())
             .env_remove("ROS_STATIC_PEERS")
+            .env_remove("ROS_LOCALHOST_ONLY")
+            .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
             .env("NO_COLOR", "1");
         command
     }
@@ -61,6 +63,21 @@ impl Lab {
         let ended = self.run(&arguments);
         assert_eq!(ended.code, Some(0), "launch failed\n{}\n{}", ended.stdout, ended.stderr);
         self.last_run()
+    }
+
+    /// Waits until the run under way has recorded this many messages of `/stress`.
+    pub fn until_recorded(&self, messages: usize) {
+        let recorded = || {
+            let runs = std::fs::read_dir(self.folder().join("recordings/runs")).ok()?;
+            let run = runs.flatten().next()?.path();
+            let recording = recordings::Recording::open(&run).ok()?;
+            Some(recording.messages(&recordings::Selection::topics(["/stress"])).ok()?.count())
+        };
+        let begin = Instant::now();
+        while recorded().unwrap_or(0) < messages {
+            assert!(begin.elapsed() < LIMIT, "no {messages} messages of /stress within {LIMIT:?}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
     }
 
     /// The newest run in the folder.

@@ -1,6 +1,5 @@
 //! Bad input of every kind: a clear message, the right exit code, no panic, nothing lost.
 
-use std::time::Duration;
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::Ended;
 
@@ -77,10 +76,12 @@ fn a_truncated_recording_is_read_as_far_as_it_goes_with_exit_code_3() {
 fn a_second_simulator_on_the_same_topic_is_refused_and_harms_nothing() {
     let lab = Lab::new();
     let launcher = lab.start(&["launch", "--scene", "demo"]);
-    std::thread::sleep(Duration::from_secs(4));
+    lab.until_recorded(200);
     let second = golden("scenes/tiny.toml");
     let parameter = format!("scene:={}", second.display());
     refused(&lab, &["run", "dem_simulator", "--ros-args", "-p", &parameter], 1, &["stress", "ROS_DOMAIN_ID"]);
+    // Nor does a second launcher in the same domain start anything, or take that run for its own.
+    refused(&lab, &["launch", "--scene", "demo"], 1, &["already under way", "ROS_DOMAIN_ID"]);
     launcher.signal(libc::SIGINT);
     assert_eq!(launcher.ended(LIMIT).code, Some(130), "the first run was still going");
 }

@@ -11,7 +11,7 @@ fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
     let begin = Instant::now();
     loop {
         if let [pid] = children(launcher.pid(), &format!("run {node}")).as_slice() {
-            std::thread::sleep(Duration::from_secs(3));
+            lab.until_recorded(200);
             return (launcher, *pid);
         }
         assert!(begin.elapsed() < LIMIT, "{node} never appeared");

@@ -104,14 +104,9 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
 #[test]
 fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
-    let mut launcher: Process = lab.start(&["launch", "--scene", "demo"]);
+    let launcher: Process = lab.start(&["launch", "--scene", "demo"]);
     let pid = launcher.pid();
-    let begin = Instant::now();
-    while children(pid, "run dem_simulator").is_empty() && begin.elapsed() < LIMIT {
-        assert!(launcher.runs());
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    std::thread::sleep(Duration::from_secs(3));
+    lab.until_recorded(200);
     let nodes: Vec<u32> = NODES.iter().flat_map(|n| children(pid, &format!("run {n}"))).collect();
     assert_eq!(nodes.len(), NODES.len());
     launcher.signal(libc::SIGINT);

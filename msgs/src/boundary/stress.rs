@@ -42,7 +42,7 @@ pub struct StressRequest {
     pub solid_fraction: f64,
     /// Coordination number k. 0 or more.
     pub coordination: f64,
-    /// Mean net force of non-rattlers over mean contact force, 0 without contacts.
+    /// Mean net force of non-rattlers over mean contact force, 1 without contacts.
     pub unbalanced: f64,
 }
 

@@ -56,6 +56,11 @@ impl Barrier {
         }
     }
 
+    /// The run begins: what was refused before does not count.
+    pub(crate) fn begin(&mut self) {
+        self.refused_in_row = 0;
+    }
+
     /// A request has been published.
     pub(crate) fn ask(&mut self, sequence: u64, stamp: Time, body: Vec<u8>, now: Duration) {
         self.previous = std::mem::replace(&mut self.body, body);

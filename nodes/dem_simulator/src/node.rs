@@ -169,10 +169,12 @@ impl DemSimulator {
 
     /// Saves the last finite state and ends. A failing run is back there by itself.
     pub(crate) fn fail(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<Next, NodeError> {
-        self.save(bus, reason)?;
         let step = self.run.engine().steps();
-        let message = format!("{reason}. The state of step {step} is saved as the last packing");
-        Err(NodeError::new(Exit::PhysicsInvalid, message))
+        let saved = match self.save(bus, reason) {
+            Ok(()) => format!("The state of step {step} is saved as the last packing"),
+            Err(error) => format!("The state of step {step} could not be saved: {error}"),
+        };
+        Err(NodeError::new(Exit::PhysicsInvalid, format!("{reason}. {saved}")))
     }
 
     fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), BusError> {

@@ -58,6 +58,6 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn report(failure: &Failure) -> Exit {
-    eprintln!("grainlab: {failure}");
+    crate::output::say!("grainlab: {failure}");
     failure.exit
 }

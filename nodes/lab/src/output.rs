@@ -17,6 +17,15 @@ pub(crate) enum Format {
     Csv,
 }
 
+/// `eprintln!` for whom nobody need listen: a closed stderr (`2>&1 | head`) must not end a run.
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($text)*);
+    }};
+}
+pub(crate) use say;
+
 /// Writes `text` to stdout. A reader that has seen enough (`| head`) is no error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();

@@ -10,6 +10,7 @@ pub(crate) use settings::{Settings, contract_topics, parameters};
 use crate::output::Table;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{from_cdr, topics};
+use node_kit::bus::Published;
 use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, SubscriptionId};
 use recordings::ledger::Guid;
 use recordings::writer::Finished;
@@ -141,7 +142,9 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
 fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return };
     for report in Report::from_message(&message) {
-        for published in &report.published {
+        // A replayed report speaks of writers that are not there.
+        let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
+        for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
             // Topics that are not recorded owe nothing.

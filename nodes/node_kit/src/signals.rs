@@ -1,18 +1,27 @@
-//! SIGINT and SIGTERM: the first asks the node to end, the second ends the process at once.
+//! SIGINT, SIGTERM and SIGHUP: the first asks the node to end, the second ends the process at once.
 
 use crate::exit::Exit;
 use rustdds::mio1::net::UnixStream;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::{flag, low_level::pipe};
 use std::io::{self, Read};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Handlers of SIGINT and SIGTERM for the whole process, installed once.
+/// Handlers of SIGINT, SIGTERM and SIGHUP for the whole process, installed once.
 #[derive(Debug)]
 pub struct Signals {
     requested: Arc<AtomicBool>,
     arrivals: UnixStream,
+}
+
+/// Whether the process was started with this signal ignored.
+fn is_ignored(signal: i32) -> bool {
+    // SAFETY: a null action only asks for the present one, which is written into memory of ours.
+    unsafe {
+        let mut present: libc::sigaction = std::mem::zeroed();
+        libc::sigaction(signal, std::ptr::null(), &mut present) == 0 && present.sa_sigaction == libc::SIG_IGN
+    }
 }
 
 impl Signals {
@@ -21,7 +30,9 @@ impl Signals {
         let requested = Arc::new(AtomicBool::new(false));
         let (arrivals, sender) = std::os::unix::net::UnixStream::pair()?;
         arrivals.set_nonblocking(true)?;
-        for signal in [SIGINT, SIGTERM] {
+        // Who started us under `nohup` wants us to outlive the terminal.
+        let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+        for signal in [SIGINT, SIGTERM].into_iter().chain(hangup) {
             // Handlers run in this order: the first signal finds the flag unset and sets it, the second ends the process.
             flag::register_conditional_shutdown(
                 signal,

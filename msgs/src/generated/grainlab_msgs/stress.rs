@@ -47,7 +47,7 @@ pub struct Stress {
     pub solid_fraction: f64,
     /// k: 2 contacts / grains
     pub coordination: f64,
-    /// mean net force of non-rattlers / mean contact force; 0 without contacts
+    /// mean net force of non-rattlers / mean contact force; 1 without contacts
     pub unbalanced_force_ratio: f64,
 }
 

@@ -173,11 +173,6 @@ impl Engine {
         self.state.time_step
     }
 
-    /// The cell.
-    pub fn cell(&self) -> &Cell {
-        &self.state.cell
-    }
-
     /// Finds contacts and evaluates forces at the present state without moving on: needed once before the first step.
     pub fn prepare(&mut self) -> Result<(), DemError> {
         self.relist()?;

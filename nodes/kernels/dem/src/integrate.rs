@@ -21,7 +21,8 @@ pub(crate) struct Moved {
 pub(crate) fn kick_and_drift(state: &mut State, travel: &mut Soa, setting: &Setting) -> Moved {
     let dt = state.time_step;
     let rate = state.rate;
-    let keep = 1.0 - setting.drag * dt;
+    // Drag stops a grain, it never turns it round.
+    let keep = (1.0 - setting.drag * dt).max(0.0);
     let mut moved = Moved { largest_square_speed: 0.0, largest_square_travel: 0.0, sum_square_speed: 0.0 };
     for i in 0..state.grains() {
         let v = state.velocity.get(i);
@@ -42,7 +43,7 @@ pub(crate) fn kick_and_drift(state: &mut State, travel: &mut Soa, setting: &Sett
 /// Spins over one step; only where friction turns grains.
 pub(crate) fn spin_up(state: &mut State, setting: &Setting) {
     let dt = state.time_step;
-    let keep = 1.0 - setting.spin_drag * dt;
+    let keep = (1.0 - setting.spin_drag * dt).max(0.0);
     for i in 0..state.grains() {
         let w = (state.spin.get(i) + state.torque.get(i) * (state.inverse_inertia[i] * dt)) * keep;
         state.spin.set(i, w);

@@ -21,8 +21,6 @@ pub struct Snapshot {
     pub coordination: f64,
     /// Mean net force of non-rattlers over mean contact force; 1 where nothing is in contact.
     pub unbalanced: f64,
-    /// Largest overlap over the smaller diameter.
-    pub largest_overlap: f64,
 }
 
 /// A contact overlapping by more than this share of a diameter is outside Hertz's law.
@@ -35,7 +33,6 @@ pub(crate) fn snapshot(state: &State, pairs: &Pairs, friction: f64) -> Result<Sn
     let mut net = Soa::zeros(state.grains());
     let mut force_sum = 0.0;
     let mut contacts = 0u32;
-    let mut largest_overlap: f64 = 0.0;
     for p in 0..pairs.len() {
         let overlap = pairs.overlap[p];
         if overlap <= 0.0 {
@@ -51,7 +48,6 @@ pub(crate) fn snapshot(state: &State, pairs: &Pairs, friction: f64) -> Result<Sn
             let (first, second) = (state.ids[i], state.ids[j]);
             return Err(DemError::Overlap { step: state.step, first, second, overlap });
         }
-        largest_overlap = largest_overlap.max(overlap / diameter);
         let force = normal * state.material.normal_force(r_eff, overlap) - pairs.tangential.get(p);
         virial += force * branch.transpose();
         net.add(i, -force);
@@ -70,7 +66,6 @@ pub(crate) fn snapshot(state: &State, pairs: &Pairs, friction: f64) -> Result<Sn
         contacts,
         coordination: 2.0 * f64::from(contacts) / state.grains() as f64,
         unbalanced: unbalanced(pairs, &net, state.grains(), friction, force_sum / f64::from(contacts)),
-        largest_overlap,
     })
 }
 

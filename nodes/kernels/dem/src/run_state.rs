@@ -5,7 +5,7 @@ use crate::error::DemError;
 use grains::Mat3;
 use scene::PathState;
 
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// Everything beside the packing that a run needs to go on bit for bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,9 +18,8 @@ pub(crate) struct RunState {
     /// Deformation gradient since the phase began.
     pub(crate) phase_deformation: Mat3,
     pub(crate) has_reference: bool,
-    /// Seed and length of the scene's path: a state resumes only into the scene it came from.
-    pub(crate) seed: u64,
-    pub(crate) phases: u64,
+    /// Fingerprint of the scene: a state resumes only into the scene it came from.
+    pub(crate) scene: u64,
 }
 
 impl RunState {
@@ -36,8 +35,7 @@ impl RunState {
             p.holding_since.unwrap_or(0.0).to_bits(),
             self.time.to_bits(),
             u64::from(self.has_reference),
-            self.seed,
-            self.phases,
+            self.scene,
         ];
         words.extend(self.rate.iter().map(|r| r.to_bits()));
         words.extend(self.phase_deformation.iter().map(|r| r.to_bits()));
@@ -61,12 +59,12 @@ impl RunState {
                 return Err(resume(format!("run state version {v}, this program knows version {VERSION}")));
             }
         }
-        if words.len() != 26 || !bytes.len().is_multiple_of(8) {
-            return Err(resume(format!("the run state has {} bytes, 208 expected", bytes.len())));
+        if words.len() != 25 || !bytes.len().is_multiple_of(8) {
+            return Err(resume(format!("the run state has {} bytes, 200 expected", bytes.len())));
         }
         let real = |k: usize| f64::from_bits(words[k]);
-        let rate: [f64; 6] = std::array::from_fn(|k| real(11 + k));
-        let phase_deformation = Mat3::from_fn(|r, c| real(17 + 3 * c + r));
+        let rate: [f64; 6] = std::array::from_fn(|k| real(10 + k));
+        let phase_deformation = Mat3::from_fn(|r, c| real(16 + 3 * c + r));
         if ![4, 6, 7].iter().all(|k| real(*k).is_finite())
             || !rate.iter().chain(phase_deformation.iter()).all(|v| v.is_finite())
         {
@@ -77,7 +75,7 @@ impl RunState {
             began: real(4),
             holding_since: (words[5] != 0).then_some(real(6)),
         };
-        let (sequence, packings, time, seed, phases) = (words[1], words[2], real(7), words[9], words[10]);
+        let (sequence, packings, time, scene) = (words[1], words[2], real(7), words[9]);
         Ok(Self {
             sequence,
             packings,
@@ -86,8 +84,7 @@ impl RunState {
             rate,
             phase_deformation,
             has_reference: words[8] != 0,
-            seed,
-            phases,
+            scene,
         })
     }
 }

@@ -19,6 +19,8 @@ pub struct Simulation {
     path: PathState,
     sequence: u64,
     packings: u64,
+    /// Friction under which the present forces arose; at the end of a phase the engine is already set to the next.
+    friction: f64,
     /// Deformation gradient since the reference state; the identity before there is one.
     deformation: Mat3,
     phase_deformation: Mat3,
@@ -80,6 +82,7 @@ impl Simulation {
         engine.prepare()?;
         let seen = engine.snapshot()?;
         Ok(Self {
+            friction: engine.setting().friction,
             scene,
             engine,
             path: PathState::START,
@@ -96,7 +99,7 @@ impl Simulation {
     /// Goes on from a packing and the run state it was published with.
     pub fn resume(scene: Scene, packing: &Packing, run_state: &[u8]) -> Result<Self, DemError> {
         let saved = RunState::decode(run_state)?;
-        if saved.seed != scene.seed || saved.phases != scene.phases.len() as u64 {
+        if saved.scene != fingerprint(&scene) {
             return Err(DemError::Resume("the packing belongs to another scene or seed".into()));
         }
         let phase = scene.phases.get(saved.path.phase).or(scene.phases.last());
@@ -107,6 +110,7 @@ impl Simulation {
         engine.prepare()?;
         let seen = engine.snapshot()?;
         Ok(Self {
+            friction: packing.friction,
             engine,
             path: saved.path,
             sequence: saved.sequence,
@@ -177,8 +181,10 @@ impl Simulation {
         let none = Advanced { ended: None, packing_due: false, finished: self.finished() };
         let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };
         let period = phase.control_period;
-        self.engine.set_rate(rate)?;
+        // Kept as it was asked: with the rate that its forces arose under.
         self.keep();
+        self.engine.set_rate(rate)?;
+        self.friction = self.engine.setting().friction;
         match self.advance(period) {
             Ok(advanced) => Ok(advanced),
             Err(e) => {
@@ -223,6 +229,8 @@ impl Simulation {
     /// Takes up the setting of the phase now under way. Forces and stress are evaluated anew with it, as a resumed run
     /// would, so that both go on alike.
     fn begin_phase(&mut self, reference: bool) -> Result<(), DemError> {
+        // A failing phase is not taken back beyond its beginning, where a packing may have been published.
+        *self.kept = None;
         self.phase_deformation = Mat3::identity();
         if reference {
             self.has_reference = true;
@@ -239,7 +247,7 @@ impl Simulation {
 
     /// The mechanical state.
     pub fn packing(&self) -> Packing {
-        self.engine.packing(self.deformation)
+        Packing { friction: self.friction, ..self.engine.packing(self.deformation) }
     }
 
     /// The rest of the state, to go with the packing: [`Simulation::resume`] takes both.
@@ -252,8 +260,7 @@ impl Simulation {
             rate: self.engine.rate(),
             phase_deformation: self.phase_deformation,
             has_reference: self.has_reference,
-            seed: self.scene.seed,
-            phases: self.scene.phases.len() as u64,
+            scene: fingerprint(&self.scene),
         }
         .encode()
     }
@@ -285,6 +292,13 @@ fn setting(scene: &Scene, phase: &Phase) -> Setting {
             _ => None,
         },
     }
+}
+
+/// FNV-1a of everything the scene says, seed included: a state resumes only into the scene it came from.
+fn fingerprint(scene: &Scene) -> u64 {
+    let text = format!("{scene:?}");
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 /// ln V of F = V R, positive in extension.

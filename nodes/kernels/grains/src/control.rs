@@ -16,7 +16,8 @@ pub enum ComponentControl {
 pub enum ServoLaw {
     /// Rate = (σ − σ*)/(K τ): the error divided by the present tangent stiffness and by the response time τ.
     Scaled {
-        /// Response time τ, s; at least ten sound crossings of the cell.
+        /// Response time τ, s; more than half a control interval. The strain is affine, so that no wave has to cross the
+        /// cell: a few periods of a contact are enough.
         response_time: f64,
     },
     /// Eq. 1: rate ← (1 − leak)·rate + gain·(σ − σ*), once each control period.

@@ -100,11 +100,6 @@ impl Stiffness {
         Self(out)
     }
 
-    /// Largest |C_ab − C_ba| over the largest |C_ab|.
-    pub fn asymmetry(&self) -> f64 {
-        (self.0 - self.0.transpose()).amax() / self.0.amax()
-    }
-
     fn full(&self) -> [f64; 81] {
         std::array::from_fn(|n| self.0[(VOIGT[n / 27][n / 9 % 3], VOIGT[n / 3 % 3][n % 3])])
     }

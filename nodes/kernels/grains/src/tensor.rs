@@ -78,11 +78,6 @@ impl SymTensor {
         (1.5 * (x * x + y * y + z * z + 2.0 * off)).sqrt()
     }
 
-    /// Every component times `factor`.
-    pub fn scaled(&self, factor: f64) -> Self {
-        Self::from_voigt(self.voigt().map(|v| v * factor))
-    }
-
     /// Whether every component is finite.
     pub fn is_finite(&self) -> bool {
         self.voigt().iter().all(|v| v.is_finite())

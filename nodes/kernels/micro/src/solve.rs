@@ -54,7 +54,8 @@ pub fn solve<const L: usize>(
         }
         let ratio = |l: usize| if scale[l] > 0.0 { squares[l].sqrt() / scale[l] } else { 0.0 };
         // Not f64::max, which would hide a NaN.
-        let residual = (0..L).map(ratio).fold(0.0, |worst: f64, r| if r <= worst { worst } else { r });
+        let residual =
+            (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
         if residual <= tolerance {
             return Ok(Solution { motion: state.motion, residual, iterations });
         }

@@ -36,7 +36,7 @@ pub struct Numerics {
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { time_step_safety: 0.5, skin: 0.05, tangential: Tangential::Rescaled }
+        Self { time_step_safety: 0.8, skin: 0.05, tangential: Tangential::Rescaled }
     }
 }
 

@@ -31,7 +31,7 @@ impl Scene {
 fn read_scene(r: &mut Reader<'_>) -> Scene {
     let name = r.text("name", None);
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
-    if !name.is_empty() && !name.chars().all(plain) {
+    if r.has("name") && name.is_empty() || !name.chars().all(plain) {
         r.fault("name", format!("is {name:?}; use lower case letters, digits, _ and - (it names files)"));
     }
     let description = r.text("description", Some(""));

@@ -14,7 +14,7 @@ pub struct Observation {
     pub strain: SymTensor,
     /// Solid fraction.
     pub solid_fraction: f64,
-    /// Unbalanced force ratio; infinite where nothing is in contact.
+    /// Unbalanced force ratio; 1 where nothing is in contact.
     pub unbalanced: f64,
     /// Root mean square speed relative to the affine motion, m/s.
     pub speed: f64,

@@ -16,6 +16,12 @@ pub(crate) fn read(r: &mut Reader<'_>) -> Vec<Phase> {
         r.fault("phase", format!("unrolls to {} phases; at most {MAX_PHASES}", phases.len()));
         phases.truncate(1);
     }
+    for pair in phases.windows(2) {
+        if pair[0].publish && pair[0].friction > 0.0 && pair[1].friction == 0.0 {
+            let (name, next) = (&pair[0].name, &pair[1].name);
+            r.fault("phase", format!("{name} publishes a packing whose tangential forces {next} drops at once; put the frictionless phase elsewhere"));
+        }
+    }
     for (i, phase) in phases.iter().enumerate() {
         if matches!(phase.kind, PhaseKind::Gas { .. }) != (i == 0) {
             r.fault(
@@ -49,6 +55,9 @@ fn one(place: String, table: &Table, out: &mut Vec<Phase>) -> Vec<crate::Fault> 
     let name = table.get("name").and_then(Value::as_str).unwrap_or("");
     let place = if name.is_empty() { place } else { format!("{place} ({name})") };
     let mut r = Reader::new(place.clone(), table);
+    if table.get("kind").and_then(Value::as_str) == Some("") {
+        r.fault("kind", "is empty; it must be gas, relax, strain, servo or cycle");
+    }
     match r.text("kind", None).as_str() {
         "cycle" => cycle(&mut r, &place, out),
         "" => {
@@ -165,6 +174,16 @@ fn servo(r: &mut Reader<'_>) -> PhaseKind {
             leak: r.number("leak", Some(0.0), "from 0 to 1", |v| (0.0..=1.0).contains(&v)),
         },
     };
+    let targets = controls[..3]
+        .iter()
+        .filter_map(|c| if let ComponentControl::Stress(s) = c { Some(*s) } else { None });
+    let (count, sum) = targets.fold((0, 0.0), |(n, sum), s| (n + 1, sum + s));
+    if count == 0 || sum <= 0.0 {
+        r.fault(
+            "control",
+            "needs a stress target above 0 on average among xx, yy, zz: errors are judged against it",
+        );
+    }
     PhaseKind::Servo { controls, law, rate_limit }
 }
 
@@ -211,6 +230,12 @@ fn conditions(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         let hold = r.number("hold", Some(0.0), "a time in s, 0 or more", |v| v >= 0.0 && v.is_finite());
         let timeout =
             r.number("timeout", Some(1.0), "a time in s, more than 0", |v| v > 0.0 && v.is_finite());
+        if hold >= timeout {
+            r.fault(
+                "hold",
+                format!("is {hold}, not below the timeout of {timeout} s: the phase could never end"),
+            );
+        }
         if all.is_empty() {
             r.fault("", "names no condition: the phase would never end by itself");
         }

@@ -26,6 +26,10 @@ impl<'a> Reader<'a> {
         self.faults.push(Fault { place, message: message.into() });
     }
 
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.table.contains_key(key)
+    }
+
     pub(crate) fn get(&mut self, key: &'static str) -> Option<&'a Value> {
         self.asked.push(key);
         self.table.get(key)

@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut exit = Exit::Done;
     let mut packings = Vec::new();
     for file in &loaded {
-        file.complaints.iter().for_each(|line| eprintln!("grainlab: {line}"));
+        file.complaints.iter().for_each(|line| crate::output::say!("grainlab: {line}"));
         exit = worse(exit, file.exit);
         packings.extend(file.packings.iter().map(|p| (file.path, p)));
     }
@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         match result {
             Ok(state) => states.push(state),
             Err(message) => {
-                eprintln!("grainlab: {message}");
+                crate::output::say!("grainlab: {message}");
                 exit = worse(exit, Exit::PhysicsInvalid);
             }
         }

@@ -109,7 +109,7 @@ fn invert(inputs: Inputs, models: &[&'static dyn Model]) -> Inverted {
         let outcome = model.infer(&inputs.observation(model.name()), &calibration);
         if let Err(error) = &outcome {
             exit = worse(exit, exit_of(error));
-            eprintln!("grainlab: {}: {error}", model.name());
+            crate::output::say!("grainlab: {}: {error}", model.name());
         }
         let mut result = Inference::of(model.name(), calibration.name(), &outcome);
         result.warnings.extend(inputs.warnings());

@@ -60,14 +60,15 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let scene = scenes::load(name, seed)?;
     let (domain, _lock) = domain()?;
     let directory = run_directory(&args.out, &scene)?;
-    let path = |p: &Path| p.to_string_lossy().into_owned();
+    // Parameters are YAML: a path with a blank or a colon needs its quotes.
+    let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
     let values = BTreeMap::from([
         ("scene", path(&directory.join("scene.toml"))),
         ("seed", scene.scene.seed.to_string()),
         ("out", path(&directory)),
     ]);
     let plans = file.nodes(&values).map_err(Failure::usage)?;
-    eprintln!(
+    crate::output::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}; run {}",
         scene.scene.name,
         scene.scene.seed,
@@ -152,7 +153,7 @@ fn finish(
     let path = directory.join("summary.json");
     let text = json(&summary)?;
     std::fs::write(&path, &text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
-    summary.warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
     print(&match format {
         Format::Json => text,

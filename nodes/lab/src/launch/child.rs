@@ -82,7 +82,7 @@ impl Child {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
         let errors: Vec<&str> =
             text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
-        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| eprintln!("  {l}"));
+        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| crate::output::say!("  {l}"));
     }
 
     /// Sends `signal` if it runs.

@@ -25,7 +25,7 @@ impl Progress {
 
     /// A line, with the time.
     pub(crate) fn say(&self, text: &str) {
-        eprintln!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+        crate::output::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
     }
 
     /// A line if a phase began or takes long.

@@ -41,9 +41,12 @@ pub(crate) struct Supervisor<'a> {
     report_end: UnboundedSender<Ended>,
     interrupt: Signal,
     terminate: Signal,
+    hangup: Signal,
     progress: Progress,
     finished: Option<RunStateReading>,
     failed: Option<String>,
+    /// The watch failed: nobody would notice the end of the run.
+    blind: bool,
     measured: BTreeSet<u64>,
     inverted: BTreeSet<u64>,
 }
@@ -77,9 +80,11 @@ impl<'a> Supervisor<'a> {
             report_end,
             interrupt: handler(SignalKind::interrupt())?,
             terminate: handler(SignalKind::terminate())?,
+            hangup: handler(SignalKind::hangup())?,
             progress: Progress::new(phases),
             finished: None,
             failed: None,
+            blind: false,
             measured: BTreeSet::new(),
             inverted: BTreeSet::new(),
         })
@@ -89,10 +94,17 @@ impl<'a> Supervisor<'a> {
     pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
         let (watch, mut events) = Watch::start(self.domain)?;
+        if let Some(Event::Rival(writer)) = events.recv().await.filter(|e| matches!(e, Event::Rival(_))) {
+            return Err(Failure::failed(format!(
+                "a run is already under way in DDS domain {} (writer {writer} of stress): end it, or unset ROS_DOMAIN_ID \
+                 to get a domain of its own",
+                self.domain
+            )));
+        }
         let mut exit = match self.start_all() {
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
-                eprintln!("grainlab: {failure}");
+                crate::output::say!("grainlab: {failure}");
                 failure.exit
             }
         };
@@ -124,7 +136,12 @@ impl<'a> Supervisor<'a> {
         loop {
             let due = deadline.map_or_else(|| tokio::time::Instant::now() + PATIENCE, |(at, ..)| at);
             tokio::select! {
-                Some(event) = events.recv() => self.take(event),
+                event = events.recv() => {
+                    self.take(event.unwrap_or_else(|| Event::Failed("the watch ended".into())));
+                    if self.blind {
+                        return Exit::Failure;
+                    }
+                }
                 Some(ended) = self.ended.recv() => {
                     if let Some(exit) = self.on_end(&ended).await {
                         return exit;
@@ -132,9 +149,10 @@ impl<'a> Supervisor<'a> {
                 }
                 _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
                 _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
+                _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
                 () = sleep_until(due) => {
                     if let Some((_, exit, message)) = deadline {
-                        eprintln!("grainlab: {message}");
+                        crate::output::say!("grainlab: {message}");
                         return exit;
                     }
                 }
@@ -175,6 +193,7 @@ impl<'a> Supervisor<'a> {
                     RunStatus::Failed => self.failed = Some(state.message),
                 }
             }
+            Event::Clear | Event::Rival(_) => {}
             Event::Fabric(step) => {
                 self.measured.insert(step);
             }
@@ -182,7 +201,10 @@ impl<'a> Supervisor<'a> {
                 self.inverted.insert(step);
                 self.progress.say(&format!("packing of step {step} measured and inverted"));
             }
-            Event::Failed(message) => eprintln!("grainlab: the launcher's own watch failed: {message}"),
+            Event::Failed(message) => {
+                crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
+                self.blind = true;
+            }
         }
     }
 
@@ -209,7 +231,7 @@ impl<'a> Supervisor<'a> {
             _ => Exit::Failure,
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
-        eprintln!("grainlab: {name} {how}: {reason}");
+        crate::output::say!("grainlab: {name} {how}: {reason}");
         self.children[ended.index].quote_log(self.logs);
         Some(exit)
     }
@@ -221,7 +243,7 @@ impl<'a> Supervisor<'a> {
         child.restarts.push(now);
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count();
         if recent > RESTARTS {
-            eprintln!(
+            crate::output::say!(
                 "grainlab: {name} {how}, {recent} times within {} s: given up",
                 RESTART_WINDOW.as_secs()
             );
@@ -232,7 +254,7 @@ impl<'a> Supervisor<'a> {
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
-            eprintln!("grainlab: {failure}");
+            crate::output::say!("grainlab: {failure}");
             failure.exit
         })
     }

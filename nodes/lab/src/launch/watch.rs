@@ -5,7 +5,7 @@ use crate::network::bus_in;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::msg::{Fabric, Microstructure, RunState};
 use grainlab_msgs::topics;
-use node_kit::{Bus, BusError, DdsBus, Demand, Subscription};
+use node_kit::{Bus, BusError, DdsBus, Demand, Subscription, WriterId};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -18,6 +18,9 @@ const BACKLOG: u32 = 256;
 /// How often the thread looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(100);
 
+/// How long another run in the same domain is looked for: three times what discovery takes.
+const LOOK_AROUND: Duration = Duration::from_millis(600);
+
 /// Something the supervisor has to know.
 #[derive(Debug)]
 pub(crate) enum Event {
@@ -27,6 +30,10 @@ pub(crate) enum Event {
     Fabric(u64),
     /// The microstructure of the packing of this step was inferred.
     Microstructure(u64),
+    /// Nobody else simulates in this domain; the first event, unless a rival does.
+    Clear,
+    /// Another run's writer of stress.
+    Rival(WriterId),
     /// The watch itself failed.
     Failed(String),
 }
@@ -71,6 +78,16 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
     let states = Subscription::<RunState>::subscribe(bus, &topics::RUN_STATE, demand)?;
     let fabrics = Subscription::<Fabric>::subscribe(bus, &topics::FABRIC, demand)?;
     let microstructures = Subscription::<Microstructure>::subscribe(bus, &topics::MICROSTRUCTURE, demand)?;
+    let look = bus.now() + LOOK_AROUND;
+    while bus.now() < look && !stop.load(Ordering::Relaxed) {
+        bus.wait(look.saturating_sub(bus.now()));
+        // A latched state, before anything of ours runs, is of another run.
+        if let Some(writer) = bus.foreign_writers(&topics::STRESS).first() {
+            send(events, Event::Rival(*writer));
+            return Ok(());
+        }
+    }
+    send(events, Event::Clear);
     while !stop.load(Ordering::Relaxed) {
         while let Some((state, _)) = states.take_valid(bus)? {
             match RunStateReading::try_from(&state) {

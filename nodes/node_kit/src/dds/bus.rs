@@ -316,6 +316,8 @@ impl Bus for DdsBus {
     fn wait(&mut self, timeout: Duration) -> Wake {
         self.presence.announce();
         self.caretaker.seen();
+        // A caller may mean for ever; a day is as good and cannot overflow.
+        let timeout = timeout.min(Duration::from_secs(86_400));
         let deadline = Instant::now() + timeout;
         let first = if self.has_data() { Duration::ZERO } else { timeout };
         let mut wake = self.poll_once(first);

@@ -29,7 +29,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     print(&text)?;
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 

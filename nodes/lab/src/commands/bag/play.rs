@@ -46,7 +46,10 @@ pub(crate) struct Args {
     /// How much to play, s of the recording [default: to the end]
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
-    /// Wait at most this long for a subscriber of every topic before sending, s; 0 does not wait
+    /// Subscribers that every topic needs before sending, as far as the patience goes
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    min_subscribers: usize,
+    /// Wait at most this long for the subscribers of every topic before sending, s; 0 does not wait
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     wait_for_subscribers: f64,
 }
@@ -82,7 +85,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
                 publishers.insert(name, publisher);
             }
             Err(reason) => {
-                eprintln!("grainlab: {name} is left out: {reason}");
+                crate::output::say!("grainlab: {name} is left out: {reason}");
                 options.exclude.push(name);
             }
         }
@@ -90,7 +93,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if publishers.is_empty() {
         return Err(Failure::failed("nothing is left to play"));
     }
-    if !wait_for_readers(&mut bus, &publishers, patience) {
+    if !wait_for_readers(&mut bus, &publishers, args.min_subscribers, patience) {
         return Ok(Exit::Interrupted);
     }
     let mut player = Player::new(&recording, &options).map_err(play_failure)?;
@@ -98,24 +101,26 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let acknowledged = bus.flush(FAREWELL);
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| eprintln!("grainlab: {w}"));
+    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     if player.slipped() > Duration::from_millis(100) {
-        eprintln!(
+        crate::output::say!(
             "grainlab: the readers are slower than the recording: {:.1} s late in all",
             player.slipped().as_secs_f64()
         );
     }
     let Some(sent) = sent else { return Ok(Exit::Interrupted) };
-    eprintln!("grainlab: {sent} messages sent");
+    crate::output::say!("grainlab: {sent} messages sent");
     if !acknowledged {
-        eprintln!("grainlab: a reader has not acknowledged the last messages");
+        crate::output::say!("grainlab: a reader has not acknowledged the last messages");
     }
     Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
 fn play_failure(error: recordings::PlayError) -> Failure {
     match &error {
-        recordings::PlayError::Read(_) => Failure::failed(error),
+        recordings::PlayError::Read(e) if !matches!(e, recordings::ReadError::NoSuchTopic { .. }) => {
+            Failure::failed(error)
+        }
         _ => Failure::usage(error),
     }
 }
@@ -142,10 +147,11 @@ fn pause(bus: &mut DdsBus, time: Duration) {
     }
 }
 
-/// Waits until every topic has a reader and no more appear for a moment; false if a signal came.
+/// Waits until every topic has the readers it needs and no more appear for a moment; false if a signal came.
 fn wait_for_readers(
     bus: &mut DdsBus,
     publishers: &BTreeMap<String, PublisherId>,
+    needed: usize,
     patience: Duration,
 ) -> bool {
     let end = bus.now() + patience;
@@ -157,12 +163,12 @@ fn wait_for_readers(
         if counts != known {
             (known, since) = (counts, now);
         }
-        let complete = known.iter().all(|n| *n > 0) && now - since >= SETTLE;
+        let complete = known.iter().all(|n| *n >= needed) && now - since >= SETTLE;
         if complete || now >= end {
-            let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n == 0);
+            let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n < needed);
             let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
             if !lonely.is_empty() && !patience.is_zero() {
-                eprintln!("grainlab: nobody subscribes to {}", lonely.join(", "));
+                crate::output::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
             }
             return true;
         }

@@ -87,7 +87,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let (mut ours, mut bare, mut lost) = (Vec::new(), Vec::new(), 0);
     let mut rows = Vec::new();
     for number in 1..=args.rounds {
-        eprintln!("grainlab: round {number} of {}", args.rounds);
+        crate::output::say!("grainlab: round {number} of {}", args.rounds);
         let recorded = round::recorded(args.exchanges)?;
         let plain = round::bare(args.exchanges)?;
         rows.push(row(Some(number), &recorded.micros, &plain, recorded.lost));

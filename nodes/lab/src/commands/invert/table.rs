@@ -13,6 +13,8 @@ pub(super) fn read(path: &Path, args: &Args) -> Result<Vec<Inputs>, Failure> {
 }
 
 fn parse(text: &str, args: &Args) -> Result<Vec<Inputs>, String> {
+    // Spreadsheets begin their files with a byte order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
     let header: Vec<&str> =
         lines.next().map(|(_, l)| l.split(',').map(str::trim).collect()).ok_or("the table is empty")?;
