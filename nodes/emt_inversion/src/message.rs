@@ -1,9 +1,7 @@
 //! From one `Moduli` to one `Microstructure`.
 
 use crate::Settings;
-use emt::{
-    CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, GammaSource, Observation, Status, infer_all,
-};
+use emt::{CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, Observation, Status, infer_all};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading};
 use grainlab_msgs::{msg, topics};
 use grains::Mat3;
@@ -54,7 +52,7 @@ fn estimate_message(estimate: &Estimate) -> msg::Estimate {
             Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
         },
         gamma_over_delta: estimate.gamma.value,
-        gamma_over_delta_source: source_name(estimate.gamma.source).to_owned(),
+        gamma_over_delta_source: estimate.gamma.source.name().to_owned(),
         k: estimate.structure.k,
         k_hat: estimate.structure.k_hat,
         eps: estimate.structure.eps,
@@ -81,18 +79,8 @@ fn failure(model: &str, calibration: &Calibration, gamma: &Gamma, error: &EmtErr
         calibration: calibration.name().to_owned(),
         status,
         gamma_over_delta: gamma.value,
-        gamma_over_delta_source: source_name(gamma.source).to_owned(),
+        gamma_over_delta_source: gamma.source.name().to_owned(),
         warnings: vec![error.to_string()],
         ..Default::default()
-    }
-}
-
-fn source_name(source: GammaSource) -> &'static str {
-    match source {
-        GammaSource::Total => "total",
-        GammaSource::Elastic => "elastic",
-        GammaSource::Contact => "contact",
-        GammaSource::Given => "given",
-        GammaSource::Zero => "zero",
     }
 }

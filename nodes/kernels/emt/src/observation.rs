@@ -20,6 +20,19 @@ pub enum GammaSource {
     Zero,
 }
 
+impl GammaSource {
+    /// As messages, parameters and results name it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            GammaSource::Total => "total",
+            GammaSource::Elastic => "elastic",
+            GammaSource::Contact => "contact",
+            GammaSource::Given => "given",
+            GammaSource::Zero => "zero",
+        }
+    }
+}
+
 /// The strain ratio g = γ/Δ that a model is fed with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gamma {

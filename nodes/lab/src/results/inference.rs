@@ -1,7 +1,7 @@
 //! What the models infer, with the stable keys of `results[]`.
 
 use crate::output::{Table, exact, fixed};
-use emt::{CREDIBLE_LEVEL, EmtError, Estimate, GammaSource};
+use emt::{CREDIBLE_LEVEL, EmtError, Estimate};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use grainlab_msgs::msg;
 use serde::Serialize;
@@ -130,7 +130,7 @@ impl Inference {
                 emt::Status::Extrapolated => "extrapolated",
             },
             gamma_over_delta: Some(estimate.gamma.value),
-            gamma_over_delta_source: Some(source_name(estimate.gamma.source).to_owned()),
+            gamma_over_delta_source: Some(estimate.gamma.source.name().to_owned()),
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
         }
     }
@@ -181,17 +181,6 @@ impl Inference {
         }
         cells.push(self.status.to_owned());
         cells
-    }
-}
-
-/// As the messages name it.
-fn source_name(source: GammaSource) -> &'static str {
-    match source {
-        GammaSource::Total => "total",
-        GammaSource::Elastic => "elastic",
-        GammaSource::Contact => "contact",
-        GammaSource::Given => "given",
-        GammaSource::Zero => "zero",
     }
 }
 

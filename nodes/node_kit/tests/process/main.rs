@@ -1,8 +1,7 @@
-//! Real processes: signals, exit codes, final counts, a dead DDS thread, the exchange's latency.
+//! Real processes: signals, exit codes, final counts, a dead DDS thread.
 //!
 //! A child is this test executable again, running one ignored test named by its role.
 
-mod latency;
 mod leaving;
 mod roles;
 

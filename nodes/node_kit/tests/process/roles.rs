@@ -2,13 +2,11 @@
 
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
-use node_kit::pingpong::{bare_ping, bare_pong, bus_listen, bus_ping, bus_pong};
+use node_kit::pingpong::bus_listen;
 use node_kit::{
     Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, run_node,
 };
 use std::time::Duration;
-
-const EXCHANGES: u64 = 5000;
 
 /// Whether this process is a child; `--ignored` without a name must not start the roles.
 fn is_child() -> bool {
@@ -134,30 +132,6 @@ fn bus(name: &str) -> DdsBus {
     DdsBus::open(Network::from_env().unwrap(), Names::new(name).unwrap()).unwrap()
 }
 
-fn print_quantiles(label: &str, mut micros: Vec<f64>) {
-    micros.sort_by(f64::total_cmp);
-    let at = |share: f64| micros[((micros.len() - 1) as f64 * share) as usize];
-    println!("{label}: n {} p50 {:.1} p90 {:.1} p99 {:.1} us", micros.len(), at(0.5), at(0.9), at(0.99));
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn our_ping() {
-    if !is_child() {
-        return;
-    }
-    print_quantiles("ours", bus_ping(&mut bus("ping"), EXCHANGES).unwrap());
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn our_pong() {
-    if !is_child() {
-        return;
-    }
-    bus_pong(&mut bus("pong")).unwrap();
-}
-
 #[test]
 #[ignore = "a role, started by other tests"]
 fn our_listener() {
@@ -166,22 +140,4 @@ fn our_listener() {
     }
     let (received, missing) = bus_listen(&mut bus("listener")).unwrap();
     println!("listener: received {received} missing {missing}");
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn their_ping() {
-    if !is_child() {
-        return;
-    }
-    print_quantiles("bare", bare_ping(Network::from_env().unwrap(), EXCHANGES).unwrap());
-}
-
-#[test]
-#[ignore = "a role, started by other tests"]
-fn their_pong() {
-    if !is_child() {
-        return;
-    }
-    bare_pong(Network::from_env().unwrap()).unwrap();
 }
