@@ -44,6 +44,14 @@ fn unknown_parameters_and_commands_end_with_exit_code_2() {
     refused(&lab, &["run", "no_such_node"], 2, &["no_such_node", "dem_simulator"]);
     refused(&lab, &["invert", "--g12", "1e8"], 2, &["--g13"]);
     refused(&lab, &["analyse-this"], 2, &[]);
+    let reference = golden("reference/ref_packing_500.csv.gz");
+    let reference = reference.to_string_lossy();
+    for flag in
+        ["--shear-modulus=0", "--shear-modulus=NaN", "--poisson=0.9", "--density=-1", "--friction=-0.5"]
+    {
+        let name = flag.split('=').next().unwrap_or(flag);
+        refused(&lab, &["analyze", &reference, flag], 2, &[name, "out of range"]);
+    }
 }
 
 #[test]

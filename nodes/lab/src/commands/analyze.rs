@@ -106,7 +106,26 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
+/// Refuses a flag whose value is out of range, by its name.
+fn in_range(
+    flag: &str,
+    value: Option<f64>,
+    requirement: &str,
+    accept: fn(f64) -> bool,
+) -> Result<(), Failure> {
+    match value.filter(|v| !accept(*v)) {
+        Some(v) => Err(Failure::usage(format!("--{flag} {v} is out of range: {requirement}"))),
+        None => Ok(()),
+    }
+}
+
 fn options(args: &Args) -> Result<ImportOptions, Failure> {
+    let positive = |v: f64| v > 0.0 && v.is_finite();
+    in_range("shear-modulus", args.shear_modulus, "a modulus in Pa, more than 0", positive)?;
+    in_range("poisson", args.poisson, "from 0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
+    in_range("density", args.density, "a density in kg/m3, more than 0", positive)?;
+    in_range("friction", args.friction, "0 or more", |v| v >= 0.0)?;
+    in_range("radius", args.radius, "a length in m, more than 0", positive)?;
     let cell = match args.cell.as_slice() {
         [] => None,
         [x, y, z] => Some(Mat3::from_diagonal(&Vec3::new(*x, *y, *z))),
