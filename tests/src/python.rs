@@ -1,5 +1,6 @@
 //! The independent tools, where they are installed.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -17,12 +18,13 @@ pub fn with(module: &str) -> Option<PathBuf> {
         "{} cannot import {module}: install tests/tools/requirements.txt",
         python.display()
     );
-    // Past the test harness, which hides the output of passing tests.
-    let _ = std::fs::write(
-        "/dev/stderr",
-        format!("SKIPPED, Python has no {module}: see tests/tools/requirements.txt\n"),
-    );
+    say_skipped(&format!("Python has no {module}: see tests/tools/requirements.txt"));
     None
+}
+
+/// Says that a test is skipped. Unlike `eprintln!`, the stream itself is not hidden by the test harness.
+pub fn say_skipped(reason: &str) {
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {reason}");
 }
 
 /// Runs a script of `tests/tools`.
