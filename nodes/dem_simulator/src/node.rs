@@ -5,7 +5,7 @@ use crate::messages::{self, Packings};
 use crate::outbox::Outbox;
 use crate::rivals::Rivals;
 use crate::settings::Settings;
-use dem::{DemError, Simulation};
+use dem::{ComputeError, DemError, Simulation};
 use grainlab_msgs::msg::{Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
@@ -31,6 +31,9 @@ pub enum SimulatorError {
     /// The scene cannot be set up, or the packing is no state of it.
     #[error(transparent)]
     Dem(#[from] DemError),
+    /// The processor cannot do what it was told to.
+    #[error(transparent)]
+    Compute(#[from] ComputeError),
     /// The topics cannot be had.
     #[error(transparent)]
     Bus(#[from] BusError),
@@ -82,7 +85,7 @@ impl DemSimulator {
         resume: Option<(grains::Packing, Vec<u8>)>,
         settings: Settings,
     ) -> Result<Self, SimulatorError> {
-        let (run, packings) = match &resume {
+        let (mut run, packings) = match &resume {
             Some((packing, state)) => {
                 let run = Simulation::resume(scene, packing, state)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
@@ -90,6 +93,7 @@ impl DemSimulator {
             }
             None => (Simulation::new(scene)?, Packings::default()),
         };
+        run.set_compute(settings.compute(run.scene().grains as usize)?);
         let stress = Publisher::advertise(bus, &topics::STRESS)?;
         let packing = Publisher::advertise(bus, &topics::PACKING)?;
         let run_state = Publisher::advertise(bus, &topics::RUN_STATE)?;

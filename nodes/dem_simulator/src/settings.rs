@@ -1,7 +1,9 @@
 //! What can be set.
 
+use dem::{Compute, ComputeError, Simd};
 use grainlab_msgs::{Topic, topics};
 use node_kit::{ParameterSpec, Parameters, Range};
+use std::num::NonZeroUsize;
 use std::time::Duration;
 
 /// How the run and the servo are tied together.
@@ -70,6 +72,10 @@ pub fn parameters() -> Vec<ParameterSpec> {
             d.exit_when_finished,
             "end when the loading path is done; else stay, so that late readers get the last packing",
         ),
+        ParameterSpec::new("threads", 0_i64, "threads to compute with, 0 for as many as pay; results do not depend on it")
+            .within(Range::Integer { min: 0, max: 1024 }),
+        ParameterSpec::new("simd", "best", "instruction set to compute with; results do not depend on it")
+            .within(Range::Choice(&["best", "scalar", "avx2", "avx512"])),
     ]
 }
 
@@ -90,6 +96,19 @@ pub struct Settings {
     pub min_readers: usize,
     /// End when the loading path is done.
     pub exit_when_finished: bool,
+    /// Threads to compute with; `None` for as many as pay.
+    pub threads: Option<NonZeroUsize>,
+    /// Instruction set to compute with; `None` for the widest.
+    pub simd: Option<Simd>,
+}
+
+impl Settings {
+    /// What a run of so many grains is computed with.
+    pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
+        let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        let threads = self.threads.map_or(Compute::threads_that_pay(grains, cores), NonZeroUsize::get);
+        Compute::new(self.simd.unwrap_or_else(Simd::best), threads)
+    }
 }
 
 /// Discovery on one host takes 0.2 s; three times that finds a simulator on a busy one. An exchange takes well below
@@ -104,6 +123,8 @@ impl Default for Settings {
             wait_for: Vec::new(),
             min_readers: 1,
             exit_when_finished: false,
+            threads: None,
+            simd: None,
         }
     }
 }
@@ -127,6 +148,8 @@ impl From<&Parameters> for Settings {
                 .collect(),
             min_readers: count("min_readers") as usize,
             exit_when_finished: parameters.get("exit_when_finished"),
+            threads: NonZeroUsize::new(count("threads") as usize),
+            simd: parameters.get::<String>("simd").parse().ok(),
         }
     }
 }

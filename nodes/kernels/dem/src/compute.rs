@@ -5,6 +5,9 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// Grains that make a thread of their own pay.
+const GRAINS_PER_THREAD: usize = 2000;
+
 /// Instruction set and threads.
 #[derive(Clone, Debug)]
 pub struct Compute {
@@ -56,6 +59,12 @@ impl Compute {
             }
         };
         Ok(Self { simd, threads, pool })
+    }
+
+    /// Threads worth using for so many grains on so many cores: each needs some thousands of grains to pay for waiting on
+    /// the others twice a step.
+    pub fn threads_that_pay(grains: usize, cores: usize) -> usize {
+        (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
     }
 
     /// Instruction set.

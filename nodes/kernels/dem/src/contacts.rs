@@ -1,6 +1,6 @@
 //! Pairs that touch or soon may, eight to a block, with the history of their contacts.
 
-use crate::lanes::{BLOCK, Quad, Wrench};
+use crate::lanes::{BLOCK, Quad, V3, Wrench};
 use crate::pass::Chunk;
 use crate::state::{State, row, vector};
 use grains::material::effective_radius;
@@ -106,8 +106,15 @@ pub(crate) struct Pair {
     pub(crate) j: u32,
     /// Row in [`Images`].
     pub(crate) image: u32,
+    /// √(R* δ), m; 0 where it does not touch.
     pub(crate) root: f64,
     pub(crate) history: Vec3,
+}
+
+impl Pair {
+    pub(crate) fn touches(&self) -> bool {
+        self.root > 0.0
+    }
 }
 
 impl Contacts {
@@ -149,7 +156,7 @@ impl Contacts {
 
     /// Pairs that touch, in the order of the sum.
     pub(crate) fn touching(&self) -> impl Iterator<Item = Pair> {
-        (0..self.slots()).filter_map(|s| self.pair(s)).filter(|p| p.root > 0.0)
+        (0..self.slots()).filter_map(|s| self.pair(s)).filter(Pair::touches)
     }
 
     /// Branch vector of a pair, from `i` to the image of `j`, m.
@@ -197,7 +204,7 @@ impl Contacts {
             let branch = self.branch(&p, state);
             let (r_i, r_j) = (state.radius[p.i as usize], state.radius[p.j as usize]);
             let r_eff = effective_radius(r_i, r_j);
-            let distance = (branch.x * branch.x + branch.y * branch.y + branch.z * branch.z).sqrt();
+            let distance = distance(&branch);
             let overlap = r_i + r_j - distance;
             Contact {
                 i: p.i,
@@ -218,6 +225,12 @@ impl Contacts {
             block.history = [[0.0; BLOCK]; 3];
         }
     }
+}
+
+/// |l|, rounded as in the contact pass.
+fn distance(branch: &Vec3) -> f64 {
+    let branch = V3::new(branch.x, branch.y, branch.z);
+    branch.dot(branch).sqrt()
 }
 
 /// Takes the first `count` of a slice away from it.

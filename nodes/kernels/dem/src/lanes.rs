@@ -1,7 +1,7 @@
 //! Numbers in lanes: one source text for the contact law, compiled for one, four or eight contacts at a time.
 //!
-//! Every operation is one correctly rounded IEEE 754 operation (no fused multiply-add, no reciprocal estimate), so the
-//! same contact gives the same bits in every width and on every processor. `f64` is the one-lane form.
+//! Every operation is one correctly rounded IEEE 754 operation, the fused multiply-add one of them, and none is an
+//! estimate, so the same contact gives the same bits in every width and on every processor. `f64` is the one-lane form.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -31,6 +31,10 @@ pub trait Lanes:
     fn load(from: &[f64; BLOCK], lane: usize) -> Self;
     /// Writes lanes `lane..lane + WIDTH` of a block.
     fn store(self, to: &mut [f64; BLOCK], lane: usize);
+    /// `self` × `by` + `plus`, rounded once.
+    fn mul_add(self, by: Self, plus: Self) -> Self;
+    /// `from` − `self` × `by`, rounded once.
+    fn mul_sub_from(self, by: Self, from: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// The larger of two; the second where they do not compare.
@@ -48,10 +52,14 @@ pub trait Lanes:
     /// # Panics
     /// Where `table` has fewer rows than the index was made for.
     fn gather<const K: usize>(table: &[Quad], index: Self::Index) -> Self;
-    /// Asks for the rows of lanes `lane..lane + WIDTH` to be brought near, where the processor can be asked.
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK], lane: usize);
+    /// Asks for rows of a table to be brought near, where the processor can be asked.
+    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]);
     /// Writes four components a lane to rows `lane..lane + WIDTH`, from column `at` (0 or 4) on.
     fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize);
+    /// Adds a row to a sum.
+    fn add_row(row: &Wrench, to: &mut Wrench);
+    /// Adds a row to a sum, its first half negated.
+    fn add_reaction(row: &Wrench, to: &mut Wrench);
     /// Adds eight components to `sum`, lane after lane.
     fn fold(components: [Self; 8], sum: &mut [f64; 8]);
 }
@@ -72,6 +80,14 @@ impl Lanes for f64 {
     #[inline(always)]
     fn store(self, to: &mut [f64; BLOCK], lane: usize) {
         to[lane] = self;
+    }
+    #[inline(always)]
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        f64::mul_add(self, by, plus)
+    }
+    #[inline(always)]
+    fn mul_sub_from(self, by: Self, from: Self) -> Self {
+        f64::mul_add(-self, by, from)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -102,10 +118,25 @@ impl Lanes for f64 {
         table[index][K]
     }
     #[inline(always)]
-    fn prefetch(_: &[Quad], _: &[u32; BLOCK], _: usize) {}
+    fn prefetch(_: &[Quad], _: &[u32; BLOCK]) {}
     #[inline(always)]
     fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
         to[lane][at..at + 4].copy_from_slice(&components);
+    }
+    #[inline(always)]
+    fn add_row(row: &Wrench, to: &mut Wrench) {
+        for k in 0..8 {
+            to[k] += row[k];
+        }
+    }
+    #[inline(always)]
+    fn add_reaction(row: &Wrench, to: &mut Wrench) {
+        for k in 0..4 {
+            to[k] -= row[k];
+        }
+        for k in 4..8 {
+            to[k] += row[k];
+        }
     }
     #[inline(always)]
     fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
@@ -131,6 +162,12 @@ impl<L: Lanes> V3<L> {
     #[inline(always)]
     pub fn new(x: L, y: L, z: L) -> Self {
         Self { x, y, z }
+    }
+
+    /// The same number in every component and lane.
+    #[inline(always)]
+    pub(crate) fn splat(value: f64) -> Self {
+        Self::new(L::splat(value), L::splat(value), L::splat(value))
     }
 
     /// The rows of a table.
@@ -162,13 +199,29 @@ impl<L: Lanes> V3<L> {
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
-        self.x * other.x + self.y * other.y + self.z * other.z
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
-        Self::new(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
+        Self::new(
+            self.z.mul_sub_from(o.y, self.y * o.z),
+            self.x.mul_sub_from(o.z, self.z * o.x),
+            self.y.mul_sub_from(o.x, self.x * o.y),
+        )
+    }
+
+    /// `self` + `v` × `by`.
+    #[inline(always)]
+    pub(crate) fn plus(self, v: Self, by: L) -> Self {
+        Self::new(v.x.mul_add(by, self.x), v.y.mul_add(by, self.y), v.z.mul_add(by, self.z))
+    }
+
+    /// `self` − `v` × `by`.
+    #[inline(always)]
+    pub(crate) fn minus(self, v: Self, by: L) -> Self {
+        Self::new(v.x.mul_sub_from(by, self.x), v.y.mul_sub_from(by, self.y), v.z.mul_sub_from(by, self.z))
     }
 
     /// `a` where the mask holds, else `b`.

@@ -30,8 +30,8 @@ pub struct Touch<L> {
     pub overlap: L,
     /// Radius of the contact area √(R* δ), m.
     pub root: L,
-    /// The same one step ago; 0 for a new contact.
-    pub previous_root: L,
+    /// By how much the contact area shrank over the step: √(R* δ) over what it was, 1 where it grew or is new.
+    pub unloading: L,
     /// Effective mass m_i m_j/(m_i + m_j), kg.
     pub m_eff: L,
     /// Velocity of the centre of `j` relative to `i`, affine part included, m/s.
@@ -76,7 +76,7 @@ impl Law {
             return (elastic, elastic, L::splat(0.0));
         }
         let dashpot = L::splat(2.0 * self.damping) * (t.m_eff * k_n).sqrt();
-        (elastic, (elastic - dashpot * along).max(L::splat(0.0)), dashpot)
+        (elastic, dashpot.mul_sub_from(along, elastic).max(L::splat(0.0)), dashpot)
     }
 
     /// A contact without friction: normal force (elastic, with damping), N.
@@ -88,7 +88,9 @@ impl Law {
 
     /// A contact with friction, its history brought forward by `dt` (s) where `ADVANCE`, else taken as it is.
     ///
-    /// `SLIDING` applies the Coulomb limit; `RESCALED` scales the history down with the stiffness on unloading.
+    /// `SLIDING` applies the Coulomb limit to elastic and viscous force together; where they slide, the elastic one is
+    /// what the viscous one leaves of the limit (Luding, Granular Matter 10, 235 (2008), Sec. 2.3). `RESCALED` scales the
+    /// history down with the stiffness on unloading.
     #[inline(always)]
     pub fn frictional<L: Lanes, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
         &self,
@@ -98,45 +100,45 @@ impl Law {
     ) -> Forces<L> {
         let n = t.normal;
         let along = t.relative.dot(n);
-        let across = t.relative - n.scale(along);
+        let across = t.relative.minus(n, along);
         let (elastic, normal, dashpot) = self.normal_force(t, along);
-        let limit = L::splat(self.friction) * elastic;
+        // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip. All of
+        // it is known from the present alone, so a resumed state has the same forces.
+        let mean = n.minus(across, L::splat(0.5 * dt) * t.inverse_distance);
+        let rolling = t.rolling.cross(mean);
+        let slip = (across - rolling).plus(n, rolling.dot(n));
+        let share = (self.tangential / self.normal).sqrt();
+        let viscous = (self.damping > 0.0).then(|| slip.scale(dashpot * L::splat(share)));
         let mut f = history;
         if ADVANCE {
-            let mean = n - across.scale(L::splat(0.5 * dt) * t.inverse_distance);
             f = carried(f, t, mean, dt);
             if RESCALED {
-                let unloading = t.previous_root.gt(t.root);
-                f = V3::select(unloading, f.scale(t.root / t.previous_root), f);
+                f = f.scale(t.unloading);
             }
-            // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
-            let rolling = t.rolling.cross(mean);
-            let slip = across - (rolling - n.scale(rolling.dot(n)));
-            f = f + slip.scale(L::splat(self.tangential * dt) * t.root);
+            f = f.plus(slip, L::splat(self.tangential * dt) * t.root);
             if SLIDING {
-                f = limited(f, limit);
+                let limit = L::splat(self.friction) * elastic;
+                f = match viscous {
+                    Some(v) => limited(f + v, f, v, limit),
+                    None => limited(f, f, V3::splat(0.0), limit),
+                };
             }
         }
-        let mut tangential = f;
-        if self.damping > 0.0 {
-            // From the present velocities alone, so that a resumed state has the same force.
-            let slip = across - t.rolling.cross(n);
-            let share = (self.tangential / self.normal).sqrt();
-            tangential = tangential + slip.scale(dashpot * L::splat(share));
-            if SLIDING {
-                tangential = limited(tangential, limit);
-            }
-        }
+        let tangential = viscous.map_or(f, |v| f + v);
         Forces { elastic, normal, tangential, history: f }
     }
 }
 
-/// Coulomb's limit.
+/// Coulomb's limit: the elastic force `f` where `total` is below it, else what `viscous` leaves of it.
 #[inline(always)]
-fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
-    let square = f.dot(f);
+fn limited<L: Lanes>(total: V3<L>, f: V3<L>, viscous: V3<L>, limit: L) -> V3<L> {
+    let square = total.dot(total);
     let sliding = square.gt(limit * limit);
-    if L::any(sliding) { V3::select(sliding, f.scale(limit / square.sqrt()), f) } else { f }
+    if L::any(sliding) {
+        V3::select(sliding, (V3::splat(0.0) - viscous).plus(total, limit / square.sqrt()), f)
+    } else {
+        f
+    }
 }
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.
@@ -146,7 +148,8 @@ fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
 #[inline(always)]
 fn carried<L: Lanes>(f: V3<L>, t: &Touch<L>, mean: V3<L>, dt: f64) -> V3<L> {
     let n = t.normal;
-    let f = f - mean.scale(f.dot(n));
+    let f = f.minus(mean, f.dot(n));
     let angle = t.spin.dot(mean) * L::splat(dt);
-    f.scale(L::splat(1.0) - L::splat(0.5) * angle * angle) + n.cross(f).scale(angle)
+    let shrink = (L::splat(0.5) * angle).mul_sub_from(angle, L::splat(1.0));
+    f.scale(shrink).plus(n.cross(f), angle)
 }

@@ -47,7 +47,7 @@ impl Neighbours {
     /// list refers to.
     pub(crate) fn draw(&self, state: &State, images: Images, old: &Contacts, skin: f64) -> Contacts {
         let mut list = Builder::new(state, images, old.slots());
-        let mut kept = (0..old.slots()).filter_map(|s| old.pair(s)).filter(|p| p.root > 0.0).peekable();
+        let mut kept = (0..old.slots()).filter_map(|s| old.pair(s)).filter(Pair::touches).peekable();
         for i in 0..state.grains() {
             let (here, radius) = (vector(&state.position[i]), state.radius[i]);
             for q in self.start[i] as usize..self.start[i + 1] as usize {

@@ -129,18 +129,17 @@ impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
             while lane < BLOCK {
                 if let Some(g) = Geometry::<L>::of::<SIZES>(&view, block, sizes.get(b), lane) {
                     deep |= g.deep();
-                    let root = (g.r_eff * g.overlap).sqrt();
-                    let k_n = L::splat(view.law.normal) * root;
+                    let k_n = L::splat(view.law.normal) * g.root;
                     let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
                     let f = g.normal.scale(elastic) - V3::load(&block.history, lane);
-                    let f = V3::select(g.touching, f, V3::new(zero, zero, zero));
+                    let f = V3::select(g.touching, f, V3::splat(0.0));
                     L::store_rows([f.x, f.y, f.z, zero], &mut force[b], lane, 0);
                     let l = g.branch;
                     let size = f.dot(f).sqrt();
                     let square = L::select(g.touching, g.distance * g.distance, zero);
                     let normal = k_n * square;
                     let across =
-                        if self.friction { L::splat(view.law.tangential) * root * square } else { zero };
+                        if self.friction { L::splat(view.law.tangential) * g.root * square } else { zero };
                     let t = strained(g.normal, normal, across, g.touching);
                     L::fold(
                         [

@@ -10,7 +10,7 @@ use grains::Mat3;
 pub(crate) const OVERLAP_LIMIT: f64 = 0.1;
 
 /// Blocks between asking for the grains of one and working on it.
-const AHEAD: usize = 6;
+const AHEAD: usize = 4;
 
 /// What all chunks read.
 #[derive(Clone, Copy)]
@@ -43,31 +43,23 @@ pub(crate) struct Chunk<'a> {
 ///
 /// Where sizes differ, the spares of a row are the levers of its second (force) and first (torque) grain.
 #[inline(always)]
-fn sum<const FRICTION: bool, const SIZES: bool>(
-    rows: &[Wrench; BLOCK],
+fn sum<L: Lanes, const SIZES: bool>(
+    rows: &mut [Wrench; BLOCK],
     block: &Block,
     first: u32,
     sums: &mut [Wrench],
 ) {
-    for (lane, row) in rows.iter().enumerate() {
-        let on_j = &mut sums[block.to[lane] as usize];
-        for c in 0..4 {
-            on_j[c] += row[c];
+    for (lane, row) in rows.iter_mut().enumerate() {
+        let [lever_j, lever_i] = [row[3], row[7]];
+        let moment = [row[4], row[5], row[6]];
+        if SIZES {
+            (0..3).for_each(|k| row[4 + k] = moment[k] * lever_j);
         }
-        if FRICTION {
-            for c in 4..8 {
-                on_j[c] += if SIZES { row[c] * row[3] } else { row[c] };
-            }
+        L::add_row(row, &mut sums[block.to[lane] as usize]);
+        if SIZES {
+            (0..3).for_each(|k| row[4 + k] = moment[k] * lever_i);
         }
-        let on_i = &mut sums[(block.i[lane] - first) as usize];
-        for c in 0..4 {
-            on_i[c] -= row[c];
-        }
-        if FRICTION {
-            for c in 4..8 {
-                on_i[c] += if SIZES { row[c] * row[7] } else { row[c] };
-            }
-        }
+        L::add_reaction(row, &mut sums[(block.i[lane] - first) as usize]);
     }
 }
 
@@ -112,7 +104,6 @@ pub(crate) struct Geometry<L: Lanes> {
     pub(crate) i: L::Index,
     pub(crate) j: L::Index,
     pub(crate) radius: [L; 2],
-    pub(crate) r_eff: L,
     pub(crate) m_eff: L,
     pub(crate) branch: V3<L>,
     pub(crate) normal: V3<L>,
@@ -120,6 +111,8 @@ pub(crate) struct Geometry<L: Lanes> {
     pub(crate) inverse_distance: L,
     /// Never negative.
     pub(crate) overlap: L,
+    /// √(R* δ).
+    pub(crate) root: L,
     pub(crate) touching: L::Mask,
 }
 
@@ -155,21 +148,22 @@ impl<L: Lanes> Geometry<L> {
             return None;
         }
         let distance = square.sqrt();
-        let inverse_distance = L::splat(1.0) / distance;
+        // Not 1/distance: root and division need not wait for each other.
+        let inverse_distance = distance * (L::splat(1.0) / square);
         let overlap = (reach - distance).max(L::splat(0.0));
         let touching = overlap.gt(L::splat(0.0));
-        let normal = branch.scale(inverse_distance);
+        let root = (r_eff * overlap).sqrt();
         Some(Self {
             i,
             j,
             radius,
-            r_eff,
             m_eff,
             branch,
-            normal,
+            normal: branch.scale(inverse_distance),
             distance,
             inverse_distance,
             overlap,
+            root,
             touching,
         })
     }
@@ -182,23 +176,22 @@ impl<L: Lanes> Geometry<L> {
     }
 
     #[inline(always)]
-    fn touch(&self, view: &View<'_>, root: L, previous_root: L) -> Touch<L> {
+    fn touch(&self, view: &View<'_>) -> Touch<L> {
         let rate = |r: usize| {
             let of = |c: usize| L::splat(view.rate[(r, c)]);
             V3::new(of(0), of(1), of(2)).dot(self.branch)
         };
         let affine = V3::new(rate(0), rate(1), rate(2));
-        let zero = V3::new(L::splat(0.0), L::splat(0.0), L::splat(0.0));
         Touch {
             normal: self.normal,
             inverse_distance: self.inverse_distance,
             overlap: self.overlap,
-            root,
-            previous_root,
+            root: self.root,
+            unloading: L::splat(1.0),
             m_eff: self.m_eff,
             relative: V3::gather(view.velocity, self.j) - V3::gather(view.velocity, self.i) + affine,
-            rolling: zero,
-            spin: zero,
+            rolling: V3::splat(0.0),
+            spin: V3::splat(0.0),
         }
     }
 
@@ -212,9 +205,9 @@ impl<L: Lanes> Geometry<L> {
             kept(f.x * l.x),
             kept(f.y * l.y),
             kept(f.z * l.z),
-            kept(half * (f.y * l.z + f.z * l.y)),
-            kept(half * (f.x * l.z + f.z * l.x)),
-            kept(half * (f.x * l.y + f.y * l.x)),
+            kept(half * f.y.mul_add(l.z, f.z * l.y)),
+            kept(half * f.x.mul_add(l.z, f.z * l.x)),
+            kept(half * f.x.mul_add(l.y, f.y * l.x)),
             zero,
             zero,
         ];
@@ -237,11 +230,10 @@ impl<const SIZES: bool, const LOOK: bool> Kernel for Frictionless<'_, SIZES, LOO
             while lane < BLOCK {
                 match Geometry::<L>::of::<SIZES>(&view, block, chunk.sizes.get(b), lane) {
                     Some(g) => {
-                        let root = (g.r_eff * g.overlap).sqrt();
-                        let (elastic, normal) = view.law.frictionless(&g.touch(&view, root, zero));
-                        L::select(g.touching, root, zero).store(&mut block.root, lane);
+                        let (elastic, normal) = view.law.frictionless(&g.touch(&view));
+                        g.root.store(&mut block.root, lane);
                         let force = g.normal.scale(normal);
-                        let force = V3::select(g.touching, force, V3::new(zero, zero, zero));
+                        let force = V3::select(g.touching, force, V3::splat(0.0));
                         L::store_rows([force.x, force.y, force.z, zero], &mut rows, lane, 0);
                         seen.deep |= g.deep();
                         if LOOK {
@@ -255,7 +247,7 @@ impl<const SIZES: bool, const LOOK: bool> Kernel for Frictionless<'_, SIZES, LOO
                 }
                 lane += L::WIDTH;
             }
-            sum::<false, SIZES>(&rows, block, chunk.first, chunk.sums);
+            sum::<L, false>(&mut rows, block, chunk.first, chunk.sums);
         }
         seen
     }
@@ -273,22 +265,23 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
         let mut rows = [[0.0; 8]; BLOCK];
         let mut seen = Seen::default();
         let zero = L::splat(0.0);
-        let none = V3::new(zero, zero, zero);
+        let (one, none) = (L::splat(1.0), V3::splat(0.0));
         for b in 0..chunk.blocks.len() {
             if let Some(ahead) = chunk.blocks.get(b + AHEAD) {
-                L::prefetch(view.position, &ahead.j, 0);
-                L::prefetch(view.velocity, &ahead.j, 0);
-                L::prefetch(view.spin, &ahead.j, 0);
+                L::prefetch(view.position, &ahead.j);
+                L::prefetch(view.velocity, &ahead.j);
+                L::prefetch(view.spin, &ahead.j);
             }
             let block = &mut chunk.blocks[b];
             let mut lane = 0;
             while lane < BLOCK {
                 match Geometry::<L>::of::<SIZES>(&view, block, chunk.sizes.get(b), lane) {
                     Some(g) => {
-                        let root = (g.r_eff * g.overlap).sqrt();
-                        let mut touch = g.touch(&view, root, L::load(&block.root, lane));
+                        let mut touch = g.touch(&view);
+                        let was = L::load(&block.root, lane);
+                        touch.unloading = L::select(was.gt(g.root), g.root / was, one);
                         let half = L::splat(0.5);
-                        let lever = g.radius.map(|r| r - half * g.overlap);
+                        let lever = g.radius.map(|r| half.mul_sub_from(g.overlap, r));
                         let (spin_i, spin_j) = (V3::gather(view.spin, g.i), V3::gather(view.spin, g.j));
                         let spin = spin_i + spin_j;
                         touch.rolling = if SIZES {
@@ -300,11 +293,11 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
                         let history = V3::load(&block.history, lane);
                         let f =
                             view.law.frictional::<L, ADVANCE, SLIDING, RESCALED>(&touch, history, view.dt);
-                        L::select(g.touching, root, zero).store(&mut block.root, lane);
+                        g.root.store(&mut block.root, lane);
                         if ADVANCE {
                             V3::select(g.touching, f.history, none).store(&mut block.history, lane);
                         }
-                        let force = g.normal.scale(f.normal) - f.tangential;
+                        let force = (V3::splat(0.0) - f.tangential).plus(g.normal, f.normal);
                         let force = V3::select(g.touching, force, none);
                         let moment = g.normal.cross(f.tangential);
                         let moment = V3::select(g.touching, moment, none);
@@ -318,7 +311,7 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
                         L::store_rows([moment.x, moment.y, moment.z, spare[1]], &mut rows, lane, 4);
                         seen.deep |= g.deep();
                         if LOOK {
-                            g.look(g.normal.scale(f.elastic) - f.history, &mut seen.virial);
+                            g.look((V3::splat(0.0) - f.history).plus(g.normal, f.elastic), &mut seen.virial);
                         }
                     }
                     None => {
@@ -330,7 +323,7 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
                 }
                 lane += L::WIDTH;
             }
-            sum::<true, SIZES>(&rows, block, chunk.first, chunk.sums);
+            sum::<L, SIZES>(&mut rows, block, chunk.first, chunk.sums);
         }
         seen
     }

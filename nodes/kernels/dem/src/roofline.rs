@@ -58,6 +58,12 @@ impl Lanes for Counted {
     fn store(self, to: &mut [f64; BLOCK], lane: usize) {
         to[lane] = self.0;
     }
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        self * by + plus
+    }
+    fn mul_sub_from(self, by: Self, from: Self) -> Self {
+        from - self * by
+    }
     fn sqrt(self) -> Self {
         counted(self.0.sqrt())
     }
@@ -80,9 +86,15 @@ impl Lanes for Counted {
     fn gather<const K: usize>(table: &[Quad], index: usize) -> Self {
         Self(table[index][K])
     }
-    fn prefetch(_: &[Quad], _: &[u32; BLOCK], _: usize) {}
+    fn prefetch(_: &[Quad], _: &[u32; BLOCK]) {}
     fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
         <f64 as Lanes>::store_rows(components.map(|c| c.0), to, lane, at);
+    }
+    fn add_row(row: &Wrench, to: &mut Wrench) {
+        (0..8).for_each(|k| to[k] = counted(to[k] + row[k]).0);
+    }
+    fn add_reaction(row: &Wrench, to: &mut Wrench) {
+        (0..8).for_each(|k| to[k] = counted(if k < 4 { to[k] - row[k] } else { to[k] + row[k] }).0);
     }
     fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
         for (s, c) in sum.iter_mut().zip(components) {
@@ -130,8 +142,8 @@ pub fn operations_per_contact(setting: &Setting, look: bool) -> f64 {
     OPERATIONS.get() as f64 / BLOCK as f64
 }
 
-/// Additions and multiplications that depend on none but their own chain, `rounds` times over: what the processor has to
-/// give without fused operations, which the contact law does not use. Returns how many were done, and a number that
+/// Fused multiply-adds (two operations each) that depend on none but their own chain, `rounds` times over: what the
+/// processor has to give. Returns how many were done, and a number that
 /// hangs on all of them.
 pub fn independent_operations(simd: Simd, rounds: u64) -> (u64, f64) {
     simd.run(Chains { rounds })
@@ -154,7 +166,7 @@ impl Kernel for Chains {
         let (by, plus) = (L::splat(black_box(0.999_999)), L::splat(black_box(1e-6)));
         for _ in 0..self.rounds {
             for chain in &mut chains {
-                *chain = *chain * by + plus;
+                *chain = chain.mul_add(by, plus);
             }
         }
         let mut last = [0.0; BLOCK];

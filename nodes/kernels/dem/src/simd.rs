@@ -54,16 +54,16 @@ impl Simd {
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         #[cfg(target_arch = "x86_64")]
-        let kernel = match self {
-            Simd::Scalar => kernel,
-            Simd::Avx2 => match crate::x86::run_avx2(kernel) {
+        let kernel = {
+            let tried = match self {
+                Simd::Scalar => Err(kernel),
+                Simd::Avx2 => crate::x86::run_avx2(kernel),
+                Simd::Avx512 => crate::x86::run_avx512(kernel),
+            };
+            match tried.or_else(crate::x86::run_scalar) {
                 Ok(output) => return output,
                 Err(kernel) => kernel,
-            },
-            Simd::Avx512 => match crate::x86::run_avx512(kernel) {
-                Ok(output) => return output,
-                Err(kernel) => kernel,
-            },
+            }
         };
         kernel.run::<f64>()
     }

@@ -22,10 +22,11 @@ pub(crate) fn stable(state: &State, contacts: &Contacts, setting: &Setting) -> f
     let (mut springs, mut dashpots) = (vec![0.0; state.grains()], vec![0.0; state.grains()]);
     for p in contacts.touching() {
         let (i, j) = (p.i as usize, p.j as usize);
+        let root = p.root;
         let m_eff = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
-        let c = dashpot * 2.0 * setting.damping * (m_eff * normal * p.root).sqrt();
+        let c = dashpot * 2.0 * setting.damping * (m_eff * normal * root).sqrt();
         for grain in [i, j] {
-            springs[grain] += stiffness * p.root;
+            springs[grain] += stiffness * root;
             dashpots[grain] += c;
         }
     }

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 // SAFETY, for every block below that only calls arithmetic intrinsics: values of these types are made nowhere but in
 // the two functions at the end of this file, which are entered only after the processor was asked for its features.
 
-/// Four lanes: AVX2.
+/// Four lanes: AVX2 with FMA.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx2(__m256d);
 
@@ -79,6 +79,14 @@ impl Lanes for Avx2 {
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
     }
     #[inline(always)]
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        Self(unsafe { _mm256_fmadd_pd(self.0, by.0, plus.0) })
+    }
+    #[inline(always)]
+    fn mul_sub_from(self, by: Self, from: Self) -> Self {
+        Self(unsafe { _mm256_fnmadd_pd(self.0, by.0, from.0) })
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(unsafe { _mm256_sqrt_pd(self.0) })
     }
@@ -117,8 +125,8 @@ impl Lanes for Avx2 {
         Self(unsafe { _mm256_i32gather_pd::<8>(table.as_ptr().cast::<f64>().add(K), index.offset) })
     }
     #[inline(always)]
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK], lane: usize) {
-        prefetch(table, &rows[lane..lane + Self::WIDTH]);
+    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
+        prefetch(table, rows);
     }
     #[inline(always)]
     fn store_rows([x, y, z, w]: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
@@ -126,6 +134,17 @@ impl Lanes for Avx2 {
         for k in 0..4 {
             store_half(rows[k], &mut to[lane + k], at);
         }
+    }
+    #[inline(always)]
+    fn add_row(row: &Wrench, to: &mut Wrench) {
+        for half in [0, 4] {
+            (Self::load(to, half) + Self::load(row, half)).store(to, half);
+        }
+    }
+    #[inline(always)]
+    fn add_reaction(row: &Wrench, to: &mut Wrench) {
+        (Self::load(to, 0) - Self::load(row, 0)).store(to, 0);
+        (Self::load(to, 4) + Self::load(row, 4)).store(to, 4);
     }
     #[inline(always)]
     fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
@@ -141,9 +160,9 @@ impl Lanes for Avx2 {
     }
 }
 
-/// Asks for rows of a table; rows that it does not have are no harm.
+/// Asks for rows of a table to be brought near; those that it does not have do no harm.
 #[inline(always)]
-fn prefetch(table: &[Quad], rows: &[u32]) {
+fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
     for &row in rows {
         // SAFETY: a prefetch never faults, whatever the address.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(table.as_ptr().wrapping_add(row as usize).cast()) };
@@ -193,6 +212,14 @@ impl Lanes for Avx512 {
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) };
     }
     #[inline(always)]
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        Self(unsafe { _mm512_fmadd_pd(self.0, by.0, plus.0) })
+    }
+    #[inline(always)]
+    fn mul_sub_from(self, by: Self, from: Self) -> Self {
+        Self(unsafe { _mm512_fnmadd_pd(self.0, by.0, from.0) })
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(unsafe { _mm512_sqrt_pd(self.0) })
     }
@@ -230,8 +257,8 @@ impl Lanes for Avx512 {
         Self(unsafe { _mm512_i32gather_pd::<8>(index.offset, table.as_ptr().cast::<f64>().add(K)) })
     }
     #[inline(always)]
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK], lane: usize) {
-        prefetch(table, &rows[lane..lane + Self::WIDTH]);
+    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
+        prefetch(table, rows);
     }
     #[inline(always)]
     fn store_rows([x, y, z, w]: [Self; 4], to: &mut [Wrench; BLOCK], _: usize, at: usize) {
@@ -251,6 +278,15 @@ impl Lanes for Avx512 {
                 store_half(_mm512_extractf64x4_pd::<1>(pair), &mut to[row + 2], at);
             }
         }
+    }
+    // By halves, as rows are written: a wide load cannot take what two narrow stores have just put down.
+    #[inline(always)]
+    fn add_row(row: &Wrench, to: &mut Wrench) {
+        Avx2::add_row(row, to);
+    }
+    #[inline(always)]
+    fn add_reaction(row: &Wrench, to: &mut Wrench) {
+        Avx2::add_reaction(row, to);
     }
     #[inline(always)]
     fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
@@ -289,7 +325,12 @@ fn quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
 
 /// Whether the processor has what [`Avx2`] needs.
 pub(crate) fn has_avx2() -> bool {
-    is_x86_feature_detected!("avx2")
+    is_x86_feature_detected!("avx2") && has_fma()
+}
+
+/// Whether the processor has a fused multiply-add.
+fn has_fma() -> bool {
+    is_x86_feature_detected!("fma")
 }
 
 /// Whether the processor has what [`Avx512`] needs.
@@ -300,9 +341,19 @@ pub(crate) fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
+/// Runs a kernel with one lane, where the processor has a fused multiply-add (else a library call does it).
+pub(crate) fn run_scalar<K: Kernel>(kernel: K) -> Result<K::Output, K> {
+    #[target_feature(enable = "fma")]
+    fn run<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<f64>()
+    }
+    // SAFETY: the processor was asked.
+    if has_fma() { Ok(unsafe { run(kernel) }) } else { Err(kernel) }
+}
+
 /// Runs a kernel with four lanes, where the processor can.
 pub(crate) fn run_avx2<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn run<K: Kernel>(kernel: K) -> K::Output {
         kernel.run::<Avx2>()
     }
@@ -312,7 +363,7 @@ pub(crate) fn run_avx2<K: Kernel>(kernel: K) -> Result<K::Output, K> {
 
 /// Runs a kernel with eight lanes, where the processor can.
 pub(crate) fn run_avx512<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
     fn run<K: Kernel>(kernel: K) -> K::Output {
         kernel.run::<Avx512>()
     }

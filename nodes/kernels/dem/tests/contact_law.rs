@@ -46,7 +46,7 @@ impl Pair {
             inverse_distance: 1.0 / distance,
             overlap,
             root: root(overlap),
-            previous_root: self.root,
+            unloading: (root(overlap) / self.root).min(1.0),
             m_eff: 1.0,
             relative: lanes((branch - self.branch) / DT),
             rolling: lanes(spin * distance),

@@ -21,6 +21,7 @@ Examples:
   grainlab                                  the demo scene
   grainlab launch --scene s2 --seed 3       a scene of the paper
   grainlab launch my.launch.yaml --scene my_scene.toml
+  grainlab launch threads:=1 simd:=scalar   arguments of the launch file
 
 The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
@@ -29,9 +30,10 @@ Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Launch file, in the YAML form of ROS 2 launch [default: the laboratory with the demo scene]
-    #[arg(value_name = "FILE")]
-    file: Option<PathBuf>,
+    /// Launch file, in the YAML form of ROS 2 launch [default: the laboratory with the demo scene], and values for its
+    /// arguments, as in threads:=2
+    #[arg(value_name = "FILE or NAME:=VALUE")]
+    words: Vec<String>,
     /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
@@ -48,13 +50,14 @@ pub(crate) struct Args {
 
 impl Default for Args {
     fn default() -> Self {
-        Self { file: None, scene: None, seed: None, out: RUNS.into(), format: Format::Table }
+        Self { words: Vec::new(), scene: None, seed: None, out: RUNS.into(), format: Format::Table }
     }
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let file = read_file(args.file.as_deref())?;
+    let (path, given) = split(&args.words)?;
+    let file = read_file(path)?;
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
     let scene = scenes::load(name, seed)?;
@@ -62,11 +65,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let directory = run_directory(&args.out, &scene)?;
     // Parameters are YAML: a path with a blank or a colon needs its quotes.
     let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
-    let values = BTreeMap::from([
-        ("scene", path(&directory.join("scene.toml"))),
-        ("seed", scene.scene.seed.to_string()),
-        ("out", path(&directory)),
-    ]);
+    let mut values = given;
+    values.insert("scene", path(&directory.join("scene.toml")));
+    values.insert("seed", scene.scene.seed.to_string());
+    values.insert("out", path(&directory));
     let plans = file.nodes(&values).map_err(Failure::usage)?;
     crate::output::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}; run {}",
@@ -77,6 +79,26 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     );
     let supervised = supervise(plans, domain, &directory, scene.scene.phases.len())?;
     finish(args.format, &directory, &scene, domain, supervised)
+}
+
+/// The launch file, if one is named, and the values for its arguments.
+fn split(words: &[String]) -> Result<(Option<&Path>, BTreeMap<&str, String>), Failure> {
+    let (mut file, mut values) = (None, BTreeMap::new());
+    for word in words {
+        match word.split_once(":=") {
+            Some((name @ ("scene" | "seed" | "out"), _)) => {
+                return Err(Failure::usage(format!("{word}: use --{name}, which the launcher itself needs")));
+            }
+            Some((name, value)) => {
+                values.insert(name, value.to_owned());
+            }
+            None if file.is_none() => file = Some(Path::new(word)),
+            None => {
+                return Err(Failure::usage(format!("{word}: a second launch file; one is run at a time")));
+            }
+        }
+    }
+    Ok((file, values))
 }
 
 fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
