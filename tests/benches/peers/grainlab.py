@@ -25,7 +25,10 @@ class Grainlab:
     def __init__(self, executable: Path, packing: Path, directory: Path):
         self.executable = executable
         self.packing = packing
-        run([executable, "bench", "dem", "--help"], directory, dict(os.environ), 60.0)
+        try:
+            run([executable, "bench", "dem", "--help"], directory, dict(os.environ), 60.0)
+        except RunFailed as error:
+            raise RunFailed(f"no `bench dem` in {executable} ({INSTALL}):\n{error}") from error
         self.version = run([executable, "--version"], directory, dict(os.environ), 60.0).strip()
 
     @classmethod
