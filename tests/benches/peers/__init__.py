@@ -1,0 +1,1 @@
+"""Other codes' stepping loops beside ours, on one packing. See ../README.md."""
