@@ -113,7 +113,9 @@ impl Engine {
 
     fn with(state: State, pairs: Pairs, setting: Setting) -> Self {
         let travel = Soa::zeros(state.grains());
-        Self { state, pairs, setting, travel, strained: 0.0, listed: false }
+        let mut engine = Self { state, pairs, setting, travel, strained: 0.0, listed: false };
+        engine.set(setting);
+        engine
     }
 
     /// Sets velocities relative to the affine motion, m/s, one a grain.
@@ -209,9 +211,11 @@ impl Engine {
         }
         self.state.step += 1;
         self.state.time += self.state.time_step;
-        self.state.cell =
-            self.state.cell.deformed(&stretch).ok_or(DemError::Cell { step: self.state.step })?;
-        self.strained += self.state.rate.norm() * self.state.time_step;
+        let strain = self.state.rate.norm() * self.state.time_step;
+        // Beyond 1 two axes could turn inside out at once and leave a positive volume.
+        let deformed = self.state.cell.deformed(&stretch).filter(|_| strain < 1.0);
+        self.state.cell = deformed.ok_or(DemError::Cell { step: self.state.step })?;
+        self.strained += strain;
         if self.list_is_stale(moved.largest_square_travel.sqrt()) {
             self.relist()?;
         } else {
