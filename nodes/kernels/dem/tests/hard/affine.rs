@@ -10,7 +10,7 @@ use scene::Tangential;
 
 /// A packing at rest, to the last digits.
 fn sample() -> Packing {
-    pressed(48, 2, 1e5, 0.3)
+    Sample::Pressed.packing()
 }
 
 /// σ after `sample` was strained by `strain` in component `k` (tensor component) and brought to rest, stuck.

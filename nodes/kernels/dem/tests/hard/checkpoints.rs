@@ -68,7 +68,8 @@ fn reloaded(e: &Engine, s: Setting) -> Engine {
 /// step is looked at anew.
 #[test]
 fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
-    let loose = pressed(48, 2, 2e4, 0.3);
+    let loose = Sample::Loose.packing();
+    let (mut contacts, mut sliding) = (0, 0);
     for s in settings() {
         for drive in [Drive::Strained, Drive::Servoed] {
             let mut e = start(&loose, s);
@@ -86,19 +87,20 @@ fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
                 assert_eq!(second.snapshot(), whole.snapshot(), "{what}");
             }
             let p = packing(&e);
-            assert!(p.contacts.len() > 25, "{} contacts", p.contacts.len());
+            contacts += p.contacts.len();
             if s.features() == Features::Coulomb {
                 let slides = |c: &&grains::Contact| c.tangential_force.norm() > 0.299 * c.normal_force;
-                assert!(p.contacts.iter().filter(slides).count() > 5, "some contacts slide");
+                sliding += p.contacts.iter().filter(slides).count();
             }
         }
     }
+    assert!(contacts > 400 && sliding > 20, "{contacts} contacts, {sliding} slide");
 }
 
 /// Expected: a run that is looked at after every step is the run that is not (LAMMPS, PR 1631: it was not).
 #[test]
 fn looking_at_every_step_changes_nothing() {
-    let loose = pressed(48, 2, 2e4, 0.3);
+    let loose = Sample::Loose.packing();
     for s in settings() {
         for drive in [Drive::Strained, Drive::Servoed] {
             let (mut plain, mut watched) = (start(&loose, s), start(&loose, s));

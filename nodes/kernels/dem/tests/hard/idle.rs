@@ -7,7 +7,7 @@ use scene::Tangential;
 
 /// A packing at the bottom: what is left of its preparation would else be taken for drift.
 fn at_rest(tangential: Tangential) -> Engine {
-    let p = pressed(8, 2, 1e5, 0.3);
+    let p = Sample::Few.packing();
     let mut s = setting(0.3, p.time_step);
     (s.tangential, s.damping, s.drag, s.spin_drag) = (tangential, 0.3, 2e4, 2e4);
     let mut e = Engine::from_packing(&p, s);

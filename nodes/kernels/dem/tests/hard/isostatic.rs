@@ -9,7 +9,7 @@ use micro::rattlers::participating;
 /// stresses, and the servo still settles it.
 #[test]
 fn a_frictionless_packing_at_ten_pascal_has_just_the_contacts_that_balance_needs() {
-    let pressed = pressed(48, 1, 1e5, 0.0);
+    let pressed = Sample::Frictionless.packing();
     let mut s = setting(0.0, 0.0);
     s.time_step = TimeStep::Safety(0.8);
     (s.damping, s.drag) = (0.3, 2e3);

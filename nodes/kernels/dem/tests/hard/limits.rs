@@ -48,7 +48,7 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
 /// had both.
 #[test]
 fn without_friction_there_is_neither_spin_nor_tangential_force() {
-    let p = pressed(48, 2, 1e5, 0.3);
+    let p = Sample::Pressed.packing();
     let mut e = Engine::from_packing(&p, setting(0.3, 2e-8));
     e.prepare().unwrap();
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.5]).unwrap();
@@ -66,7 +66,7 @@ fn without_friction_there_is_neither_spin_nor_tangential_force() {
 /// Expected: a packing that had friction, taken up without, shows the stress of its normal forces at once.
 #[test]
 fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() {
-    let p = pressed(48, 2, 1e5, 0.3);
+    let p = Sample::Pressed.packing();
     let mut e = Engine::from_packing(&p, setting(0.0, 2e-8));
     e.prepare().unwrap();
     let mut bare = p.clone();
@@ -81,7 +81,7 @@ fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() 
 /// Expected: μ = ∞ is the limit of large μ, and small μ goes over into μ = 0.
 #[test]
 fn infinite_friction_is_the_limit_of_large_friction_and_none_of_small() {
-    let p = pressed(48, 2, 1e5, 0.3);
+    let p = Sample::Pressed.packing();
     let after = |friction: f64| {
         let mut q = p.clone();
         // Small friction would cut off the history of this packing at once.

@@ -21,7 +21,7 @@ fn shear(xy: f64, xz: f64, yz: f64) -> Mat3 {
 /// Expected: the same contacts, stress and motion, however far the cell vectors lean.
 #[test]
 fn a_cell_sheared_past_one_half_answers_as_the_upright_cell_of_the_same_lattice() {
-    let p = pressed(48, 2, 1e5, 0.3);
+    let p = Sample::Pressed.packing();
     let run = |u: &Mat3| {
         let mut e = recombined(&p, u);
         e.prepare().unwrap();
@@ -48,7 +48,7 @@ fn a_cell_sheared_past_one_half_answers_as_the_upright_cell_of_the_same_lattice(
 /// Expected: a lean of more than a hundred cell vectors needs image numbers that a contact cannot hold; refused.
 #[test]
 fn a_cell_that_leans_by_more_than_a_hundred_vectors_is_refused() {
-    let p = pressed(48, 2, 1e5, 0.3);
+    let p = Sample::Pressed.packing();
     let refused = recombined(&p, &shear(150.0, 0.0, 0.0)).prepare();
     assert!(matches!(refused, Err(DemError::Image { .. })), "{refused:?}");
 }

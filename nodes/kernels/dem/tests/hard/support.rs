@@ -1,8 +1,9 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
-use dem::{Engine, Setting, Simulation, TimeStep};
-use grains::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, Vec3};
-use scene::{Scene, Tangential};
+use dem::{Engine, Setting, TimeStep};
+use grains::material::effective_radius;
+use grains::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
+use scene::Tangential;
 
 pub(crate) const RADIUS: f64 = 1e-4;
 pub(crate) const GLASS: Material = Material::GLASS;
@@ -162,56 +163,62 @@ pub(crate) fn isotropic(pressure: f64) -> [ComponentControl; 6] {
     std::array::from_fn(|i| ComponentControl::Stress(if i < 3 { pressure } else { 0.0 }))
 }
 
-/// A disordered packing at rest under `pressure` (Pa), pressed with friction `friction` from a gas.
-pub(crate) fn pressed(count: u32, seed: u64, pressure: f64, friction: f64) -> Packing {
-    let target = format!("{{ stress = {pressure:e} }}");
-    let zero = "{ stress = 0.0 }";
-    let text = format!(
-        r#"
-name = "pressed"
-seed = {seed}
-[grains]
-count = {count}
-diameter = 2e-4
-[[phase]]
-kind = "gas"
-rate = -100.0
-control_period = 100
-until = {{ solid_fraction = 0.55 }}
-[[phase]]
-kind = "relax"
-friction = 0.0
-drag = 1e4
-control_period = 50
-until = {{ elapsed = 2e-4 }}
-[[phase]]
-kind = "strain"
-friction = {friction}
-rate = [-40.0, -40.0, -40.0, 0.0, 0.0, 0.0]
-until = {{ pressure_above = {pressure:e} }}
-[[phase]]
-kind = "servo"
-friction = {friction}
-drag = 2e4
-spin_drag = 2e4
-rate_limit = 30.0
-response_time = 3e-6
-control = {{ xx = {target}, yy = {target}, zz = {target}, yz = {zero}, xz = {zero}, xy = {zero} }}
-until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
-"#
-    );
-    let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
-    while let Some(r) = run.request() {
-        let answer = servo::answer(&servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        });
-        run.answer(&answer.unwrap().rate).unwrap();
+/// Disordered packings at rest, from the example `press`; kept as files because the way there is chaotic.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Sample {
+    /// 48 grains, friction 0.3, 100 kPa.
+    Pressed,
+    /// 48 grains, friction 0.3, 20 kPa.
+    Loose,
+    /// 48 grains, no friction, 100 kPa.
+    Frictionless,
+    /// 8 grains, friction 0.3, 100 kPa.
+    Few,
+}
+
+impl Sample {
+    /// Reads the packing; what a contact's geometry tells is worked out anew.
+    pub(crate) fn packing(self) -> Packing {
+        let text = match self {
+            Sample::Pressed => include_str!("packings/pressed.txt"),
+            Sample::Loose => include_str!("packings/loose.txt"),
+            Sample::Frictionless => include_str!("packings/frictionless.txt"),
+            Sample::Few => include_str!("packings/few.txt"),
+        };
+        let rows = |kind: &'static str| {
+            text.lines()
+                .filter_map(move |l| l.strip_prefix(kind)?.strip_prefix(' '))
+                .map(|l| l.split(' ').map(|word| word.parse::<f64>().unwrap()).collect::<Vec<f64>>())
+        };
+        let vector = |row: &[f64]| Vec3::from_column_slice(row);
+        let columns: Vec<Vec3> = rows("cell").map(|r| vector(&r)).collect();
+        let numerics = rows("numerics").next().unwrap();
+        let radii: Vec<f64> = rows("grain").map(|r| r[0]).collect();
+        let n = radii.len();
+        let mut p = Packing {
+            step: 0,
+            time: 0.0,
+            cell: Cell::new(Mat3::from_columns(&columns)).unwrap(),
+            deformation: Mat3::identity(),
+            ids: (0..n as u32).collect(),
+            positions: rows("grain").map(|r| vector(&r[1..])).collect(),
+            velocities: vec![Vec3::zeros(); n],
+            spins: vec![Vec3::zeros(); n],
+            radii,
+            contacts: Vec::new(),
+            material: GLASS,
+            friction: numerics[0],
+            time_step: numerics[1],
+        };
+        for r in rows("contact") {
+            let (i, j, image) = (r[0] as u32, r[1] as u32, [r[2], r[3], r[4]].map(|n| n as i8));
+            let branch = p.positions[j as usize] - p.positions[i as usize] + p.cell.shift(image);
+            let (a, b) = (p.radii[i as usize], p.radii[j as usize]);
+            let overlap = a + b - branch.norm();
+            let normal_force = p.material.normal_force(effective_radius(a, b), overlap);
+            let (normal, tangential_force) = (branch.normalize(), vector(&r[5..]));
+            p.contacts.push(Contact { i, j, image, overlap, normal, normal_force, tangential_force });
+        }
+        p.validated().unwrap()
     }
-    run.packing()
 }
