@@ -8,7 +8,7 @@ use scene::Tangential;
 const OVERLAP: f64 = 4e-8;
 const DT: f64 = 1e-9;
 
-/// Two heavy grains along `direction` across the boundary of a large cell, led by the strain alone.
+/// Two heavy grains that touch along z across the boundary of a large cell, led by the strain alone.
 fn led(tangential: Tangential, friction: f64) -> Engine {
     let edge = 8.0 * RADIUS;
     let mut s = setting(friction, DT);

@@ -140,3 +140,13 @@ fn the_time_step_that_the_engine_chooses_is_below_the_true_limit_and_not_far_bel
         assert!(share <= 1.0 && share > 0.45, "{share} of the true limit, pressed by {pressed}");
     }
 }
+
+/// Expected: a scene cannot ask for more than the bound; the fault names the key.
+#[test]
+fn a_scene_that_asks_for_105_hundredths_of_the_bound_is_refused() {
+    let text = "name = 'x'\n[grains]\ncount = 2\ndiameter = 2e-4\n[numerics]\ntime_step_safety = 1.05\n\
+                [[phase]]\nkind = 'gas'\nrate = -1.0\nuntil = { elapsed = 1e-6 }\n";
+    let faults = scene::Scene::parse(text).unwrap_err().faults;
+    assert!(faults.len() == 1 && faults[0].place.contains("time_step_safety"), "{faults:?}");
+    assert!(scene::Scene::parse(&text.replace("1.05", "0.95")).is_ok());
+}
