@@ -156,7 +156,9 @@ impl Engine {
     fn with(state: State, contacts: Contacts, setting: Setting) -> Self {
         let (found, drawn) = (Approach::new(setting.skin), Approach::new(setting.skin));
         let (compute, neighbours) = (Compute::default(), Neighbours::default());
-        Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false }
+        let mut engine = Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false };
+        engine.set(setting);
+        engine
     }
 
     /// Instruction set and threads from now on; results do not depend on them.
@@ -308,8 +310,10 @@ impl Engine {
         }
         self.state.step += 1;
         self.state.time += self.state.time_step;
-        self.state.cell =
-            self.state.cell.deformed(stretch).ok_or(DemError::Cell { step: self.state.step })?;
+        // Beyond 1 two axes could turn inside out at once and leave a positive volume.
+        let strain = self.state.rate.norm() * self.state.time_step;
+        let deformed = self.state.cell.deformed(stretch).filter(|_| strain < 1.0);
+        self.state.cell = deformed.ok_or(DemError::Cell { step: self.state.step })?;
         self.relist(moved)
     }
 

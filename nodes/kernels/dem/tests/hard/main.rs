@@ -1,0 +1,18 @@
+//! Hard cases, each with its expected outcome, and the traps that other codes fell into.
+
+mod affine;
+mod checkpoints;
+mod drag;
+mod few_grains;
+mod history;
+mod idle;
+mod isostatic;
+mod limits;
+mod lists;
+mod rattlers;
+mod refusals;
+mod sheared;
+mod sizes;
+mod support;
+mod targets;
+mod time_step;
