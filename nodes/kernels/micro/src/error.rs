@@ -94,6 +94,9 @@ pub enum MicroError {
         /// The offending eigenvalue, Pa.
         eigenvalue: f64,
     },
+    /// The explicit probe failed.
+    #[error(transparent)]
+    Probe(#[from] ProbeError),
 }
 
 /// Why a packing could not be probed.

@@ -157,6 +157,22 @@ fn a_packing_that_was_shaken_comes_to_rest_first() {
 }
 
 #[test]
+fn an_analysis_by_probe_reports_its_stiffness_and_how_it_went() {
+    let packing = reference();
+    let settings = Settings { probe: Some(Probe::default()), ..Settings::default() };
+    let (by_probe, frozen) = (analyse(&packing, &settings).unwrap(), analyse(&packing, &Settings::default()));
+    let (found, moduli) = (by_probe.probe.unwrap(), by_probe.moduli.unwrap());
+    assert_eq!(found, probe(&packing, &Probe::default()).unwrap());
+    assert_eq!(moduli.stiffness, found.stiffness);
+    let frozen = frozen.unwrap();
+    assert_eq!(moduli.affine, frozen.moduli.unwrap().affine);
+    assert_eq!(frozen.probe, None);
+    let short = Probe { max_steps: 60, ..Probe::default() };
+    let refused = analyse(&packing, &Settings { probe: Some(short), ..Settings::default() });
+    assert!(matches!(refused, Err(micro::MicroError::Probe(ProbeError::NotConverged { .. }))), "{refused:?}");
+}
+
+#[test]
 fn the_same_packing_gives_the_same_bits() {
     let packing = reference();
     let settings = Probe { tolerance: 1e-3, ..Probe::default() };
