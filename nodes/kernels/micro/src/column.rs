@@ -13,9 +13,16 @@ const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 /// Steps between two looks at the stress.
 pub(crate) const LOOK: u32 = 20;
 
+/// Fewest looks, of which the last third are compared.
+const LEAST_LOOKS: usize = 6;
+
 /// Fewest steps over which a strain is imposed, and largest strain of one of them: far below any overlap that counts.
 const STRAIN_STEPS: f64 = 20.0;
 const STRAIN_PER_STEP: f64 = 1e-7;
+
+/// Entries of a column are compared with the largest of them, or with this share of the affine stiffness where a column
+/// is feebler than that, or nothing at all.
+const FEEBLE: f64 = 1e-3;
 
 /// How one column came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,11 +55,15 @@ pub(crate) struct Calm {
     engine: Engine,
     stress: [f64; 6],
     contacts: Vec<Contact>,
+    /// Largest affine stiffness, Pa.
+    affine: f64,
 }
 
 impl Calm {
     pub(crate) fn new(engine: Engine) -> Result<Self, DemError> {
-        Ok(Self { stress: stress(&engine.snapshot()?), contacts: contacts(&engine), engine })
+        let seen = engine.snapshot()?;
+        let (stress, affine) = (stress(&seen), amax(&seen.tangent));
+        Ok(Self { stress, contacts: contacts(&engine), affine, engine })
     }
 }
 
@@ -93,14 +104,19 @@ pub(crate) fn strained(
         let snapshots = looks(&relaxation)?;
         let [one, other] = [stress(&snapshots[0]), stress(&snapshots[1])];
         let entries: [f64; 6] = std::array::from_fn(|k| -(one[k] - other[k]) / between);
-        let largest = amax(&entries);
+        let largest = amax(&entries).max(FEEBLE * calm.affine);
         seen.push(entries);
         column.residual = snapshots[0].unbalanced.max(snapshots[1].unbalanced) / load;
         // Of a slow approach the share still to come shows best over a time in proportion to that spent.
-        column.drift =
-            seen[2 * seen.len() / 3..].iter().map(|past| difference(past, &entries)).fold(0.0, f64::max)
-                / largest;
-        if seen.len() >= 3 && column.residual <= settings.tolerance && column.drift <= settings.tolerance {
+        column.drift = seen[2 * (seen.len() - 1) / 3..]
+            .iter()
+            .map(|past| difference(past, &entries))
+            .fold(0.0, f64::max)
+            / largest;
+        if seen.len() >= LEAST_LOOKS
+            && column.residual <= settings.tolerance
+            && column.drift <= settings.tolerance
+        {
             let side = |s: &[f64; 6], sign: f64| -> [f64; 6] {
                 std::array::from_fn(|k| -sign * (s[k] - calm.stress[k]) / settings.amplitude)
             };
