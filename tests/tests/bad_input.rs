@@ -46,9 +46,15 @@ fn unknown_parameters_and_commands_end_with_exit_code_2() {
     refused(&lab, &["analyse-this"], 2, &[]);
     let reference = golden("reference/ref_packing_500.csv.gz");
     let reference = reference.to_string_lossy();
-    for flag in
-        ["--shear-modulus=0", "--shear-modulus=NaN", "--poisson=0.9", "--density=-1", "--friction=-0.5"]
-    {
+    for flag in [
+        "--shear-modulus=0",
+        "--shear-modulus=NaN",
+        "--poisson=0.9",
+        "--density=-1",
+        "--friction=-0.5",
+        "--amplitude=0",
+        "--amplitude=0.1",
+    ] {
         let name = flag.split('=').next().unwrap_or(flag);
         refused(&lab, &["analyze", &reference, flag], 2, &[name, "out of range"]);
     }

@@ -48,6 +48,32 @@ fn invert_reproduces_table_iii_from_the_moduli_it_implies() {
 }
 
 #[test]
+fn analyze_by_probe_gives_the_columns_of_lammps_and_warns_where_contacts_open() {
+    let lab = Lab::new();
+    let reference = golden("reference/ref_packing_500.csv.gz");
+    let by_probe = |amplitude: &str| -> Value {
+        let arguments = ["--method", "probe", "--amplitude", amplitude, "--format", "json"];
+        let ended = lab.run(&[&["analyze", &reference.to_string_lossy()], &arguments[..]].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        serde_json::from_str::<Value>(&ended.stdout).unwrap()[0].take()
+    };
+    let sidecar: Value =
+        serde_json::from_slice(&std::fs::read(golden("reference/ref_packing_500.json")).unwrap()).unwrap();
+    let found = by_probe("1e-7");
+    let lammps = &sidecar["lammps_C_Pa_eps_1e-7"];
+    let c = |m: &Value, i: usize, j: usize| m[i][j].as_f64().unwrap();
+    for i in 0..6 {
+        for j in 0..6 {
+            let (ours, theirs) = (c(&found["stiffness_pa"], i, j), c(lammps, i, j));
+            assert!((ours - theirs).abs() < 1e-3 * c(lammps, 0, 0), "C[{i}][{j}] {ours} {theirs}");
+        }
+    }
+    assert_eq!(found["warnings"].as_array().unwrap().len(), 0, "{}", found["warnings"]);
+    let far = by_probe("1e-5");
+    assert!(far["warnings"][0].as_str().unwrap().contains("--amplitude"), "{}", far["warnings"]);
+}
+
+#[test]
 fn analyze_reproduces_the_numbers_of_lammps_on_its_own_packing() {
     let lab = Lab::new();
     let ended = lab.run(&[

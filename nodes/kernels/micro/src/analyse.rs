@@ -5,6 +5,7 @@ use crate::balance::unbalanced;
 use crate::error::{MicroError, NoNetwork};
 use crate::fabric::fabric;
 use crate::network::Network;
+use crate::probe::{Probe, ProbeResult, probe};
 use crate::rattlers::{contacts_needed, participating};
 use crate::stiffness;
 use grains::stress::{Stress, stress};
@@ -23,11 +24,13 @@ pub struct Settings {
     pub axis: Vec3,
     /// Whether contacts keep their tangential stiffness ("friction set very high"), or have none (frictionless).
     pub tangential: bool,
+    /// With a probe the stiffness is measured by straining the packing, instead of that of the frozen network.
+    pub probe: Option<Probe>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, max_iterations: 20_000, axis: Vec3::z(), tangential: true }
+        Self { tolerance: 1e-9, max_iterations: 20_000, axis: Vec3::z(), tangential: true, probe: None }
     }
 }
 
@@ -48,6 +51,8 @@ pub struct Analysis {
     pub unbalanced: Option<f64>,
     /// Relaxed and affine stiffness of the frozen network, or why there is none.
     pub moduli: Result<Moduli, NoNetwork>,
+    /// How the probe went, where there was one.
+    pub probe: Option<ProbeResult>,
 }
 
 /// Measures structure, stress and stiffness of `packing`.
@@ -59,7 +64,11 @@ pub fn analyse(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     let stress = stress(packing);
     let present = participating(packing);
     let mut fabric = fabric(packing, &axis);
-    let moduli = measured_moduli(packing, &present, settings)?;
+    let mut moduli = measured_moduli(packing, &present, settings)?;
+    let probe = match (&mut moduli, &settings.probe) {
+        (Ok(moduli), Some(settings)) => Some(probed(packing, settings, moduli)?),
+        _ => None,
+    };
     if let Ok(m) = &moduli {
         fabric.anisotropy.elastic =
             m.stiffness.isotropic_compression().and_then(|strain| anisotropy::ratio(&strain, &axis));
@@ -72,7 +81,17 @@ pub fn analyse(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
         solid_fraction: packing.solid_fraction(),
         unbalanced: unbalanced(packing, &present),
         moduli,
+        probe,
     })
+}
+
+/// Puts the stiffness of the probe in the place of the network's; iterations are then solver steps.
+fn probed(packing: &Packing, settings: &Probe, moduli: &mut Moduli) -> Result<ProbeResult, MicroError> {
+    let found = probe(packing, settings)?;
+    moduli.stiffness = found.stiffness;
+    moduli.residual = found.columns.iter().map(|c| c.residual).fold(0.0, f64::max);
+    moduli.iterations = found.rest_steps + found.columns.iter().map(|c| c.steps).sum::<u32>();
+    Ok(found)
 }
 
 fn measured_moduli(

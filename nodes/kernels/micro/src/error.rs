@@ -94,4 +94,59 @@ pub enum MicroError {
         /// The offending eigenvalue, Pa.
         eigenvalue: f64,
     },
+    /// The explicit probe failed.
+    #[error(transparent)]
+    Probe(#[from] ProbeError),
+}
+
+/// Why a packing could not be probed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProbeError {
+    /// A setting is out of its range.
+    #[error("probe setting {name} = {value:e} is out of range: {requirement}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// There is nothing to probe.
+    #[error(transparent)]
+    NoNetwork(#[from] NoNetwork),
+    /// The packing did not come to rest before it was strained.
+    #[error(
+        "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
+         for this amplitude; relax the packing further, raise max_steps, or raise the amplitude"
+    )]
+    NoRest {
+        /// Mean net force of non-rattlers over mean contact force.
+        unbalanced: f64,
+        /// What is needed.
+        target: f64,
+        /// Steps done.
+        steps: u32,
+    },
+    /// The stress under strain did not settle.
+    #[error(
+        "column {component} did not settle in {steps} steps: residual force {residual:e}, drift of the stress {drift:e}, \
+         tolerance {tolerance:e}; raise max_steps or tolerance (a network near isostaticity converges slowly), or \
+         lower the amplitude if contacts open"
+    )]
+    NotConverged {
+        /// Voigt component of the strain.
+        component: &'static str,
+        /// See [`crate::column::Column::residual`].
+        residual: f64,
+        /// See [`crate::column::Column::drift`].
+        drift: f64,
+        /// The tolerance asked for.
+        tolerance: f64,
+        /// Steps done.
+        steps: u32,
+    },
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] dem::DemError),
 }

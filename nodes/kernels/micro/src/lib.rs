@@ -10,19 +10,25 @@
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
 //! - [`preconditioner`], [`solve`]: block-Jacobi conjugate gradients on the singular operator
 //! - [`stiffness`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
+//! - [`mod@probe`]: the same stiffness by straining the packing with the whole contact law; [`mod@column`] and [`relax`]
+//!   serve it
 //! - [`error`]: what can go wrong, typed
 
 pub mod analyse;
 pub mod anisotropy;
 pub mod balance;
+pub mod column;
 pub mod error;
 pub mod fabric;
 pub mod network;
 pub mod preconditioner;
+pub mod probe;
 pub mod rattlers;
+pub mod relax;
 pub mod solve;
 pub mod stiffness;
 
 pub use analyse::{Analysis, Settings, analyse};
-pub use error::{MicroError, NoNetwork};
+pub use error::{MicroError, NoNetwork, ProbeError};
 pub use network::{Motion, Network};
+pub use probe::{Probe, ProbeResult, Sides, probe};

@@ -17,7 +17,13 @@ Examples:
   Every packing of a recorded run:
     grainlab analyze recordings/runs/demo-1-1
   A LAMMPS dump (id type x y z radius ...), with what the file does not say:
-    grainlab analyze settle.dump --shear-modulus 29e9 --poisson 0.2 --density 2500 --friction 0.3 --format json";
+    grainlab analyze settle.dump --shear-modulus 29e9 --poisson 0.2 --density 2500 --friction 0.3 --format json
+  The same stiffness by straining the packing itself, to see what the linear response leaves out:
+    grainlab analyze recordings/runs/demo-1-1 --method probe";
+
+/// Forward and backward stiffness of a probe may differ by this share without a warning: half of it is the error of either,
+/// and the difference of both is of a smaller order.
+const ONE_SIDED: f64 = 0.01;
 
 /// Files to measure, and what they do not say. A flag goes before what a file or its sidecar says.
 #[derive(Debug, clap::Args)]
@@ -63,9 +69,24 @@ pub(crate) struct Args {
     /// Relative residual at which the stiffness solve stops
     #[arg(long, value_name = "REL", default_value_t = micro::Settings::default().tolerance)]
     tolerance: f64,
+    /// How the stiffness is found
+    #[arg(long, value_enum, default_value_t)]
+    method: Method,
+    /// Strain of the probe, forward and backward; far below overlap/diameter
+    #[arg(long, value_name = "STRAIN", default_value_t = micro::Probe::default().amplitude)]
+    amplitude: f64,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+enum Method {
+    /// Linear response of the frozen contact network
+    #[default]
+    Network,
+    /// Explicit: strain the packing a little, relax, read the stress
+    Probe,
 }
 
 /// Runs the command.
@@ -158,7 +179,12 @@ fn settings(args: &Args) -> Result<micro::Settings, Failure> {
     if !(1e-13..=1e-2).contains(&args.tolerance) {
         return Err(Failure::usage(format!("--tolerance {} is out of range: 1e-13 to 1e-2", args.tolerance)));
     }
-    Ok(micro::Settings { axis, tolerance: args.tolerance, ..micro::Settings::default() })
+    let amplitude = args.amplitude;
+    in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
+        a > 0.0 && a <= 0.01
+    })?;
+    let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..micro::Probe::default() });
+    Ok(micro::Settings { axis, tolerance: args.tolerance, probe, ..micro::Settings::default() })
 }
 
 /// What reading one file came to.
@@ -211,5 +237,19 @@ fn measure(path: &Path, imported: &Imported, settings: &micro::Settings) -> Resu
     state.seconds = Some(began.elapsed().as_secs_f64());
     state.warnings.clone_from(&imported.notes);
     state.warnings.extend(moduli.err().map(ToString::to_string));
+    state.warnings.extend(found.probe.as_ref().and_then(one_sided));
     Ok(state)
+}
+
+/// What a probe says about a response that depends on the direction of the strain.
+fn one_sided(probe: &micro::ProbeResult) -> Option<String> {
+    let changed: u32 = probe.columns.iter().map(|c| c.opened + c.closed).sum();
+    let worst = probe.columns.iter().filter_map(|c| c.forward_backward).fold(0.0, f64::max);
+    (worst > ONE_SIDED).then(|| {
+        format!(
+            "the probe's forward and backward strain give stiffnesses that differ by {:.1} %, {changed} contacts opened \
+             or closed: lower --amplitude",
+            100.0 * worst
+        )
+    })
 }
