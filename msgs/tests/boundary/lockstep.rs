@@ -108,7 +108,7 @@ fn each_fault_of_a_request_is_refused_by_name() {
             ),
             (|m| (m.law, m.leak) = (1, 1.5), "Stress.leak = 1.5 is refused: it must be between 0 and 1"),
             (|m| (m.law, m.gain) = (1, NAN), "Stress.gain = NaN is refused"),
-            (|m| (m.law, m.gain) = (2, 0.0), "Stress.gain = 0 is refused"),
+            (|m| (m.law, m.gain) = (2, 0.0), "Stress.gain = 0.0 is refused"),
             (|m| m.tangent.zz = INF, "Stress.tangent.zz = inf is refused"),
             (|m| m.control_interval = 0.0, "Stress.control_interval = 0.0 is refused"),
             (|m| m.strain.xy = NAN, "Stress.strain.xy = NaN is refused"),

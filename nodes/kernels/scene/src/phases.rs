@@ -179,8 +179,8 @@ fn servo(r: &mut Reader<'_>) -> PhaseKind {
     PhaseKind::Servo { controls, law, rate_limit }
 }
 
-/// Share of the critical gain when the scene names none. Packings of glass settle in the fewest steps between 0.1 and
-/// 0.6; 0.3 leaves a factor of 3 to the limit for stiffness that grows within a control period.
+/// Share of the critical gain when the scene names none. Packings settle in as many steps at any share from 0.03 to 0.6;
+/// 0.3 leaves a factor of 3 to the limit for stiffness that grows within a control period.
 const GAIN_SHARE: f64 = 0.3;
 
 #[derive(Clone, Copy)]
