@@ -94,7 +94,11 @@ fn law(m: &Stress) -> Result<ServoLaw, BoundaryError> {
             gain: CHECK.not_negative("gain", m.gain)?,
             leak: CHECK.share("leak", m.leak)?,
         }),
-        other => Err(CHECK.code("law", other, "0 (scaled), 1 (integral)")),
+        Stress::LAW_NORMALISED => Ok(ServoLaw::Normalised {
+            share: CHECK.positive("gain", m.gain)?,
+            leak: CHECK.share("leak", m.leak)?,
+        }),
+        other => Err(CHECK.code("law", other, "0 (scaled), 1 (integral), 2 (normalised)")),
     }
 }
 
@@ -105,6 +109,7 @@ impl TryFrom<&StressRequest> for Stress {
         let (law, gain, leak, response_time) = match r.law {
             ServoLaw::Scaled { response_time } => (Stress::LAW_SCALED, 0.0, 0.0, response_time),
             ServoLaw::Integral { gain, leak } => (Stress::LAW_INTEGRAL, gain, leak, 0.0),
+            ServoLaw::Normalised { share, leak } => (Stress::LAW_NORMALISED, share, leak, 0.0),
         };
         let control = r.controls.map(|c| match c {
             ComponentControl::Held => (Stress::MODE_HELD, 0.0),

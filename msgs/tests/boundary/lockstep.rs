@@ -25,6 +25,7 @@ fn law() -> impl Strategy<Value = ServoLaw> {
     prop_oneof![
         (1e-9..1e9f64).prop_map(|response_time| ServoLaw::Scaled { response_time }),
         (0.0..1e9f64, 0.0..=1.0f64).prop_map(|(gain, leak)| ServoLaw::Integral { gain, leak }),
+        (1e-9..1.0f64, 0.0..=1.0f64).prop_map(|(share, leak)| ServoLaw::Normalised { share, leak }),
     ]
 }
 
@@ -97,13 +98,17 @@ fn each_fault_of_a_request_is_refused_by_name() {
             (|m| m.setpoint[1] = INF, "Stress.setpoint[1] (yy) = inf is refused"),
             (|m| m.rate[2] = NAN, "Stress.rate[2] (zz) = NaN is refused"),
             (|m| m.rate_limit = -0.5, "Stress.rate_limit = -0.5 is refused"),
-            (|m| m.law = 2, "Stress.law = 2 is refused: it must be one of 0 (scaled), 1 (integral)"),
+            (
+                |m| m.law = 3,
+                "Stress.law = 3 is refused: it must be one of 0 (scaled), 1 (integral), 2 (normalised)",
+            ),
             (
                 |m| m.response_time = 0.0,
                 "Stress.response_time = 0.0 is refused: it must be finite and more than 0",
             ),
             (|m| (m.law, m.leak) = (1, 1.5), "Stress.leak = 1.5 is refused: it must be between 0 and 1"),
             (|m| (m.law, m.gain) = (1, NAN), "Stress.gain = NaN is refused"),
+            (|m| (m.law, m.gain) = (2, 0.0), "Stress.gain = 0.0 is refused"),
             (|m| m.tangent.zz = INF, "Stress.tangent.zz = inf is refused"),
             (|m| m.control_interval = 0.0, "Stress.control_interval = 0.0 is refused"),
             (|m| m.strain.xy = NAN, "Stress.strain.xy = NaN is refused"),

@@ -9,7 +9,6 @@ use dem::Advanced;
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::to_cdr;
-use grains::{ComponentControl, ServoLaw};
 use node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
@@ -56,16 +55,10 @@ impl DemSimulator {
             Err(error) => return self.fail(bus, &error.to_string()),
         };
         // The servo would refuse it, and every repetition, for ever.
-        if let ServoLaw::Scaled { response_time } = request.law
-            && request.controls.iter().any(|c| matches!(c, ComponentControl::Stress(_)))
-            && request.control_interval >= 2.0 * response_time
+        let (law, tangent) = (&request.law, &request.snapshot.tangent);
+        if let Err(error) = servo::check_stability(law, tangent, &request.controls, request.control_interval)
         {
-            let interval = request.control_interval;
-            let reason = format!(
-                "the servo cannot be stable: its control interval of {interval:e} s (control_period time steps) is not below \
-                 twice its response_time of {response_time:e} s; lengthen response_time or shorten control_period"
-            );
-            return self.fail(bus, &reason);
+            return self.fail(bus, &format!("the servo cannot be stable: {error}"));
         }
         if self.stage != Stage::Running {
             self.barrier.begin();

@@ -31,11 +31,11 @@ pub struct Stress {
     pub rate_limit: f64,
     /// one of LAW_\*
     pub law: u8,
-    /// 1/(Pa s), of Eq. 1 per control period; 0 for LAW_SCALED
+    /// 1/(Pa s), of Eq. 1 per control period; 1 for LAW_NORMALISED; 0 for LAW_SCALED
     pub gain: f64,
     /// share of the rate forgotten each control period; 0 for LAW_SCALED
     pub leak: f64,
-    /// s, of the scaled law; 0 for LAW_INTEGRAL
+    /// s, of the scaled law; 0 for the others
     pub response_time: f64,
     /// Pa, affine tangent stiffness C_iiii (xx yy zz) and C_ijij (yz xz xy) of the present contacts
     pub tangent: SymmetricTensor,
@@ -66,6 +66,9 @@ impl Stress {
 
     /// Eq. 1: rate = (1 - leak) rate + gain (stress - setpoint)
     pub const LAW_INTEGRAL: u8 = 1;
+
+    /// as LAW_INTEGRAL, gain as a share of the critical gain (4 - 2 leak) / (tangent control_interval)
+    pub const LAW_NORMALISED: u8 = 2;
 }
 
 impl Message for Stress {

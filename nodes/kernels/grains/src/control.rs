@@ -20,6 +20,15 @@ pub enum ServoLaw {
         /// cell: a few periods of a contact are enough.
         response_time: f64,
     },
+    /// Eq. 1 with its gain as a share of the critical one: rate ← (1 − leak)·rate + share·g_c·(σ − σ*), where g_c =
+    /// (4 − 2 leak)/(K h) follows the present tangent stiffness K and the control interval h. Stable and equally fast at
+    /// every pressure and control period.
+    Normalised {
+        /// Share of the critical gain, above 0 and below 1.
+        share: f64,
+        /// Share of the rate forgotten each control period, in [0, 1]; 0 leaves no error under plastic flow.
+        leak: f64,
+    },
     /// Eq. 1: rate ← (1 − leak)·rate + gain·(σ − σ*), once each control period.
     Integral {
         /// Gain g, 1/(Pa·s).

@@ -1,6 +1,6 @@
 //! Scenes as their authors write them, right and wrong.
 
-use grains::{ComponentControl, SymTensor};
+use grains::{ComponentControl, ServoLaw, SymTensor};
 use scene::{Condition, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene};
 
 const GOOD: &str = r#"
@@ -59,6 +59,31 @@ fn cycles_unroll_into_numbered_phases() {
     assert_eq!(controls[0], ComponentControl::Stress(50e3));
     assert_eq!(controls[3], ComponentControl::Held);
     assert_eq!(controls[5], ComponentControl::StrainRate(0.5));
+}
+
+#[test]
+fn a_servo_phase_is_normalised_unless_it_says_otherwise() {
+    let law = |keys: &str| {
+        let text = GOOD.replace("response_time = 2e-5", keys);
+        match Scene::parse(&text)?.phases.swap_remove(3).kind {
+            PhaseKind::Servo { law, .. } => Ok(law),
+            other => panic!("a servo phase: {other:?}"),
+        }
+    };
+    assert_eq!(law(""), Ok(ServoLaw::Normalised { share: 0.3, leak: 0.0 }));
+    let chosen = ServoLaw::Normalised { share: 0.1, leak: 0.05 };
+    assert_eq!(law("law = 'normalised'\ngain_share = 0.1\nleak = 0.05"), Ok(chosen));
+    assert_eq!(law("response_time = 2e-5"), Ok(ServoLaw::Scaled { response_time: 2e-5 }));
+    assert_eq!(law("law = 'integral'\ngain = 1e-3"), Ok(ServoLaw::Integral { gain: 1e-3, leak: 0.0 }));
+    for (wrong, place) in [
+        ("gain_share = 1.0", "gain_share"),
+        ("gain = 1e-3", "gain"),
+        ("law = 'integral'\ngain = 1e-3\nresponse_time = 1e-5", "response_time"),
+        ("law = 'scaled'", "response_time"),
+    ] {
+        let error: scene::SceneError = law(wrong).unwrap_err();
+        assert!(error.faults.iter().any(|f| f.place.ends_with(place)), "{wrong}: {error}");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What makes a request unanswerable.
 
-use crate::Request;
+use crate::{Request, critical_gain};
 use grains::{ComponentControl, ServoLaw};
 
 /// Why a request has no answer.
@@ -33,6 +33,27 @@ pub enum ServoError {
     Leak {
         /// The value found.
         value: f64,
+    },
+    /// The share of the critical gain is not between 0 and 1.
+    #[error(
+        "share = {value} of the critical gain is outside (0, 1): from 1 on the stress error grows every control period"
+    )]
+    Share {
+        /// The value found.
+        value: f64,
+    },
+    /// The gain of Eq. 1 is not below the critical one.
+    #[error(
+        "gain = {gain:e} 1/(Pa s) is not below {critical:e} 1/(Pa s), where Eq. 1 goes unstable with the present contacts \
+         and a control interval of {control_interval:e} s: lower gain, shorten control_period, or use law = \"normalised\""
+    )]
+    Gain {
+        /// Gain of Eq. 1, 1/(Pa s).
+        gain: f64,
+        /// The critical gain, 1/(Pa s).
+        critical: f64,
+        /// Simulated time between requests, s.
+        control_interval: f64,
     },
     /// A tangent stiffness is negative.
     #[error(
@@ -72,14 +93,22 @@ pub(crate) fn check(request: &Request) -> Result<(), ServoError> {
     }
     positive("rate_limit", request.rate_limit, "1/s")?;
     positive("control_interval", request.control_interval, "s")?;
-    // A phase without a stress target has no loop to close, and its law may be left at any value.
-    if request.controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
-        check_law(&request.law, request.control_interval)?;
-    }
-    Ok(())
+    check_stability(&request.law, &request.tangent, &request.controls, request.control_interval)
 }
 
-fn check_law(law: &ServoLaw, control_interval: f64) -> Result<(), ServoError> {
+/// Whether `law` is stable with `tangent` (C_iiii and C_ijij, Pa) and `control_interval` (s): what [`crate::answer`]
+/// checks, for those who ask the servo and want to know before.
+///
+/// A path without a stress target has no loop to close, and its law may be left at any value.
+pub fn check_stability(
+    law: &ServoLaw,
+    tangent: &[f64; 6],
+    controls: &[ComponentControl; 6],
+    control_interval: f64,
+) -> Result<(), ServoError> {
+    if !controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
+        return Ok(());
+    }
     match *law {
         ServoLaw::Scaled { response_time } => {
             positive("response_time", response_time, "s")?;
@@ -87,14 +116,26 @@ fn check_law(law: &ServoLaw, control_interval: f64) -> Result<(), ServoError> {
                 return Err(ServoError::Unstable { control_interval, response_time });
             }
         }
+        ServoLaw::Normalised { share, leak } => {
+            if !(share > 0.0 && share < 1.0) {
+                return Err(ServoError::Share { value: share });
+            }
+            check_leak(leak)?;
+        }
         ServoLaw::Integral { gain, leak } => {
             positive("gain", gain, "1/(Pa s)")?;
-            if !(0.0..=1.0).contains(&leak) {
-                return Err(ServoError::Leak { value: leak });
+            check_leak(leak)?;
+            let critical = critical_gain(tangent, controls, control_interval, leak);
+            if gain >= critical {
+                return Err(ServoError::Gain { gain, critical, control_interval });
             }
         }
     }
     Ok(())
+}
+
+fn check_leak(value: f64) -> Result<(), ServoError> {
+    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(ServoError::Leak { value }) }
 }
 
 fn setpoint(control: ComponentControl) -> f64 {

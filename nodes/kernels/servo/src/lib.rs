@@ -7,8 +7,10 @@
 
 mod error;
 mod law;
+mod stability;
 
-pub use error::ServoError;
+pub use error::{ServoError, check_stability};
+pub use stability::critical_gain;
 
 use grains::{ComponentControl, ServoLaw, SymTensor};
 
@@ -49,8 +51,13 @@ pub struct Answer {
 ///   gains per unit of the *tensor* strain component: C_iiii on the diagonal, 2 C_ijij off it. Where K is zero (no
 ///   contacts) the answer is the limit of the law for K → 0: the full rate limit with the sign of the error, zero
 ///   without an error.
-/// - A stress target under [`ServoLaw::Integral`]: (1 − leak)·rate + gain·(σ − σ*), cut off at the limit, which also
-///   bounds what the integral can wind up.
+/// - A stress target under [`ServoLaw::Normalised`]: (1 − leak)·rate + share·(4 − 2 leak)/(K h)·(σ − σ*), cut off at the
+///   limit. K is the stiffness of the loop: as above, plus for a normal component C_iijj of every other servoed one.
+/// - A stress target under [`ServoLaw::Integral`]: (1 − leak)·rate + gain·(σ − σ*), cut off at the limit. Refused from
+///   [`critical_gain`] on.
+///
+/// Rate and integral are one under the last two laws, so that the limit bounds what can wind up: a target out of reach
+/// saturates, and the rate turns with the first error of the other sign.
 ///
 /// ```
 /// use grains::{ComponentControl, ServoLaw, SymTensor};
@@ -69,14 +76,22 @@ pub struct Answer {
 /// ```
 pub fn answer(request: &Request) -> Result<Answer, ServoError> {
     error::check(request)?;
+    let loop_stiffness = stability::loop_stiffness(&request.tangent, &request.controls);
     let mut answer = Answer { rate: [0.0; 6], saturated: [false; 6] };
     for (i, stress) in request.stress.voigt().into_iter().enumerate() {
         let wanted = match request.controls[i] {
             ComponentControl::Held => 0.0,
             ComponentControl::StrainRate(rate) => rate,
-            ComponentControl::Stress(target) => {
-                law::rate(&request.law, stress - target, request.rate[i], law::stiffness(&request.tangent, i))
-            }
+            ComponentControl::Stress(target) => law::rate(
+                &request.law,
+                &law::Component {
+                    error: stress - target,
+                    rate: request.rate[i],
+                    own_stiffness: law::stiffness(&request.tangent, i),
+                    loop_stiffness: loop_stiffness[i],
+                    interval: request.control_interval,
+                },
+            ),
         };
         answer.rate[i] = wanted.clamp(-request.rate_limit, request.rate_limit);
         answer.saturated[i] = wanted.abs() > request.rate_limit;

@@ -2,10 +2,11 @@
 
 use grains::{ComponentControl, ServoLaw, SymTensor};
 use proptest::prelude::*;
-use servo::{Request, ServoError, answer};
+use servo::{Request, ServoError, answer, critical_gain};
 
 const SCALED: ServoLaw = ServoLaw::Scaled { response_time: 1.0e-4 };
 const EQ_1: ServoLaw = ServoLaw::Integral { gain: 1.0e-6, leak: 0.0 };
+const NORMALISED: ServoLaw = ServoLaw::Normalised { share: 0.3, leak: 0.0 };
 
 /// Every component at its stress target of 50 kPa (diagonal) or 0, with a tangent of 200 and 70 MPa.
 fn at_target(law: ServoLaw) -> Request {
@@ -21,8 +22,8 @@ fn at_target(law: ServoLaw) -> Request {
 }
 
 #[test]
-fn both_laws_compress_towards_50_kpa_from_below_and_extend_from_above() {
-    for law in [SCALED, EQ_1] {
+fn every_law_compresses_towards_50_kpa_from_below_and_extends_from_above() {
+    for law in [SCALED, EQ_1, NORMALISED] {
         let mut request = at_target(law);
         assert_eq!(answer(&request).unwrap().rate, [0.0; 6]);
         request.stress = SymTensor::isotropic(49.0e3);
@@ -52,6 +53,43 @@ fn eq_1_adds_gain_times_error_to_the_rate_in_force_and_leaks() {
     assert!((answer(&request).unwrap().rate[2] - 0.451).abs() < 1e-15);
 }
 
+/// All three normal components servoed: K = 200 + 2 (200 − 2·70) MPa; a shear alone: K = 2·70 MPa.
+#[test]
+fn the_normalised_law_is_eq_1_with_its_share_of_the_critical_gain_of_each_component() {
+    let mut request = at_target(ServoLaw::Normalised { share: 0.3, leak: 0.1 });
+    request.rate_limit = 1.0e6;
+    request.stress.zz = 51.0e3;
+    request.stress.xy = 1.0e3;
+    request.rate[2] = 0.5;
+    let rate = answer(&request).unwrap().rate;
+    let kick = |k: f64| 0.3 * 3.8 / (k * 2.0e-8) * 1.0e3;
+    assert!((rate[2] - (0.45 + kick(320.0e6))).abs() < 1e-9 * rate[2]);
+    assert!((rate[5] - kick(140.0e6)).abs() < 1e-9 * rate[5]);
+    let gain = critical_gain(&request.tangent, &request.controls, request.control_interval, 0.1);
+    assert!((0.3 * gain * 1.0e3 - kick(320.0e6)).abs() < 1e-9 * kick(320.0e6));
+}
+
+#[test]
+fn without_contacts_or_targets_no_gain_is_critical() {
+    let request = at_target(EQ_1);
+    assert_eq!(critical_gain(&[0.0; 6], &request.controls, 1.0e-6, 0.0), f64::INFINITY);
+    assert_eq!(critical_gain(&request.tangent, &[ComponentControl::Held; 6], 1.0e-6, 0.0), f64::INFINITY);
+}
+
+#[test]
+fn a_gain_of_eq_1_from_the_critical_one_on_is_refused_with_both_named() {
+    let mut request = at_target(EQ_1);
+    let critical = critical_gain(&request.tangent, &request.controls, request.control_interval, 0.0);
+    request.law = ServoLaw::Integral { gain: 0.999 * critical, leak: 0.0 };
+    assert!(answer(&request).is_ok());
+    request.law = ServoLaw::Integral { gain: critical, leak: 0.0 };
+    let error = answer(&request).unwrap_err();
+    assert!(
+        matches!(error, ServoError::Gain { .. }) && error.to_string().contains("control_period"),
+        "{error}"
+    );
+}
+
 #[test]
 fn rates_beyond_the_limit_are_cut_off_and_flagged_one_by_one() {
     let mut request = at_target(SCALED);
@@ -73,13 +111,15 @@ fn held_components_do_not_move_whatever_their_stress_and_rate() {
 }
 
 #[test]
-fn without_contacts_the_scaled_law_drives_at_the_limit_towards_the_target() {
-    let mut request = at_target(SCALED);
-    request.stress = SymTensor::default();
-    request.tangent = [0.0; 6];
-    let a = answer(&request).unwrap();
-    assert_eq!(a.rate, [-2.0, -2.0, -2.0, 0.0, 0.0, 0.0]);
-    assert_eq!(a.saturated, [true, true, true, false, false, false]);
+fn without_contacts_laws_that_know_the_stiffness_drive_at_the_limit_towards_the_target() {
+    for law in [SCALED, NORMALISED] {
+        let mut request = at_target(law);
+        request.stress = SymTensor::default();
+        request.tangent = [0.0; 6];
+        let a = answer(&request).unwrap();
+        assert_eq!(a.rate, [-2.0, -2.0, -2.0, 0.0, 0.0, 0.0]);
+        assert_eq!(a.saturated, [true, true, true, false, false, false]);
+    }
 }
 
 /// The error and K τ both overflow: ∞/∞ must not reach the simulation.
@@ -117,6 +157,8 @@ fn each_fault_has_its_own_error_and_names_the_culprit() {
     assert!(matches!(integral(1.0, 1.5), ServoError::Leak { .. }));
     assert!(matches!(integral(1.0, f64::NAN), ServoError::Leak { .. }));
     assert!(matches!(fault(&|r| r.control_interval = 2.0e-4), ServoError::Unstable { .. }));
+    let share = |share| fault(&|r| r.law = ServoLaw::Normalised { share, leak: 0.0 });
+    assert!([0.0, 1.0, f64::NAN].into_iter().all(|s| matches!(share(s), ServoError::Share { .. })));
 }
 
 #[test]
@@ -138,6 +180,7 @@ fn law() -> impl Strategy<Value = ServoLaw> {
     prop_oneof![
         any::<f64>().prop_map(|response_time| ServoLaw::Scaled { response_time }),
         (any::<f64>(), 0.0..=1.0f64).prop_map(|(gain, leak)| ServoLaw::Integral { gain, leak }),
+        (1e-9..1.0f64, 0.0..=1.0f64).prop_map(|(share, leak)| ServoLaw::Normalised { share, leak }),
     ]
 }
 
@@ -153,6 +196,7 @@ proptest! {
         let law = match law {
             ServoLaw::Scaled { response_time } => ServoLaw::Scaled { response_time: response_time.abs() },
             ServoLaw::Integral { gain, leak } => ServoLaw::Integral { gain: gain.abs(), leak },
+            normalised => normalised,
         };
         let request = Request {
             stress: SymTensor::from_voigt(stress), controls, rate, law,
