@@ -1,0 +1,101 @@
+//! When two grains meet and what it does to them.
+
+/// A grain in flight, one cache line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Grain {
+    /// Centre at `time`, folded into the cell, m.
+    pub(super) x: [f64; 3],
+    /// When it was there.
+    pub(super) time: f64,
+    /// Velocity, m/s.
+    pub(super) v: [f64; 3],
+    /// Radius at time 0, m.
+    pub(super) radius: f64,
+}
+
+impl Grain {
+    /// Where it is at `time` if nothing happens to it.
+    #[inline(always)]
+    pub(super) fn at(&self, time: f64) -> [f64; 3] {
+        let dt = time - self.time;
+        [self.x[0] + self.v[0] * dt, self.x[1] + self.v[1] * dt, self.x[2] + self.v[2] * dt]
+    }
+
+    /// Mass over density and 4π/3.
+    #[inline(always)]
+    pub(super) fn mass(&self) -> f64 {
+        self.radius * self.radius * self.radius
+    }
+}
+
+#[inline(always)]
+pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// How far off contact a pair is: |d|² − σ² and half its rate, d·v − σσ̇.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gap {
+    pub(super) square: f64,
+    pub(super) closing: f64,
+    /// v² − σ̇².
+    curvature: f64,
+}
+
+impl Gap {
+    /// Centres `d` apart that move apart at `v`, touching at the distance `sigma` that grows at `growth`.
+    #[inline(always)]
+    pub(super) fn new(d: &[f64; 3], v: &[f64; 3], sigma: f64, growth: f64) -> Self {
+        Self {
+            square: dot(d, d) - sigma * sigma,
+            closing: dot(d, v) - sigma * growth,
+            curvature: dot(v, v) - growth * growth,
+        }
+    }
+
+    /// Time until contact, if that is before `limit`; 0 for a pair that overlaps (by rounding) and closes.
+    #[inline(always)]
+    pub(super) fn meeting(&self, limit: f64) -> Option<f64> {
+        let (a, b, c) = (self.curvature, self.closing, self.square);
+        let time = if b < 0.0 {
+            if c <= 0.0 {
+                return Some(0.0);
+            }
+            // With a ≥ 0 the root is no earlier than c/(−2b): most pairs need no square root.
+            if a >= 0.0 && c >= -2.0 * b * limit {
+                return None;
+            }
+            let discriminant = b * b - a * c;
+            if discriminant < 0.0 {
+                return None;
+            }
+            c / (discriminant.sqrt() - b)
+        } else if a < 0.0 {
+            // They part, but grow faster.
+            (b + (b * b - a * c).max(0.0).sqrt()) / -a
+        } else {
+            return None;
+        };
+        (time < limit).then_some(time)
+    }
+}
+
+/// Reverses the rate at which two grains in contact close: an elastic collision of smooth spheres. `d` leads from `i` to
+/// `j`. Returns impulse times distance; 0 for a pair that parts already.
+#[inline]
+pub(super) fn collide(i: &mut Grain, j: &mut Grain, d: &[f64; 3], sigma: f64, growth: f64) -> f64 {
+    let v = [j.v[0] - i.v[0], j.v[1] - i.v[1], j.v[2] - i.v[2]];
+    let closing = dot(d, &v) - sigma * growth;
+    if closing >= 0.0 {
+        return 0.0;
+    }
+    let square = dot(d, d);
+    let (mi, mj) = (i.mass(), j.mass());
+    let share = -2.0 * closing / (square * (mi + mj));
+    for k in 0..3 {
+        i.v[k] -= share * mj * d[k];
+        j.v[k] += share * mi * d[k];
+    }
+    share * mi * mj * square
+}
