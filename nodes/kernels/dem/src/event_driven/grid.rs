@@ -1,16 +1,18 @@
-//! Which grains are near: cells of at least one diameter, each with a chain of the grains in it.
+//! Which grains are near: a periodic grid of cells, each with a chain of the grains anchored in it.
 
-use super::pair::Grain;
 use grains::Vec3;
 
-/// The end of a chain.
+/// No grain: the end of a chain.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A cell next to another along one axis: its index there, and the cell vectors to add to what is in it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Neighbour {
-    pub(super) index: u32,
-    pub(super) shift: i8,
+/// Number of an image among the 27 around: 9(a + 1) + 3(b + 1) + c + 1 for the cell vectors a, b, c. That of the
+/// opposite image is 26 less it.
+pub(super) type Image = u8;
+
+/// Cell vectors of an image.
+pub(super) fn cell_vectors(image: Image) -> [i32; 3] {
+    let image = i32::from(image);
+    [image / 9 - 1, image / 3 % 3 - 1, image % 3 - 1]
 }
 
 #[derive(Clone, Debug)]
@@ -18,66 +20,63 @@ pub(super) struct Grid {
     /// Cells along each axis.
     count: [usize; 3],
     width: [f64; 3],
-    /// Per axis and index: the cell before, itself, the cell after.
-    around: [Vec<[Neighbour; 3]>; 3],
     head: Vec<u32>,
     next: Vec<u32>,
     previous: Vec<u32>,
-    /// Index of each grain's cell along each axis.
-    home: Vec<[u32; 3]>,
+    home: Vec<u32>,
 }
 
 impl Grid {
-    /// Cells at least `reach` wide, and no more of them than grains.
+    /// Cells at least `reach` wide (m), at least one along each axis, and not many more than grains.
     pub(super) fn new(edges: Vec3, reach: f64, grains: usize) -> Self {
         let most = (grains as f64).cbrt().ceil().max(1.0);
         let count: [usize; 3] = std::array::from_fn(|k| (edges[k] / reach).floor().clamp(1.0, most) as usize);
-        let around = count.map(|n| {
-            let wrap = |index: usize| {
-                let before = if index == 0 { (n - 1, -1) } else { (index - 1, 0) };
-                let after = if index + 1 == n { (0, 1) } else { (index + 1, 0) };
-                [before, (index, 0), after].map(|(i, shift)| Neighbour { index: i as u32, shift })
-            };
-            (0..n).map(wrap).collect()
-        });
         Self {
             width: std::array::from_fn(|k| edges[k] / count[k] as f64),
             head: vec![NONE; count.iter().product()],
             next: vec![NONE; grains],
             previous: vec![NONE; grains],
-            home: vec![[0; 3]; grains],
+            home: vec![NONE; grains],
             count,
-            around,
         }
     }
 
     /// The cell that holds `x`, a place folded into the periodic cell.
-    pub(super) fn cell_of(&self, x: &[f64; 3]) -> [u32; 3] {
-        std::array::from_fn(|k| ((x[k] / self.width[k]) as usize).min(self.count[k] - 1) as u32)
+    pub(super) fn cell(&self, x: &[f64; 3]) -> u32 {
+        self.flat(self.indices(x))
     }
 
-    #[inline(always)]
-    pub(super) fn flat(&self, cell: [u32; 3]) -> usize {
-        (cell[0] as usize * self.count[1] + cell[1] as usize) * self.count[2] + cell[2] as usize
+    fn indices(&self, x: &[f64; 3]) -> [usize; 3] {
+        std::array::from_fn(|k| ((x[k] / self.width[k]) as usize).min(self.count[k] - 1))
     }
 
-    pub(super) fn insert(&mut self, grain: usize, cell: [u32; 3]) {
-        let flat = self.flat(cell);
-        let head = self.head[flat];
+    fn flat(&self, cell: [usize; 3]) -> u32 {
+        ((cell[0] * self.count[1] + cell[1]) * self.count[2] + cell[2]) as u32
+    }
+
+    /// Lists a grain in the cell that holds `x`, and nowhere else.
+    pub(super) fn place(&mut self, grain: usize, x: &[f64; 3]) {
+        let cell = self.cell(x);
+        if self.home[grain] == cell {
+            return;
+        }
+        if self.home[grain] != NONE {
+            self.remove(grain);
+        }
+        let head = self.head[cell as usize];
         self.home[grain] = cell;
         self.next[grain] = head;
         self.previous[grain] = NONE;
         if head != NONE {
             self.previous[head as usize] = grain as u32;
         }
-        self.head[flat] = grain as u32;
+        self.head[cell as usize] = grain as u32;
     }
 
     fn remove(&mut self, grain: usize) {
         let (previous, next) = (self.previous[grain], self.next[grain]);
         if previous == NONE {
-            let flat = self.flat(self.home[grain]);
-            self.head[flat] = next;
+            self.head[self.home[grain] as usize] = next;
         } else {
             self.next[previous as usize] = next;
         }
@@ -86,49 +85,29 @@ impl Grid {
         }
     }
 
-    /// Moves a grain into the next cell along `axis`; returns the cell vector it crossed, if it left the periodic cell.
-    pub(super) fn cross(&mut self, grain: usize, axis: usize, forward: bool) -> i8 {
-        self.remove(grain);
-        let mut cell = self.home[grain];
-        let to = self.around[axis][cell[axis] as usize][if forward { 2 } else { 0 }];
-        cell[axis] = to.index;
-        self.insert(grain, cell);
-        to.shift
-    }
-
-    /// When a grain leaves its cell, along which axis, and whether forwards.
+    /// Every grain listed in the 27 cells around `x`, with the image in which it is near; a small grid shows the same
+    /// grain in several.
     #[inline]
-    pub(super) fn leaving(&self, grain: usize, g: &Grain) -> (f64, usize, bool) {
-        let mut first = (f64::INFINITY, 0, false);
-        for k in 0..3 {
-            let v = g.v[k];
-            if v == 0.0 {
-                continue;
-            }
-            let index = self.home[grain][k] as f64 + if v > 0.0 { 1.0 } else { 0.0 };
-            let time = g.time + ((index * self.width[k] - g.x[k]) / v).max(0.0);
-            if time < first.0 {
-                first = (time, k, v > 0.0);
+    pub(super) fn around(&self, x: &[f64; 3], mut visit: impl FnMut(usize, Image)) {
+        let home = self.indices(x);
+        // Index and place among the images (0, 1, 2) of the cell before, this, and the one after.
+        let along = |k: usize| {
+            let (at, n) = (home[k], self.count[k]);
+            let before = if at == 0 { (n - 1, 0) } else { (at - 1, 1) };
+            let after = if at + 1 == n { (0, 2) } else { (at + 1, 1) };
+            [before, (at, 1), after]
+        };
+        let [xs, ys, zs] = [along(0), along(1), along(2)];
+        for (a, ia) in xs {
+            for (b, ib) in ys {
+                for (c, ic) in zs {
+                    let mut grain = self.head[self.flat([a, b, c]) as usize];
+                    while grain != NONE {
+                        visit(grain as usize, 9 * ia + 3 * ib + ic);
+                        grain = self.next[grain as usize];
+                    }
+                }
             }
         }
-        first
-    }
-
-    /// The cells around a grain's along one axis.
-    #[inline(always)]
-    pub(super) fn around(&self, grain: usize, axis: usize) -> &[Neighbour; 3] {
-        &self.around[axis][self.home[grain][axis] as usize]
-    }
-
-    /// The first grain of a cell's chain.
-    #[inline(always)]
-    pub(super) fn first(&self, flat: usize) -> u32 {
-        self.head[flat]
-    }
-
-    /// The grain after `grain` in its chain.
-    #[inline(always)]
-    pub(super) fn next(&self, grain: u32) -> u32 {
-        self.next[grain as usize]
     }
 }

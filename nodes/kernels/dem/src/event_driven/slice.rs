@@ -1,12 +1,13 @@
 //! The events of one interval, in a fixed cell with growing grains.
 //!
-//! Each grain knows its next collision and when it leaves its grid cell; the earlier of the two is its event. As in
-//! Lubachevsky, J. Comput. Phys. 94, 255 (1991), a grain whose partner found an earlier collision keeps the time of the
-//! lost one, and looks again then.
+//! Each grain has an anchor, where it was when its list of near grains was made, and may move freely within a margin of
+//! it. Its next event is a collision, or reaching that margin, where anchor and list are made anew (near-neighbour lists:
+//! Donev, Torquato & Stillinger, J. Comput. Phys. 202, 737 (2005)). As in Lubachevsky, J. Comput. Phys. 94, 255 (1991),
+//! a grain whose partner found an earlier collision keeps the time of the lost one, and looks again then.
 
 use super::ROUNDING;
-use super::grid::{Grid, NONE};
-use super::pair::{Gap, Grain, collide};
+use super::grid::{Grid, Image, NONE, cell_vectors};
+use super::pair::{Gap, Grain, collide, dot};
 use super::queue::Queue;
 use crate::error::DemError;
 use grains::Vec3;
@@ -17,26 +18,40 @@ struct Meeting {
     time: f64,
     /// `NONE`: the collision was lost to another, or there is none before the end.
     partner: u32,
-    /// Cell vectors from the partner, as it was at the beginning (unwrapped), to the image that is met.
+    /// Cell vectors from the partner, unwrapped since the beginning, to the image of it that is met.
     image: [i32; 3],
 }
 
 const NEVER: Meeting = Meeting { time: f64::INFINITY, partner: NONE, image: [0; 3] };
 
+/// A grain that another may meet before one of them reaches its margin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Near {
+    grain: u32,
+    image: Image,
+}
+
 /// The interval under way.
 pub(super) struct Slice {
     edges: [f64; 3],
+    /// Shift of each of the 27 images, m.
+    shifts: [[f64; 3]; 27],
     /// Relative growth of all lengths of grains per unit of time, 1/s.
     growth: f64,
     end: f64,
+    /// How far a grain may be from its anchor, m.
+    margin: f64,
     grains: Vec<Grain>,
-    /// Cell vectors crossed since the beginning.
-    crossed: Vec<[i32; 3]>,
+    anchors: Vec<[f64; 3]>,
+    near: Vec<Vec<Near>>,
     meetings: Vec<Meeting>,
-    leaving: Vec<(f64, u8, bool)>,
+    /// When each grain reaches its margin.
+    leaving: Vec<f64>,
+    /// Cell vectors by which each grain was folded since the beginning.
+    crossed: Vec<[i32; 3]>,
     grid: Grid,
     queue: Queue,
-    /// Which grain of the caller each one is, and the cell vectors by which it was folded.
+    /// Which grain of the caller each one is, and the cell vectors by which it was folded at the beginning.
     origin: Vec<(u32, [f64; 3])>,
 }
 
@@ -56,7 +71,8 @@ pub(super) struct TooMany {
 }
 
 impl Slice {
-    /// Folds, sorts by grid cell, and finds every grain's first event.
+    /// Folds, sorts by grid cell, lists what is near and finds every grain's first event. `margin` (m) is positive, and
+    /// the largest distance of contact and twice the margin fit into every edge.
     pub(super) fn new(
         edges: Vec3,
         radii: &[f64],
@@ -64,21 +80,19 @@ impl Slice {
         velocities: &[Vec3],
         growth: f64,
         end: f64,
+        margin: f64,
     ) -> Result<Self, DemError> {
         let n = radii.len();
         let largest = radii.iter().copied().fold(0.0, f64::max) * (1.0 + growth * end).max(1.0);
-        // Rounding lets a grain stand a little outside the cell it is listed in.
-        let mut grid = Grid::new(edges, 2.0 * largest * (1.0 + ROUNDING), n);
-        let folded: Vec<([f64; 3], [f64; 3])> = positions
-            .iter()
-            .map(|x| {
-                let turns: [f64; 3] = std::array::from_fn(|k| (x[k] / edges[k]).floor());
-                (std::array::from_fn(|k| x[k] - turns[k] * edges[k]), turns)
-            })
-            .collect();
+        let mut grid = Grid::new(edges, 2.0 * (largest + margin) * (1.0 + ROUNDING), n);
+        let fold = |x: &Vec3| -> ([f64; 3], [f64; 3]) {
+            let turns: [f64; 3] = std::array::from_fn(|k| (x[k] / edges[k]).floor());
+            (std::array::from_fn(|k| x[k] - turns[k] * edges[k]), turns)
+        };
+        let folded: Vec<_> = positions.iter().map(fold).collect();
         // Grains that are near lie near in memory.
         let mut order: Vec<u32> = (0..n as u32).collect();
-        order.sort_by_cached_key(|i| grid.flat(grid.cell_of(&folded[*i as usize].0)));
+        order.sort_by_cached_key(|i| grid.cell(&folded[*i as usize].0));
         let grain = |i: &u32| Grain {
             x: folded[*i as usize].0,
             time: 0.0,
@@ -86,62 +100,71 @@ impl Slice {
             radius: radii[*i as usize],
         };
         let grains: Vec<Grain> = order.iter().map(grain).collect();
-        for (i, g) in grains.iter().enumerate() {
-            grid.insert(i, grid.cell_of(&g.x));
-        }
-        let leaving: Vec<_> = (0..n).map(|i| exit(&grid, i, &grains[i])).collect();
-        let queue = Queue::new(leaving.iter().map(|l| l.0));
+        grains.iter().enumerate().for_each(|(i, g)| grid.place(i, &g.x));
+        let edges: [f64; 3] = edges.into();
         let mut slice = Self {
-            edges: edges.into(),
+            edges,
+            shifts: std::array::from_fn(|i| {
+                let vectors = cell_vectors(i as Image);
+                std::array::from_fn(|k| f64::from(vectors[k]) * edges[k])
+            }),
             growth,
             end,
-            crossed: vec![[0; 3]; n],
+            margin,
+            anchors: grains.iter().map(|g| g.x).collect(),
+            near: vec![Vec::with_capacity(24); n],
             meetings: vec![NEVER; n],
-            leaving,
+            leaving: Vec::with_capacity(n),
+            crossed: vec![[0; 3]; n],
             grid,
-            queue,
+            queue: Queue::new(std::iter::empty()),
             origin: order.iter().map(|i| (*i, folded[*i as usize].1)).collect(),
             grains,
         };
-        slice.refuse_overlaps()?;
+        for i in 0..n {
+            slice.list(i);
+            slice.refuse_overlaps(i)?;
+            slice.leaving.push(slice.exit(i));
+        }
+        slice.queue = Queue::new(slice.leaving.iter().copied());
         for i in 0..n {
             // A grain that an earlier one found keeps that unless it finds better.
-            slice.seek(i, 0.0, None);
+            slice.seek(i, 0.0);
             slice.queue.set(i, slice.event(i));
         }
         Ok(slice)
     }
 
-    /// Runs to the end, or through `limit` collisions.
+    /// Runs to the end, or through `limit` events.
     pub(super) fn run(&mut self, limit: u64) -> Result<Tally, TooMany> {
-        let mut tally = Tally::default();
+        let (mut tally, mut events) = (Tally::default(), 0);
         while let Some((time, i)) = self.queue.first() {
             if time >= self.end {
                 break;
             }
+            events += 1;
+            if events > limit {
+                return Err(TooMany { reached: time });
+            }
             let i = i as usize;
             let meeting = self.meetings[i];
-            if self.leaving[i].0 <= meeting.time {
+            if self.leaving[i] <= meeting.time {
                 self.leave(i, time);
             } else if meeting.partner == NONE {
                 self.meetings[i] = NEVER;
-                self.seek(i, time, None);
+                self.seek(i, time);
                 self.queue.set(i, self.event(i));
             } else {
                 tally.impulse_length += self.collide(i, meeting);
                 tally.collisions += 1;
-                if tally.collisions > limit {
-                    return Err(TooMany { reached: time });
-                }
             }
         }
         Ok(tally)
     }
 
     /// m v², over density and 4π/3.
-    pub(super) fn twice_energy(&self, i: usize) -> f64 {
-        let g = &self.grains[i];
-        g.mass() * super::pair::dot(&g.v, &g.v)
+    pub(super) fn twice_energy(&self) -> f64 {
+        self.grains.iter().map(|g| g.mass() * dot(&g.v, &g.v)).sum()
     }
 
     /// Hands back where everything is at the end, all lengths scaled by `stretch`.
@@ -158,7 +181,7 @@ impl Slice {
     /// Time of a grain's next event.
     #[inline(always)]
     fn event(&self, i: usize) -> f64 {
-        self.meetings[i].time.min(self.leaving[i].0)
+        self.meetings[i].time.min(self.leaving[i])
     }
 
     /// Distance of contact at `time`, and its rate.
@@ -168,16 +191,64 @@ impl Slice {
         (sum * (1.0 + self.growth * time), sum * self.growth)
     }
 
-    fn leave(&mut self, i: usize, now: f64) {
-        let (_, axis, forward) = self.leaving[i];
-        let axis = axis as usize;
-        let shift = self.grid.cross(i, axis, forward);
-        if shift != 0 {
-            self.grains[i].x[axis] -= f64::from(shift) * self.edges[axis];
-            self.crossed[i][axis] += i32::from(shift);
+    /// The grains anchored so near to the anchor of `i` that they may touch it before either leaves its margin.
+    fn list(&mut self, i: usize) {
+        let mut near = std::mem::take(&mut self.near[i]);
+        near.clear();
+        let anchor = &self.anchors[i];
+        let scale = (1.0 + self.growth * self.end).max(1.0);
+        self.grid.around(anchor, |j, image| {
+            let (to, shift) = (&self.anchors[j], &self.shifts[image as usize]);
+            let d: [f64; 3] = std::array::from_fn(|k| to[k] - anchor[k] + shift[k]);
+            let contact = (self.grains[i].radius + self.grains[j].radius) * scale;
+            let reach = (contact + 2.0 * self.margin) * (1.0 + ROUNDING);
+            if dot(&d, &d) < reach * reach && j != i {
+                near.push(Near { grain: j as u32, image });
+            }
+        });
+        self.near[i] = near;
+    }
+
+    /// When a grain reaches its margin, from where it is.
+    #[inline]
+    fn exit(&self, i: usize) -> f64 {
+        let (g, a) = (&self.grains[i], &self.anchors[i]);
+        let y: [f64; 3] = std::array::from_fn(|k| g.x[k] - a[k]);
+        let (vv, yv) = (dot(&g.v, &g.v), dot(&y, &g.v));
+        if vv == 0.0 {
+            return f64::INFINITY;
         }
-        self.leaving[i] = exit(&self.grid, i, &self.grains[i]);
-        self.seek(i, now, Some((axis, forward)));
+        let room = (self.margin * self.margin - dot(&y, &y)).max(0.0);
+        g.time + ((yv * yv + vv * room).sqrt() - yv) / vv
+    }
+
+    /// Anchors a grain where it is, and lists it anew with all that are near.
+    fn leave(&mut self, i: usize, now: f64) {
+        let g = &mut self.grains[i];
+        g.x = g.at(now);
+        g.time = now;
+        for k in 0..3 {
+            let turns = (g.x[k] / self.edges[k]).floor();
+            g.x[k] -= turns * self.edges[k];
+            self.crossed[i][k] += turns as i32;
+        }
+        self.anchors[i] = g.x;
+        self.grid.place(i, &self.anchors[i]);
+        for k in 0..self.near[i].len() {
+            let old = self.near[i][k];
+            let theirs = &mut self.near[old.grain as usize];
+            let mine = Near { grain: i as u32, image: 26 - old.image };
+            if let Some(at) = theirs.iter().position(|n| *n == mine) {
+                theirs.swap_remove(at);
+            }
+        }
+        self.list(i);
+        for k in 0..self.near[i].len() {
+            let new = self.near[i][k];
+            self.near[new.grain as usize].push(Near { grain: i as u32, image: 26 - new.image });
+        }
+        self.leaving[i] = self.exit(i);
+        self.seek(i, now);
         self.queue.set(i, self.event(i));
     }
 
@@ -192,68 +263,45 @@ impl Slice {
         let carried = collide(&mut a, &mut b, &d, sigma, growth);
         for (g, grain) in [(i, a), (j, b)] {
             self.grains[g] = grain;
-            self.leaving[g] = exit(&self.grid, g, &grain);
+            self.leaving[g] = self.exit(g);
             self.meetings[g] = NEVER;
         }
-        self.seek(i, now, None);
-        self.seek(j, now, None);
+        self.seek(i, now);
+        self.seek(j, now);
         self.queue.set(i, self.event(i));
         self.queue.set(j, self.event(j));
         carried
     }
 
-    /// Looks for a collision of `i` that comes before the one it has, among the grains around, or only among those in
-    /// the cells that it now sees for the first time, having moved along an axis.
-    fn seek(&mut self, i: usize, now: f64, moved: Option<(usize, bool)>) {
+    /// Looks for a collision of `i` before the one it has.
+    fn seek(&mut self, i: usize, now: f64) {
         let g = self.grains[i];
         let x = g.at(now);
         let scale = 1.0 + self.growth * now;
-        let (mut best, mut shift) = (self.meetings[i], [0i8; 3]);
-        best.time = best.time.min(self.end);
-        let mut found = NONE;
-        let span = |k: usize| match moved {
-            Some((axis, true)) if axis == k => 2..3,
-            Some((axis, false)) if axis == k => 0..1,
-            _ => 0..3,
-        };
-        let [xs, ys, zs] = [0, 1, 2].map(|k| &self.grid.around(i, k)[span(k)]);
-        for a in xs {
-            let x0 = x[0] - f64::from(a.shift) * self.edges[0];
-            for b in ys {
-                let x1 = x[1] - f64::from(b.shift) * self.edges[1];
-                for c in zs {
-                    let x2 = x[2] - f64::from(c.shift) * self.edges[2];
-                    let mut j = self.grid.first(self.grid.flat([a.index, b.index, c.index]));
-                    while j != NONE {
-                        let other = &self.grains[j as usize];
-                        let p = other.at(now);
-                        let d = [p[0] - x0, p[1] - x1, p[2] - x2];
-                        let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
-                        let sum = g.radius + other.radius;
-                        let gap = Gap::new(&d, &v, sum * scale, sum * self.growth);
-                        // Whatever the other grain meets before is its next collision.
-                        if let Some(wait) = gap.meeting(best.time - now)
-                            && now + wait < self.meetings[j as usize].time
-                            && j as usize != i
-                        {
-                            best.time = now + wait;
-                            found = j;
-                            shift = [a.shift, b.shift, c.shift];
-                        }
-                        j = self.grid.next(j);
-                    }
-                }
+        let mut best = self.meetings[i].time.min(self.end);
+        let mut found = None;
+        for near in &self.near[i] {
+            let other = &self.grains[near.grain as usize];
+            let (p, s) = (other.at(now), &self.shifts[near.image as usize]);
+            let d = [p[0] - x[0] + s[0], p[1] - x[1] + s[1], p[2] - x[2] + s[2]];
+            let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
+            let sum = g.radius + other.radius;
+            let gap = Gap::new(&d, &v, sum * scale, sum * self.growth);
+            // What the other grain meets before is its next collision, after which it looks again.
+            if let Some(wait) = gap.meeting(best - now)
+                && now + wait < self.meetings[near.grain as usize].time
+            {
+                best = now + wait;
+                found = Some(*near);
             }
         }
-        if found == NONE {
-            return;
-        }
-        let j = found as usize;
-        let image = std::array::from_fn(|k| i32::from(shift[k]) + self.crossed[i][k] - self.crossed[j][k]);
+        let Some(near) = found else { return };
+        let (j, vectors) = (near.grain as usize, cell_vectors(near.image));
+        let image = std::array::from_fn(|k| vectors[k] + self.crossed[i][k] - self.crossed[j][k]);
         self.abandon(i, j);
         self.abandon(j, i);
-        self.meetings[i] = Meeting { time: best.time, partner: found, image };
-        self.meetings[j] = Meeting { time: best.time, partner: i as u32, image: image.map(|k| -k) };
+        self.meetings[i] = Meeting { time: best, partner: near.grain, image };
+        self.meetings[j] = Meeting { time: best, partner: i as u32, image: image.map(|k| -k) };
         self.queue.set(j, self.event(j));
     }
 
@@ -265,36 +313,19 @@ impl Slice {
         }
     }
 
-    fn refuse_overlaps(&self) -> Result<(), DemError> {
-        for i in 0..self.grains.len() {
-            for a in self.grid.around(i, 0) {
-                for b in self.grid.around(i, 1) {
-                    for c in self.grid.around(i, 2) {
-                        let mut j = self.grid.first(self.grid.flat([a.index, b.index, c.index]));
-                        while j != NONE {
-                            let (near, at) = (self.grains[j as usize].x, [a.shift, b.shift, c.shift]);
-                            let d = Vec3::from_fn(|k, _| {
-                                near[k] - self.grains[i].x[k] + f64::from(at[k]) * self.edges[k]
-                            });
-                            let (sigma, distance) = (self.contact(i, j as usize, 0.0).0, d.norm());
-                            if (j as usize) < i && distance < sigma * (1.0 - ROUNDING) {
-                                let [first, second] = [j as usize, i].map(|g| self.origin[g].0);
-                                let overlap = sigma - distance;
-                                return Err(DemError::HardSpheres(format!(
-                                    "grains {first} and {second} overlap by {overlap:e} m; hard spheres must not"
-                                )));
-                            }
-                            j = self.grid.next(j);
-                        }
-                    }
-                }
+    fn refuse_overlaps(&self, i: usize) -> Result<(), DemError> {
+        for near in &self.near[i] {
+            let j = near.grain as usize;
+            let (a, b, shift) = (&self.anchors[i], &self.anchors[j], &self.shifts[near.image as usize]);
+            let distance = Vec3::from_fn(|k, _| b[k] - a[k] + shift[k]).norm();
+            let overlap = self.contact(i, j, 0.0).0 - distance;
+            if overlap > ROUNDING * distance {
+                let [first, second] = [i, j].map(|g| self.origin[g].0);
+                return Err(DemError::HardSpheres(format!(
+                    "grains {first} and {second} overlap by {overlap:e} m; hard spheres must not"
+                )));
             }
         }
         Ok(())
     }
-}
-
-fn exit(grid: &Grid, i: usize, g: &Grain) -> (f64, u8, bool) {
-    let (time, axis, forward) = grid.leaving(i, g);
-    (time, axis as u8, forward)
 }
