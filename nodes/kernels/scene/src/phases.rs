@@ -111,7 +111,7 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
             rate: r.number("rate", None, "a strain rate in 1/s, below 0 (compression)", |v| {
                 v < 0.0 && v.is_finite()
             }),
-            method: r.choice("method", GasMethod::Soft, &GAS_METHODS),
+            method: r.choice("method", GasMethod::EventDriven, &GAS_METHODS),
         },
         "relax" => PhaseKind::Relax,
         "strain" => PhaseKind::Strain { rate: six(r, "rate") },

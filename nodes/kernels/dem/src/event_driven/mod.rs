@@ -128,6 +128,9 @@ impl HardSpheres {
         }
         // θ at the end; its limit for rate → 0 is the interval.
         let end = if rate == 0.0 { interval } else { (-rate * interval).exp_m1() / -rate };
+        let deformation = Mat3::identity() * stretch;
+        let cell = self.cell.deformed(&deformation);
+        let cell = cell.ok_or_else(|| DemError::HardSpheres("the cell loses its volume".into()))?;
         let edges = self.cell.matrix().diagonal();
         let widest = 2.0 * self.radii.iter().copied().fold(0.0, f64::max) * (1.0 - rate * end).max(1.0);
         if edges.min() <= widest {
@@ -148,11 +151,7 @@ impl HardSpheres {
         })?;
         let energy = slice.twice_energy();
         slice.finish(stretch, &mut self.positions, &mut self.velocities);
-        let deformation = Mat3::identity() * stretch;
-        self.cell = self
-            .cell
-            .deformed(&deformation)
-            .ok_or_else(|| DemError::HardSpheres("the cell lost its volume".into()))?;
+        self.cell = cell;
         let carried = if energy > 0.0 { tally.impulse_length / (end * energy) } else { 0.0 };
         Ok((deformation, Collisions { count: tally.collisions, compressibility: 1.0 + carried }))
     }
