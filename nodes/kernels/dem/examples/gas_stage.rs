@@ -1,5 +1,5 @@
-//! What the gas stage costs and what packing it leads to: `gas_stage GRAINS SEEDS METHOD:RATE…`, for example
-//! `cargo run --release -p dem --example gas_stage 500 6 soft:12 event_driven:12`.
+//! What the gas stage costs and what packing it leads to: `gas_stage GRAINS FIRST-LAST METHOD:RATE…`, seeds from first to
+//! last, for example `cargo run --release -p dem --example gas_stage 500 1-6 soft:12 event_driven:12`.
 //!
 //! Each gas is compressed to φ = 0.607 at that rate (1/s), comes to rest, is pressed without friction to 1 kPa (its φ
 //! there stands for jamming), then with μ = 0.1 to 50 kPa.
@@ -72,16 +72,18 @@ fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [grains, seeds, gases @ ..] = arguments.as_slice() else {
-        return Err("usage: gas_stage GRAINS SEEDS METHOD:RATE...".into());
+        return Err("usage: gas_stage GRAINS FIRST-LAST METHOD:RATE...".into());
     };
-    let (grains, seeds): (u32, u64) = (grains.parse()?, seeds.parse()?);
+    let grains: u32 = grains.parse()?;
+    let (first, last) = seeds.split_once('-').ok_or("seeds are FIRST-LAST")?;
+    let (first, last): (u64, u64) = (first.parse()?, last.parse()?);
     println!(
         "{:18} {:>5} {:>18} {:>18} {:>18} {:>16} {:>16}",
         "gas", "seed", "seconds", "phi 1 kPa", "phi 50 kPa", "k", "z"
     );
     let mut outcomes: Vec<Vec<Outcome>> = gases.iter().map(|_| Vec::new()).collect();
     // Seed by seed, so that a load on the machine that comes and goes meets all alike.
-    for seed in 1..=seeds {
+    for seed in first..=last {
         for (gas, outcomes) in gases.iter().zip(&mut outcomes) {
             let (method, rate) = gas.split_once(':').ok_or("a gas is METHOD:RATE")?;
             let o = run(&scene(grains, seed, method, rate.parse()?))?;

@@ -93,9 +93,9 @@ pub(super) fn collide(i: &mut Grain, j: &mut Grain, d: &[f64; 3], sigma: f64, gr
     let square = dot(d, d);
     let (mi, mj) = (i.mass(), j.mass());
     let share = -2.0 * closing / (square * (mi + mj));
-    for k in 0..3 {
-        i.v[k] -= share * mj * d[k];
-        j.v[k] += share * mi * d[k];
+    for ((vi, vj), d) in i.v.iter_mut().zip(&mut j.v).zip(d) {
+        *vi -= share * mj * d;
+        *vj += share * mi * d;
     }
     share * mi * mj * square
 }
