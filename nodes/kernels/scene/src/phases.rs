@@ -120,6 +120,11 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
     };
     let gas = matches!(parsed, PhaseKind::Gas { .. });
     let hard = matches!(parsed, PhaseKind::Gas { method: GasMethod::EventDriven, .. });
+    let (damping, period) = match (gas, hard) {
+        (_, true) => (0.0, 20),
+        (true, false) => (0.002, 200),
+        (false, false) => (0.3, 10),
+    };
     let phase = Phase {
         name: r.text("name", Some(kind)),
         friction: r.number(
@@ -128,20 +133,12 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
             "a friction coefficient, 0 or more (inf: no sliding)",
             |v| v >= 0.0,
         ),
-        damping: r.number(
-            "damping",
-            Some(match (gas, hard) {
-                (_, true) => 0.0,
-                (true, false) => 0.002,
-                (false, false) => 0.3,
-            }),
-            "a share of critical, from 0 to 1",
-            |v| (0.0..=1.0).contains(&v),
-        ),
+        damping: r.number("damping", Some(damping), "a share of critical, from 0 to 1", |v| {
+            (0.0..=1.0).contains(&v)
+        }),
         drag: r.number("drag", Some(0.0), "in 1/s, 0 or more", from_zero),
         spin_drag: r.number("spin_drag", Some(0.0), "in 1/s, 0 or more", from_zero),
-        control_period: r.integer("control_period", Some(if gas && !hard { 200 } else { 10 }), 1, 100_000)
-            as u32,
+        control_period: r.integer("control_period", Some(period), 1, 100_000) as u32,
         reference: r.boolean("reference", false),
         publish: r.boolean("publish", false),
         until: conditions(r, matches!(parsed, PhaseKind::Servo { .. })),

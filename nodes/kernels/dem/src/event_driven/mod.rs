@@ -160,7 +160,7 @@ impl HardSpheres {
 /// How far a grain may move before its neighbours are listed anew, over its diameter: a share of the mean gap, and a
 /// little more. A longer list costs each collision, a shorter one is made more often; the optimum is flat.
 fn margin(solid_fraction: f64) -> f64 {
-    0.05 + 0.6 * ((0.74 / solid_fraction).cbrt() - 1.0).max(0.0)
+    0.08 + 0.6 * ((0.74 / solid_fraction).cbrt() - 1.0).max(0.0)
 }
 
 /// Mean time between two collisions of a grain, s, in a fluid of hard spheres of `diameter` (m) and root mean square

@@ -34,51 +34,36 @@ pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far off contact a pair is: |d|² − σ² and half its rate, d·v − σσ̇.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gap {
-    pub(super) square: f64,
-    pub(super) closing: f64,
-    /// v² − σ̇².
-    curvature: f64,
-}
-
-impl Gap {
-    /// Centres `d` apart that move apart at `v`, touching at the distance `sigma` that grows at `growth`.
-    #[inline(always)]
-    pub(super) fn new(d: &[f64; 3], v: &[f64; 3], sigma: f64, growth: f64) -> Self {
-        Self {
-            square: dot(d, d) - sigma * sigma,
-            closing: dot(d, v) - sigma * growth,
-            curvature: dot(v, v) - growth * growth,
+/// Time until two centres `d` apart, which move apart at `v`, come to the distance `sigma`, which grows at `growth`; if
+/// that is before `limit`. 0 for a pair that overlaps (by rounding) and closes.
+///
+/// The first root of a t² + 2b t + c, the square of the distance less that of contact.
+#[inline(always)]
+pub(super) fn meeting(d: &[f64; 3], v: &[f64; 3], sigma: f64, growth: f64, limit: f64) -> Option<f64> {
+    let b = dot(d, v) - sigma * growth;
+    let a = dot(v, v) - growth * growth;
+    // They part, and faster than they grow: half of all pairs.
+    if b >= 0.0 && a >= 0.0 {
+        return None;
+    }
+    let c = dot(d, d) - sigma * sigma;
+    let time = if b < 0.0 {
+        if c <= 0.0 {
+            return Some(0.0);
         }
-    }
-
-    /// Time until contact, if that is before `limit`; 0 for a pair that overlaps (by rounding) and closes.
-    #[inline(always)]
-    pub(super) fn meeting(&self, limit: f64) -> Option<f64> {
-        let (a, b, c) = (self.curvature, self.closing, self.square);
-        let time = if b < 0.0 {
-            if c <= 0.0 {
-                return Some(0.0);
-            }
-            // With a ≥ 0 the root is no earlier than c/(−2b): most pairs need no square root.
-            if a >= 0.0 && c >= -2.0 * b * limit {
-                return None;
-            }
-            let discriminant = b * b - a * c;
-            if discriminant < 0.0 {
-                return None;
-            }
-            c / (discriminant.sqrt() - b)
-        } else if a < 0.0 {
-            // They part, but grow faster.
-            (b + (b * b - a * c).max(0.0).sqrt()) / -a
-        } else {
+        // With a ≥ 0 the root is no earlier than c/(−2b): most of the rest need no square root.
+        if a >= 0.0 && c >= -2.0 * b * limit {
             return None;
-        };
-        (time < limit).then_some(time)
-    }
+        }
+        let discriminant = b * b - a * c;
+        if discriminant < 0.0 {
+            return None;
+        }
+        c / (discriminant.sqrt() - b)
+    } else {
+        (b + (b * b - a * c).max(0.0).sqrt()) / -a
+    };
+    (time < limit).then_some(time)
 }
 
 /// Reverses the rate at which two grains in contact close: an elastic collision of smooth spheres. `d` leads from `i` to

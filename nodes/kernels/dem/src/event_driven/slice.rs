@@ -7,7 +7,7 @@
 
 use super::ROUNDING;
 use super::grid::{Grid, Image, NONE, cell_vectors};
-use super::pair::{Gap, Grain, collide, dot};
+use super::pair::{Grain, collide, dot, meeting};
 use super::queue::Queue;
 use crate::error::DemError;
 use grains::Vec3;
@@ -286,9 +286,8 @@ impl Slice {
             let d = [p[0] - x[0] + s[0], p[1] - x[1] + s[1], p[2] - x[2] + s[2]];
             let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
             let sum = g.radius + other.radius;
-            let gap = Gap::new(&d, &v, sum * scale, sum * self.growth);
             // What the other grain meets before is its next collision, after which it looks again.
-            if let Some(wait) = gap.meeting(best - now)
+            if let Some(wait) = meeting(&d, &v, sum * scale, sum * self.growth, best - now)
                 && now + wait < self.meetings[near.grain as usize].time
             {
                 best = now + wait;
