@@ -5,12 +5,14 @@ use system_tests::bodies::{assert_same, distinct};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{children, send};
 
-/// The small scene with more grains and a slower start: long enough for five deaths.
+/// The small scene with more grains and a slower start, by the contact law: long enough for five deaths.
 fn longer_scene(lab: &Lab) -> std::path::PathBuf {
     let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
     let path = lab.folder().join("longer.toml");
-    std::fs::write(&path, text.replace("count = 80", "count = 400").replace("rate = -60.0", "rate = -12.0"))
-        .unwrap();
+    let slow = "method = \"soft\"\nrate = -12.0\ncontrol_period = 100";
+    let fast = "method = \"event_driven\"\nrate = -60.0";
+    assert!(text.contains(fast));
+    std::fs::write(&path, text.replace("count = 80", "count = 400").replace(fast, slow)).unwrap();
     path
 }
 

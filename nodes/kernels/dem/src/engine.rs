@@ -284,9 +284,6 @@ impl Engine {
                 gone = Some(moved);
                 seen
             };
-            if seen.deep {
-                return Err(observe::deepest(&self.state, &self.contacts));
-            }
             if let Some(each) = &mut each {
                 let volume = self.state.cell.volume();
                 each(SymTensor::from_voigt(std::array::from_fn(|k| seen.virial[k] / volume)));

@@ -59,6 +59,20 @@ pub enum DemError {
         /// Solid fraction asked for.
         solid_fraction: f64,
     },
+    /// A state that is no gas of hard spheres.
+    #[error("the event-driven gas cannot take up this state: {0}")]
+    HardSpheres(String),
+    /// Hard spheres that can get no closer.
+    #[error(
+        "the event-driven gas jammed at a solid fraction of {solid_fraction:.4}: {cause}; end the gas phase at a lower \
+         solid fraction"
+    )]
+    Jammed {
+        /// Solid fraction reached.
+        solid_fraction: f64,
+        /// What showed it.
+        cause: String,
+    },
     /// A strain rate that cannot be obeyed.
     #[error("strain rate component {component} is {value}; it must be finite")]
     Rate {

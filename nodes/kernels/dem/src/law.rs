@@ -102,19 +102,20 @@ impl Law {
         let along = t.relative.dot(n);
         let across = t.relative.minus(n, along);
         let (elastic, normal, dashpot) = self.normal_force(t, along);
-        // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip. All of
-        // it is known from the present alone, so a resumed state has the same forces.
-        let mean = n.minus(across, L::splat(0.5 * dt) * t.inverse_distance);
-        let rolling = t.rolling.cross(mean);
-        let slip = (across - rolling).plus(n, rolling.dot(n));
+        // From the present velocities alone, whatever the time step, so that a resumed state has the same force.
         let share = (self.tangential / self.normal).sqrt();
-        let viscous = (self.damping > 0.0).then(|| slip.scale(dashpot * L::splat(share)));
+        let viscous =
+            (self.damping > 0.0).then(|| (across - t.rolling.cross(n)).scale(dashpot * L::splat(share)));
         let mut f = history;
         if ADVANCE {
+            let mean = n.minus(across, L::splat(0.5 * dt) * t.inverse_distance);
             f = carried(f, t, mean, dt);
             if RESCALED {
                 f = f.scale(t.unloading);
             }
+            // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
+            let rolling = t.rolling.cross(mean);
+            let slip = (across - rolling).plus(n, rolling.dot(n));
             f = f.plus(slip, L::splat(self.tangential * dt) * t.root);
             if SLIDING {
                 let limit = L::splat(self.friction) * elastic;

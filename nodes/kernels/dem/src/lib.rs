@@ -4,6 +4,7 @@
 //! - [`engine`]: stepping grains at a given strain rate
 //! - [`law`]: the contact law, the specification of every faster form
 //! - [`gas`]: placing grains at random and agitating them
+//! - [`event_driven`]: the gas as hard spheres, from collision to collision
 //! - [`observe`]: stress, tangent stiffness and balance of the present contacts
 //!
 //! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), so nothing depends on
@@ -14,6 +15,7 @@ pub mod compute;
 mod contacts;
 pub mod engine;
 pub mod error;
+pub mod event_driven;
 pub mod gas;
 mod integrate;
 pub mod lanes;

@@ -28,6 +28,9 @@ pub struct Snapshot {
     pub unbalanced: f64,
 }
 
+/// A contact overlapping by more than this share of the smaller diameter is outside Hertz's law.
+const OVERLAP_LIMIT: f64 = 0.1;
+
 pub(crate) fn snapshot(
     state: &State,
     contacts: &Contacts,
@@ -128,7 +131,9 @@ impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
             let mut lane = 0;
             while lane < BLOCK {
                 if let Some(g) = Geometry::<L>::of::<SIZES>(&view, block, sizes.get(b), lane) {
-                    deep |= g.deep();
+                    // The smaller of two is the larger of their negatives.
+                    let smaller = -(-g.radius[0]).max(-g.radius[1]);
+                    deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
                     let k_n = L::splat(view.law.normal) * g.root;
                     let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
                     let f = g.normal.scale(elastic) - V3::load(&block.history, lane);

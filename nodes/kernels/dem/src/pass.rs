@@ -6,9 +6,6 @@ use crate::law::{Law, Touch};
 use crate::simd::Kernel;
 use grains::Mat3;
 
-/// A contact overlapping by more than this share of the smaller diameter is outside Hertz's law.
-pub(crate) const OVERLAP_LIMIT: f64 = 0.1;
-
 /// Blocks between asking for the grains of one and working on it.
 const AHEAD: usize = 4;
 
@@ -68,15 +65,12 @@ fn sum<L: Lanes, const SIZES: bool>(
 pub(crate) struct Seen {
     /// Σ f ⊗ l of the elastic forces, symmetrised, Voigt order, J; two spares. Zero unless it was asked for.
     pub(crate) virial: [f64; 8],
-    /// Some contact overlaps beyond [`OVERLAP_LIMIT`].
-    pub(crate) deep: bool,
 }
 
 impl Seen {
     /// This, then what the next chunk saw.
     pub(crate) fn then(&mut self, next: &Self) {
         self.virial.iter_mut().zip(next.virial).for_each(|(a, b)| *a += b);
-        self.deep |= next.deep;
     }
 }
 
@@ -169,13 +163,6 @@ impl<L: Lanes> Geometry<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn deep(&self) -> bool {
-        // The smaller of two is the larger of their negatives.
-        let smaller = -(-self.radius[0]).max(-self.radius[1]);
-        L::any(self.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)))
-    }
-
-    #[inline(always)]
     fn touch(&self, view: &View<'_>) -> Touch<L> {
         let rate = |r: usize| {
             let of = |c: usize| L::splat(view.rate[(r, c)]);
@@ -235,7 +222,6 @@ impl<const SIZES: bool, const LOOK: bool> Kernel for Frictionless<'_, SIZES, LOO
                         let force = g.normal.scale(normal);
                         let force = V3::select(g.touching, force, V3::splat(0.0));
                         L::store_rows([force.x, force.y, force.z, zero], &mut rows, lane, 0);
-                        seen.deep |= g.deep();
                         if LOOK {
                             g.look(g.normal.scale(elastic), &mut seen.virial);
                         }
@@ -309,7 +295,6 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
                         };
                         L::store_rows([force.x, force.y, force.z, spare[0]], &mut rows, lane, 0);
                         L::store_rows([moment.x, moment.y, moment.z, spare[1]], &mut rows, lane, 4);
-                        seen.deep |= g.deep();
                         if LOOK {
                             g.look((V3::splat(0.0) - f.history).plus(g.normal, f.elastic), &mut seen.virial);
                         }

@@ -4,11 +4,12 @@ use crate::checkpoint::Checkpoint;
 use crate::compute::Compute;
 use crate::engine::{Engine, Setting, TimeStep};
 use crate::error::DemError;
+use crate::event_driven::{HardSpheres, mean_free_time};
 use crate::gas;
 use crate::observe::Snapshot;
 use crate::run_state::RunState;
 use grains::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
-use scene::{Observation, PathEvent, PathState, Phase, PhaseKind, Scene};
+use scene::{Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene};
 
 /// Solver steps between two copies of the state that a failing run is taken back to.
 const KEEP_INTERVAL: u64 = 100;
@@ -68,6 +69,15 @@ pub struct Request {
     pub control_interval: f64,
     /// Logarithmic strain since the reference state.
     pub strain: SymTensor,
+}
+
+/// An event-driven phase under way.
+#[derive(Clone, Copy, Debug)]
+struct EventDriven {
+    /// Solver step, s.
+    step: f64,
+    /// Root mean square speed that the grains are kept from exceeding, m/s.
+    speed: f64,
 }
 
 /// What an answer led to.
@@ -189,7 +199,8 @@ impl Simulation {
             // A limit must be positive; a phase that imposes nothing allows anything.
             rate_limit: if rate_limit > 0.0 { rate_limit } else { 1.0 },
             law,
-            control_interval: self.engine.time_step() * f64::from(phase.control_period),
+            control_interval: self.event_driven(phase).map_or(self.engine.time_step(), |gas| gas.step)
+                * f64::from(phase.control_period),
             strain: logarithmic_strain(&self.deformation),
         })
     }
@@ -215,11 +226,12 @@ impl Simulation {
     }
 
     fn advance(&mut self, period: u32) -> Result<Advanced, DemError> {
-        let stretch = self.engine.run(period)?;
-        self.phase_deformation = stretch * self.phase_deformation;
-        if self.has_reference {
-            self.deformation = stretch * self.deformation;
-        }
+        let gas = self.path.phase(&self.scene).and_then(|phase| self.event_driven(phase));
+        let stretch = match gas {
+            Some(gas) => self.collide(gas, period)?,
+            None => self.engine.run(period)?,
+        };
+        self.deform(&stretch);
         self.seen = self.engine.snapshot()?;
         self.sequence += 1;
         let seen = Observation {
@@ -240,6 +252,66 @@ impl Simulation {
                 Ok(Advanced { ended, packing_due: publish, finished })
             }
         }
+    }
+
+    fn deform(&mut self, stretch: &Mat3) {
+        self.phase_deformation = stretch * self.phase_deformation;
+        if self.has_reference {
+            self.deformation = stretch * self.deformation;
+        }
+    }
+
+    /// What an event-driven phase does next; `None` in any other phase.
+    ///
+    /// Its solver step is a mean free time at the present solid fraction and at the speed of the phase, but no longer
+    /// than leads, in one control period, to the solid fraction that the phase waits for.
+    fn event_driven(&self, phase: &Phase) -> Option<EventDriven> {
+        let PhaseKind::Gas { method: GasMethod::EventDriven, speed, rate, .. } = phase.kind else {
+            return None;
+        };
+        let present = self.seen.solid_fraction;
+        let mut step = mean_free_time(present, self.scene.diameter, speed);
+        for condition in &phase.until.all {
+            if let Condition::AtLeast(Measure::SolidFraction, wanted) = condition
+                && *wanted > present
+            {
+                // A hair beyond, so that rounding does not leave the condition unmet.
+                let strain = (wanted / present).ln() / 3.0 + 1e-9;
+                step = step.min(strain / -rate / f64::from(phase.control_period));
+            }
+        }
+        Some(EventDriven { step, speed })
+    }
+
+    /// One control period of an event-driven phase.
+    fn collide(&mut self, gas: EventDriven, period: u32) -> Result<Mat3, DemError> {
+        let rate = self.engine.rate();
+        if rate != [rate[0], rate[0], rate[0], 0.0, 0.0, 0.0] {
+            let what = format!("a strain rate of {rate:?} 1/s is not isotropic");
+            return Err(DemError::HardSpheres(what));
+        }
+        let old = self.engine.packing(Mat3::identity());
+        let interval = gas.step * f64::from(period);
+        let mut spheres =
+            HardSpheres::new(old.cell, old.radii.clone(), old.positions.clone(), old.velocities.clone())?;
+        let (stretch, _) = spheres.advance(rate[0], interval)?;
+        spheres.limit_speed(gas.speed);
+        let packing = Packing {
+            step: old.step + u64::from(period),
+            time: old.time + interval,
+            time_step: gas.step,
+            cell: *spheres.cell(),
+            positions: spheres.positions().to_vec(),
+            velocities: spheres.velocities().to_vec(),
+            contacts: Vec::new(),
+            ..old
+        };
+        let compute = self.engine.compute().clone();
+        self.engine = Engine::from_packing(&packing, *self.engine.setting());
+        self.engine.set_compute(compute);
+        self.engine.set_rate(&rate)?;
+        self.engine.prepare()?;
+        Ok(stretch)
     }
 
     /// Takes up the setting of the phase now under way. Forces and stress are evaluated anew with it, as a resumed run

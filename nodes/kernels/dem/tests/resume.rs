@@ -11,6 +11,7 @@ count = 32
 diameter = 2e-4
 [[phase]]
 kind = "gas"
+method = "soft"
 rate = -60.0
 control_period = 100
 until = { solid_fraction = 0.55 }
@@ -60,7 +61,16 @@ fn advance(run: &mut Simulation) -> bool {
 }
 
 fn start() -> Simulation {
-    Simulation::new(Scene::parse(SCENE).unwrap()).unwrap()
+    begin(SCENE)
+}
+
+fn begin(scene: &str) -> Simulation {
+    Simulation::new(Scene::parse(scene).unwrap()).unwrap()
+}
+
+/// The same path from an event-driven gas.
+fn event_driven() -> String {
+    SCENE.replace("method = \"soft\"\nrate = -60.0\ncontrol_period = 100", "rate = -60.0\ncontrol_period = 3")
 }
 
 #[test]
@@ -91,6 +101,78 @@ fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
         }
         advance(&mut first);
     }
+}
+
+#[test]
+fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
+    let scene = event_driven();
+    let (mut run, mut saves) = (begin(&scene), Vec::new());
+    while run.path().phase < 2 {
+        if run.path().phase == 0 {
+            saves.push((run.packing(), run.run_state(), run.request()));
+        }
+        advance(&mut run);
+    }
+    let end = run.packing();
+    assert!(saves.len() > 20, "{} exchanges", saves.len());
+    for (packing, state, request) in saves {
+        let mut second = Simulation::resume(Scene::parse(&scene).unwrap(), &packing, &state).unwrap();
+        assert_eq!(second.request(), request);
+        while second.path().phase < 2 {
+            advance(&mut second);
+        }
+        assert_eq!(second.packing(), end, "resumed at step {}", packing.step);
+        assert_eq!(second.run_state(), run.run_state());
+    }
+}
+
+#[test]
+fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
+    let mut run = begin(&event_driven());
+    while run.path().phase == 0 {
+        let asked = run.request().unwrap();
+        advance(&mut run);
+        let (time, steps) = (run.engine().time(), run.engine().steps());
+        assert_eq!(steps, asked.step + 3);
+        let expected = asked.time + asked.control_interval;
+        assert!((time / expected - 1.0).abs() < 1e-14 && time > asked.time, "{time} {expected}");
+        assert!(run.engine().speed() <= 1.0 + 1e-12);
+        let packing = run.packing().validated().unwrap();
+        let deepest = packing.contacts.iter().map(|c| c.overlap).fold(0.0, f64::max);
+        assert!(deepest < 1e-12 * 2e-4, "{deepest:e}");
+    }
+    let reached = run.packing().solid_fraction();
+    assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
+    assert!(run.engine().speed() > 0.9, "still a gas: {}", run.engine().speed());
+    // The contact law takes over at its own time step.
+    assert!(run.engine().time_step() < 1e-6, "{}", run.engine().time_step());
+}
+
+#[test]
+fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
+    let mut run = begin(&event_driven());
+    advance(&mut run);
+    let before = (run.packing(), run.run_state());
+    let error = run.answer(&[-60.0, -60.0, -50.0, 0.0, 0.0, 0.0]).unwrap_err().to_string();
+    assert!(error.contains("not isotropic"), "{error}");
+    let error = run.answer(&[f64::NAN; 6]).unwrap_err().to_string();
+    assert!(error.contains("finite"), "{error}");
+    // Refused, the run is back at a state from which it can go on.
+    assert!(run.engine().steps() <= before.0.step);
+    assert!(advance(&mut run));
+
+    let mut run = begin(&event_driven().replace("solid_fraction = 0.55", "solid_fraction = 0.76"));
+    let error = loop {
+        let rate = run.request().unwrap().controls.map(|c| match c {
+            grains::ComponentControl::StrainRate(rate) => rate,
+            _ => 0.0,
+        });
+        if let Err(error) = run.answer(&rate) {
+            break error;
+        }
+    };
+    assert!(matches!(error, dem::DemError::Jammed { .. }), "{error}");
+    assert!(run.packing().validated().is_ok());
 }
 
 #[test]

@@ -64,7 +64,7 @@ pub struct Phase {
     pub drag: f64,
     /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever.
     pub spin_drag: f64,
-    /// Solver steps between two requests.
+    /// Solver steps between two requests; in an event-driven gas a step is a mean free time.
     pub control_period: u32,
     /// The state at the end is the reference of strains reported from then on.
     pub reference: bool,
@@ -85,6 +85,8 @@ pub enum PhaseKind {
         speed: f64,
         /// Strain rate of each axis, 1/s, negative in compression.
         rate: f64,
+        /// How the grains collide.
+        method: GasMethod,
     },
     /// Fixed cell.
     Relax,
@@ -102,6 +104,16 @@ pub enum PhaseKind {
         /// Largest magnitude of a strain rate component, 1/s.
         rate_limit: f64,
     },
+}
+
+/// How the grains of a gas collide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GasMethod {
+    /// As hard, elastic, frictionless spheres, from collision to collision. A solver step is a mean free time at the
+    /// present solid fraction; there are no lasting contacts, and so no stress.
+    EventDriven,
+    /// By the contact law, step by step.
+    Soft,
 }
 
 /// When a phase is over: every condition holds for `hold` seconds, or else at `timeout` the run fails.

@@ -1,12 +1,14 @@
 //! The loading path in the text: phases, cycles, conditions.
 
-use crate::model::{Condition, Conditions, Measure, Phase, PhaseKind};
+use crate::model::{Condition, Conditions, GasMethod, Measure, Phase, PhaseKind};
 use crate::table::{Reader, as_number};
 use grains::{ComponentControl, ServoLaw};
 use toml::{Table, Value};
 
 /// Unrolled phases a path may have; more is a mistake in a cycle count.
 const MAX_PHASES: usize = 100_000;
+const GAS_METHODS: [(&str, GasMethod); 2] =
+    [("event_driven", GasMethod::EventDriven), ("soft", GasMethod::Soft)];
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 pub(crate) fn read(r: &mut Reader<'_>) -> Vec<Phase> {
@@ -109,6 +111,7 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
             rate: r.number("rate", None, "a strain rate in 1/s, below 0 (compression)", |v| {
                 v < 0.0 && v.is_finite()
             }),
+            method: r.choice("method", GasMethod::EventDriven, &GAS_METHODS),
         },
         "relax" => PhaseKind::Relax,
         "strain" => PhaseKind::Strain { rate: six(r, "rate") },
@@ -116,7 +119,13 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
         _ => return None,
     };
     let gas = matches!(parsed, PhaseKind::Gas { .. });
-    Some(Phase {
+    let hard = matches!(parsed, PhaseKind::Gas { method: GasMethod::EventDriven, .. });
+    let (damping, period) = match (gas, hard) {
+        (_, true) => (0.0, 20),
+        (true, false) => (0.002, 200),
+        (false, false) => (0.3, 10),
+    };
+    let phase = Phase {
         name: r.text("name", Some(kind)),
         friction: r.number(
             "friction",
@@ -124,20 +133,52 @@ fn phase(r: &mut Reader<'_>, kind: &str) -> Option<Phase> {
             "a friction coefficient, 0 or more (inf: no sliding)",
             |v| v >= 0.0,
         ),
-        damping: r.number(
-            "damping",
-            Some(if gas { 0.002 } else { 0.3 }),
-            "a share of critical, from 0 to 1",
-            |v| (0.0..=1.0).contains(&v),
-        ),
+        damping: r.number("damping", Some(damping), "a share of critical, from 0 to 1", |v| {
+            (0.0..=1.0).contains(&v)
+        }),
         drag: r.number("drag", Some(0.0), "in 1/s, 0 or more", from_zero),
         spin_drag: r.number("spin_drag", Some(0.0), "in 1/s, 0 or more", from_zero),
-        control_period: r.integer("control_period", Some(if gas { 200 } else { 10 }), 1, 100_000) as u32,
+        control_period: r.integer("control_period", Some(period), 1, 100_000) as u32,
         reference: r.boolean("reference", false),
         publish: r.boolean("publish", false),
         until: conditions(r, matches!(parsed, PhaseKind::Servo { .. })),
         kind: parsed,
-    })
+    };
+    if hard {
+        refuse_contacts(r, &phase);
+    }
+    Some(phase)
+}
+
+/// An event-driven gas knows nothing of the contact law.
+fn refuse_contacts(r: &mut Reader<'_>, phase: &Phase) {
+    let keys = [
+        ("friction", phase.friction),
+        ("damping", phase.damping),
+        ("drag", phase.drag),
+        ("spin_drag", phase.spin_drag),
+    ];
+    for (key, value) in keys {
+        if value != 0.0 {
+            r.fault(
+                key,
+                format!("is {value}, but an event-driven gas is elastic and frictionless; leave it out"),
+            );
+        }
+    }
+    let needs_force = |c: &Condition| {
+        matches!(
+            c,
+            Condition::AtLeast(Measure::Pressure | Measure::Stress(_) | Measure::Unbalanced, _)
+                | Condition::AtMost(Measure::Pressure | Measure::Stress(_) | Measure::Unbalanced, _)
+        )
+    };
+    if phase.until.all.iter().any(needs_force) {
+        r.fault(
+            "until",
+            "names a stress or the unbalanced force, but an event-driven gas has no lasting contacts; use solid_fraction, strain, elapsed or speed",
+        );
+    }
 }
 
 /// Six numbers in Voigt order.

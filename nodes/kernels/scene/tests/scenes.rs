@@ -1,7 +1,7 @@
 //! Scenes as their authors write them, right and wrong.
 
 use grains::{ComponentControl, ServoLaw, SymTensor};
-use scene::{Condition, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene};
+use scene::{Condition, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene};
 
 const GOOD: &str = r#"
 name = "tiny"
@@ -107,6 +107,35 @@ fn every_fault_is_reported_at_once_with_its_place() {
         assert!(places.contains(&place), "{place} is missing from\n{error}");
     }
     assert_eq!(error.faults.len(), 6, "{error}");
+}
+
+#[test]
+fn a_gas_is_event_driven_unless_it_says_soft() {
+    let method = |text: &str| match Scene::parse(text).unwrap().phases[0].kind {
+        PhaseKind::Gas { method, .. } => method,
+        _ => panic!("a gas phase"),
+    };
+    assert_eq!(method(GOOD), GasMethod::EventDriven);
+    let soft = GOOD.replace("rate = -12.0", "rate = -12.0\nmethod = 'soft'\ndamping = 0.01");
+    assert_eq!(method(&soft), GasMethod::Soft);
+    let other = Scene::parse(&soft.replace("'soft'", "'lattice'")).unwrap_err().to_string();
+    assert!(
+        other.contains("phase[0].method: is \"lattice\"; it must be \"event_driven\" or \"soft\""),
+        "{other}"
+    );
+}
+
+#[test]
+fn an_event_driven_gas_refuses_what_only_the_contact_law_knows() {
+    let text = GOOD.replace("rate = -12.0", "rate = -12.0\ndamping = 0.002\nfriction = 0.1").replace(
+        "until = { solid_fraction = 0.6 }",
+        "until = { solid_fraction = 0.6, pressure_above = 1e3 }",
+    );
+    let error = Scene::parse(&text).unwrap_err();
+    let places: Vec<&str> = error.faults.iter().map(|f| f.place.as_str()).collect();
+    assert_eq!(places, ["phase[0].friction", "phase[0].damping", "phase[0].until"], "{error}");
+    assert!(error.to_string().contains("elastic and frictionless"), "{error}");
+    assert!(Scene::parse(&text.replace("rate = -12.0", "rate = -12.0\nmethod = 'soft'")).is_ok());
 }
 
 #[test]

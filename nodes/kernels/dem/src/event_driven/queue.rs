@@ -1,0 +1,96 @@
+//! Whose event is next: a binary heap of one time per grain, whose times can be changed in place.
+
+#[derive(Clone, Debug)]
+pub(super) struct Queue {
+    heap: Vec<(f64, u32)>,
+    /// Where in the heap each grain is.
+    place: Vec<u32>,
+}
+
+impl Queue {
+    /// One event a grain, at `times`.
+    pub(super) fn new(times: impl Iterator<Item = f64>) -> Self {
+        let heap: Vec<(f64, u32)> = times.zip(0..).collect();
+        let place = (0..heap.len() as u32).collect();
+        let mut queue = Self { heap, place };
+        for at in (0..queue.heap.len() / 2).rev() {
+            queue.sink(at);
+        }
+        queue
+    }
+
+    /// The next event and whose it is.
+    #[inline(always)]
+    pub(super) fn first(&self) -> Option<(f64, u32)> {
+        self.heap.first().copied()
+    }
+
+    /// Sets the time of a grain's event.
+    #[inline]
+    pub(super) fn set(&mut self, grain: usize, time: f64) {
+        let at = self.place[grain] as usize;
+        let before = self.heap[at].0;
+        if time == before {
+            return;
+        }
+        self.heap[at].0 = time;
+        if time < before { self.rise(at) } else { self.sink(at) }
+    }
+
+    fn rise(&mut self, mut at: usize) {
+        let moving = self.heap[at];
+        while at > 0 {
+            let above = (at - 1) / 2;
+            if self.heap[above].0 <= moving.0 {
+                break;
+            }
+            self.put(at, self.heap[above]);
+            at = above;
+        }
+        self.put(at, moving);
+    }
+
+    fn sink(&mut self, mut at: usize) {
+        let moving = self.heap[at];
+        loop {
+            let mut below = 2 * at + 1;
+            if below >= self.heap.len() {
+                break;
+            }
+            if below + 1 < self.heap.len() && self.heap[below + 1].0 < self.heap[below].0 {
+                below += 1;
+            }
+            if self.heap[below].0 >= moving.0 {
+                break;
+            }
+            self.put(at, self.heap[below]);
+            at = below;
+        }
+        self.put(at, moving);
+    }
+
+    #[inline(always)]
+    fn put(&mut self, at: usize, entry: (f64, u32)) {
+        self.heap[at] = entry;
+        self.place[entry.1 as usize] = at as u32;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_is_the_least_after_any_change() {
+        let mut times: Vec<f64> = (0..97).map(|k| f64::from(k * 37 % 97)).collect();
+        let mut queue = Queue::new(times.iter().copied());
+        for step in 0..2000 {
+            let grain = step * 31 % 97;
+            times[grain] = (step * 7919 % 1009) as f64;
+            queue.set(grain, times[grain]);
+            let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+            let (time, first) = queue.first().unwrap();
+            assert_eq!((time, times[first as usize]), (least, least));
+        }
+    }
+}
