@@ -206,7 +206,8 @@ impl Contacts {
             let r_eff = effective_radius(r_i, r_j);
             let distance = distance(&branch);
             let overlap = r_i + r_j - distance;
-            Contact {
+            // A run that failed may have moved on without its contacts.
+            (overlap > 0.0).then(|| Contact {
                 i: p.i,
                 j: p.j,
                 image: self.images.number(p.image),
@@ -214,9 +215,9 @@ impl Contacts {
                 normal: branch / distance,
                 normal_force: state.material.normal_force(r_eff, overlap),
                 tangential_force: p.history,
-            }
+            })
         };
-        self.touching().map(contact).collect()
+        self.touching().filter_map(contact).collect()
     }
 
     /// Forgets tangential forces.

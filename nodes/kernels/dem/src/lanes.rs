@@ -164,6 +164,12 @@ impl<L: Lanes> V3<L> {
         Self { x, y, z }
     }
 
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub(crate) fn row(v: &[f64; 3]) -> Self {
+        Self::new(L::splat(v[0]), L::splat(v[1]), L::splat(v[2]))
+    }
+
     /// The same number in every component and lane.
     #[inline(always)]
     pub(crate) fn splat(value: f64) -> Self {

@@ -88,9 +88,10 @@ impl Law {
 
     /// A contact with friction, its history brought forward by `dt` (s) where `ADVANCE`, else taken as it is.
     ///
-    /// `SLIDING` applies the Coulomb limit to elastic and viscous force together; where they slide, the elastic one is
-    /// what the viscous one leaves of the limit (Luding, Granular Matter 10, 235 (2008), Sec. 2.3). `RESCALED` scales the
-    /// history down with the stiffness on unloading.
+    /// `SLIDING` applies the Coulomb limit, to the elastic force and then to it and the viscous one together. (To leave
+    /// the elastic force what the viscous one leaves of the limit, as in Luding, Granular Matter 10, 235 (2008), spares a
+    /// root, but lets the elastic stress fall with the strain rate, and a stress servo goes unstable early.) `RESCALED`
+    /// scales the history down with the stiffness on unloading.
     #[inline(always)]
     pub fn frictional<L: Lanes, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
         &self,
@@ -104,8 +105,13 @@ impl Law {
         let (elastic, normal, dashpot) = self.normal_force(t, along);
         // From the present velocities alone, whatever the time step, so that a resumed state has the same force.
         let share = (self.tangential / self.normal).sqrt();
-        let viscous =
-            (self.damping > 0.0).then(|| (across - t.rolling.cross(n)).scale(dashpot * L::splat(share)));
+        // No closures here: one that is not inlined would lose the instruction set.
+        let viscous = if self.damping > 0.0 {
+            (across - t.rolling.cross(n)).scale(dashpot * L::splat(share))
+        } else {
+            V3::splat(0.0)
+        };
+        let limit = L::splat(self.friction) * elastic;
         let mut f = history;
         if ADVANCE {
             let mean = n.minus(across, L::splat(0.5 * dt) * t.inverse_distance);
@@ -118,28 +124,26 @@ impl Law {
             let slip = (across - rolling).plus(n, rolling.dot(n));
             f = f.plus(slip, L::splat(self.tangential * dt) * t.root);
             if SLIDING {
-                let limit = L::splat(self.friction) * elastic;
-                f = match viscous {
-                    Some(v) => limited(f + v, f, v, limit),
-                    None => limited(f, f, V3::splat(0.0), limit),
-                };
+                f = limited(f, limit);
             }
         }
-        let tangential = viscous.map_or(f, |v| f + v);
+        let mut tangential = f;
+        if self.damping > 0.0 {
+            tangential = f + viscous;
+            if SLIDING {
+                tangential = limited(tangential, limit);
+            }
+        }
         Forces { elastic, normal, tangential, history: f }
     }
 }
 
-/// Coulomb's limit: the elastic force `f` where `total` is below it, else what `viscous` leaves of it.
+/// Coulomb's limit.
 #[inline(always)]
-fn limited<L: Lanes>(total: V3<L>, f: V3<L>, viscous: V3<L>, limit: L) -> V3<L> {
-    let square = total.dot(total);
+fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
+    let square = f.dot(f);
     let sliding = square.gt(limit * limit);
-    if L::any(sliding) {
-        V3::select(sliding, (V3::splat(0.0) - viscous).plus(total, limit / square.sqrt()), f)
-    } else {
-        f
-    }
+    if L::any(sliding) { V3::select(sliding, f.scale(limit / square.sqrt()), f) } else { f }
 }
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.

@@ -4,7 +4,6 @@ use crate::contacts::{Block, Sizes};
 use crate::lanes::{BLOCK, Lanes, Quad, V3, Wrench};
 use crate::law::{Law, Touch};
 use crate::simd::Kernel;
-use grains::Mat3;
 
 /// Blocks between asking for the grains of one and working on it.
 const AHEAD: usize = 4;
@@ -17,7 +16,8 @@ pub(crate) struct View<'a> {
     pub(crate) spin: &'a [Quad],
     /// Shift of each periodic image.
     pub(crate) shift: &'a [Quad],
-    pub(crate) rate: Mat3,
+    /// Columns of the strain rate, 1/s.
+    pub(crate) rate: [[f64; 3]; 3],
     pub(crate) law: Law,
     pub(crate) dt: f64,
     /// Radius, R*, effective mass of every pair, where grains are of one size.
@@ -50,11 +50,11 @@ fn sum<L: Lanes, const SIZES: bool>(
         let [lever_j, lever_i] = [row[3], row[7]];
         let moment = [row[4], row[5], row[6]];
         if SIZES {
-            (0..3).for_each(|k| row[4 + k] = moment[k] * lever_j);
+            row[4..7].copy_from_slice(&[moment[0] * lever_j, moment[1] * lever_j, moment[2] * lever_j]);
         }
         L::add_row(row, &mut sums[block.to[lane] as usize]);
         if SIZES {
-            (0..3).for_each(|k| row[4 + k] = moment[k] * lever_i);
+            row[4..7].copy_from_slice(&[moment[0] * lever_i, moment[1] * lever_i, moment[2] * lever_i]);
         }
         L::add_reaction(row, &mut sums[(block.i[lane] - first) as usize]);
     }
@@ -164,11 +164,9 @@ impl<L: Lanes> Geometry<L> {
 
     #[inline(always)]
     fn touch(&self, view: &View<'_>) -> Touch<L> {
-        let rate = |r: usize| {
-            let of = |c: usize| L::splat(view.rate[(r, c)]);
-            V3::new(of(0), of(1), of(2)).dot(self.branch)
-        };
-        let affine = V3::new(rate(0), rate(1), rate(2));
+        let [x, y, z] = &view.rate;
+        let l = self.branch;
+        let affine = V3::row(x).scale(l.x).plus(V3::row(y), l.y).plus(V3::row(z), l.z);
         Touch {
             normal: self.normal,
             inverse_distance: self.inverse_distance,
@@ -187,14 +185,14 @@ impl<L: Lanes> Geometry<L> {
         let (f, l) = (force, self.branch);
         let half = L::splat(0.5);
         let zero = L::splat(0.0);
-        let kept = |v: L| L::select(self.touching, v, zero);
+        let f = V3::select(self.touching, f, V3::splat(0.0));
         let terms = [
-            kept(f.x * l.x),
-            kept(f.y * l.y),
-            kept(f.z * l.z),
-            kept(half * f.y.mul_add(l.z, f.z * l.y)),
-            kept(half * f.x.mul_add(l.z, f.z * l.x)),
-            kept(half * f.x.mul_add(l.y, f.y * l.x)),
+            f.x * l.x,
+            f.y * l.y,
+            f.z * l.z,
+            half * f.y.mul_add(l.z, f.z * l.y),
+            half * f.x.mul_add(l.z, f.z * l.x),
+            half * f.x.mul_add(l.y, f.y * l.x),
             zero,
             zero,
         ];
@@ -267,7 +265,10 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
                         let was = L::load(&block.root, lane);
                         touch.unloading = L::select(was.gt(g.root), g.root / was, one);
                         let half = L::splat(0.5);
-                        let lever = g.radius.map(|r| half.mul_sub_from(g.overlap, r));
+                        let lever = [
+                            half.mul_sub_from(g.overlap, g.radius[0]),
+                            half.mul_sub_from(g.overlap, g.radius[1]),
+                        ];
                         let (spin_i, spin_j) = (V3::gather(view.spin, g.i), V3::gather(view.spin, g.j));
                         let spin = spin_i + spin_j;
                         touch.rolling = if SIZES {

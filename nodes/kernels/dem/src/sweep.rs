@@ -35,7 +35,7 @@ pub(crate) fn view<'a>(state: &'a State, shift: &'a [Quad], setting: &Setting) -
         velocity: &state.velocity,
         spin: &state.spin,
         shift,
-        rate: state.rate,
+        rate: state.rate.into(),
         law: Law::new(&state.material, setting.friction, setting.damping),
         dt: state.time_step,
         equal: (radius, effective_radius(radius, radius), m_eff),
