@@ -1,5 +1,7 @@
-//! `grainlab bench`: speed on this machine.
+//! `grainlab bench`: speed on this machine, and what it is bought with.
 
+mod accuracy;
+mod cpu_time;
 mod lockstep;
 
 use crate::failure::Failure;
@@ -9,6 +11,8 @@ use node_kit::Exit;
 /// What to measure.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
+    Accuracy(accuracy::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
     Lockstep(lockstep::Args),
 }
@@ -16,6 +20,7 @@ pub(crate) enum Command {
 /// Runs the command.
 pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
+        Command::Accuracy(args) => accuracy::run(args),
         Command::Lockstep(args) => lockstep::run(args),
     }
 }
