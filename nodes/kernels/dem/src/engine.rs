@@ -1,18 +1,24 @@
 //! Stepping grains at a given strain rate.
 
+use crate::checkpoint::Checkpoint;
+use crate::compute::Compute;
+use crate::contacts::Contacts;
 use crate::error::DemError;
-use crate::integrate::{kick_and_drift, spin_up, stretch};
-use crate::neighbours;
+use crate::integrate::{self, Moved};
+use crate::neighbours::Neighbours;
 use crate::observe::{self, Snapshot};
-use crate::pairs::Pairs;
-use crate::pass;
-use crate::state::{Soa, State};
+use crate::order;
+use crate::state::{State, row, vector};
+use crate::sweep::{self, Advance};
 use crate::time_step;
-use grains::{Cell, Mat3, Material, Packing, Vec3};
+use grains::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
 use scene::Tangential;
 
 /// Solver steps between two looks at the stiffness of the contacts for the time step.
 const TIME_STEP_INTERVAL: u64 = 200;
+
+/// Steps that a contact list should last.
+const DRAW_INTERVAL: f64 = 300.0;
 
 /// Which parts of the contact law a phase needs; the engine is compiled for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,13 +78,46 @@ impl Setting {
 #[derive(Clone, Debug)]
 pub struct Engine {
     pub(crate) state: State,
-    pub(crate) pairs: Pairs,
+    pub(crate) contacts: Contacts,
     setting: Setting,
-    /// Displacement relative to the affine motion since the neighbour list was built, m.
-    travel: Soa,
-    /// Sum of |L| dt since then: bounds how far the cell brought pairs together.
-    strained: f64,
+    compute: Compute,
+    neighbours: Neighbours,
+    /// How far any pair may have come closer since the neighbours were found.
+    found: Approach,
+    /// And since the contacts were drawn from them.
+    drawn: Approach,
     listed: bool,
+}
+
+/// A bound on how much closer pairs came since a list was made.
+#[derive(Clone, Copy, Debug)]
+struct Approach {
+    /// Skin of the list, m.
+    skin: f64,
+    /// No grain travelled farther relative to the affine motion, m.
+    travel: f64,
+    /// Sum of |L| dt.
+    strained: f64,
+    steps: u64,
+}
+
+impl Approach {
+    fn new(skin: f64) -> Self {
+        Self { skin, travel: 0.0, strained: 0.0, steps: 0 }
+    }
+
+    fn advance(&mut self, travel: f64, strain: f64) {
+        self.strained += strain;
+        // What was travelled before is strained along.
+        self.travel += travel * (1.0 + self.strained);
+        self.steps += 1;
+    }
+
+    /// Whether a pair missing from the list could touch: the list holds pairs closer than S + skin, the affine motion
+    /// brings the others no closer than (1 − strained)(S + skin), and each grain of a pair travelled at most `travel`.
+    fn is_stale(&self, reach: f64) -> bool {
+        (1.0 - self.strained) * (reach + self.skin) - 2.0 * self.travel <= reach
+    }
 }
 
 impl Engine {
@@ -91,7 +130,9 @@ impl Engine {
         setting: Setting,
     ) -> Self {
         let ids = (0..radii.len() as u32).collect();
-        Self::with(State::new(cell, material, ids, radii, positions), Pairs::default(), setting)
+        let state = State::new(cell, material, ids, radii, positions);
+        let contacts = Contacts::none(&state);
+        Self::with(state, contacts, setting)
     }
 
     /// Grains as they are in `packing`, contact history included.
@@ -103,27 +144,39 @@ impl Engine {
             packing.radii.clone(),
             &packing.positions,
         );
-        state.velocity = Soa::from_vectors(&packing.velocities);
-        state.spin = Soa::from_vectors(&packing.spins);
+        state.velocity = packing.velocities.iter().map(row).collect();
+        state.spin = packing.spins.iter().map(row).collect();
         state.step = packing.step;
         state.time = packing.time;
         state.time_step = packing.time_step;
-        Self::with(state, Pairs::from_packing(packing), setting)
+        let contacts = Contacts::from_packing(packing, &state);
+        Self::with(state, contacts, setting)
     }
 
-    fn with(state: State, pairs: Pairs, setting: Setting) -> Self {
-        let travel = Soa::zeros(state.grains());
-        Self { state, pairs, setting, travel, strained: 0.0, listed: false }
+    fn with(state: State, contacts: Contacts, setting: Setting) -> Self {
+        let (found, drawn) = (Approach::new(setting.skin), Approach::new(setting.skin));
+        let (compute, neighbours) = (Compute::default(), Neighbours::default());
+        Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false }
+    }
+
+    /// Instruction set and threads from now on; results do not depend on them.
+    pub fn set_compute(&mut self, compute: Compute) {
+        self.compute = compute;
+    }
+
+    /// Instruction set and threads in use.
+    pub fn compute(&self) -> &Compute {
+        &self.compute
     }
 
     /// Sets velocities relative to the affine motion, m/s, one a grain.
     pub fn set_velocities(&mut self, velocities: &[Vec3]) {
-        self.state.velocity = Soa::from_vectors(velocities);
+        self.state.velocity = velocities.iter().map(row).collect();
     }
 
     /// Sets spins, rad/s, one a grain.
     pub fn set_spins(&mut self, spins: &[Vec3]) {
-        self.state.spin = Soa::from_vectors(spins);
+        self.state.spin = spins.iter().map(row).collect();
     }
 
     /// The setting in force.
@@ -134,8 +187,8 @@ impl Engine {
     /// Changes the setting; takes effect with the next step. Without friction spins and tangential forces are dropped.
     pub fn set(&mut self, setting: Setting) {
         if setting.features() == Features::Frictionless {
-            self.state.spin.fill(0.0);
-            self.pairs.tangential.fill(0.0);
+            self.state.spin.fill([0.0; 4]);
+            self.contacts.forget();
         }
         if setting.skin != self.setting.skin {
             self.listed = false;
@@ -149,13 +202,13 @@ impl Engine {
         if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
             return Err(DemError::Rate { component: NAMES[c], value: rate[c] });
         }
-        self.state.rate = grains::SymTensor::from_voigt(*rate).matrix();
+        self.state.rate = SymTensor::from_voigt(*rate).matrix();
         Ok(())
     }
 
     /// The strain rate in force, Voigt order, 1/s.
     pub fn rate(&self) -> [f64; 6] {
-        grains::SymTensor::symmetric_part(&self.state.rate).voigt()
+        SymTensor::symmetric_part(&self.state.rate).voigt()
     }
 
     /// Solver steps done.
@@ -173,10 +226,19 @@ impl Engine {
         self.state.time_step
     }
 
+    /// Puts grains that are neighbours in space next to each other in memory, which large packings gain from. Their
+    /// ids go with them. Call [`Engine::prepare`] before the next step.
+    pub fn sort(&mut self) {
+        let order = order::along_curve(&self.state);
+        self.contacts = order::reorder(&mut self.state, &self.contacts, &order);
+        self.listed = false;
+    }
+
     /// Finds contacts and evaluates forces at the present state without moving on: needed once before the first step.
     pub fn prepare(&mut self) -> Result<(), DemError> {
-        self.relist()?;
-        pass::evaluate(&mut self.state, &mut self.pairs, &self.setting, false);
+        self.find()?;
+        let Self { state, contacts, setting, compute, .. } = self;
+        sweep::evaluate(state, contacts, setting, compute, Advance::Held, false);
         if self.state.time_step == 0.0 {
             self.renew_time_step();
         }
@@ -185,48 +247,145 @@ impl Engine {
 
     /// One step: kick, drift and strain, then forces at the new positions. Returns the deformation of the cell.
     pub fn step(&mut self) -> Result<Mat3, DemError> {
-        let features = self.setting.features();
-        if features != Features::Frictionless {
-            spin_up(&mut self.state, &self.setting);
+        self.run(1)
+    }
+
+    /// As many steps as told, the same as one by one but faster. Returns the deformation of the cell.
+    pub fn run(&mut self, steps: u32) -> Result<Mat3, DemError> {
+        self.drive(steps, None)
+    }
+
+    /// As many steps as told; `each` is given the Love–Weber stress (Pa, positive in compression) at the end of each,
+    /// which costs less than a [`Snapshot`].
+    pub fn run_measured(&mut self, steps: u32, mut each: impl FnMut(SymTensor)) -> Result<Mat3, DemError> {
+        self.drive(steps, Some(&mut each))
+    }
+
+    fn drive(&mut self, steps: u32, mut each: Option<&mut dyn FnMut(SymTensor)>) -> Result<Mat3, DemError> {
+        let mut total = Mat3::identity();
+        // Motion under the forces of this step's positions, if it was done with them.
+        let mut gone: Option<Moved> = None;
+        for left in (0..steps).rev() {
+            let Self { state, contacts, setting, compute, .. } = self;
+            let moved = gone.take().unwrap_or_else(|| sweep::advance(state, contacts, setting, compute));
+            let stretch = integrate::stretch(state);
+            total = stretch * total;
+            self.arrive(&moved, &stretch)?;
+            // The next motion waits for the last step's observers, and for a new time step.
+            let renew = self.state.step.is_multiple_of(TIME_STEP_INTERVAL);
+            let Self { state, contacts, setting, compute, .. } = self;
+            let seen = if left == 0 || renew {
+                sweep::evaluate(state, contacts, setting, compute, Advance::Step, each.is_some())
+            } else {
+                let (seen, moved) =
+                    sweep::evaluate_and_advance(state, contacts, setting, compute, each.is_some());
+                gone = Some(moved);
+                seen
+            };
+            if seen.deep {
+                return Err(observe::deepest(&self.state, &self.contacts));
+            }
+            if let Some(each) = &mut each {
+                let volume = self.state.cell.volume();
+                each(SymTensor::from_voigt(std::array::from_fn(|k| seen.virial[k] / volume)));
+            }
+            if renew {
+                self.renew_time_step();
+            }
         }
-        let stretch = stretch(&self.state);
-        let moved = kick_and_drift(&mut self.state, &mut self.travel, &self.setting);
-        let limit =
-            0.1 * self.state.radius.iter().copied().fold(f64::INFINITY, f64::min) / self.state.time_step;
-        // A sum that is not finite betrays any speed that is not.
-        if !moved.sum_square_speed.is_finite() || moved.largest_square_speed > limit * limit {
-            return Err(self.unstable());
-        }
+        Ok(total)
+    }
+
+    /// What follows when all grains have moved: checks, thermostat, cell, lists.
+    fn arrive(&mut self, moved: &Moved, stretch: &Mat3) -> Result<(), DemError> {
+        self.check(moved)?;
         if let Some(cap) = self.setting.speed_cap {
-            let mean = moved.sum_square_speed / self.state.grains() as f64;
+            let mean = moved.sum_square_speed() / self.state.grains() as f64;
             if mean > cap * cap {
                 let factor = cap / mean.sqrt();
-                for v in [&mut self.state.velocity.x, &mut self.state.velocity.y, &mut self.state.velocity.z]
-                {
-                    v.iter_mut().for_each(|v| *v *= factor);
-                }
+                self.state.velocity.iter_mut().flatten().for_each(|v| *v *= factor);
             }
         }
         self.state.step += 1;
         self.state.time += self.state.time_step;
         self.state.cell =
-            self.state.cell.deformed(&stretch).ok_or(DemError::Cell { step: self.state.step })?;
-        self.strained += self.state.rate.norm() * self.state.time_step;
-        if self.list_is_stale(moved.largest_square_travel.sqrt()) {
-            self.relist()?;
+            self.state.cell.deformed(stretch).ok_or(DemError::Cell { step: self.state.step })?;
+        self.relist(moved)
+    }
+
+    /// Refuses what no longer moves as grains do.
+    fn check(&self, moved: &Moved) -> Result<(), DemError> {
+        let limit = 0.1 * self.state.smallest_radius / self.state.time_step;
+        // A sum that is not finite betrays any speed that is not.
+        if moved.sum_square_speed().is_finite() && moved.largest_square_speed() <= limit * limit {
+            return Ok(());
+        }
+        // The bound may be too large where several grains are fast.
+        let fast = |v: &crate::lanes::Quad| {
+            let speed = vector(v).norm();
+            !speed.is_finite() || speed > limit
+        };
+        if self.state.velocity.iter().any(fast) { Err(self.unstable()) } else { Ok(()) }
+    }
+
+    /// Brings the lists up to date.
+    fn relist(&mut self, moved: &Moved) -> Result<(), DemError> {
+        let travel = moved.largest_square_speed().sqrt() * self.state.time_step;
+        let strain = self.state.rate.norm() * self.state.time_step;
+        self.found.advance(travel, strain);
+        self.drawn.advance(travel, strain);
+        let reach = 2.0 * self.state.largest_radius;
+        if !self.listed || self.found.is_stale(reach) {
+            self.find()
         } else {
-            self.pairs.follow(&self.state);
+            self.contacts.images.follow(&self.state.cell);
+            if self.drawn.is_stale(reach) {
+                self.draw(self.contacts.images.clone());
+            }
+            Ok(())
         }
-        pass::evaluate(&mut self.state, &mut self.pairs, &self.setting, true);
-        if self.state.step.is_multiple_of(TIME_STEP_INTERVAL) {
-            self.renew_time_step();
-        }
-        Ok(stretch)
+    }
+
+    fn find(&mut self) -> Result<(), DemError> {
+        let (neighbours, images) = Neighbours::find(&self.state, self.setting.skin)?;
+        self.neighbours = neighbours;
+        self.found = Approach::new(self.setting.skin);
+        self.listed = true;
+        self.draw(images);
+        Ok(())
+    }
+
+    /// Draws the contact list from the neighbours, with a skin that lasts for a while at the present speed.
+    fn draw(&mut self, images: crate::contacts::Images) {
+        // What pairs come closer in one step, now and on the average of late.
+        let (dt, last) = (self.state.time_step, self.drawn);
+        let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
+        let late = (2.0 * last.travel + last.strained * self.reach()) / last.steps.max(1) as f64;
+        // Near its end the neighbour list bounds what can be drawn; it is found anew before that matters.
+        let left = self.setting.skin - 2.0 * self.found.travel - self.found.strained * self.reach();
+        let skin = (DRAW_INTERVAL * now.max(late)).max(1e-3 * self.setting.skin).min(left.max(0.0));
+        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin);
+        self.drawn = Approach::new(skin);
+    }
+
+    fn reach(&self) -> f64 {
+        2.0 * self.state.largest_radius + self.setting.skin
+    }
+
+    pub(crate) fn checkpoint(&self) -> Checkpoint {
+        Checkpoint::of(&self.state, &self.contacts)
+    }
+
+    /// Goes back; forces must be evaluated anew before the next step.
+    pub(crate) fn restore(&mut self, kept: Checkpoint) {
+        self.contacts = kept.restore(&mut self.state);
+        self.listed = false;
     }
 
     /// Stress, tangent stiffness and balance of the present contacts.
     pub fn snapshot(&self) -> Result<Snapshot, DemError> {
-        observe::snapshot(&self.state, &self.pairs, self.setting.friction)
+        let view = sweep::view(&self.state, self.contacts.images.shifts(), &self.setting);
+        observe::snapshot(&self.state, &self.contacts, view, &self.compute)
     }
 
     /// Root mean square speed relative to the affine motion, m/s.
@@ -244,10 +403,10 @@ impl Engine {
             deformation,
             ids: s.ids.clone(),
             radii: s.radius.clone(),
-            positions: s.position.vectors(),
-            velocities: s.velocity.vectors(),
-            spins: s.spin.vectors(),
-            contacts: self.pairs.contacts(s),
+            positions: s.position.iter().map(vector).collect(),
+            velocities: s.velocity.iter().map(vector).collect(),
+            spins: s.spin.iter().map(vector).collect(),
+            contacts: self.contacts.contacts(s),
             material: s.material,
             friction: self.setting.friction,
             time_step: s.time_step,
@@ -266,44 +425,28 @@ impl Engine {
         let bound = match self.setting.speed_cap {
             // Collisions come and go between two looks: take the stiffest likely one, at six times the mean speed.
             Some(speed) => time_step::collision(&self.state, 6.0 * speed, self.setting.damping),
-            None => time_step::stable(&self.state, &self.pairs, &self.setting)
+            None => time_step::stable(&self.state, &self.contacts, &self.setting)
                 .min(time_step::rayleigh(&self.state)),
         };
         self.state.time_step = time_step::settle(self.state.time_step, safety * bound);
-    }
-
-    /// Whether a pair missing from the list could touch: the list holds pairs closer than S + skin, the affine motion
-    /// brings the others no closer than (1 − strained)(S + skin), and each grain of a pair travelled at most `travel`.
-    fn list_is_stale(&self, travel: f64) -> bool {
-        let reach = 2.0 * self.state.largest_radius();
-        (1.0 - self.strained) * (reach + self.setting.skin) - 2.0 * travel <= reach || !self.listed
-    }
-
-    fn relist(&mut self) -> Result<(), DemError> {
-        self.pairs = neighbours::build(&self.state, &self.pairs, self.setting.skin)?;
-        self.travel.fill(0.0);
-        self.strained = 0.0;
-        self.listed = true;
-        Ok(())
     }
 
     fn unstable(&self) -> DemError {
         let s = &self.state;
         // The first grain that is too fast, or not finite.
         let too_fast = |i: usize| {
-            let speed = s.velocity.get(i).norm();
-            !speed.is_finite() || speed > 0.1 * s.radius[i] / s.time_step
+            let speed = vector(&s.velocity[i]).norm();
+            !speed.is_finite() || speed > 0.1 * s.smallest_radius / s.time_step
         };
         let grain = (0..s.grains()).find(|i| too_fast(*i)).unwrap_or(0);
-        let contact = (0..self.pairs.len())
-            .filter(|p| self.pairs.i[*p] as usize == grain || self.pairs.j[*p] as usize == grain)
-            .max_by(|a, b| self.pairs.overlap[*a].total_cmp(&self.pairs.overlap[*b]));
-        let cause = contact.filter(|p| self.pairs.overlap[*p] > 0.0).map_or(String::new(), |p| {
-            let (i, j) = (self.pairs.i[p] as usize, self.pairs.j[p] as usize);
+        let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
+        let cause = at_grain.max_by(|a, b| a.root.total_cmp(&b.root)).map_or(String::new(), |p| {
+            let (i, j) = (p.i as usize, p.j as usize);
+            let overlap = p.root * p.root / grains::material::effective_radius(s.radius[i], s.radius[j]);
             format!(", pushed hardest at its contact of grains {} and {}", s.ids[i], s.ids[j])
-                + &format!(" with an overlap of {:e} m", self.pairs.overlap[p])
+                + &format!(" with an overlap of {overlap:e} m")
         });
-        let speed = s.velocity.get(grain).norm();
+        let speed = vector(&s.velocity[grain]).norm();
         DemError::Unstable { step: s.step, grain: s.ids[grain], speed, time_step: s.time_step, cause }
     }
 }

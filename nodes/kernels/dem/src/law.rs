@@ -1,8 +1,10 @@
 //! The contact law: Hertz normal force, Mindlin tangential force with history, Coulomb limit, viscous damping.
 //!
-//! This scalar form is the specification; faster forms are tested against it.
+//! Written once for any number of lanes: with `f64` it is the scalar specification, with the lanes of an instruction
+//! set it is what the engine runs.
 
-use grains::{Material, Vec3};
+use crate::lanes::{Lanes, V3};
+use grains::Material;
 
 /// Coefficients of the contact law for one phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,38 +19,40 @@ pub struct Law {
     pub damping: f64,
 }
 
-/// Geometry and motion of one contact.
+/// Geometry and motion of a contact in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct Touch<L> {
     /// Unit vector from `i` to `j`.
-    pub normal: Vec3,
-    /// Distance of the centres, m.
-    pub distance: f64,
-    /// Full overlap, m, positive.
-    pub overlap: f64,
-    /// Overlap one step ago, m; 0 for a new contact.
-    pub previous_overlap: f64,
-    /// Effective radius R*, m.
-    pub r_eff: f64,
+    pub normal: V3<L>,
+    /// 1/distance of the centres, 1/m.
+    pub inverse_distance: L,
+    /// Full overlap δ, m, positive.
+    pub overlap: L,
+    /// Radius of the contact area √(R* δ), m.
+    pub root: L,
+    /// The same one step ago; 0 for a new contact.
+    pub previous_root: L,
     /// Effective mass m_i m_j/(m_i + m_j), kg.
-    pub m_eff: f64,
+    pub m_eff: L,
     /// Velocity of the centre of `j` relative to `i`, affine part included, m/s.
-    pub relative: Vec3,
+    pub relative: V3<L>,
     /// a_i ω_i + a_j ω_j with levers a = R − δ/2, m/s.
-    pub rolling: Vec3,
+    pub rolling: V3<L>,
     /// (ω_i + ω_j)/2, rad/s: its part along the normal twists the tangential force along.
-    pub spin: Vec3,
+    pub spin: V3<L>,
 }
 
-/// Forces of one contact.
+/// Forces of a contact in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Forces {
-    /// Normal force, damping included, N, positive in compression, never attractive.
-    pub normal: f64,
+pub struct Forces<L> {
+    /// Elastic normal force, N, positive in compression.
+    pub elastic: L,
+    /// Normal force with damping, N, never attractive.
+    pub normal: L,
     /// Tangential force on `i`, damping included, N.
-    pub tangential: Vec3,
+    pub tangential: V3<L>,
     /// Elastic part of the tangential force on `i`, N: the history.
-    pub history: Vec3,
+    pub history: V3<L>,
 }
 
 impl Law {
@@ -62,72 +66,77 @@ impl Law {
         }
     }
 
-    /// Normal force (elastic, total) of a contact, N.
+    /// Normal force (elastic, with damping), N, and the coefficient of its dashpot, N s/m.
     #[inline(always)]
-    fn normal_force(&self, t: &Touch, root: f64, approach: f64) -> (f64, f64, f64) {
+    fn normal_force<L: Lanes>(&self, t: &Touch<L>, along: L) -> (L, L, L) {
         // F = (4/3) E* √(R*) δ^{3/2} = (2/3) k_n δ
-        let k_n = self.normal * root;
-        let elastic = 2.0 / 3.0 * k_n * t.overlap;
-        let dashpot = if self.damping > 0.0 { 2.0 * self.damping * (t.m_eff * k_n).sqrt() } else { 0.0 };
-        (elastic, (elastic + dashpot * approach).max(0.0), dashpot)
+        let k_n = L::splat(self.normal) * t.root;
+        let elastic = L::splat(2.0 / 3.0) * k_n * t.overlap;
+        if self.damping == 0.0 {
+            return (elastic, elastic, L::splat(0.0));
+        }
+        let dashpot = L::splat(2.0 * self.damping) * (t.m_eff * k_n).sqrt();
+        (elastic, (elastic - dashpot * along).max(L::splat(0.0)), dashpot)
     }
 
-    /// A contact without friction.
+    /// A contact without friction: normal force (elastic, with damping), N.
     #[inline(always)]
-    pub fn frictionless(&self, t: &Touch) -> f64 {
-        let root = (t.r_eff * t.overlap).sqrt();
-        self.normal_force(t, root, -t.relative.dot(&t.normal)).1
+    pub fn frictionless<L: Lanes>(&self, t: &Touch<L>) -> (L, L) {
+        let (elastic, normal, _) = self.normal_force(t, t.relative.dot(t.normal));
+        (elastic, normal)
     }
 
     /// A contact with friction, its history brought forward by `dt` (s) where `ADVANCE`, else taken as it is.
     ///
     /// `SLIDING` applies the Coulomb limit; `RESCALED` scales the history down with the stiffness on unloading.
     #[inline(always)]
-    pub fn frictional<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
+    pub fn frictional<L: Lanes, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool>(
         &self,
-        t: &Touch,
-        history: Vec3,
+        t: &Touch<L>,
+        history: V3<L>,
         dt: f64,
-    ) -> Forces {
+    ) -> Forces<L> {
         let n = t.normal;
-        let along = t.relative.dot(&n);
-        let across = t.relative - n * along;
-        let root = (t.r_eff * t.overlap).sqrt();
-        let (elastic, normal, dashpot) = self.normal_force(t, root, -along);
-        let limit = self.friction * elastic;
+        let along = t.relative.dot(n);
+        let across = t.relative - n.scale(along);
+        let (elastic, normal, dashpot) = self.normal_force(t, along);
+        let limit = L::splat(self.friction) * elastic;
         let mut f = history;
         if ADVANCE {
-            let mean = n - across * (0.5 * dt / t.distance);
-            f = carried(f, t, &mean, dt);
-            if RESCALED && t.overlap < t.previous_overlap {
-                f *= (t.overlap / t.previous_overlap).sqrt();
+            let mean = n - across.scale(L::splat(0.5 * dt) * t.inverse_distance);
+            f = carried(f, t, mean, dt);
+            if RESCALED {
+                let unloading = t.previous_root.gt(t.root);
+                f = V3::select(unloading, f.scale(t.root / t.previous_root), f);
             }
             // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
-            let rolling = t.rolling.cross(&mean);
-            let slip = across - (rolling - n * rolling.dot(&n));
-            f += slip * (self.tangential * root * dt);
+            let rolling = t.rolling.cross(mean);
+            let slip = across - (rolling - n.scale(rolling.dot(n)));
+            f = f + slip.scale(L::splat(self.tangential * dt) * t.root);
             if SLIDING {
                 f = limited(f, limit);
             }
         }
         let mut tangential = f;
-        if dashpot > 0.0 {
+        if self.damping > 0.0 {
             // From the present velocities alone, so that a resumed state has the same force.
-            let slip = across - t.rolling.cross(&n);
-            tangential += slip * (dashpot * (self.tangential / self.normal).sqrt());
+            let slip = across - t.rolling.cross(n);
+            let share = (self.tangential / self.normal).sqrt();
+            tangential = tangential + slip.scale(dashpot * L::splat(share));
             if SLIDING {
                 tangential = limited(tangential, limit);
             }
         }
-        Forces { normal, tangential, history: f }
+        Forces { elastic, normal, tangential, history: f }
     }
 }
 
 /// Coulomb's limit.
 #[inline(always)]
-fn limited(f: Vec3, limit: f64) -> Vec3 {
-    let square = f.norm_squared();
-    if square > limit * limit { f * (limit / square.sqrt()) } else { f }
+fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
+    let square = f.dot(f);
+    let sliding = square.gt(limit * limit);
+    if L::any(sliding) { V3::select(sliding, f.scale(limit / square.sqrt()), f) } else { f }
 }
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.
@@ -135,9 +144,9 @@ fn limited(f: Vec3, limit: f64) -> Vec3 {
 /// With m the mean of the old and new normal, f − (f·n) m is that rotation. Norm and perpendicularity are kept to third
 /// order in the angle of one step (1e-7 rad at most in practice).
 #[inline(always)]
-fn carried(f: Vec3, t: &Touch, mean: &Vec3, dt: f64) -> Vec3 {
+fn carried<L: Lanes>(f: V3<L>, t: &Touch<L>, mean: V3<L>, dt: f64) -> V3<L> {
     let n = t.normal;
-    let f = f - mean * f.dot(&n);
-    let angle = t.spin.dot(mean) * dt;
-    f * (1.0 - 0.5 * angle * angle) + n.cross(&f) * angle
+    let f = f - mean.scale(f.dot(n));
+    let angle = t.spin.dot(mean) * L::splat(dt);
+    f.scale(L::splat(1.0) - L::splat(0.5) * angle * angle) + n.cross(f).scale(angle)
 }

@@ -9,21 +9,31 @@
 //! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), so nothing depends on
 //! when a neighbour list was rebuilt, and a state saved and loaded goes on bit for bit.
 
+mod checkpoint;
+pub mod compute;
+mod contacts;
 pub mod engine;
 pub mod error;
 pub mod gas;
 mod integrate;
+pub mod lanes;
 pub mod law;
 mod neighbours;
 pub mod observe;
-mod pairs;
+mod order;
 mod pass;
 mod run_state;
+pub mod simd;
 pub mod simulation;
 mod state;
+mod sweep;
 mod time_step;
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
+pub use compute::{Compute, ComputeError};
 pub use engine::{Engine, Features, Setting, TimeStep};
 pub use error::DemError;
 pub use observe::Snapshot;
+pub use simd::Simd;
 pub use simulation::{Advanced, Request, Simulation};

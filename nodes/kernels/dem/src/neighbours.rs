@@ -1,39 +1,73 @@
 //! Finding neighbouring pairs in a periodic cell of any shape.
+//!
+//! Two lists: all pairs within the Verlet skin, found with bins, and of those the pairs near enough to touch soon, which
+//! the contact pass works on. The second is drawn from the first, often and cheaply, so that what the contact pass sees
+//! is little more than the contacts.
 
+use crate::contacts::{Builder, Contacts, Images, Pair};
 use crate::error::DemError;
-use crate::pairs::Pairs;
-use crate::state::State;
+use crate::state::{State, vector};
 use grains::Vec3;
 
 /// Largest image number that a contact may carry.
 const MAX_IMAGE: i32 = 100;
 
-/// All pairs closer than R_i + R_j + `skin`, sorted by (i, j, image), the history of `old` carried over. Self-images are
-/// included; each pair appears once, with i < j, or i = j and a positive image.
-pub(crate) fn build(state: &State, old: &Pairs, skin: f64) -> Result<Pairs, DemError> {
-    let n = state.grains();
-    let reach = 2.0 * state.largest_radius() + skin;
-    let grid = Grid::new(state, reach)?;
-    let mut pairs = Pairs::default();
-    let mut near: Vec<(u32, [i8; 3])> = Vec::new();
-    let mut kept = 0;
-    for i in 0..n {
-        near.clear();
-        grid.around(state, i, skin, &mut near)?;
-        near.sort_unstable();
-        for &(j, image) in &near {
-            let key = (i as u32, j, image);
-            while kept < old.len() && old.key(kept) < key {
-                kept += 1;
+/// All pairs closer than R_i + R_j + skin at one time, sorted by (i, j, image). Self-images are included; each pair
+/// appears once, with i < j, or i = j and a positive image.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbours {
+    /// First pair of each grain, and the end.
+    start: Vec<u32>,
+    j: Vec<u32>,
+    /// Row in the table of images.
+    image: Vec<u32>,
+}
+
+impl Neighbours {
+    /// The list, and the table of images that it refers to.
+    pub(crate) fn find(state: &State, skin: f64) -> Result<(Self, Images), DemError> {
+        let grid = Grid::new(state, 2.0 * state.largest_radius + skin)?;
+        let mut images = Images::new(state);
+        let mut list = Self { start: vec![0], ..Self::default() };
+        let mut near: Vec<(u32, [i8; 3])> = Vec::new();
+        for i in 0..state.grains() {
+            near.clear();
+            grid.around(state, i, skin, &mut near)?;
+            near.sort_unstable();
+            for &(j, image) in &near {
+                list.j.push(j);
+                list.image.push(images.index(image, &state.cell));
             }
-            let same = kept < old.len() && old.key(kept) == key;
-            let (overlap, tangential) =
-                if same { (old.overlap[kept], old.tangential.get(kept)) } else { (0.0, Vec3::zeros()) };
-            pairs.push(i as u32, j, image, overlap, tangential);
+            list.start.push(list.j.len() as u32);
         }
+        Ok((list, images))
     }
-    pairs.follow(state);
-    Ok(pairs)
+
+    /// The pairs now closer than R_i + R_j + `skin`, the history of `old` carried over. `images` is the table that this
+    /// list refers to.
+    pub(crate) fn draw(&self, state: &State, images: Images, old: &Contacts, skin: f64) -> Contacts {
+        let mut list = Builder::new(state, images, old.slots());
+        let mut kept = (0..old.slots()).filter_map(|s| old.pair(s)).filter(|p| p.root > 0.0).peekable();
+        for i in 0..state.grains() {
+            let (here, radius) = (vector(&state.position[i]), state.radius[i]);
+            for q in self.start[i] as usize..self.start[i + 1] as usize {
+                let j = self.j[q] as usize;
+                let branch = vector(&state.position[j]) - here
+                    + vector(&list.contacts.images.shifts()[self.image[q] as usize]);
+                let reach = radius + state.radius[j] + skin;
+                if branch.norm_squared() >= reach * reach {
+                    continue;
+                }
+                let key = (i as u32, self.j[q], list.contacts.images.number(self.image[q]));
+                let of = |p: &Pair| (p.i, p.j, old.images.number(p.image));
+                while kept.next_if(|p| of(p) < key).is_some() {}
+                let (root, history) =
+                    kept.next_if(|p| of(p) == key).map_or((0.0, Vec3::zeros()), |p| (p.root, p.history));
+                list.push(state, Pair { i: key.0, j: key.1, image: self.image[q], root, history });
+            }
+        }
+        list.finish(state)
+    }
 }
 
 /// Grains sorted into bins at least `reach` wide, or spanning the whole cell where it is narrower.
@@ -57,7 +91,7 @@ impl Grid {
             std::array::from_fn(|k| (reach / (state.cell.width(k) / f64::from(bins[k]))).ceil() as i32);
         let mut home = Vec::with_capacity(n);
         for i in 0..n {
-            let s = state.cell.fractional(&state.position.get(i));
+            let s = state.cell.fractional(&vector(&state.position[i]));
             if !s.iter().all(|v| v.abs() < f64::from(MAX_IMAGE)) {
                 return Err(DemError::Image { grain: state.ids[i] });
             }
@@ -94,7 +128,7 @@ impl Grid {
         out: &mut Vec<(u32, [i8; 3])>,
     ) -> Result<(), DemError> {
         let (bin, travelled) = self.home[i];
-        let here = state.position.get(i);
+        let here = vector(&state.position[i]);
         for a in -self.span[0]..=self.span[0] {
             for b in -self.span[1]..=self.span[1] {
                 for c in -self.span[2]..=self.span[2] {
@@ -116,7 +150,7 @@ impl Grid {
                         if j as usize == i && image <= [0, 0, 0] {
                             continue;
                         }
-                        let d = state.position.get(j as usize) - here + state.cell.shift(image);
+                        let d = vector(&state.position[j as usize]) - here + state.cell.shift(image);
                         let reach = state.radius[i] + state.radius[j as usize] + skin;
                         if d.norm_squared() < reach * reach {
                             out.push((j, image));

@@ -1,10 +1,15 @@
 //! Stress, tangent stiffness and balance of the present contacts.
 
+use crate::compute::Compute;
+use crate::contacts::{Block, Contacts, Pair, Sizes};
 use crate::error::DemError;
-use crate::pairs::Pairs;
-use crate::state::{Soa, State};
+use crate::lanes::{BLOCK, Lanes, V3, Wrench};
+use crate::pass::{Geometry, View};
+use crate::simd::Kernel;
+use crate::state::State;
+use grains::Mat3;
+use grains::material::effective_radius;
 use grains::stress::Stress;
-use grains::{Mat3, Vec3};
 
 /// What one look at the contacts gives. Nothing in the state changes by looking.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,94 +28,200 @@ pub struct Snapshot {
     pub unbalanced: f64,
 }
 
-/// A contact overlapping by more than this share of a diameter is outside Hertz's law.
-const OVERLAP_LIMIT: f64 = 0.1;
-
-pub(crate) fn snapshot(state: &State, pairs: &Pairs, friction: f64) -> Result<Snapshot, DemError> {
-    let volume = state.cell.volume();
-    let mut virial = Mat3::zeros();
-    let mut tangent = [0.0; 6];
-    let mut net = Soa::zeros(state.grains());
-    let mut force_sum = 0.0;
-    let mut contacts = 0u32;
-    for p in 0..pairs.len() {
-        let overlap = pairs.overlap[p];
-        if overlap <= 0.0 {
-            continue;
-        }
-        let (i, j) = (pairs.i[p] as usize, pairs.j[p] as usize);
-        let branch = pairs.branch(p, &state.position);
-        let distance = branch.norm();
-        let normal = branch / distance;
-        let r_eff = grains::material::effective_radius(state.radius[i], state.radius[j]);
-        let diameter = 2.0 * state.radius[i].min(state.radius[j]);
-        if overlap > OVERLAP_LIMIT * diameter {
-            let (first, second) = (state.ids[i], state.ids[j]);
-            return Err(DemError::Overlap { step: state.step, first, second, overlap });
-        }
-        let force = normal * state.material.normal_force(r_eff, overlap) - pairs.tangential.get(p);
-        virial += force * branch.transpose();
-        net.add(i, -force);
-        net.add(j, force);
-        force_sum += force.norm();
-        contacts += 1;
-        let k_n = state.material.normal_stiffness(r_eff, overlap);
-        let k_t = if friction > 0.0 { state.material.tangential_stiffness(r_eff, overlap) } else { 0.0 };
-        add_tangent(&mut tangent, &normal, k_n * distance * distance, k_t * distance * distance);
+pub(crate) fn snapshot(
+    state: &State,
+    contacts: &Contacts,
+    view: View<'_>,
+    compute: &Compute,
+) -> Result<Snapshot, DemError> {
+    let friction = view.law.friction > 0.0;
+    let mut rows = vec![[[0.0; 8]; BLOCK]; contacts.blocks.len()];
+    let mut total = Sums::default();
+    let mut rest = rows.as_mut_slice();
+    let chunks = contacts.chunks.windows(2).map(|c| {
+        let range = c[0] as usize..c[1] as usize;
+        let (force, after) = std::mem::take(&mut rest).split_at_mut(range.len());
+        rest = after;
+        let sizes = if contacts.sizes.is_empty() { &[] } else { &contacts.sizes[range.clone()] };
+        Look { view, blocks: &contacts.blocks[range], sizes, force }
+    });
+    compute.each(
+        chunks,
+        |look| {
+            if look.sizes.is_empty() {
+                compute.simd().run(LookAt::<false> { look, friction })
+            } else {
+                compute.simd().run(LookAt::<true> { look, friction })
+            }
+        },
+        |sums| total.then(&sums),
+    );
+    if total.deep {
+        return Err(deepest(state, contacts));
     }
+    let volume = state.cell.volume();
+    let [xx, yy, zz, yz, xz, xy, zy, zx, yx, ..] = total.of;
+    let virial = Mat3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz);
+    let bearing = Bearing::of(contacts, state.grains(), if friction { 2 } else { 4 });
+    let mean_force = total.of[9] / f64::from(bearing.contacts);
     let solid: f64 = state.radius.iter().map(|r| r * r * r).sum();
     Ok(Snapshot {
         stress: Stress::from_virial(&virial, volume),
-        tangent: tangent.map(|t| t / volume),
+        tangent: std::array::from_fn(|k| total.of[10 + k] / volume),
         solid_fraction: 4.0 / 3.0 * std::f64::consts::PI * solid / volume,
-        contacts,
-        coordination: 2.0 * f64::from(contacts) / state.grains() as f64,
-        unbalanced: unbalanced(pairs, &net, state.grains(), friction, force_sum / f64::from(contacts)),
+        contacts: bearing.contacts,
+        coordination: 2.0 * f64::from(bearing.contacts) / state.grains() as f64,
+        unbalanced: bearing.mean_net_force(contacts, rows.as_flattened()).map_or(1.0, |f| f / mean_force),
     })
 }
 
-/// Energy of one contact under a unit strain component: normal part by k_n l², tangential part by k_t l².
-fn add_tangent(tangent: &mut [f64; 6], n: &Vec3, normal: f64, tangential: f64) {
+/// The deepest contact of the last evaluation, relative to the smaller of its grains.
+pub(crate) fn deepest(state: &State, contacts: &Contacts) -> DemError {
+    let radii = |p: &Pair| (state.radius[p.i as usize], state.radius[p.j as usize]);
+    let overlap = |p: &Pair| p.root * p.root / effective_radius(radii(p).0, radii(p).1);
+    let depth = |p: &Pair| overlap(p) / radii(p).0.min(radii(p).1);
+    let worst = contacts.touching().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let (first, second, overlap) =
+        worst.map_or((0, 0, f64::NAN), |p| (state.ids[p.i as usize], state.ids[p.j as usize], overlap(&p)));
+    DemError::Overlap { step: state.step, first, second, overlap }
+}
+
+/// One chunk to look at.
+struct Look<'a> {
+    view: View<'a>,
+    blocks: &'a [Block],
+    sizes: &'a [Sizes],
+    /// Elastic force on the second grain of each slot, N.
+    force: &'a mut [[Wrench; BLOCK]],
+}
+
+struct LookAt<'a, const SIZES: bool> {
+    look: Look<'a>,
+    friction: bool,
+}
+
+/// Sums over contacts: Σ f ⊗ l (xx, yy, zz, yz, xz, xy, zy, zx, yx; J), Σ |f| (N), and the energy of each unit strain
+/// component (J).
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    of: [f64; 16],
+    deep: bool,
+}
+
+impl Sums {
+    fn then(&mut self, next: &Self) {
+        self.of.iter_mut().zip(next.of).for_each(|(a, b)| *a += b);
+        self.deep |= next.deep;
+    }
+}
+
+impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
+    type Output = Sums;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Sums {
+        let Look { view, blocks, sizes, force } = self.look;
+        let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+        let mut deep = false;
+        let zero = L::splat(0.0);
+        for (b, block) in blocks.iter().enumerate() {
+            let mut lane = 0;
+            while lane < BLOCK {
+                if let Some(g) = Geometry::<L>::of::<SIZES>(&view, block, sizes.get(b), lane) {
+                    deep |= g.deep();
+                    let root = (g.r_eff * g.overlap).sqrt();
+                    let k_n = L::splat(view.law.normal) * root;
+                    let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
+                    let f = g.normal.scale(elastic) - V3::load(&block.history, lane);
+                    let f = V3::select(g.touching, f, V3::new(zero, zero, zero));
+                    L::store_rows([f.x, f.y, f.z, zero], &mut force[b], lane, 0);
+                    let l = g.branch;
+                    let size = f.dot(f).sqrt();
+                    let square = L::select(g.touching, g.distance * g.distance, zero);
+                    let normal = k_n * square;
+                    let across =
+                        if self.friction { L::splat(view.law.tangential) * root * square } else { zero };
+                    let t = strained(g.normal, normal, across, g.touching);
+                    L::fold(
+                        [
+                            f.x * l.x,
+                            f.y * l.y,
+                            f.z * l.z,
+                            f.y * l.z,
+                            f.x * l.z,
+                            f.x * l.y,
+                            f.z * l.y,
+                            f.z * l.x,
+                        ],
+                        &mut first,
+                    );
+                    L::fold([f.y * l.x, size, t[0], t[1], t[2], t[3], t[4], t[5]], &mut second);
+                }
+                lane += L::WIDTH;
+            }
+        }
+        let mut of = [0.0; 16];
+        of[..8].copy_from_slice(&first);
+        of[8..].copy_from_slice(&second);
+        Sums { of, deep }
+    }
+}
+
+/// Energy of a contact under each unit strain component: normal part by k_n l², tangential part by k_t l².
+#[inline(always)]
+fn strained<L: Lanes>(n: V3<L>, normal: L, across: L, touching: L::Mask) -> [L; 6] {
     let q = [n.x * n.x, n.y * n.y, n.z * n.z];
+    let zero = L::splat(0.0);
+    let mut energy = [zero; 6];
     for k in 0..3 {
-        tangent[k] += normal * q[k] * q[k] + tangential * (q[k] - q[k] * q[k]);
         let (a, b) = (q[(k + 1) % 3], q[(k + 2) % 3]);
-        tangent[3 + k] += normal * a * b + tangential * (0.25 * (a + b) - a * b);
+        let along = normal * q[k] * q[k] + across * (q[k] - q[k] * q[k]);
+        let shear = normal * a * b + across * (L::splat(0.25) * (a + b) - a * b);
+        energy[k] = L::select(touching, along, zero);
+        energy[3 + k] = L::select(touching, shear, zero);
     }
+    energy
 }
 
-fn unbalanced(pairs: &Pairs, net: &Soa, grains: usize, friction: f64, mean_force: f64) -> f64 {
-    let alive = load_bearing(pairs, grains, friction);
-    let bearing = alive.iter().filter(|a| **a).count();
-    if bearing == 0 {
-        return 1.0;
-    }
-    let sum: f64 = (0..grains).filter(|i| alive[*i]).map(|i| net.get(i).norm()).sum();
-    sum / bearing as f64 / mean_force
+/// Grains that are no rattlers.
+struct Bearing {
+    alive: Vec<bool>,
+    contacts: u32,
 }
 
-/// Grains that are no rattlers: recursively at least 2 contacts with friction, 4 without.
-fn load_bearing(pairs: &Pairs, grains: usize, friction: f64) -> Vec<bool> {
-    let least = if friction > 0.0 { 2u32 } else { 4 };
-    let mut alive = vec![true; grains];
-    loop {
-        let mut count = vec![0u32; grains];
-        for p in 0..pairs.len() {
-            let (i, j) = (pairs.i[p] as usize, pairs.j[p] as usize);
-            if pairs.overlap[p] > 0.0 && alive[i] && alive[j] {
-                count[i] += 1;
-                count[j] += 1;
+impl Bearing {
+    /// Recursively at least `least` contacts a grain.
+    fn of(contacts: &Contacts, grains: usize, least: u32) -> Self {
+        let pairs: Vec<(usize, usize)> = contacts.touching().map(|p| (p.i as usize, p.j as usize)).collect();
+        let mut alive = vec![true; grains];
+        loop {
+            let mut count = vec![0u32; grains];
+            for &(i, j) in &pairs {
+                let both = u32::from(alive[i] && alive[j]);
+                count[i] += both;
+                count[j] += both;
+            }
+            let before = alive.clone();
+            alive.iter_mut().zip(count).for_each(|(alive, count)| *alive &= count >= least);
+            if alive == before {
+                return Self { alive, contacts: pairs.len() as u32 };
             }
         }
-        let mut changed = false;
-        for i in 0..grains {
-            if alive[i] && count[i] < least {
-                alive[i] = false;
-                changed = true;
+    }
+
+    /// Mean of the net force, N, given the force on the second grain of each slot; `None` without such grains.
+    fn mean_net_force(&self, contacts: &Contacts, force: &[Wrench]) -> Option<f64> {
+        let mut net = vec![[0.0; 3]; self.alive.len()];
+        for (slot, f) in force.iter().enumerate() {
+            let Some(p) = contacts.pair(slot) else { continue };
+            for k in 0..3 {
+                net[p.i as usize][k] -= f[k];
+                net[p.j as usize][k] += f[k];
             }
         }
-        if !changed {
-            return alive;
-        }
+        let bearing = self.alive.iter().filter(|a| **a).count();
+        let size = |n: &[f64; 3]| (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        let sum: f64 = net.iter().zip(&self.alive).filter(|(_, alive)| **alive).map(|(n, _)| size(n)).sum();
+        (bearing > 0).then(|| sum / bearing as f64)
     }
 }

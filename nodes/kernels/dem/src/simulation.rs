@@ -1,5 +1,7 @@
 //! A scene run along its loading path, one request and one answer at a time.
 
+use crate::checkpoint::Checkpoint;
+use crate::compute::Compute;
 use crate::engine::{Engine, Setting, TimeStep};
 use crate::error::DemError;
 use crate::gas;
@@ -26,7 +28,19 @@ pub struct Simulation {
     phase_deformation: Mat3,
     has_reference: bool,
     seen: Snapshot,
-    kept: Box<Option<Simulation>>,
+    kept: Option<Kept>,
+}
+
+/// What a failing run is taken back to.
+#[derive(Clone, Debug)]
+struct Kept {
+    engine: Checkpoint,
+    path: PathState,
+    sequence: u64,
+    friction: f64,
+    deformation: Mat3,
+    phase_deformation: Mat3,
+    seen: Snapshot,
 }
 
 /// What the run asks: everything a servo needs to answer.
@@ -92,7 +106,7 @@ impl Simulation {
             phase_deformation: Mat3::identity(),
             has_reference: false,
             seen,
-            kept: Box::new(None),
+            kept: None,
         })
     }
 
@@ -119,7 +133,7 @@ impl Simulation {
             phase_deformation: saved.phase_deformation,
             has_reference: saved.has_reference,
             seen,
-            kept: Box::new(None),
+            kept: None,
             scene,
         })
     }
@@ -142,6 +156,11 @@ impl Simulation {
     /// Packings that were due so far.
     pub fn packings(&self) -> u64 {
         self.packings
+    }
+
+    /// Instruction set and threads from now on; results do not depend on them.
+    pub fn set_compute(&mut self, compute: Compute) {
+        self.engine.set_compute(compute);
     }
 
     /// The engine, read only.
@@ -185,24 +204,21 @@ impl Simulation {
         self.keep();
         self.engine.set_rate(rate)?;
         self.friction = self.engine.setting().friction;
-        match self.advance(period) {
+        let compute = self.engine.compute().clone();
+        match compute.within(|| self.advance(period)) {
             Ok(advanced) => Ok(advanced),
             Err(e) => {
-                if let Some(kept) = self.kept.take() {
-                    *self = kept;
-                }
+                self.go_back();
                 Err(e)
             }
         }
     }
 
     fn advance(&mut self, period: u32) -> Result<Advanced, DemError> {
-        for _ in 0..period {
-            let stretch = self.engine.step()?;
-            self.phase_deformation = stretch * self.phase_deformation;
-            if self.has_reference {
-                self.deformation = stretch * self.deformation;
-            }
+        let stretch = self.engine.run(period)?;
+        self.phase_deformation = stretch * self.phase_deformation;
+        if self.has_reference {
+            self.deformation = stretch * self.deformation;
         }
         self.seen = self.engine.snapshot()?;
         self.sequence += 1;
@@ -230,7 +246,7 @@ impl Simulation {
     /// would, so that both go on alike.
     fn begin_phase(&mut self, reference: bool) -> Result<(), DemError> {
         // A failing phase is not taken back beyond its beginning, where a packing may have been published.
-        *self.kept = None;
+        self.kept = None;
         self.phase_deformation = Mat3::identity();
         if reference {
             self.has_reference = true;
@@ -238,6 +254,8 @@ impl Simulation {
         }
         if let Some(phase) = self.path.phase(&self.scene) {
             self.engine.set(setting(&self.scene, phase));
+            // Grains have moved; here a resumed run, which does not pass here, cannot differ.
+            self.engine.sort();
             self.engine.prepare()?;
             self.engine.renew_time_step();
         }
@@ -266,14 +284,28 @@ impl Simulation {
     }
 
     fn keep(&mut self) {
-        let due = match self.kept.as_ref() {
-            Some(k) => self.engine.steps() - k.engine.steps() >= KEEP_INTERVAL,
-            None => true,
-        };
-        if due {
-            *self.kept = None;
-            let copy = self.clone();
-            *self.kept = Some(copy);
+        let due = |k: &Kept| self.engine.steps() - k.engine.step() >= KEEP_INTERVAL;
+        if self.kept.as_ref().is_none_or(due) {
+            self.kept = Some(Kept {
+                engine: self.engine.checkpoint(),
+                path: self.path,
+                sequence: self.sequence,
+                friction: self.friction,
+                deformation: self.deformation,
+                phase_deformation: self.phase_deformation,
+                seen: self.seen,
+            });
+        }
+    }
+
+    fn go_back(&mut self) {
+        if let Some(kept) = self.kept.take() {
+            self.engine.restore(kept.engine);
+            (self.path, self.sequence, self.friction) = (kept.path, kept.sequence, kept.friction);
+            (self.deformation, self.phase_deformation) = (kept.deformation, kept.phase_deformation);
+            self.seen = kept.seen;
+            // The state was prepared when it was kept; should it fail now, it still is what is saved.
+            let _ = self.engine.prepare();
         }
     }
 }

@@ -1,59 +1,18 @@
-//! Grains and cell in structure-of-arrays form.
+//! Grains and cell.
 
+use crate::lanes::Quad;
 use grains::{Cell, Mat3, Material, Vec3};
 
-/// A vector per grain (or per contact), one array a component.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Soa {
-    pub(crate) x: Vec<f64>,
-    pub(crate) y: Vec<f64>,
-    pub(crate) z: Vec<f64>,
+/// A row of a table of vectors.
+#[inline(always)]
+pub(crate) fn row(v: &Vec3) -> Quad {
+    [v.x, v.y, v.z, 0.0]
 }
 
-impl Soa {
-    pub(crate) fn zeros(n: usize) -> Self {
-        Self { x: vec![0.0; n], y: vec![0.0; n], z: vec![0.0; n] }
-    }
-
-    pub(crate) fn from_vectors(v: &[Vec3]) -> Self {
-        let component = |k: usize| v.iter().map(|a| a[k]).collect();
-        Self { x: component(0), y: component(1), z: component(2) }
-    }
-
-    pub(crate) fn vectors(&self) -> Vec<Vec3> {
-        (0..self.x.len()).map(|i| self.get(i)).collect()
-    }
-
-    #[inline(always)]
-    pub(crate) fn get(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x[i], self.y[i], self.z[i])
-    }
-
-    #[inline(always)]
-    pub(crate) fn set(&mut self, i: usize, v: Vec3) {
-        self.x[i] = v.x;
-        self.y[i] = v.y;
-        self.z[i] = v.z;
-    }
-
-    #[inline(always)]
-    pub(crate) fn add(&mut self, i: usize, v: Vec3) {
-        self.x[i] += v.x;
-        self.y[i] += v.y;
-        self.z[i] += v.z;
-    }
-
-    pub(crate) fn fill(&mut self, value: f64) {
-        self.x.fill(value);
-        self.y.fill(value);
-        self.z.fill(value);
-    }
-
-    pub(crate) fn push(&mut self, v: Vec3) {
-        self.x.push(v.x);
-        self.y.push(v.y);
-        self.z.push(v.z);
-    }
+/// The vector in a row.
+#[inline(always)]
+pub(crate) fn vector(row: &Quad) -> Vec3 {
+    Vec3::new(row[0], row[1], row[2])
 }
 
 /// Everything that moves.
@@ -73,11 +32,13 @@ pub(crate) struct State {
     pub(crate) radius: Vec<f64>,
     pub(crate) inverse_mass: Vec<f64>,
     pub(crate) inverse_inertia: Vec<f64>,
-    pub(crate) position: Soa,
-    pub(crate) velocity: Soa,
-    pub(crate) spin: Soa,
-    pub(crate) force: Soa,
-    pub(crate) torque: Soa,
+    pub(crate) position: Vec<Quad>,
+    pub(crate) velocity: Vec<Quad>,
+    pub(crate) spin: Vec<Quad>,
+    /// Largest radius, m.
+    pub(crate) largest_radius: f64,
+    /// Smallest radius, m.
+    pub(crate) smallest_radius: f64,
 }
 
 impl State {
@@ -100,12 +61,12 @@ impl State {
             ids,
             inverse_mass: radius.iter().map(|r| 1.0 / mass(r)).collect(),
             inverse_inertia: radius.iter().map(|r| 1.0 / (0.4 * mass(r) * r * r)).collect(),
+            largest_radius: radius.iter().copied().fold(0.0, f64::max),
+            smallest_radius: radius.iter().copied().fold(f64::INFINITY, f64::min),
             radius,
-            position: Soa::from_vectors(position),
-            velocity: Soa::zeros(n),
-            spin: Soa::zeros(n),
-            force: Soa::zeros(n),
-            torque: Soa::zeros(n),
+            position: position.iter().map(row).collect(),
+            velocity: vec![[0.0; 4]; n],
+            spin: vec![[0.0; 4]; n],
         }
     }
 
@@ -113,14 +74,20 @@ impl State {
         self.radius.len()
     }
 
-    pub(crate) fn largest_radius(&self) -> f64 {
-        self.radius.iter().copied().fold(0.0, f64::max)
+    /// Whether all grains are of one size.
+    pub(crate) fn equal_sized(&self) -> bool {
+        self.smallest_radius == self.largest_radius
+    }
+
+    /// Largest speed of a grain, m/s.
+    pub(crate) fn largest_speed(&self) -> f64 {
+        let square = |v: &Quad| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        self.velocity.iter().map(square).fold(0.0, f64::max).sqrt()
     }
 
     /// Mean of v² over grains, m²/s².
     pub(crate) fn mean_square_speed(&self) -> f64 {
-        let v = &self.velocity;
-        let sum: f64 = (0..self.grains()).map(|i| v.x[i] * v.x[i] + v.y[i] * v.y[i] + v.z[i] * v.z[i]).sum();
+        let sum: f64 = self.velocity.iter().map(|v| v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sum();
         sum / self.grains() as f64
     }
 }

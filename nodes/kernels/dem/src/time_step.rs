@@ -1,7 +1,7 @@
 //! The time step, from the stiffness of the contacts present.
 
+use crate::contacts::Contacts;
 use crate::engine::{Features, Setting};
-use crate::pairs::Pairs;
 use crate::state::State;
 
 /// Longest stable time step of the present contacts, s. Infinite where nothing touches.
@@ -10,7 +10,7 @@ use crate::state::State;
 /// and (1 + m R²/I) k_t (translation and rotation together), and in the same way the damping matrix is at most
 /// C = (2/m_i) Σ_c of its coefficients. With velocities half a step behind, a mode is stable while 4 − h² K − 2 h C ≥ 0.
 /// A bound, not an estimate: without damping it lies about 15 % below the true limit of a packing.
-pub(crate) fn stable(state: &State, pairs: &Pairs, setting: &Setting) -> f64 {
+pub(crate) fn stable(state: &State, contacts: &Contacts, setting: &Setting) -> f64 {
     let (normal, tangential) =
         (2.0 * state.material.effective_young(), 8.0 * state.material.effective_shear());
     // I = 2/5 m R²
@@ -20,17 +20,13 @@ pub(crate) fn stable(state: &State, pairs: &Pairs, setting: &Setting) -> f64 {
     // c_t = c_n √(k_t/k_n)
     let dashpot = if frictional { (rolling * (tangential / normal).sqrt()).max(1.0) } else { 1.0 };
     let (mut springs, mut dashpots) = (vec![0.0; state.grains()], vec![0.0; state.grains()]);
-    for p in 0..pairs.len() {
-        if pairs.overlap[p] > 0.0 {
-            let (i, j) = (pairs.i[p] as usize, pairs.j[p] as usize);
-            let r_eff = grains::material::effective_radius(state.radius[i], state.radius[j]);
-            let root = (r_eff * pairs.overlap[p]).sqrt();
-            let m_eff = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
-            let c = dashpot * 2.0 * setting.damping * (m_eff * normal * root).sqrt();
-            for grain in [i, j] {
-                springs[grain] += stiffness * root;
-                dashpots[grain] += c;
-            }
+    for p in contacts.touching() {
+        let (i, j) = (p.i as usize, p.j as usize);
+        let m_eff = 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]);
+        let c = dashpot * 2.0 * setting.damping * (m_eff * normal * p.root).sqrt();
+        for grain in [i, j] {
+            springs[grain] += stiffness * p.root;
+            dashpots[grain] += c;
         }
     }
     let of = |i: usize| {
@@ -43,13 +39,13 @@ pub(crate) fn stable(state: &State, pairs: &Pairs, setting: &Setting) -> f64 {
 /// Time a Rayleigh wave takes around half the smallest grain, s: the time step of a packing without contacts.
 pub(crate) fn rayleigh(state: &State) -> f64 {
     let m = &state.material;
-    let radius = state.radius.iter().copied().fold(f64::INFINITY, f64::min);
+    let radius = state.smallest_radius;
     std::f64::consts::PI * radius * (m.density / m.shear_modulus).sqrt() / (0.1631 * m.poisson_ratio + 0.8766)
 }
 
 /// Stable time step of a collision at relative speed `speed` (m/s): that of the stiffness at its largest overlap.
 pub(crate) fn collision(state: &State, speed: f64, damping: f64) -> f64 {
-    let radius = state.largest_radius();
+    let radius = state.largest_radius;
     let (r_eff, m_eff) = (0.5 * radius, 0.5 * state.material.sphere_mass(radius));
     let young = state.material.effective_young();
     // m v²/2 = (8/15) E* √R* δ^{5/2}

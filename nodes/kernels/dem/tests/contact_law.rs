@@ -1,5 +1,6 @@
 //! One contact against closed form: loading, sliding, closed cycles, rotation.
 
+use dem::lanes::V3;
 use dem::law::{Law, Touch};
 use grains::material::effective_radius;
 use grains::{Material, Vec3};
@@ -13,14 +14,26 @@ const DT: f64 = 1e-8;
 struct Pair {
     law: Law,
     history: Vec3,
-    overlap: f64,
+    root: f64,
     branch: Vec3,
+}
+
+fn lanes(v: Vec3) -> V3<f64> {
+    V3::new(v.x, v.y, v.z)
+}
+
+fn vector(v: V3<f64>) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+fn root(overlap: f64) -> f64 {
+    (effective_radius(RADIUS, RADIUS) * overlap).sqrt()
 }
 
 impl Pair {
     fn new(friction: f64, overlap: f64) -> Self {
         let branch = Vec3::z() * (2.0 * RADIUS - overlap);
-        Self { law: Law::new(&GLASS, friction, 0.0), history: Vec3::zeros(), overlap, branch }
+        Self { law: Law::new(&GLASS, friction, 0.0), history: Vec3::zeros(), root: root(overlap), branch }
     }
 
     /// Moves `j` to `branch` with both grains spinning at `spin`; returns (F_n, F_t on i).
@@ -29,19 +42,19 @@ impl Pair {
         let overlap = 2.0 * RADIUS - distance;
         let normal = branch / distance;
         let touch = Touch {
-            normal,
-            distance,
+            normal: lanes(normal),
+            inverse_distance: 1.0 / distance,
             overlap,
-            previous_overlap: self.overlap,
-            r_eff: effective_radius(RADIUS, RADIUS),
+            root: root(overlap),
+            previous_root: self.root,
             m_eff: 1.0,
-            relative: (branch - self.branch) / DT,
-            rolling: spin * distance,
-            spin,
+            relative: lanes((branch - self.branch) / DT),
+            rolling: lanes(spin * distance),
+            spin: lanes(spin),
         };
-        let f = self.law.frictional::<true, true, RESCALED>(&touch, self.history, DT);
-        (self.history, self.overlap, self.branch) = (f.history, overlap, branch);
-        (f.normal, f.tangential)
+        let f = self.law.frictional::<f64, true, true, RESCALED>(&touch, lanes(self.history), DT);
+        (self.history, self.root, self.branch) = (vector(f.history), touch.root, branch);
+        (f.normal, vector(f.tangential))
     }
 
     /// Moves to overlap `d` and lateral displacement `s` along x without turning the line of centres.

@@ -210,28 +210,22 @@ fn every_contact_is_found_in_thin_and_sheared_cells() {
         let positions: Vec<Vec3> =
             (0..n).map(|i| cell.matrix() * Vec3::new(0.137, 0.311, 0.713) * f64::from(i)).collect();
         let mut s = setting(0.0, 1e-3);
-        // Overlaps of this start are far beyond Hertz's law: only distances matter here.
         s.skin = 0.3 * RADIUS;
-        let mut e = Engine::new(
-            cell,
-            Material { density: 1e20, ..Material::GLASS },
-            vec![RADIUS; n as usize],
-            &positions,
-            s,
-        );
-        e.prepare().unwrap();
-        e.set_rate(&[0.2, -0.3, 0.1, 0.4, -0.2, 0.3]).unwrap();
-        let mut relisted = Vec::new();
-        for step in 0..900 {
-            e.step().unwrap();
-            if step % 100 == 99 {
-                let p = e.packing(Mat3::identity());
-                let found: Vec<_> = p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
-                assert_eq!(found, brute_force(&p.cell, &p.positions), "{shape} after {step} steps");
-                relisted.push(found.len());
-            }
+        // Overlaps of these states are far beyond Hertz's law: only distances matter here.
+        let (mut cell, mut positions, mut counts) = (cell, positions, Vec::new());
+        for _ in 0..9 {
+            let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; n as usize], &positions, s);
+            e.prepare().unwrap();
+            let p = e.packing(Mat3::identity());
+            let found: Vec<_> = p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
+            assert_eq!(found, brute_force(&p.cell, &p.positions), "{shape}");
+            counts.push(found.len());
+            let strain =
+                Mat3::identity() + Mat3::new(0.02, 0.03, -0.02, 0.03, -0.03, 0.04, -0.02, 0.04, 0.01);
+            cell = cell.deformed(&strain).unwrap();
+            positions.iter_mut().for_each(|x| *x = strain * *x);
         }
-        assert!(relisted.iter().any(|c| *c != relisted[0]), "contacts change under this strain");
+        assert!(counts.iter().any(|c| *c != counts[0]), "contacts change under this strain");
     }
 }
 

@@ -1,0 +1,54 @@
+//! The part of an engine that cannot be found again, to go back to.
+
+use crate::contacts::{Builder, Contacts, Images, Pair};
+use crate::lanes::Quad;
+use crate::state::State;
+use grains::{Cell, Mat3, Vec3};
+
+/// A state to go back to: no lists, no forces, nothing that never changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Checkpoint {
+    step: u64,
+    time: f64,
+    time_step: f64,
+    cell: Cell,
+    rate: Mat3,
+    position: Vec<Quad>,
+    velocity: Vec<Quad>,
+    spin: Vec<Quad>,
+    touching: Vec<(u32, u32, [i8; 3], f64, Vec3)>,
+}
+
+impl Checkpoint {
+    pub(crate) fn of(state: &State, contacts: &Contacts) -> Self {
+        let image = |p: &Pair| contacts.images.number(p.image);
+        Self {
+            step: state.step,
+            time: state.time,
+            time_step: state.time_step,
+            cell: state.cell,
+            rate: state.rate,
+            position: state.position.clone(),
+            velocity: state.velocity.clone(),
+            spin: state.spin.clone(),
+            touching: contacts.touching().map(|p| (p.i, p.j, image(&p), p.root, p.history)).collect(),
+        }
+    }
+
+    pub(crate) fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Puts the state back, and gives its contacts.
+    pub(crate) fn restore(self, state: &mut State) -> Contacts {
+        (state.step, state.time, state.time_step) = (self.step, self.time, self.time_step);
+        (state.cell, state.rate) = (self.cell, self.rate);
+        (state.position, state.velocity, state.spin) = (self.position, self.velocity, self.spin);
+        let mut list = Builder::new(state, Images::new(state), self.touching.len());
+        for (i, j, image, root, history) in self.touching {
+            let image = list.contacts.images.index(image, &state.cell);
+            list.push(state, Pair { i, j, image, root, history });
+        }
+        list.finish(state)
+    }
+}

@@ -1,0 +1,95 @@
+//! What a step is computed with: instruction set and threads. Neither changes a bit of the result.
+
+use crate::simd::Simd;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Instruction set and threads.
+#[derive(Clone, Debug)]
+pub struct Compute {
+    simd: Simd,
+    threads: usize,
+    pool: Option<Arc<ThreadPool>>,
+}
+
+/// Why a way to compute cannot be had.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ComputeError {
+    /// The processor lacks the instruction set.
+    #[error("this processor has no {0}; it has {available}", available = names(&Simd::available()))]
+    Simd(Simd),
+    /// Threads could not be started.
+    #[error("cannot use {threads} threads: {reason}")]
+    Threads {
+        /// Threads asked for.
+        threads: usize,
+        /// Why not.
+        reason: String,
+    },
+}
+
+fn names(sets: &[Simd]) -> String {
+    sets.iter().map(Simd::to_string).collect::<Vec<_>>().join(", ")
+}
+
+impl Default for Compute {
+    /// The widest instruction set of this processor, one thread.
+    fn default() -> Self {
+        Self { simd: Simd::best(), threads: 1, pool: None }
+    }
+}
+
+impl Compute {
+    /// `threads` from 1; more than one share the chunks of grains between them.
+    pub fn new(simd: Simd, threads: usize) -> Result<Self, ComputeError> {
+        if !simd.is_available() {
+            return Err(ComputeError::Simd(simd));
+        }
+        let fault = |reason: String| ComputeError::Threads { threads, reason };
+        let pool = match threads {
+            0 => return Err(fault("at least one is needed".into())),
+            1 => None,
+            n => {
+                let built = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+                Some(Arc::new(built.map_err(|e| fault(e.to_string()))?))
+            }
+        };
+        Ok(Self { simd, threads, pool })
+    }
+
+    /// Instruction set.
+    pub fn simd(&self) -> Simd {
+        self.simd
+    }
+
+    /// Threads.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Runs many steps inside the threads at once, which spares each step the way in.
+    pub fn within<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
+    /// Does all work items, and joins their results in their order, whatever thread they came from.
+    pub(crate) fn each<T: Send, R: Send>(
+        &self,
+        items: impl Iterator<Item = T>,
+        work: impl Fn(T) -> R + Sync + Send,
+        join: impl FnMut(R),
+    ) {
+        match &self.pool {
+            None => items.map(work).for_each(join),
+            Some(pool) => {
+                let items: Vec<T> = items.collect();
+                let results: Vec<R> = pool.install(|| items.into_par_iter().map(work).collect());
+                results.into_iter().for_each(join);
+            }
+        }
+    }
+}

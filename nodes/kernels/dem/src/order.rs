@@ -1,0 +1,67 @@
+//! Putting grains that are neighbours in space next to each other in memory.
+
+use crate::contacts::{Builder, Contacts, Images, Pair};
+use crate::state::{State, vector};
+use grains::Vec3;
+
+/// Bits of each coordinate along the curve.
+const BITS: u32 = 10;
+
+/// Where each grain comes along a space-filling (Morton) curve through the cell: a function of positions alone. Grains
+/// of one bin follow each other by id.
+pub(crate) fn along_curve(state: &State) -> Vec<u32> {
+    let place = |g: &u32| {
+        let s = state.cell.fractional(&vector(&state.position[*g as usize]));
+        let code = (0..3).map(|k| {
+            let inside = s[k] - s[k].floor();
+            spread((inside * f64::from(1u32 << BITS)) as u32) << k
+        });
+        (code.sum::<u32>(), state.ids[*g as usize])
+    };
+    let mut order: Vec<u32> = (0..state.grains() as u32).collect();
+    order.sort_by_cached_key(place);
+    order
+}
+
+/// Two zero bits after each of the lowest ten.
+fn spread(v: u32) -> u32 {
+    (0..BITS).map(|b| (v >> b & 1) << (3 * b)).sum()
+}
+
+/// Takes the grains in a new order; pairs keep their history.
+pub(crate) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> Contacts {
+    fn take<T: Copy>(from: &mut Vec<T>, order: &[u32]) {
+        *from = order.iter().map(|g| from[*g as usize]).collect();
+    }
+    take(&mut state.ids, order);
+    take(&mut state.radius, order);
+    take(&mut state.inverse_mass, order);
+    take(&mut state.inverse_inertia, order);
+    take(&mut state.position, order);
+    take(&mut state.velocity, order);
+    take(&mut state.spin, order);
+    let mut place = vec![0u32; order.len()];
+    for (new, old) in order.iter().enumerate() {
+        place[*old as usize] = new as u32;
+    }
+    let mut pairs: Vec<(u32, u32, [i8; 3], f64, Vec3)> = contacts
+        .touching()
+        .map(|p| {
+            let (i, j) = (place[p.i as usize], place[p.j as usize]);
+            let image = contacts.images.number(p.image);
+            // Seen from the other grain the image is on the other side, and the force is the opposite.
+            if i <= j {
+                (i, j, image, p.root, p.history)
+            } else {
+                (j, i, image.map(|k| -k), p.root, -p.history)
+            }
+        })
+        .collect();
+    pairs.sort_unstable_by_key(|p| (p.0, p.1, p.2));
+    let mut list = Builder::new(state, Images::new(state), pairs.len());
+    for (i, j, image, root, history) in pairs {
+        let image = list.contacts.images.index(image, &state.cell);
+        list.push(state, Pair { i, j, image, root, history });
+    }
+    list.finish(state)
+}

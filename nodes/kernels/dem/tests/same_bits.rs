@@ -1,0 +1,149 @@
+//! Results do not depend on instruction set, threads, or how steps are grouped.
+
+use dem::{Compute, Engine, Setting, Simd, TimeStep, gas};
+use grains::{Mat3, Material, Packing, Vec3};
+use scene::Tangential;
+
+const RADIUS: f64 = 1e-4;
+
+fn setting(friction: f64, tangential: Tangential) -> Setting {
+    Setting {
+        friction,
+        damping: 0.2,
+        drag: 0.0,
+        spin_drag: 0.0,
+        tangential,
+        time_step: TimeStep::Safety(0.5),
+        skin: 0.1 * RADIUS,
+        speed_cap: None,
+    }
+}
+
+/// A gas that is strained into contact; `unequal` mixes sizes.
+fn start(grains: u32, setting: Setting, unequal: bool, compute: Compute) -> Engine {
+    let gas = gas::place(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
+    let radius = |i: u32| if unequal && i.is_multiple_of(3) { 0.8 * RADIUS } else { RADIUS };
+    let radii = (0..grains).map(radius).collect();
+    let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting);
+    engine.set_compute(compute);
+    engine.set_velocities(&gas.velocities);
+    engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>());
+    engine.set_rate(&[-900.0, -1100.0, -1000.0, 60.0, -50.0, 90.0]).unwrap();
+    engine.sort();
+    engine.prepare().unwrap();
+    engine
+}
+
+/// Every number of the state.
+fn bits(p: &Packing) -> Vec<u64> {
+    let vectors = [&p.positions, &p.velocities, &p.spins];
+    let mut all: Vec<f64> = vectors.iter().flat_map(|v| v.iter().flat_map(|x| [x.x, x.y, x.z])).collect();
+    all.extend(p.cell.matrix().iter());
+    for c in &p.contacts {
+        let t = c.tangential_force;
+        all.extend([f64::from(c.i), f64::from(c.j), c.overlap, c.normal_force, t.x, t.y, t.z]);
+    }
+    all.extend([p.time, p.time_step]);
+    all.iter().map(|v| v.to_bits()).collect()
+}
+
+fn end(mut engine: Engine, steps: u32) -> Vec<u64> {
+    let compute = engine.compute().clone();
+    compute.within(|| engine.run(steps)).unwrap();
+    let packing = engine.packing(Mat3::identity());
+    assert!(packing.contacts.len() > 50, "{} contacts", packing.contacts.len());
+    bits(&packing)
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
+    assert!(
+        Simd::available().len() > 1 || !cfg!(target_arch = "x86_64"),
+        "nothing to compare on this processor"
+    );
+    for friction in [0.0, 0.3, f64::INFINITY] {
+        for tangential in [Tangential::Rescaled, Tangential::Incremental] {
+            for unequal in [false, true] {
+                // Small grains take longer to meet.
+                let steps = if unequal { 6000 } else { 3000 };
+                let run = |simd| {
+                    let compute = Compute::new(simd, 1).unwrap();
+                    end(start(300, setting(friction, tangential), unequal, compute), steps)
+                };
+                let scalar = run(Simd::Scalar);
+                for simd in Simd::available() {
+                    assert!(run(simd) == scalar, "{simd}, friction {friction}, {tangential:?}, {unequal}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() {
+    let run = |threads| {
+        let compute = Compute::new(Simd::best(), threads).unwrap();
+        end(start(1100, setting(0.3, Tangential::Rescaled), false, compute), 10_000)
+    };
+    let one = run(1);
+    for threads in [2, 4] {
+        assert!(run(threads) == one, "{threads} threads");
+    }
+}
+
+#[test]
+fn steps_one_by_one_and_steps_together_are_the_same() {
+    let engine = || start(300, setting(0.3, Tangential::Rescaled), false, Compute::default());
+    let mut single = engine();
+    for _ in 0..2500 {
+        single.step().unwrap();
+    }
+    assert!(bits(&single.packing(Mat3::identity())) == end(engine(), 2500));
+}
+
+#[test]
+fn the_stress_measured_along_the_way_is_that_of_a_snapshot() {
+    let mut engine = start(300, setting(0.3, Tangential::Rescaled), true, Compute::default());
+    let mut measured = Vec::new();
+    engine.run_measured(3000, |s| measured.push(s.voigt())).unwrap();
+    assert_eq!(measured.len(), 3000);
+    let seen = engine.snapshot().unwrap().stress.tensor.voigt();
+    let size = seen.iter().fold(0.0f64, |a, s| a.max(s.abs()));
+    assert!(size > 0.0);
+    for (a, b) in measured[2999].iter().zip(seen) {
+        assert!((a - b).abs() < 1e-12 * size, "{a} {b}");
+    }
+}
+
+#[test]
+fn the_order_of_grains_in_memory_does_not_change_what_happens() {
+    let short = |sorted: bool| {
+        let mut engine = start(300, setting(0.3, Tangential::Rescaled), true, Compute::default());
+        engine.run(1500).unwrap();
+        if sorted {
+            engine.sort();
+            engine.prepare().unwrap();
+        }
+        engine.run(100).unwrap();
+        let packing = engine.packing(Mat3::identity());
+        let mut grains: Vec<_> = packing.ids.iter().copied().zip(packing.positions.clone()).collect();
+        grains.sort_by_key(|g| g.0);
+        (grains, packing.contacts.len())
+    };
+    let (sorted, plain) = (short(true), short(false));
+    assert_eq!(sorted.1, plain.1);
+    for ((a, x), (b, y)) in sorted.0.iter().zip(&plain.0) {
+        assert_eq!(a, b);
+        assert!((x - y).norm() < 1e-12 * RADIUS, "grain {a}: {:e}", (x - y).norm());
+    }
+}
+
+#[test]
+fn an_instruction_set_that_is_not_there_is_refused_by_name() {
+    assert_eq!("avx512".parse::<Simd>(), Ok(Simd::Avx512));
+    assert!("avx1024".parse::<Simd>().unwrap_err().to_string().contains("avx1024"));
+    assert!(Compute::new(Simd::Scalar, 0).is_err());
+    for simd in Simd::ALL {
+        assert_eq!(Compute::new(simd, 1).is_ok(), simd.is_available());
+    }
+}
