@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod cpu_time;
+mod dem;
 mod lockstep;
 
 use crate::failure::Failure;
@@ -13,6 +14,8 @@ use node_kit::Exit;
 pub(crate) enum Command {
     /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
     Accuracy(accuracy::Args),
+    /// The particle engine: particle-steps per second by size, threads, instruction set and features.
+    Dem(dem::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
     Lockstep(lockstep::Args),
 }
@@ -21,6 +24,7 @@ pub(crate) enum Command {
 pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Accuracy(args) => accuracy::run(args),
+        Command::Dem(args) => dem::run(args),
         Command::Lockstep(args) => lockstep::run(args),
     }
 }

@@ -7,6 +7,11 @@ pub(super) fn thread_seconds() -> Result<f64, Failure> {
     seconds(libc::CLOCK_THREAD_CPUTIME_ID)
 }
 
+/// CPU time that all threads of this process have used, s.
+pub(super) fn process_seconds() -> Result<f64, Failure> {
+    seconds(libc::CLOCK_PROCESS_CPUTIME_ID)
+}
+
 fn seconds(clock: libc::clockid_t) -> Result<f64, Failure> {
     let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: `now` is a timespec that outlives the call, which writes nothing else.
