@@ -37,8 +37,6 @@ pub trait Lanes:
     fn max(self, other: Self) -> Self;
     /// Where `self` exceeds `other`.
     fn gt(self, other: Self) -> Self::Mask;
-    /// Where both hold.
-    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether it holds in any lane.
     fn any(mask: Self::Mask) -> bool;
     /// `a` where the mask holds, else `b`.
@@ -86,10 +84,6 @@ impl Lanes for f64 {
     #[inline(always)]
     fn gt(self, other: Self) -> bool {
         self > other
-    }
-    #[inline(always)]
-    fn both(a: bool, b: bool) -> bool {
-        a & b
     }
     #[inline(always)]
     fn any(mask: bool) -> bool {

@@ -22,6 +22,7 @@ mod neighbours;
 pub mod observe;
 mod order;
 mod pass;
+pub mod roofline;
 mod run_state;
 pub mod simd;
 pub mod simulation;

@@ -91,10 +91,6 @@ impl Lanes for Avx2 {
         unsafe { _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, other.0) }
     }
     #[inline(always)]
-    fn both(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_and_pd(a, b) }
-    }
-    #[inline(always)]
     fn any(mask: __m256d) -> bool {
         unsafe { _mm256_movemask_pd(mask) != 0 }
     }
@@ -207,10 +203,6 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, other.0) }
-    }
-    #[inline(always)]
-    fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
-        a & b
     }
     #[inline(always)]
     fn any(mask: __mmask8) -> bool {

@@ -1,0 +1,194 @@
+//! What the contact law asks of a processor, and what the processor has to give: for benchmarks.
+
+use crate::engine::{Engine, Features, Setting, TimeStep};
+use crate::lanes::{BLOCK, Lanes, Quad, Wrench};
+use crate::pass::{Frictional, Frictionless};
+use crate::simd::{Kernel, Simd};
+use crate::sweep;
+use grains::{Cell, Material, Vec3};
+use scene::Tangential;
+use std::cell::Cell as Counter;
+use std::hint::black_box;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+thread_local! {
+    static OPERATIONS: Counter<u64> = const { Counter::new(0) };
+}
+
+/// One lane that counts what is done to it.
+#[derive(Clone, Copy)]
+struct Counted(f64);
+
+fn counted(value: f64) -> Counted {
+    OPERATIONS.set(OPERATIONS.get() + 1);
+    Counted(value)
+}
+
+macro_rules! count {
+    ($($operator:ident $method:ident $sign:tt),*) => {$(
+        impl $operator for Counted {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                counted(self.0 $sign other.0)
+            }
+        }
+    )*};
+}
+
+count!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Lanes for Counted {
+    const WIDTH: usize = 1;
+    type Mask = bool;
+    type Index = usize;
+
+    fn splat(value: f64) -> Self {
+        Self(value)
+    }
+    fn load(from: &[f64; BLOCK], lane: usize) -> Self {
+        Self(from[lane])
+    }
+    fn store(self, to: &mut [f64; BLOCK], lane: usize) {
+        to[lane] = self.0;
+    }
+    fn sqrt(self) -> Self {
+        counted(self.0.sqrt())
+    }
+    fn max(self, other: Self) -> Self {
+        counted(<f64 as Lanes>::max(self.0, other.0))
+    }
+    fn gt(self, other: Self) -> bool {
+        OPERATIONS.set(OPERATIONS.get() + 1);
+        self.0 > other.0
+    }
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+    fn index(from: &[u32; BLOCK], lane: usize, rows: usize) -> usize {
+        <f64 as Lanes>::index(from, lane, rows)
+    }
+    fn gather<const K: usize>(table: &[Quad], index: usize) -> Self {
+        Self(table[index][K])
+    }
+    fn prefetch(_: &[Quad], _: &[u32; BLOCK], _: usize) {}
+    fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
+        <f64 as Lanes>::store_rows(components.map(|c| c.0), to, lane, at);
+    }
+    fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
+        for (s, c) in sum.iter_mut().zip(components) {
+            *s = counted(*s + c.0).0;
+        }
+    }
+}
+
+/// Floating-point operations (additions, multiplications, divisions, square roots, comparisons; one each) on one sliding
+/// contact of grains of one size in one pass, counted by running the law itself; `look` adds those of the stress.
+pub fn operations_per_contact(setting: &Setting, look: bool) -> f64 {
+    // A row of grains with one full block of contacts, sheared hard enough to slide.
+    let (radius, grains) = (1e-4, BLOCK + 1);
+    let along = |k: usize| Vec3::x() * (1.99 * radius * k as f64);
+    let positions: Vec<Vec3> = (0..grains).map(along).collect();
+    let Some(cell) = Cell::cube(4.0 * radius * grains as f64) else { return 0.0 };
+    let setting = Setting { time_step: TimeStep::Fixed(1e-8), skin: 0.1 * radius, ..*setting };
+    let mut engine = Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, setting);
+    let aside = |k: usize| Vec3::y() * (100.0 * k as f64);
+    engine.set_velocities(&(0..grains).map(aside).collect::<Vec<_>>());
+    if engine.prepare().is_err() {
+        return 0.0;
+    }
+    let (images, chunk) = engine.contacts.chunk_mut(0);
+    let view = sweep::view(&engine.state, images.shifts(), &setting);
+    let rescaled = setting.tangential == Tangential::Rescaled;
+    OPERATIONS.set(0);
+    macro_rules! frictional {
+        ($sliding:literal, $rescaled:literal, $look:literal) => {
+            Frictional::<true, $sliding, $rescaled, false, $look> { view, chunk }.run::<Counted>()
+        };
+    }
+    match (setting.features(), rescaled, look) {
+        (Features::Frictionless, _, false) => Frictionless::<false, false> { view, chunk }.run::<Counted>(),
+        (Features::Frictionless, _, true) => Frictionless::<false, true> { view, chunk }.run::<Counted>(),
+        (Features::Coulomb, true, false) => frictional!(true, true, false),
+        (Features::Coulomb, true, true) => frictional!(true, true, true),
+        (Features::Coulomb, false, false) => frictional!(true, false, false),
+        (Features::Coulomb, false, true) => frictional!(true, false, true),
+        (Features::Stuck, true, false) => frictional!(false, true, false),
+        (Features::Stuck, true, true) => frictional!(false, true, true),
+        (Features::Stuck, false, false) => frictional!(false, false, false),
+        (Features::Stuck, false, true) => frictional!(false, false, true),
+    };
+    OPERATIONS.get() as f64 / BLOCK as f64
+}
+
+/// Additions and multiplications that depend on none but their own chain, `rounds` times over: what the processor has to
+/// give without fused operations, which the contact law does not use. Returns how many were done, and a number that
+/// hangs on all of them.
+pub fn independent_operations(simd: Simd, rounds: u64) -> (u64, f64) {
+    simd.run(Chains { rounds })
+}
+
+struct Chains {
+    rounds: u64,
+}
+
+/// Chains at a time: enough to hide the latency of an addition.
+const CHAINS: usize = 12;
+
+impl Kernel for Chains {
+    type Output = (u64, f64);
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> (u64, f64) {
+        let mut chains = [L::splat(1.0); CHAINS];
+        // Unknown to the compiler, which would else see through it.
+        let (by, plus) = (L::splat(black_box(0.999_999)), L::splat(black_box(1e-6)));
+        for _ in 0..self.rounds {
+            for chain in &mut chains {
+                *chain = *chain * by + plus;
+            }
+        }
+        let mut last = [0.0; BLOCK];
+        let mut sum = 0.0;
+        for chain in chains {
+            chain.store(&mut last, 0);
+            sum += last[0];
+        }
+        (self.rounds * 2 * (CHAINS * L::WIDTH) as u64, sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_with_more_physics_takes_more_operations() {
+        let of = |friction: f64, look: bool| {
+            let setting = Setting {
+                friction,
+                damping: 0.3,
+                drag: 0.0,
+                spin_drag: 0.0,
+                tangential: Tangential::Rescaled,
+                time_step: TimeStep::Fixed(1e-8),
+                skin: 0.0,
+                speed_cap: None,
+            };
+            operations_per_contact(&setting, look)
+        };
+        assert!(of(0.0, false) > 30.0);
+        assert!(of(f64::INFINITY, false) > 2.0 * of(0.0, false));
+        assert!(of(0.3, false) > of(f64::INFINITY, false));
+        assert!(of(0.3, true) > of(0.3, false) + 12.0);
+    }
+}
