@@ -1,6 +1,5 @@
 //! `grainlab bench dem`: how fast the particle engine steps.
 
-mod flops;
 mod machine;
 mod packing;
 mod peak;
@@ -10,6 +9,7 @@ use crate::failure::Failure;
 use crate::output::{Format, Table, exact, fixed, json, print, say};
 use clap::ValueEnum;
 use dem::Simd;
+use grains::Packing;
 use machine::Machine;
 use node_kit::Exit;
 use serde::Serialize;
@@ -86,9 +86,9 @@ struct Row {
     coordination: f64,
     /// Mean stress at the end, Pa.
     pressure: f64,
-    /// Additions, multiplications, divisions and roots that a contact needs.
-    flops_per_contact: f64,
-    /// What the contacts need of what the cores in use could do of them; null where the peak is unknown.
+    /// Floating-point operations of the contact law on one contact, counted by running it.
+    operations_per_contact: f64,
+    /// What the contacts need of what the cores in use could do of independent additions and multiplications.
     share_of_peak: Option<f64>,
     /// Memory that the engine holds; null where the system does not tell.
     bytes_per_grain: Option<f64>,
@@ -120,7 +120,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             }
         }
     }
-    let packings = Packings::new(packing, &args.features)?;
+    let packings = Packings::new(packing.clone(), &args.features)?;
     let machine = Machine::measured(&args.simd)?;
     let mut loops: Vec<Vec<Loop>> = vec![Vec::new(); cases.len()];
     for repetition in 1..=args.repetitions {
@@ -129,7 +129,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             done.push(stepping::run(&packings, case)?);
         }
     }
-    let rows = cases.iter().zip(&loops).map(|(case, loops)| row(case, loops, &machine)).collect();
+    let rows = cases.iter().zip(&loops).map(|(case, loops)| row(&packing, case, loops, &machine)).collect();
     let report = Report { machine, rows };
     print(&match args.format {
         Format::Json => json(&report)?,
@@ -139,12 +139,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-fn row(case: &Case, loops: &[Loop], machine: &Machine) -> Row {
+fn row(packing: &Packing, case: &Case, loops: &[Loop], machine: &Machine) -> Row {
     let of = |part: &dyn Fn(&Loop) -> f64| median(loops.iter().map(part).collect());
     let work = case.grains as f64 * f64::from(case.steps);
-    let flops = flops::per_contact(case.features, case.servo);
+    let operations = stepping::operations_per_contact(packing, case);
     let ns_per_contact = of(&|l| 1e9 * l.cpu_seconds / (l.contacts * f64::from(case.steps)));
-    let share = |peak: f64| flops / (1e-9 * ns_per_contact) / peak;
+    let share = |peak: f64| operations / (1e-9 * ns_per_contact) / peak;
     Row {
         grains: case.grains,
         threads: case.threads,
@@ -158,7 +158,7 @@ fn row(case: &Case, loops: &[Loop], machine: &Machine) -> Row {
         ns_per_contact,
         coordination: of(&|l| 2.0 * l.contacts / case.grains as f64),
         pressure: of(&|l| l.pressure),
-        flops_per_contact: flops,
+        operations_per_contact: operations,
         share_of_peak: machine.peak(case.simd).map(share),
         // The first engine finds the memory untouched; later ones take up what others left.
         bytes_per_grain: loops
