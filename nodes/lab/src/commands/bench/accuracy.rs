@@ -75,25 +75,23 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let knobs = if args.knobs.is_empty() { Knob::value_variants() } else { &args.knobs };
     let threads = args.threads as usize;
-    let default = every_seed(&[(&scene, &vec![u64::MAX; seeds.len()])], &seeds, threads, "default");
-    let default = default.into_iter().next().unwrap_or_default();
+    let unlimited = vec![u64::MAX; seeds.len()];
+    let first = every_seed(&[(&scene, &unlimited)], &seeds, threads, "default");
+    let first = first.into_iter().next().unwrap_or_default();
     let limits: Vec<u64> =
-        default.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
+        first.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
     let careful = converged(&scene, args.quick);
-    let (reference, samples) = {
-        let settings = settings(knobs, &scene, servoed(&default), args.quick);
-        // The default is known; the converged run takes longest and goes first.
-        let unlimited = vec![u64::MAX; seeds.len()];
-        let mut jobs = vec![(&careful, &unlimited)];
-        jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
-        let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
-        let reference = results.next().unwrap_or_default();
-        let sample = |s: Setting| {
-            let sample = if s.default { default.clone() } else { results.next().unwrap_or_default() };
-            (s, sample)
-        };
-        (reference, settings.into_iter().map(sample).collect::<Vec<_>>())
+    let settings = settings(knobs, &scene, servoed(&first), args.quick);
+    // The default once more, so that it is timed among the others.
+    let mut jobs = vec![(&careful, &unlimited), (&scene, &limits)];
+    jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
+    let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
+    let (reference, default) = (results.next().unwrap_or_default(), results.next().unwrap_or_default());
+    let sample = |s: Setting| {
+        let sample = if s.default { default.clone() } else { results.next().unwrap_or_default() };
+        (s, sample)
     };
+    let samples: Vec<(Setting, Sample)> = settings.into_iter().map(sample).collect();
     let Some(report) = report::report(&scene, seeds, (&careful, &reference), &default, &samples) else {
         return Err(no_reference(&reference, &default));
     };
@@ -132,24 +130,27 @@ fn servoed(sample: &Sample) -> Option<Servoed> {
     sample.iter().find_map(|r| r.as_ref().ok()?.servoed)
 }
 
-/// Runs each scene at every seed, each with its limits on steps.
+/// Runs each scene at every seed, each with its limits on steps; the outcomes by scene. Seed by seed, so that what else
+/// the machine does falls on all scenes alike.
 fn every_seed(scenes: &[(&Scene, &Vec<u64>)], seeds: &[u64], threads: usize, what: &str) -> Vec<Sample> {
-    let jobs: Vec<Job<'_>> = scenes
-        .iter()
-        .flat_map(|(scene, limits)| {
-            seeds.iter().zip(*limits).map(|(seed, limit)| Job { scene, seed: *seed, limit: *limit })
-        })
-        .collect();
+    let job = |s: usize| {
+        let (seed, at) = (seeds[s], s);
+        scenes.iter().map(move |(scene, limits)| Job { scene, seed, limit: limits[at] })
+    };
+    let jobs: Vec<Job<'_>> = (0..seeds.len()).flat_map(job).collect();
     let (done, total) = (AtomicUsize::new(0), jobs.len());
     let tenth = |n: usize| n * 10 / total;
-    let mut results = runs::all(&jobs, threads, || {
+    let results = runs::all(&jobs, threads, || {
         let n = done.fetch_add(1, Ordering::Relaxed) + 1;
         if tenth(n) > tenth(n - 1) {
             say!("grainlab: {what}: {n} of {total} runs");
         }
-    })
-    .into_iter();
-    scenes.iter().map(|_| results.by_ref().take(seeds.len()).collect()).collect()
+    });
+    let mut samples: Vec<Sample> = vec![Vec::new(); scenes.len()];
+    for (run, outcome) in results.into_iter().enumerate() {
+        samples[run % scenes.len()].push(outcome);
+    }
+    samples
 }
 
 /// Without a reference nothing can be said.
