@@ -1,5 +1,8 @@
-//! `grainlab bench`: speed on this machine.
+//! `grainlab bench`: speed on this machine, and what it is bought with.
 
+mod accuracy;
+mod cpu_time;
+mod dem;
 mod lockstep;
 
 use crate::failure::Failure;
@@ -9,6 +12,10 @@ use node_kit::Exit;
 /// What to measure.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
+    Accuracy(accuracy::Args),
+    /// The particle engine: particle-steps per second by size, threads, instruction set and features.
+    Dem(dem::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
     Lockstep(lockstep::Args),
 }
@@ -16,6 +23,8 @@ pub(crate) enum Command {
 /// Runs the command.
 pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
+        Command::Accuracy(args) => accuracy::run(args),
+        Command::Dem(args) => dem::run(args),
         Command::Lockstep(args) => lockstep::run(args),
     }
 }

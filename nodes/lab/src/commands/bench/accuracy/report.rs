@@ -1,0 +1,180 @@
+//! From outcomes to rows.
+
+use super::front::front;
+use super::knobs::{Knob, Setting, Value, inertial_number};
+use super::measure::Outcome;
+use super::statistics::{Estimate, Observables, combined, deviation, paired};
+use scene::Scene;
+use serde::Serialize;
+
+/// What one setting led to at each seed.
+pub(crate) type Sample = Vec<Result<Outcome, String>>;
+
+/// The whole result.
+#[derive(Debug, Serialize)]
+pub(crate) struct Report {
+    pub(crate) scene: String,
+    pub(crate) seeds: Vec<u64>,
+    pub(crate) reference: Reference,
+    pub(crate) rows: Vec<Row>,
+    /// What the rows say about the default.
+    pub(crate) verdict: Vec<String>,
+    pub(crate) notes: [&'static str; 4],
+}
+
+const NOTES: [&str; 4] = [
+    "error: mean over the seeds of the difference from the converged run at the same seed; change: the same from the default; \
+     k, eps, phi as they are, g12 and theta relative to the converged run",
+    "not resolved: zero lies in the 95 % interval of the mean (two standard errors, more with few seeds: Student's t); the \
+     error may be anything up to that bound. One in twenty that is resolved is so by chance",
+    "combined: root mean square of the five errors over their scatter from seed to seed at the default, an unresolved one \
+     counted with its bound; 1 is as wrong as one packing is by chance",
+    "seconds: CPU time of the run in its own thread",
+];
+
+/// The converged run: every knob at its most careful value.
+#[derive(Debug, Serialize)]
+pub(crate) struct Reference {
+    pub(crate) grains: u32,
+    pub(crate) seconds: Option<f64>,
+    pub(crate) steps: Option<f64>,
+    pub(crate) inertial_number: Option<f64>,
+    /// Means over the seeds; moduli in Pa.
+    pub(crate) mean: Observables<Option<f64>>,
+    pub(crate) standard_error: Observables<Option<f64>>,
+    /// Standard deviation from seed to seed at the default; moduli relative to the converged run's.
+    pub(crate) scatter: Observables<f64>,
+}
+
+/// One setting.
+#[derive(Debug, Serialize)]
+pub(crate) struct Row {
+    pub(crate) knob: Knob,
+    pub(crate) value: Value,
+    pub(crate) default: bool,
+    pub(crate) on_front: bool,
+    pub(crate) grains: u32,
+    pub(crate) inertial_number: Option<f64>,
+    /// Mean CPU time of a run, s.
+    pub(crate) seconds: Option<f64>,
+    pub(crate) seconds_standard_error: Option<f64>,
+    /// Mean number of solver steps.
+    pub(crate) steps: Option<f64>,
+    pub(crate) combined: Option<f64>,
+    pub(crate) error: Observables<Option<f64>>,
+    pub(crate) standard_error: Observables<Option<f64>>,
+    pub(crate) resolved: Observables<Option<bool>>,
+    pub(crate) change: Observables<Option<f64>>,
+    pub(crate) change_standard_error: Observables<Option<f64>>,
+    pub(crate) change_resolved: Observables<Option<bool>>,
+    /// Seeds at which the run came to its end.
+    pub(crate) runs: usize,
+    pub(crate) warnings: Vec<String>,
+    /// The errors with what they are known to.
+    #[serde(skip)]
+    pub(crate) errors: Differences,
+    /// The changes from the default with what they are known to.
+    #[serde(skip)]
+    pub(crate) changes: Differences,
+}
+
+/// Five differences, or none where too few runs ended.
+pub(crate) type Differences = Option<Observables<Estimate>>;
+
+impl Row {
+    fn new(setting: &Setting, sample: &Sample, error: Differences, change: Differences) -> Self {
+        let seconds = Estimate::of(&finished(sample, |o| o.seconds));
+        let mut warnings: Vec<String> = sample.iter().filter_map(|r| r.as_ref().err().cloned()).collect();
+        let runs = sample.len() - warnings.len();
+        warnings.dedup();
+        Self {
+            knob: setting.knob,
+            value: setting.value.clone(),
+            default: setting.default,
+            on_front: false,
+            grains: setting.scene.grains,
+            inertial_number: inertial_number(&setting.scene),
+            seconds: seconds.map(|s| s.mean),
+            seconds_standard_error: seconds.map(|s| s.standard_error),
+            steps: Estimate::of(&finished(sample, |o| o.steps as f64)).map(|s| s.mean),
+            combined: None,
+            error: of(error, |e| e.mean),
+            standard_error: of(error, |e| e.standard_error),
+            resolved: of(error, |e| e.resolved()),
+            change: of(change, |e| e.mean),
+            change_standard_error: of(change, |e| e.standard_error),
+            change_resolved: of(change, |e| e.resolved()),
+            runs,
+            warnings,
+            errors: error,
+            changes: change,
+        }
+    }
+}
+
+fn of<T: Copy>(differences: Differences, part: impl Fn(Estimate) -> T) -> Observables<Option<T>> {
+    differences.map_or(Observables::from_array([None; 5]), |d| d.map(|e| Some(part(e))))
+}
+
+fn finished<T>(sample: &Sample, part: impl Fn(&Outcome) -> T) -> Vec<T> {
+    sample.iter().filter_map(|r| r.as_ref().ok()).map(part).collect()
+}
+
+/// Puts together what the settings led to. `None` unless two runs of the converged setting and two of the default ended.
+pub(crate) fn report(
+    scene: &Scene,
+    seeds: Vec<u64>,
+    converged: (&Scene, &Sample),
+    default: &Sample,
+    samples: &[(Setting, Sample)],
+) -> Option<Report> {
+    let (careful, reference) = converged;
+    let column = |sample: &Sample, q: usize| finished(sample, |o| o.observables.array()[q]);
+    let means: [Estimate; 5] = {
+        let m: [Option<Estimate>; 5] = std::array::from_fn(|q| Estimate::of(&column(reference, q)));
+        [m[0]?, m[1]?, m[2]?, m[3]?, m[4]?]
+    };
+    let (g12, theta) = (means[3].mean, means[4].mean);
+    let relative = |sample: &Sample| -> Vec<Option<Observables<f64>>> {
+        let one = |o: &Outcome| {
+            let o = o.observables;
+            Observables { g12: o.g12 / g12, theta: o.theta / theta, ..o }
+        };
+        sample.iter().map(|r| r.as_ref().ok().map(one)).collect()
+    };
+    let (reference_values, default_values) = (relative(reference), relative(default));
+    let scatter: Observables<f64> = {
+        let finished: Vec<_> = default_values.iter().flatten().collect();
+        let of = |q: usize| deviation(&finished.iter().map(|o| o.array()[q]).collect::<Vec<_>>());
+        Observables::from_array([of(0)?, of(1)?, of(2)?, of(3)?, of(4)?])
+    };
+    let row = |(setting, sample): &(Setting, Sample)| {
+        let values = relative(sample);
+        let (error, change) = (paired(&values, &reference_values), paired(&values, &default_values));
+        let combined = error.and_then(|e| combined(&e, &scatter));
+        Row { combined, ..Row::new(setting, sample, error, change) }
+    };
+    let mut rows: Vec<Row> = samples.iter().map(row).collect();
+    let points: Vec<(f64, f64)> =
+        rows.iter().map(|r| (r.seconds.unwrap_or(f64::NAN), r.combined.unwrap_or(f64::NAN))).collect();
+    for (row, on) in rows.iter_mut().zip(front(&points)) {
+        row.on_front = on;
+    }
+    let seconds = Estimate::of(&finished(reference, |o| o.seconds));
+    Some(Report {
+        scene: scene.name.clone(),
+        seeds,
+        reference: Reference {
+            grains: careful.grains,
+            seconds: seconds.map(|s| s.mean),
+            steps: Estimate::of(&finished(reference, |o| o.steps as f64)).map(|s| s.mean),
+            inertial_number: inertial_number(careful),
+            mean: Observables::from_array(means.map(|m| Some(m.mean))),
+            standard_error: Observables::from_array(means.map(|m| Some(m.standard_error))),
+            scatter,
+        },
+        verdict: super::verdict::verdict(&rows),
+        rows,
+        notes: NOTES,
+    })
+}

@@ -1,0 +1,84 @@
+//! `grainlab bench dem`: what it reports, not how fast it is.
+
+use serde_json::Value;
+use std::process::{Command, Output, Stdio};
+
+fn dem(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(["bench", "dem"]).args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+#[test]
+fn every_case_has_a_row_and_the_packing_holds_together() {
+    let cases =
+        ["--grains", "2000", "--threads", "1,2", "--features", "coulomb,stuck", "--simd", "scalar,best"];
+    let output =
+        dem(&[&cases[..], &["--servo", "--steps", "50", "--repetitions", "1", "--format", "json"]].concat());
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(report["machine"]["processor"].is_string());
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 8);
+    for row in rows {
+        assert_eq!((row["grains"].as_u64(), row["servo"].as_bool()), (Some(2000), Some(true)));
+        for key in
+            ["particle_steps_per_second", "cpu_particle_steps_per_second", "ns_per_contact", "share_of_peak"]
+        {
+            assert!(row[key].as_f64().unwrap() > 0.0, "{key}: {row}");
+        }
+        // 5109 contacts at 99,984 Pa; 55 steps of 3e-8 s at rest change next to nothing.
+        assert!((row["coordination"].as_f64().unwrap() - 5.109).abs() < 0.02, "{row}");
+        assert!((row["pressure"].as_f64().unwrap() / 99_984.5 - 1.0).abs() < 1e-2, "{row}");
+        // Neither threads nor the instruction set change what is computed.
+        let same = |r: &&Value| r["features"] == row["features"];
+        let first = rows.iter().find(same).unwrap();
+        assert_eq!((&row["pressure"], &row["coordination"]), (&first["pressure"], &first["coordination"]));
+    }
+    let operations = |features: &str| {
+        let row = rows.iter().find(|r| r["features"] == features).unwrap();
+        row["operations_per_contact"].as_f64().unwrap()
+    };
+    assert!(operations("coulomb") > operations("stuck"));
+}
+
+#[test]
+fn without_friction_the_grains_are_pressed_anew_to_the_same_pressure() {
+    let output = dem(&[
+        "--grains",
+        "2000",
+        "--threads",
+        "1",
+        "--features",
+        "frictionless",
+        "--steps",
+        "20",
+        "--repetitions",
+        "1",
+        "--format",
+        "json",
+    ]);
+    let err = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let row = &report["rows"][0];
+    // Isostatic without friction: six contacts a grain that is held, of which some 2 % are none.
+    assert!(row["coordination"].as_f64().unwrap() > 5.5, "{row}");
+    assert!((row["pressure"].as_f64().unwrap() / 1e5 - 1.0).abs() < 0.1, "{row}");
+}
+
+#[test]
+fn wrong_usage_of_the_bench_is_refused_with_what_would_do() {
+    for (arguments, code, word) in [
+        (&["--grains", "3000"][..], 2, "2000, 16000, 54000"),
+        (&["--simd", "mmx"], 2, "avx512"),
+        (&["--features", "sticky"], 2, "coulomb"),
+        (&["--threads", "0"], 2, "1..=1024"),
+        (&["--packing", "nowhere.data"], 1, "nowhere.data"),
+    ] {
+        let output = dem(arguments);
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {err}");
+        assert!(err.contains(word), "{word:?} is missing for {arguments:?}: {err}");
+    }
+}
