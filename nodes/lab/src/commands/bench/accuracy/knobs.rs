@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use grains::{ComponentControl, ServoLaw};
-use scene::{Phase, PhaseKind, Scene};
+use scene::{GasMethod, Phase, PhaseKind, Scene};
 use serde::Serialize;
 use std::fmt;
 
@@ -21,6 +21,8 @@ pub(crate) enum Knob {
     StrainRate,
     /// Strain rate of the gas: how hot it stays while it is compressed.
     GasRate,
+    /// How the gas is run: hard spheres event by event, or soft ones step by step.
+    GasStage,
     /// Contact damping behind the gas, share of critical.
     Damping,
     /// Verlet skin over grain diameter.
@@ -93,7 +95,7 @@ impl Knob {
             (Self::Skin, true) => (&[1.0, 2.0], 2.0),
             (Self::Grains, false) => (&[0.5, 1.0, 2.0], 2.0),
             (Self::Grains, true) => (&[0.5, 1.0], 1.0),
-            (Self::ServoLaw, _) => (&[], 1.0),
+            (Self::ServoLaw | Self::GasStage, _) => (&[], 1.0),
         }
     }
 
@@ -106,7 +108,7 @@ impl Knob {
             }
             Self::Skin => s.numerics.skin = (s.numerics.skin * factor).min(1.0),
             Self::Grains => s.grains = (f64::from(s.grains) * factor).round().max(1.0) as u32,
-            Self::ServoLaw => {}
+            Self::ServoLaw | Self::GasStage => {}
             Self::ControlPeriod | Self::StrainRate | Self::GasRate | Self::Damping => {
                 s.phases.iter_mut().for_each(|p| self.turn_phase(p, factor));
             }
@@ -140,7 +142,7 @@ impl Knob {
                 // A slower path needs the longer time; a faster one fails no later.
                 phase.until.timeout *= (1.0 / factor).max(1.0);
             }
-            Self::TimeStep | Self::ServoLaw | Self::Skin | Self::Grains => {}
+            Self::TimeStep | Self::ServoLaw | Self::GasStage | Self::Skin | Self::Grains => {}
         }
     }
 
@@ -158,7 +160,7 @@ impl Knob {
                 PhaseKind::Gas { rate, .. } => Some(rate.abs()),
                 _ => None,
             }),
-            Self::ServoLaw => None,
+            Self::ServoLaw | Self::GasStage => None,
         }
     }
 
@@ -166,6 +168,9 @@ impl Knob {
     pub(crate) fn settings(self, scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setting> {
         if self == Self::ServoLaw {
             return servo_laws(scene, servoed, quick);
+        }
+        if self == Self::GasStage {
+            return gas_stages(scene);
         }
         let mut settings: Vec<Setting> = Vec::new();
         for factor in self.factors(quick).0 {
@@ -224,7 +229,8 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
     let (Some(own), Some(servoed)) = (law(scene), servoed) else { return Vec::new() };
     let response_time = match own {
         ServoLaw::Scaled { response_time } => response_time,
-        ServoLaw::Integral { .. } => 5.0 * servoed.interval,
+        // A few periods of a contact.
+        ServoLaw::Integral { .. } | ServoLaw::Normalised { .. } => 2.0e-6,
     };
     let slow = 10.0 * response_time;
     let gain = servoed.interval / (servoed.tangent * slow * slow);
@@ -232,6 +238,10 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
     let mut laws = vec![own, ServoLaw::Scaled { response_time: slow }];
     if !quick {
         laws.extend([leak, 0.0].map(|leak| ServoLaw::Integral { gain, leak }));
+        laws.push(ServoLaw::Scaled { response_time });
+        laws.extend([0.1, 0.3, 0.6].map(|share| ServoLaw::Normalised { share, leak: 0.0 }));
+        let (own, others) = (laws[0], laws.split_off(1));
+        laws.extend(others.into_iter().filter(|l| *l != own));
     }
     let setting = |new: &ServoLaw| {
         let mut turned = scene.clone();
@@ -243,6 +253,12 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
         let text = match new {
             ServoLaw::Scaled { response_time } => format!("scaled, {response_time:.1e} s"),
             ServoLaw::Integral { leak, .. } => format!("Eq. 1, leak {leak:.2}"),
+            ServoLaw::Normalised { share, leak } if *leak == 0.0 => {
+                format!("Eq. 1 at {share} of critical")
+            }
+            ServoLaw::Normalised { share, leak } => {
+                format!("Eq. 1 at {share} of critical, leak {leak:.2}")
+            }
         };
         // The scene's own servo phases may differ among themselves; they stay as they are.
         let default = *new == own;
@@ -250,6 +266,32 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
         Setting { knob: Knob::ServoLaw, value: Value::Text(text), default, scene }
     };
     laws.iter().map(setting).collect()
+}
+
+/// Both ways to run the gas. What only soft spheres have is given them as the paper's preparation had it: nearly elastic
+/// collisions, and looks far apart.
+fn gas_stages(scene: &Scene) -> Vec<Setting> {
+    let with = |wanted: GasMethod| {
+        let mut turned = scene.clone();
+        for phase in &mut turned.phases {
+            if let PhaseKind::Gas { method, .. } = &mut phase.kind
+                && *method != wanted
+            {
+                *method = wanted;
+                let soft = wanted == GasMethod::Soft;
+                (phase.damping, phase.control_period) = if soft { (0.002, 200) } else { (0.0, 20) };
+            }
+        }
+        let text = if wanted == GasMethod::Soft { "soft" } else { "event_driven" };
+        let value = Value::Text(text.to_owned());
+        Setting { knob: Knob::GasStage, value, default: turned == *scene, scene: turned }
+    };
+    let gas = |p: &Phase| matches!(p.kind, PhaseKind::Gas { .. });
+    if scene.phases.iter().any(gas) {
+        vec![with(GasMethod::EventDriven), with(GasMethod::Soft)]
+    } else {
+        Vec::new()
+    }
 }
 
 #[cfg(test)]
