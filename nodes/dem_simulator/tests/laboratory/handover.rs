@@ -191,9 +191,8 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     actors.pop();
     // The last request may still be under way when its result is there.
     let all = clean.bodies(&topics::STRESS).len();
-    let whole = |record: &Record| {
-        record.complete() && record.without_repeats().bodies(&topics::STRESS).len() >= all
-    };
+    let whole =
+        |record: &Record| record.complete() && record.without_repeats().bodies(&topics::STRESS).len() >= all;
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| whole(&bench.record.borrow())));
     assert_eq!(bench.record.borrow().without_repeats().difference(&clean), None);
 }

@@ -18,7 +18,7 @@ use scene::Tangential;
 const TIME_STEP_INTERVAL: u64 = 200;
 
 /// Steps that a contact list should last.
-const DRAW_INTERVAL: f64 = 300.0;
+const DRAW_INTERVAL: f64 = 100.0;
 
 /// Which parts of the contact law a phase needs; the engine is compiled for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

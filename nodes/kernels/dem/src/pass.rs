@@ -180,19 +180,19 @@ impl<L: Lanes> Geometry<L> {
         }
     }
 
+    /// Adds f ⊗ l, symmetrised, where pairs touch. With l = |l| n, which keeps less at hand than l itself.
     #[inline(always)]
     fn look(&self, force: V3<L>, virial: &mut [f64; 8]) {
-        let (f, l) = (force, self.branch);
-        let half = L::splat(0.5);
-        let zero = L::splat(0.0);
-        let f = V3::select(self.touching, f, V3::splat(0.0));
+        let (zero, half) = (L::splat(0.0), L::splat(0.5));
+        let (f, n) = (force.scale(L::select(self.touching, self.distance, zero)), self.normal);
+        let h = f.scale(half);
         let terms = [
-            f.x * l.x,
-            f.y * l.y,
-            f.z * l.z,
-            half * f.y.mul_add(l.z, f.z * l.y),
-            half * f.x.mul_add(l.z, f.z * l.x),
-            half * f.x.mul_add(l.y, f.y * l.x),
+            f.x * n.x,
+            f.y * n.y,
+            f.z * n.z,
+            h.y.mul_add(n.z, h.z * n.y),
+            h.x.mul_add(n.z, h.z * n.x),
+            h.x.mul_add(n.y, h.y * n.x),
             zero,
             zero,
         ];
