@@ -2,13 +2,16 @@
 //!
 //! - [`simulation`]: a scene run along its loading path, one request and one answer at a time
 //! - [`engine`]: stepping grains at a given strain rate
-//! - [`law`]: the contact law, the specification of every faster form
+//! - [`law`]: the contact law, written once for any number of lanes; with `f64` it is the specification
+//! - [`lanes`], [`simd`], [`compute`]: one, four or eight contacts at a time, on one thread or more, with the same bits
 //! - [`gas`]: placing grains at random and agitating them
 //! - [`event_driven`]: the gas as hard spheres, from collision to collision
 //! - [`observe`]: stress, tangent stiffness and balance of the present contacts
+//! - [`roofline`]: what the contact law asks of a processor, for benchmarks
 //!
-//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), so nothing depends on
-//! when a neighbour list was rebuilt, and a state saved and loaded goes on bit for bit.
+//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), chunk of grains by
+//! chunk, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the number of threads,
+//! and a state saved and loaded goes on bit for bit.
 
 mod checkpoint;
 pub mod compute;
