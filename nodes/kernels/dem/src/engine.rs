@@ -2,9 +2,10 @@
 
 use crate::checkpoint::Checkpoint;
 use crate::compute::Compute;
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Images};
 use crate::error::DemError;
 use crate::integrate::{self, Moved};
+use crate::lanes::Quad;
 use crate::neighbours::Neighbours;
 use crate::observe::{self, Snapshot};
 use crate::order;
@@ -322,7 +323,7 @@ impl Engine {
             return Ok(());
         }
         // The bound may be too large where several grains are fast.
-        let fast = |v: &crate::lanes::Quad| {
+        let fast = |v: &Quad| {
             let speed = vector(v).norm();
             !speed.is_finite() || speed > limit
         };
@@ -357,7 +358,7 @@ impl Engine {
     }
 
     /// Draws the contact list from the neighbours, with a skin that lasts for a while at the present speed.
-    fn draw(&mut self, images: crate::contacts::Images) {
+    fn draw(&mut self, images: Images) {
         // What pairs come closer in one step, now and on the average of late.
         let (dt, last) = (self.state.time_step, self.drawn);
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();

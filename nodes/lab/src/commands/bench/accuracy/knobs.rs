@@ -235,14 +235,13 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
     let slow = 10.0 * response_time;
     let gain = servoed.interval / (servoed.tangent * slow * slow);
     let leak = (2.0 * servoed.interval / slow).min(1.0);
-    let mut laws = vec![own, ServoLaw::Scaled { response_time: slow }];
+    let mut others = vec![ServoLaw::Scaled { response_time: slow }];
     if !quick {
-        laws.extend([leak, 0.0].map(|leak| ServoLaw::Integral { gain, leak }));
-        laws.push(ServoLaw::Scaled { response_time });
-        laws.extend([0.1, 0.3, 0.6].map(|share| ServoLaw::Normalised { share, leak: 0.0 }));
-        let (own, others) = (laws[0], laws.split_off(1));
-        laws.extend(others.into_iter().filter(|l| *l != own));
+        others.extend([leak, 0.0].map(|leak| ServoLaw::Integral { gain, leak }));
+        others.push(ServoLaw::Scaled { response_time });
+        others.extend([0.1, 0.3, 0.6].map(|share| ServoLaw::Normalised { share, leak: 0.0 }));
     }
+    let laws: Vec<ServoLaw> = std::iter::once(own).chain(others.into_iter().filter(|l| *l != own)).collect();
     let setting = |new: &ServoLaw| {
         let mut turned = scene.clone();
         for phase in &mut turned.phases {

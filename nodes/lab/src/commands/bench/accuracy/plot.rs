@@ -9,9 +9,9 @@ const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 560.0;
 /// Left, right, top, bottom of the axes.
 const AXES: [f64; 4] = [70.0, 640.0, 60.0, 490.0];
-/// One a knob: distinct for the colour-blind (Okabe and Ito), dark enough on white.
-const COLOURS: [&str; 8] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f"];
+/// One a knob: distinct for the colour-blind (Okabe and Ito, and two more), dark enough on white.
+const COLOURS: [&str; 9] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
 
 /// A point that can be drawn: a logarithm needs positive numbers.
 struct Point<'a> {
@@ -68,8 +68,11 @@ pub(crate) fn svg(report: &Report) -> String {
     text(&mut svg, AXES[0], 46.0, "start", "fill=\"#555\"", below);
     axes(&mut svg, &x, &y);
     front_line(&mut svg, &points, &x, &y);
-    for p in &points {
-        marker(&mut svg, p, x.at(p.seconds), y.at(p.error));
+    // The default comes last, on top of its neighbours.
+    for default in [false, true] {
+        for p in points.iter().filter(|p| p.row.default == default) {
+            marker(&mut svg, p, x.at(p.seconds), y.at(p.error));
+        }
     }
     legend(&mut svg, &points);
     svg += "</svg>\n";
@@ -134,11 +137,13 @@ fn marker(svg: &mut String, p: &Point<'_>, x: f64, y: f64) {
         svg,
         "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.8\"><title>{title}</title></circle>"
     );
+    // Near the right edge a label goes to the left of its point, off the legend.
+    let (beside, anchor) = if x < AXES[1] - 100.0 { (x + 8.0, "start") } else { (x - 8.0, "end") };
     text(
         svg,
-        x + 8.0,
+        beside,
         y - 6.0,
-        "start",
+        anchor,
         &format!("font-size=\"10\" fill=\"{colour}\""),
         &row.value.to_string(),
     );
@@ -190,6 +195,15 @@ mod tests {
         assert!(axis.at(0.4) > 100.0 && axis.at(40.0) < 500.0);
         assert!((axis.at(4.0) - axis.at(2.0) - (axis.at(20.0) - axis.at(10.0))).abs() < 1e-9);
         assert_eq!(axis.ticks(), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
+    }
+
+    #[test]
+    fn every_knob_has_a_colour_of_its_own() {
+        let mut colours: Vec<&str> =
+            Knob::value_variants().iter().map(|k| COLOURS[*k as usize % COLOURS.len()]).collect();
+        colours.sort_unstable();
+        colours.dedup();
+        assert_eq!(colours.len(), Knob::value_variants().len());
     }
 
     #[test]
