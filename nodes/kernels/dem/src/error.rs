@@ -42,7 +42,10 @@ pub enum DemError {
         step: u64,
     },
     /// A grain travelled too many cell lengths for image numbers to hold.
-    #[error("grain {grain} travelled more than 100 cell lengths; shorten the gas phase or lower its speed")]
+    #[error(
+        "grain {grain} is, or would touch an image, more than 100 cells away: it travelled too far (shorten the gas phase or \
+         lower its speed), or the cell is sheared too far"
+    )]
     Image {
         /// Persistent id.
         grain: u32,

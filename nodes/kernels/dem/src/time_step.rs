@@ -9,7 +9,8 @@ use crate::state::State;
 /// For each contact |B u|² ≤ 2 (|B_i u_i|² + |B_j u_j|²), so ω² ≤ K = max_i (2/m_i) Σ_c κ_c, where κ is the larger of k_n
 /// and (1 + m R²/I) k_t (translation and rotation together), and in the same way the damping matrix is at most
 /// C = (2/m_i) Σ_c of its coefficients. With velocities half a step behind, a mode is stable while 4 − h² K − 2 h C ≥ 0.
-/// A bound, not an estimate: without damping it lies about 15 % below the true limit of a packing.
+/// A bound, not an estimate: without damping it lies at 0.61 to 0.67 of the true limit of frictional packings (a test
+/// holds it between 0.45 and 1).
 pub(crate) fn stable(state: &State, contacts: &Contacts, setting: &Setting) -> f64 {
     let (normal, tangential) =
         (2.0 * state.material.effective_young(), 8.0 * state.material.effective_shear());
