@@ -1,7 +1,7 @@
 //! The part of an engine that cannot be found again, to go back to.
 
 use crate::contacts::{Builder, Contacts, Images, Pair};
-use crate::lanes::Quad;
+use crate::lanes::{Octad, Quad};
 use crate::state::State;
 use grains::{Cell, Mat3, Vec3};
 
@@ -14,8 +14,7 @@ pub(crate) struct Checkpoint {
     cell: Cell,
     rate: Mat3,
     position: Vec<Quad>,
-    velocity: Vec<Quad>,
-    spin: Vec<Quad>,
+    twist: Vec<Octad>,
     touching: Vec<(u32, u32, [i8; 3], f64, Vec3)>,
 }
 
@@ -29,8 +28,7 @@ impl Checkpoint {
             cell: state.cell,
             rate: state.rate,
             position: state.position.clone(),
-            velocity: state.velocity.clone(),
-            spin: state.spin.clone(),
+            twist: state.twist.clone(),
             touching: contacts.touching().map(|p| (p.i, p.j, image(&p), p.root, p.history)).collect(),
         }
     }
@@ -43,8 +41,8 @@ impl Checkpoint {
     pub(crate) fn restore(self, state: &mut State) -> Contacts {
         (state.step, state.time, state.time_step) = (self.step, self.time, self.time_step);
         (state.cell, state.rate) = (self.cell, self.rate);
-        (state.position, state.velocity, state.spin) = (self.position, self.velocity, self.spin);
-        let mut list = Builder::new(state, Images::new(state), self.touching.len());
+        (state.position, state.twist) = (self.position, self.twist);
+        let mut list = Builder::new(state, Images::new(state), self.touching.len(), false);
         for (i, j, image, root, history) in self.touching {
             let image = list.contacts.images.index(image, &state.cell);
             list.push(state, Pair { i, j, image, root, history });

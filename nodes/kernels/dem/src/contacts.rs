@@ -1,7 +1,8 @@
 //! Pairs that touch or soon may, eight to a block, with the history of their contacts.
 
-use crate::lanes::{BLOCK, Quad, V3, Wrench};
+use crate::lanes::{BLOCK, Quad, V3};
 use crate::pass::Chunk;
+use crate::sums::{Serial, Sums};
 use crate::state::{State, row, vector};
 use grains::material::effective_radius;
 use grains::{Cell, Contact, Packing, Vec3};
@@ -64,7 +65,8 @@ pub(crate) struct Block {
     pub(crate) i: [u32; BLOCK],
     pub(crate) j: [u32; BLOCK],
     pub(crate) image: [u32; BLOCK],
-    /// Row, within those of the chunk, that sums what acts on `j`.
+    /// Rows, among those that the chunk adds to, for what acts on `i` and on `j`.
+    pub(crate) from: [u32; BLOCK],
     pub(crate) to: [u32; BLOCK],
 }
 
@@ -88,15 +90,20 @@ pub(crate) struct Contacts {
     pub(crate) sizes: Vec<Sizes>,
     /// First block of each chunk, and the end.
     pub(crate) chunks: Vec<u32>,
-    /// First row of [`Contacts::sums`] of each chunk, and the end.
-    pub(crate) rows: Vec<u32>,
-    /// Forces and torques that each chunk found, N and N m: a row for each of its grains, then one for each pair whose
-    /// second grain is of another chunk.
-    pub(crate) sums: Vec<Wrench>,
-    /// What each chunk has to add from others: (row of `sums`, grain within the chunk), ascending in rows.
-    pub(crate) far: Vec<(u32, u32)>,
-    /// First of `far` of each chunk, and the end.
-    pub(crate) far_start: Vec<u32>,
+    /// Pairs across the faces of the cell, in the order of the sum.
+    pub(crate) crossing: Vec<Crossing>,
+    /// First of `crossing` of each chunk, and the end.
+    pub(crate) crossings: Vec<u32>,
+    pub(crate) sums: Sums,
+}
+
+/// A pair whose second grain is an image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// Slot among those of its chunk.
+    pub(crate) slot: u32,
+    /// Row in [`Images`].
+    pub(crate) image: u32,
 }
 
 /// One pair.
@@ -120,13 +127,13 @@ impl Pair {
 impl Contacts {
     /// No pairs.
     pub(crate) fn none(state: &State) -> Self {
-        Builder::new(state, Images::new(state), 0).finish(state)
+        Builder::new(state, Images::new(state), 0, false).finish(state)
     }
 
     /// The contacts of a packing, as a list of their own.
     pub(crate) fn from_packing(packing: &Packing, state: &State) -> Self {
         let images = Images::new(state);
-        let mut list = Builder::new(state, images, packing.contacts.len());
+        let mut list = Builder::new(state, images, packing.contacts.len(), false);
         for c in &packing.contacts {
             let (r_i, r_j) = (state.radius[c.i as usize], state.radius[c.j as usize]);
             let root = (effective_radius(r_i, r_j) * c.overlap).sqrt();
@@ -165,37 +172,39 @@ impl Contacts {
             + vector(&self.images.shift[p.image as usize])
     }
 
-    /// One chunk to pass, and the images.
-    pub(crate) fn chunk_mut(&mut self, c: usize) -> (&Images, Chunk<'_>) {
+    /// One chunk to pass on the only thread, and the images. `None` where sums are shared.
+    pub(crate) fn chunk_mut(&mut self, c: usize) -> Option<(&Images, Chunk<'_>)> {
+        let Sums::Serial(Serial { rows, .. }) = &mut self.sums else { return None };
         let blocks = self.chunks[c] as usize..self.chunks[c + 1] as usize;
         let chunk = Chunk {
             first: (c * CHUNK) as u32,
             sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks.clone()] },
             blocks: &mut self.blocks[blocks],
-            sums: &mut self.sums[self.rows[c] as usize..self.rows[c + 1] as usize],
+            crossing: &self.crossing[self.crossings[c] as usize..self.crossings[c + 1] as usize],
+            sums: rows,
+            clean: true,
         };
-        (&self.images, chunk)
+        Some((&self.images, chunk))
     }
 
-    /// All chunks to pass, and the images.
+    /// All chunks to pass at once, and the images. None where sums are not shared.
     pub(crate) fn chunks_mut(&mut self) -> (&Images, impl Iterator<Item = Chunk<'_>>) {
-        let (images, sizes) = (&self.images, &self.sizes[..]);
-        let (mut blocks, mut sums) = (&mut self.blocks[..], &mut self.sums[..]);
-        let bounds = self.chunks.windows(2).zip(self.rows.windows(2)).enumerate();
-        let chunks = bounds.map(move |(c, (range, rows))| Chunk {
+        let (images, sizes, crossing) = (&self.images, &self.sizes[..], &self.crossing[..]);
+        let (mut rows, starts) = match &mut self.sums {
+            Sums::Serial(_) => (&mut [][..], &[][..]),
+            Sums::Parallel(p) => (&mut p.rows[..], &p.start[..]),
+        };
+        let mut blocks = &mut self.blocks[..];
+        let bounds = self.chunks.windows(2).zip(starts.windows(2)).zip(self.crossings.windows(2)).enumerate();
+        let chunks = bounds.map(move |(c, ((range, row), cross))| Chunk {
             first: (c * CHUNK) as u32,
             sizes: if sizes.is_empty() { &[] } else { &sizes[range[0] as usize..range[1] as usize] },
             blocks: split(&mut blocks, (range[1] - range[0]) as usize),
-            sums: split(&mut sums, (rows[1] - rows[0]) as usize),
+            crossing: &crossing[cross[0] as usize..cross[1] as usize],
+            sums: split(&mut rows, (row[1] - row[0]) as usize),
+            clean: false,
         });
         (images, chunks)
-    }
-
-    /// Forces and torques that chunk `c` found for its `grains` grains, and those that it has to add from others.
-    pub(crate) fn found(&self, c: usize, grains: usize) -> (&[Wrench], &[(u32, u32)]) {
-        let row = self.rows[c] as usize;
-        let far = self.far_start[c] as usize..self.far_start[c + 1] as usize;
-        (&self.sums[row..row + grains], &self.far[far])
     }
 
     /// The touching pairs as contacts, in the order of the sum.
@@ -246,27 +255,23 @@ pub(crate) struct Builder {
     pub(crate) contacts: Contacts,
     /// Pairs in the last block.
     filled: usize,
-    /// (chunk, row, grain) of what one chunk finds for another.
-    far: Vec<(u32, u32, u32)>,
     equal_sized: bool,
 }
 
 impl Builder {
-    pub(crate) fn new(state: &State, images: Images, expected: usize) -> Self {
+    /// `shared`: several threads are to add to the sums.
+    pub(crate) fn new(state: &State, images: Images, expected: usize, shared: bool) -> Self {
         let blocks = expected / BLOCK + state.grains() / CHUNK + 2;
         let contacts = Contacts {
             images,
             blocks: Vec::with_capacity(blocks),
             sizes: Vec::new(),
             chunks: vec![0],
-            rows: vec![0],
-            sums: Vec::new(),
-            far: Vec::new(),
-            far_start: Vec::new(),
+            crossing: Vec::new(),
+            crossings: vec![0],
+            sums: Sums::new(state.grains(), shared),
         };
-        let mut list = Self { contacts, filled: BLOCK, far: Vec::new(), equal_sized: state.equal_sized() };
-        list.contacts.sums.resize(CHUNK.min(state.grains()), [0.0; 8]);
-        list
+        Self { contacts, filled: BLOCK, equal_sized: state.equal_sized() }
     }
 
     /// Adds a pair; pairs must come sorted by (i, j, image).
@@ -280,15 +285,12 @@ impl Builder {
         }
         let (lane, c) = (self.filled, &mut self.contacts);
         self.filled += 1;
-        let first = i / CHUNK * CHUNK;
-        let to = if j / CHUNK == i / CHUNK {
-            (j - first) as u32
-        } else {
-            let row = c.sums.len() as u32;
-            self.far.push(((j / CHUNK) as u32, row, (j % CHUNK) as u32));
-            c.sums.push([0.0; 8]);
-            row - c.rows[i / CHUNK]
-        };
+        let to = c.sums.row(i / CHUNK, j);
+        if c.images.number(pair.image) != [0; 3] {
+            let before = c.chunks.last().map_or(0, |b| *b as usize);
+            let slot = ((c.blocks.len() - 1 - before) * BLOCK + lane) as u32;
+            c.crossing.push(Crossing { slot, image: pair.image });
+        }
         if let Some(block) = c.blocks.last_mut() {
             block.root[lane] = pair.root;
             for k in 0..3 {
@@ -296,6 +298,7 @@ impl Builder {
             }
             (block.i[lane], block.j[lane]) = (pair.i, pair.j);
             (block.image[lane], block.to[lane]) = (pair.image, to);
+            block.from[lane] = (i % CHUNK) as u32;
         }
         if let Some(sizes) = c.sizes.last_mut() {
             let (r_i, r_j) = (state.radius[i], state.radius[j]);
@@ -314,6 +317,7 @@ impl Builder {
             i: [grain; BLOCK],
             j: [grain; BLOCK],
             image: [NOWHERE; BLOCK],
+            from: [(i % CHUNK) as u32; BLOCK],
             to: [(i % CHUNK) as u32; BLOCK],
         });
         if !self.equal_sized {
@@ -333,8 +337,8 @@ impl Builder {
         let c = &mut self.contacts;
         let next = c.chunks.len() * CHUNK;
         c.chunks.push(c.blocks.len() as u32);
-        c.rows.push(c.sums.len() as u32);
-        c.sums.resize(c.sums.len() + CHUNK.min(grains.saturating_sub(next)), [0.0; 8]);
+        c.crossings.push(c.crossing.len() as u32);
+        c.sums.end_chunk(CHUNK.min(grains.saturating_sub(next)));
         self.filled = BLOCK;
     }
 
@@ -344,11 +348,8 @@ impl Builder {
         while self.contacts.chunks.len() <= chunks {
             self.end_chunk(state.grains());
         }
-        self.far.sort_unstable();
         let mut c = self.contacts;
-        let before = |chunk: u32| self.far.partition_point(|f| f.0 < chunk) as u32;
-        c.far_start = (0..=chunks as u32).map(before).collect();
-        c.far = self.far.iter().map(|f| (f.1, f.2)).collect();
+        c.sums.finish(chunks);
         c
     }
 }

@@ -5,11 +5,10 @@ use crate::compute::Compute;
 use crate::contacts::{Contacts, Images};
 use crate::error::DemError;
 use crate::integrate::{self, Moved};
-use crate::lanes::Quad;
 use crate::neighbours::Neighbours;
 use crate::observe::{self, Snapshot};
 use crate::order;
-use crate::state::{State, row, vector};
+use crate::state::{State, twist, vector};
 use crate::sweep::{self, Advance};
 use crate::time_step;
 use grains::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
@@ -88,6 +87,8 @@ pub struct Engine {
     /// And since the contacts were drawn from them.
     drawn: Approach,
     listed: bool,
+    /// Whether the forces are those of the present state.
+    ready: bool,
 }
 
 /// A bound on how much closer pairs came since a list was made.
@@ -145,8 +146,7 @@ impl Engine {
             packing.radii.clone(),
             &packing.positions,
         );
-        state.velocity = packing.velocities.iter().map(row).collect();
-        state.spin = packing.spins.iter().map(row).collect();
+        state.twist = packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect();
         state.step = packing.step;
         state.time = packing.time;
         state.time_step = packing.time_step;
@@ -157,13 +157,15 @@ impl Engine {
     fn with(state: State, contacts: Contacts, setting: Setting) -> Self {
         let (found, drawn) = (Approach::new(setting.skin), Approach::new(setting.skin));
         let (compute, neighbours) = (Compute::default(), Neighbours::default());
-        let mut engine = Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false };
+        let mut engine = Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false, ready: false };
         engine.set(setting);
         engine
     }
 
     /// Instruction set and threads from now on; results do not depend on them.
     pub fn set_compute(&mut self, compute: Compute) {
+        // One thread and several sum forces in different places.
+        self.ready &= (compute.threads() > 1) == self.contacts.sums.shared();
         self.compute = compute;
     }
 
@@ -174,12 +176,12 @@ impl Engine {
 
     /// Sets velocities relative to the affine motion, m/s, one a grain.
     pub fn set_velocities(&mut self, velocities: &[Vec3]) {
-        self.state.velocity = velocities.iter().map(row).collect();
+        self.state.twist.iter_mut().zip(velocities).for_each(|(t, v)| t.0[..3].copy_from_slice(v.as_slice()));
     }
 
     /// Sets spins, rad/s, one a grain.
     pub fn set_spins(&mut self, spins: &[Vec3]) {
-        self.state.spin = spins.iter().map(row).collect();
+        self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
     }
 
     /// The setting in force.
@@ -190,7 +192,7 @@ impl Engine {
     /// Changes the setting; takes effect with the next step. Without friction spins and tangential forces are dropped.
     pub fn set(&mut self, setting: Setting) {
         if setting.features() == Features::Frictionless {
-            self.state.spin.fill([0.0; 4]);
+            self.state.twist.iter_mut().for_each(|t| t.0[4..].fill(0.0));
             self.contacts.forget();
         }
         if setting.skin != self.setting.skin {
@@ -234,7 +236,7 @@ impl Engine {
     pub fn sort(&mut self) {
         let order = order::along_curve(&self.state);
         self.contacts = order::reorder(&mut self.state, &self.contacts, &order);
-        self.listed = false;
+        (self.listed, self.ready) = (false, false);
     }
 
     /// Finds contacts and evaluates forces at the present state without moving on: needed once before the first step.
@@ -242,6 +244,7 @@ impl Engine {
         self.find()?;
         let Self { state, contacts, setting, compute, .. } = self;
         sweep::evaluate(state, contacts, setting, compute, Advance::Held, false);
+        self.ready = true;
         if self.state.time_step == 0.0 {
             self.renew_time_step();
         }
@@ -265,6 +268,9 @@ impl Engine {
     }
 
     fn drive(&mut self, steps: u32, mut each: Option<&mut dyn FnMut(SymTensor)>) -> Result<Mat3, DemError> {
+        if !self.ready {
+            self.prepare()?;
+        }
         let mut total = Mat3::identity();
         // Motion under the forces of this step's positions, if it was done with them.
         let mut gone: Option<Moved> = None;
@@ -287,7 +293,7 @@ impl Engine {
             };
             if let Some(each) = &mut each {
                 let volume = self.state.cell.volume();
-                each(SymTensor::from_voigt(std::array::from_fn(|k| seen.virial[k] / volume)));
+                each(seen.stress(volume));
             }
             if renew {
                 self.renew_time_step();
@@ -303,7 +309,7 @@ impl Engine {
             let mean = moved.sum_square_speed() / self.state.grains() as f64;
             if mean > cap * cap {
                 let factor = cap / mean.sqrt();
-                self.state.velocity.iter_mut().flatten().for_each(|v| *v *= factor);
+                self.state.twist.iter_mut().flat_map(|t| &mut t.0[..4]).for_each(|v| *v *= factor);
             }
         }
         self.state.step += 1;
@@ -323,11 +329,11 @@ impl Engine {
             return Ok(());
         }
         // The bound may be too large where several grains are fast.
-        let fast = |v: &Quad| {
-            let speed = vector(v).norm();
+        let fast = |v: Vec3| {
+            let speed = v.norm();
             !speed.is_finite() || speed > limit
         };
-        if self.state.velocity.iter().any(fast) { Err(self.unstable()) } else { Ok(()) }
+        if self.state.velocities().any(fast) { Err(self.unstable()) } else { Ok(()) }
     }
 
     /// Brings the lists up to date.
@@ -364,9 +370,10 @@ impl Engine {
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
         let late = (2.0 * last.travel + last.strained * self.reach()) / last.steps.max(1) as f64;
         // Near its end the neighbour list bounds what can be drawn; it is found anew before that matters.
+        let shared = self.compute.threads() > 1;
         let left = self.setting.skin - 2.0 * self.found.travel - self.found.strained * self.reach();
         let skin = (DRAW_INTERVAL * now.max(late)).max(1e-3 * self.setting.skin).min(left.max(0.0));
-        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin);
+        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin, shared);
         self.drawn = Approach::new(skin);
     }
 
@@ -381,7 +388,7 @@ impl Engine {
     /// Goes back; forces must be evaluated anew before the next step.
     pub(crate) fn restore(&mut self, kept: Checkpoint) {
         self.contacts = kept.restore(&mut self.state);
-        self.listed = false;
+        (self.listed, self.ready) = (false, false);
     }
 
     /// Stress, tangent stiffness and balance of the present contacts.
@@ -406,8 +413,8 @@ impl Engine {
             ids: s.ids.clone(),
             radii: s.radius.clone(),
             positions: s.position.iter().map(vector).collect(),
-            velocities: s.velocity.iter().map(vector).collect(),
-            spins: s.spin.iter().map(vector).collect(),
+            velocities: s.velocities().collect(),
+            spins: s.spins().collect(),
             contacts: self.contacts.contacts(s),
             material: s.material,
             friction: self.setting.friction,
@@ -436,11 +443,9 @@ impl Engine {
     fn unstable(&self) -> DemError {
         let s = &self.state;
         // The first grain that is too fast, or not finite.
-        let too_fast = |i: usize| {
-            let speed = vector(&s.velocity[i]).norm();
-            !speed.is_finite() || speed > 0.1 * s.smallest_radius / s.time_step
-        };
-        let grain = (0..s.grains()).find(|i| too_fast(*i)).unwrap_or(0);
+        let limit = 0.1 * s.smallest_radius / s.time_step;
+        let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
+        let grain = s.velocities().position(too_fast).unwrap_or(0);
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let cause = at_grain.max_by(|a, b| a.root.total_cmp(&b.root)).map_or(String::new(), |p| {
             let (i, j) = (p.i as usize, p.j as usize);
@@ -448,7 +453,7 @@ impl Engine {
             format!(", pushed hardest at its contact of grains {} and {}", s.ids[i], s.ids[j])
                 + &format!(" with an overlap of {overlap:e} m")
         });
-        let speed = vector(&s.velocity[grain]).norm();
+        let speed = s.velocities().nth(grain).map_or(0.0, |v| v.norm());
         DemError::Unstable { step: s.step, grain: s.ids[grain], speed, time_step: s.time_step, cause }
     }
 }

@@ -1,8 +1,7 @@
 //! Moving grains and cell over one step.
 
-use crate::contacts::{CHUNK, Contacts};
 use crate::engine::{Features, Setting};
-use crate::lanes::{Lanes, Quad};
+use crate::lanes::{Lanes, Octad, Quad, Row};
 use crate::simd::{Kernel, Simd};
 use crate::state::State;
 use grains::Mat3;
@@ -39,66 +38,98 @@ impl Moved {
 pub(crate) struct Motion<'a> {
     inverse_mass: &'a [f64],
     inverse_inertia: &'a [f64],
+    equal_sized: bool,
     /// Columns of the strain rate, 1/s.
     rate: [Quad; 3],
     dt: f64,
-    keep: f64,
-    keep_spin: f64,
+    /// Shares of velocity and spin that drag leaves.
+    keep: [f64; 2],
     friction: bool,
 }
 
 /// The moving part of some grains.
 pub(crate) struct Grains<'a> {
     position: &'a mut [Quad],
-    velocity: &'a mut [Quad],
-    spin: &'a mut [Quad],
+    twist: &'a mut [Octad],
 }
 
 impl<'a> Motion<'a> {
     /// Splits a state into what moves and how.
     pub(crate) fn of(state: &'a mut State, setting: &Setting) -> (Self, Grains<'a>) {
-        let State { position, velocity, spin, inverse_mass, inverse_inertia, rate, time_step: dt, .. } =
-            state;
+        let equal_sized = state.equal_sized();
+        let State { position, twist, inverse_mass, inverse_inertia, rate, time_step: dt, .. } = state;
+        // Drag stops a grain, it never turns it round.
+        let left = |drag: f64| (1.0 - drag * *dt).max(0.0);
         let motion = Self {
             inverse_mass,
             inverse_inertia,
+            equal_sized,
             rate: [0, 1, 2].map(|c| [rate[(0, c)], rate[(1, c)], rate[(2, c)], 0.0]),
             dt: *dt,
-            // Drag stops a grain, it never turns it round.
-            keep: (1.0 - setting.drag * *dt).max(0.0),
-            keep_spin: (1.0 - setting.spin_drag * *dt).max(0.0),
+            keep: [left(setting.drag), left(setting.spin_drag)],
             friction: setting.features() != Features::Frictionless,
         };
-        (motion, Grains { position, velocity, spin })
+        (motion, Grains { position, twist })
     }
 }
 
 impl<'a> Grains<'a> {
     /// Chunks of `size` grains.
     pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Grains<'a>> {
-        let rows = self.position.chunks_mut(size).zip(self.velocity.chunks_mut(size));
-        rows.zip(self.spin.chunks_mut(size)).map(|((position, velocity), spin)| Grains {
-            position,
-            velocity,
-            spin,
-        })
+        let rows = self.position.chunks_mut(size).zip(self.twist.chunks_mut(size));
+        rows.map(|(position, twist)| Grains { position, twist })
     }
 
     /// Chunk `c` of `size` grains.
     pub(crate) fn chunk(self, c: usize, size: usize) -> Self {
         let range = c * size..((c + 1) * size).min(self.position.len());
-        Self {
-            position: &mut self.position[range.clone()],
-            velocity: &mut self.velocity[range.clone()],
-            spin: &mut self.spin[range],
+        Self { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
+    }
+
+    /// Grains in it.
+    pub(crate) fn count(&self) -> usize {
+        self.position.len()
+    }
+}
+
+/// What acts on the grains of a chunk.
+pub(crate) trait Act {
+    /// Force and torque on grain `k` of the chunk, once.
+    fn on<R: Row>(&mut self, k: usize) -> [R; 2];
+}
+
+/// All there is.
+pub(crate) struct Whole<'a>(pub(crate) &'a [Octad]);
+
+/// In two parts, left zero.
+pub(crate) struct Parts<'a>(pub(crate) &'a mut [Octad], pub(crate) &'a mut [Octad]);
+
+impl Act for Whole<'_> {
+    #[inline(always)]
+    fn on<R: Row>(&mut self, k: usize) -> [R; 2] {
+        let row = &self.0[k].0;
+        [R::load(row, 0), R::load(row, 4)]
+    }
+}
+
+impl Act for Parts<'_> {
+    #[inline(always)]
+    fn on<R: Row>(&mut self, k: usize) -> [R; 2] {
+        let (a, b) = (&mut self.0[k].0, &mut self.1[k].0);
+        let sum = [R::load(a, 0).add(R::load(b, 0)), R::load(a, 4).add(R::load(b, 4))];
+        let zero = R::splat(0.0);
+        for at in [0, 4] {
+            zero.store(a, at);
+            zero.store(b, at);
         }
+        sum
     }
 }
 
 /// Moves a chunk of grains, of which the first is `first`, over one step.
-pub(crate) fn advance(
+pub(crate) fn advance<A: Act>(
     motion: &Motion<'_>,
-    contacts: &Contacts,
+    acts: A,
     first: usize,
     grains: Grains<'_>,
     simd: Simd,
@@ -106,10 +137,10 @@ pub(crate) fn advance(
     let motion = *motion;
     macro_rules! run {
         ($friction:literal, $sizes:literal) => {
-            simd.run(Move::<$friction, $sizes> { motion, contacts, first, grains })
+            simd.run(Move::<A, $friction, $sizes> { motion, acts, first, grains })
         };
     }
-    match (motion.friction, contacts.sizes.is_empty()) {
+    match (motion.friction, motion.equal_sized) {
         (true, true) => run!(true, false),
         (true, false) => run!(true, true),
         (false, true) => run!(false, false),
@@ -119,78 +150,62 @@ pub(crate) fn advance(
 
 /// Kick and drift of a chunk: velocities relative to the affine motion (v̇ = F/m − L v), positions with it
 /// (ẋ = v + L x), spins where there is friction.
-struct Move<'a, const FRICTION: bool, const SIZES: bool> {
+struct Move<'a, A, const FRICTION: bool, const SIZES: bool> {
     motion: Motion<'a>,
-    contacts: &'a Contacts,
+    acts: A,
     first: usize,
     grains: Grains<'a>,
 }
 
-impl<const FRICTION: bool, const SIZES: bool> Kernel for Move<'_, FRICTION, SIZES> {
+impl<A: Act, const FRICTION: bool, const SIZES: bool> Kernel for Move<'_, A, FRICTION, SIZES> {
     type Output = Moved;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Moved {
+        let mut acts = self.acts;
         let m = self.motion;
-        let c = self.contacts;
-        let dt = [m.dt; 4];
+        let Grains { position, twist } = self.grains;
+        let zero = L::Row::splat(0.0);
+        let (mut sum, mut largest) = (zero, zero);
+        let rate = [L::Row::load(&m.rate[0], 0), L::Row::load(&m.rate[1], 0), L::Row::load(&m.rate[2], 0)];
+        let (dt, keep) = (L::Row::splat(m.dt), [L::Row::splat(m.keep[0]), L::Row::splat(m.keep[1])]);
+        let mut by = [L::Row::splat(m.inverse_mass[0]), L::Row::splat(m.inverse_inertia[0] * m.dt)];
+        for (k, (x, Octad(t))) in position.iter_mut().zip(twist).enumerate() {
+            if SIZES {
+                let g = self.first + k;
+                by = [L::Row::splat(m.inverse_mass[g]), L::Row::splat(m.inverse_inertia[g] * m.dt)];
+            }
+            let [force, torque] = acts.on::<L::Row>(k);
+            let mut v = L::Row::load(t, 0);
+            let mut kick = force.mul(by[0]);
+            for c in 0..3 {
+                kick = rate[c].mul_add(L::Row::splat(-t[c]), kick);
+            }
+            v = kick.mul_add(dt, v).mul(keep[0]);
+            let mut drift = v;
+            for c in 0..3 {
+                drift = rate[c].mul_add(L::Row::splat(x[c]), drift);
+            }
+            drift.mul_add(dt, L::Row::load(x, 0)).store(x, 0);
+            v.store(t, 0);
+            if FRICTION {
+                let w = torque.mul_add(by[1], L::Row::load(t, 4));
+                w.mul(keep[1]).store(t, 4);
+            }
+            let square = v.mul(v);
+            sum = sum.add(square);
+            largest = square.max(largest);
+        }
         let mut moved = Moved::default();
-        let Grains { position, velocity, spin } = self.grains;
-        let (found, far) = c.found(self.first / CHUNK, position.len());
-        let mut sums = [[0.0; 8]; CHUNK];
-        sums[..found.len()].copy_from_slice(found);
-        for &(row, grain) in far {
-            let (sum, row) = (&mut sums[grain as usize], &c.sums[row as usize]);
-            for k in 0..4 {
-                sum[k] += row[k];
-            }
-            if FRICTION {
-                for k in 4..8 {
-                    sum[k] += if SIZES { row[k] * row[3] } else { row[k] };
-                }
-            }
-        }
-        let rows = position.iter_mut().zip(velocity).zip(spin).zip(&sums);
-        for (k, (((position, velocity), spin), sum)) in rows.enumerate() {
-            let g = self.first + k;
-            let force = [sum[0], sum[1], sum[2], 0.0];
-            let torque = [sum[4], sum[5], sum[6], 0.0];
-            let inverse_mass = m.inverse_mass[g];
-            let kick = sub(mul(force, [inverse_mass; 4]), affine(&m.rate, velocity));
-            let v = mul(add(*velocity, mul(kick, dt)), [m.keep; 4]);
-            *velocity = v;
-            *position = add(*position, mul(add(v, affine(&m.rate, position)), dt));
-            if FRICTION {
-                let by = m.inverse_inertia[g] * m.dt;
-                *spin = mul(add(*spin, mul(torque, [by; 4])), [m.keep_spin; 4]);
-            }
-            let square = mul(v, v);
-            moved.sum = add(moved.sum, square);
-            moved.largest = largest(moved.largest, square);
-        }
+        sum.store(&mut moved.sum, 0);
+        largest.store(&mut moved.largest, 0);
         moved
     }
-}
-
-/// L x, from the columns of L.
-#[inline(always)]
-fn affine(rate: &[Quad; 3], x: &Quad) -> Quad {
-    add(add(mul(rate[0], [x[0]; 4]), mul(rate[1], [x[1]; 4])), mul(rate[2], [x[2]; 4]))
 }
 
 #[inline(always)]
 fn add(a: Quad, b: Quad) -> Quad {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
-}
-
-#[inline(always)]
-fn sub(a: Quad, b: Quad) -> Quad {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
-}
-
-#[inline(always)]
-fn mul(a: Quad, b: Quad) -> Quad {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
 }
 
 #[inline(always)]

@@ -3,6 +3,7 @@
 //! Every operation is one correctly rounded IEEE 754 operation, the fused multiply-add one of them, and none is an
 //! estimate, so the same contact gives the same bits in every width and on every processor. `f64` is the one-lane form.
 
+use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Contacts in a block.
@@ -11,8 +12,44 @@ pub(crate) const BLOCK: usize = 8;
 /// A row of a table of vectors: x, y, z and a spare.
 pub(crate) type Quad = [f64; 4];
 
-/// Force and torque of a contact or on a grain: two vectors, each with a spare.
-pub(crate) type Wrench = [f64; 8];
+/// Two vectors, each with a spare: force and torque, or velocity and spin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct Octad(pub(crate) [f64; 8]);
+
+/// Numbers of rows of a table, a block of them; those from `lane` on were found to be below a bound.
+#[derive(Clone, Copy)]
+pub struct Rows<'a, L> {
+    number: &'a [u32; BLOCK],
+    below: usize,
+    lane: usize,
+    lanes: PhantomData<L>,
+}
+
+impl<'a, L: Lanes> Rows<'a, L> {
+    /// For lanes `lane..lane + WIDTH`.
+    ///
+    /// # Panics
+    /// Where one of their numbers is not below the bound.
+    #[inline(always)]
+    pub(crate) fn new(number: &'a [u32; BLOCK], lane: usize, below: usize) -> Self {
+        assert!(L::are_below(number, lane, below), "a row that the table does not have");
+        let number = L::anew(number);
+        Self { number, below, lane, lanes: PhantomData }
+    }
+
+    /// The number in lane `k` of `WIDTH`.
+    #[inline(always)]
+    pub(crate) fn number(&self, k: usize) -> usize {
+        self.number[self.lane + k] as usize
+    }
+
+    /// What all are below.
+    #[inline(always)]
+    pub(crate) fn below(&self) -> usize {
+        self.below
+    }
+}
 
 /// Some lanes of 64-bit floats.
 pub trait Lanes:
@@ -22,8 +59,8 @@ pub trait Lanes:
     const WIDTH: usize;
     /// One truth value a lane.
     type Mask: Copy;
-    /// Rows of a table, one a lane.
-    type Index: Copy;
+    /// A row of a table: four numbers whatever the lanes.
+    type Row: Row;
 
     /// The same number in every lane.
     fn splat(value: f64) -> Self;
@@ -33,6 +70,8 @@ pub trait Lanes:
     fn store(self, to: &mut [f64; BLOCK], lane: usize);
     /// `self` × `by` + `plus`, rounded once.
     fn mul_add(self, by: Self, plus: Self) -> Self;
+    /// `self` × `by` − `minus`, rounded once.
+    fn mul_sub(self, by: Self, minus: Self) -> Self;
     /// `from` − `self` × `by`, rounded once.
     fn mul_sub_from(self, by: Self, from: Self) -> Self;
     /// Square root.
@@ -45,29 +84,102 @@ pub trait Lanes:
     fn any(mask: Self::Mask) -> bool;
     /// `a` where the mask holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
-    /// Lanes `lane..lane + WIDTH` of a block of row numbers, kept below `rows`.
-    fn index(from: &[u32; BLOCK], lane: usize, rows: usize) -> Self::Index;
-    /// Component `K` of the rows at `index`.
+    /// Whether lanes `lane..lane + WIDTH` of a block are below a bound.
+    fn are_below(number: &[u32; BLOCK], lane: usize, bound: usize) -> bool;
+    /// The same numbers, to be read one by one: taking them out of a wide register would cost more.
+    #[inline(always)]
+    fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
+        number
+    }
+    /// Rows of a table, the first three components.
     ///
     /// # Panics
-    /// Where `table` has fewer rows than the index was made for.
-    fn gather<const K: usize>(table: &[Quad], index: Self::Index) -> Self;
+    /// This and the next four: where a table has fewer rows than their numbers may reach.
+    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self>;
+    /// Rows `a` less rows `b`.
+    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self>;
+    /// Velocities of `a` less those of `b`, and the sum of their spins.
+    fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2];
+    /// Spins.
+    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self>;
     /// Asks for rows of a table to be brought near, where the processor can be asked.
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]);
-    /// Writes four components a lane to rows `lane..lane + WIDTH`, from column `at` (0 or 4) on.
-    fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize);
-    /// Adds a row to a sum.
-    fn add_row(row: &Wrench, to: &mut Wrench);
-    /// Adds a row to a sum, its first half negated.
-    fn add_reaction(row: &Wrench, to: &mut Wrench);
+    fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]);
+    /// Writes three components a lane to rows `lane..lane + WIDTH`.
+    fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize);
+    /// Adds what pairs do to their grains, pair after pair: force and moment to row `to` of the sums, the opposite force
+    /// and the same moment to row `from`. Of the eight components three are the force and, where `TURN`, three from the
+    /// fifth on the moment. Where `LEVERS`, the fourth is the lever of the moment on `to` and the eighth that on `from`.
+    fn scatter<const TURN: bool, const LEVERS: bool>(
+        components: [Self; 8],
+        from: Rows<'_, Self>,
+        to: Rows<'_, Self>,
+        sums: &mut [Octad],
+    );
     /// Adds eight components to `sum`, lane after lane.
     fn fold(components: [Self; 8], sum: &mut [f64; 8]);
+}
+
+/// Four numbers of one grain.
+pub trait Row: Copy {
+    /// The same number four times.
+    fn splat(value: f64) -> Self;
+    /// Numbers `at..at + 4`.
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self;
+    /// Writes numbers `at..at + 4`.
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize);
+    /// Sum.
+    fn add(self, other: Self) -> Self;
+    /// Product, number by number.
+    fn mul(self, other: Self) -> Self;
+    /// `self` × `by` + `plus`, rounded once.
+    fn mul_add(self, by: Self, plus: Self) -> Self;
+    /// The larger of two; the second where they do not compare.
+    fn max(self, other: Self) -> Self;
+}
+
+impl Row for Quad {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        [value; 4]
+    }
+    #[inline(always)]
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self {
+        [from[at], from[at + 1], from[at + 2], from[at + 3]]
+    }
+    #[inline(always)]
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize) {
+        to[at..at + 4].copy_from_slice(&self);
+    }
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        [self[0] + o[0], self[1] + o[1], self[2] + o[2], self[3] + o[3]]
+    }
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        [self[0] * o[0], self[1] * o[1], self[2] * o[2], self[3] * o[3]]
+    }
+    #[inline(always)]
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        let mut result = plus;
+        for k in 0..4 {
+            result[k] = f64::mul_add(self[k], by[k], plus[k]);
+        }
+        result
+    }
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        let mut most = o;
+        for k in 0..4 {
+            most[k] = Lanes::max(self[k], o[k]);
+        }
+        most
+    }
 }
 
 impl Lanes for f64 {
     const WIDTH: usize = 1;
     type Mask = bool;
-    type Index = usize;
+    type Row = Quad;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -84,6 +196,10 @@ impl Lanes for f64 {
     #[inline(always)]
     fn mul_add(self, by: Self, plus: Self) -> Self {
         f64::mul_add(self, by, plus)
+    }
+    #[inline(always)]
+    fn mul_sub(self, by: Self, minus: Self) -> Self {
+        f64::mul_add(self, by, -minus)
     }
     #[inline(always)]
     fn mul_sub_from(self, by: Self, from: Self) -> Self {
@@ -110,32 +226,55 @@ impl Lanes for f64 {
         if mask { a } else { b }
     }
     #[inline(always)]
-    fn index(from: &[u32; BLOCK], lane: usize, rows: usize) -> usize {
-        (from[lane] as usize).min(rows - 1)
+    fn are_below(number: &[u32; BLOCK], lane: usize, bound: usize) -> bool {
+        (number[lane] as usize) < bound
     }
     #[inline(always)]
-    fn gather<const K: usize>(table: &[Quad], index: usize) -> Self {
-        table[index][K]
+    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
+        let [x, y, z, _] = table[at.number(0)];
+        V3 { x, y, z }
     }
     #[inline(always)]
-    fn prefetch(_: &[Quad], _: &[u32; BLOCK]) {}
-    #[inline(always)]
-    fn store_rows(components: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
-        to[lane][at..at + 4].copy_from_slice(&components);
+    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
+        Self::rows(table, a) - Self::rows(table, b)
     }
     #[inline(always)]
-    fn add_row(row: &Wrench, to: &mut Wrench) {
-        for k in 0..8 {
-            to[k] += row[k];
+    fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
+        let (p, q) = (&table[a.number(0)].0, &table[b.number(0)].0);
+        let velocity = V3 { x: p[0] - q[0], y: p[1] - q[1], z: p[2] - q[2] };
+        [velocity, V3 { x: p[4] + q[4], y: p[5] + q[5], z: p[6] + q[6] }]
+    }
+    #[inline(always)]
+    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
+        let row = &table[at.number(0)].0;
+        V3 { x: row[4], y: row[5], z: row[6] }
+    }
+    #[inline(always)]
+    fn prefetch<T>(_: &[T], _: &[u32; BLOCK]) {}
+    #[inline(always)]
+    fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize) {
+        to[lane].0[..3].copy_from_slice(&components);
+    }
+    #[inline(always)]
+    fn scatter<const TURN: bool, const LEVERS: bool>(
+        c: [Self; 8],
+        from: Rows<'_, Self>,
+        to: Rows<'_, Self>,
+        sums: &mut [Octad],
+    ) {
+        let second = &mut sums[to.number(0)].0;
+        for k in 0..3 {
+            second[k] += c[k];
+            if TURN {
+                second[4 + k] += if LEVERS { c[4 + k] * c[3] } else { c[4 + k] };
+            }
         }
-    }
-    #[inline(always)]
-    fn add_reaction(row: &Wrench, to: &mut Wrench) {
-        for k in 0..4 {
-            to[k] -= row[k];
-        }
-        for k in 4..8 {
-            to[k] += row[k];
+        let first = &mut sums[from.number(0)].0;
+        for k in 0..3 {
+            first[k] -= c[k];
+            if TURN {
+                first[4 + k] += if LEVERS { c[4 + k] * c[7] } else { c[4 + k] };
+            }
         }
     }
     #[inline(always)]
@@ -176,12 +315,6 @@ impl<L: Lanes> V3<L> {
         Self::new(L::splat(value), L::splat(value), L::splat(value))
     }
 
-    /// The rows of a table.
-    #[inline(always)]
-    pub(crate) fn gather(table: &[Quad], index: L::Index) -> Self {
-        Self::new(L::gather::<0>(table, index), L::gather::<1>(table, index), L::gather::<2>(table, index))
-    }
-
     /// Lanes `lane..lane + WIDTH` of a block of vectors.
     #[inline(always)]
     pub(crate) fn load(from: &[[f64; BLOCK]; 3], lane: usize) -> Self {
@@ -216,6 +349,22 @@ impl<L: Lanes> V3<L> {
             self.x.mul_sub_from(o.z, self.z * o.x),
             self.y.mul_sub_from(o.x, self.x * o.y),
         )
+    }
+
+    /// `self` − `a` × `b`.
+    #[inline(always)]
+    pub(crate) fn minus_cross(self, a: Self, b: Self) -> Self {
+        Self::new(
+            a.z.mul_add(b.y, a.y.mul_sub_from(b.z, self.x)),
+            a.x.mul_add(b.z, a.z.mul_sub_from(b.x, self.y)),
+            a.y.mul_add(b.x, a.x.mul_sub_from(b.y, self.z)),
+        )
+    }
+
+    /// `v` × `by` − `self`.
+    #[inline(always)]
+    pub(crate) fn from_scaled(self, v: Self, by: L) -> Self {
+        Self::new(v.x.mul_sub(by, self.x), v.y.mul_sub(by, self.y), v.z.mul_sub(by, self.z))
     }
 
     /// `self` + `v` × `by`.

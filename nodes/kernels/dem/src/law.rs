@@ -38,7 +38,7 @@ pub struct Touch<L> {
     pub relative: V3<L>,
     /// a_i ω_i + a_j ω_j with levers a = R − δ/2, m/s.
     pub rolling: V3<L>,
-    /// (ω_i + ω_j)/2, rad/s: its part along the normal twists the tangential force along.
+    /// ω_i + ω_j, rad/s: half its part along the normal twists the tangential force along.
     pub spin: V3<L>,
 }
 
@@ -68,22 +68,22 @@ impl Law {
 
     /// Normal force (elastic, with damping), N, and the coefficient of its dashpot, N s/m.
     #[inline(always)]
-    fn normal_force<L: Lanes>(&self, t: &Touch<L>, along: L) -> (L, L, L) {
+    fn normal_force<L: Lanes>(&self, overlap: L, root: L, m_eff: L, along: L) -> (L, L, L) {
         // F = (4/3) E* √(R*) δ^{3/2} = (2/3) k_n δ
-        let k_n = L::splat(self.normal) * t.root;
-        let elastic = L::splat(2.0 / 3.0) * k_n * t.overlap;
+        let k_n = L::splat(self.normal) * root;
+        let elastic = L::splat(2.0 / 3.0) * k_n * overlap;
         if self.damping == 0.0 {
             return (elastic, elastic, L::splat(0.0));
         }
-        let dashpot = L::splat(2.0 * self.damping) * (t.m_eff * k_n).sqrt();
+        let dashpot = L::splat(2.0 * self.damping) * (m_eff * k_n).sqrt();
         (elastic, dashpot.mul_sub_from(along, elastic).max(L::splat(0.0)), dashpot)
     }
 
-    /// A contact without friction: normal force (elastic, with damping), N.
+    /// A contact without friction: normal force with damping, N, from overlap (m), √(R* δ) (m), effective mass (kg) and
+    /// the speed at which the grains part (m/s).
     #[inline(always)]
-    pub fn frictionless<L: Lanes>(&self, t: &Touch<L>) -> (L, L) {
-        let (elastic, normal, _) = self.normal_force(t, t.relative.dot(t.normal));
-        (elastic, normal)
+    pub fn frictionless<L: Lanes>(&self, overlap: L, root: L, m_eff: L, along: L) -> L {
+        self.normal_force(overlap, root, m_eff, along).1
     }
 
     /// A contact with friction, its history brought forward by `dt` (s) where `ADVANCE`, else taken as it is.
@@ -102,15 +102,9 @@ impl Law {
         let n = t.normal;
         let along = t.relative.dot(n);
         let across = t.relative.minus(n, along);
-        let (elastic, normal, dashpot) = self.normal_force(t, along);
+        let (elastic, normal, dashpot) = self.normal_force(t.overlap, t.root, t.m_eff, along);
         // From the present velocities alone, whatever the time step, so that a resumed state has the same force.
         let share = (self.tangential / self.normal).sqrt();
-        // No closures here: one that is not inlined would lose the instruction set.
-        let viscous = if self.damping > 0.0 {
-            (across - t.rolling.cross(n)).scale(dashpot * L::splat(share))
-        } else {
-            V3::splat(0.0)
-        };
         let limit = L::splat(self.friction) * elastic;
         let mut f = history;
         if ADVANCE {
@@ -120,8 +114,8 @@ impl Law {
                 f = f.scale(t.unloading);
             }
             // Levers turn with the mid-step normal, else a pair that spins about an oblique axis would seem to slip.
-            let rolling = t.rolling.cross(mean);
-            let slip = (across - rolling).plus(n, rolling.dot(n));
+            let slip = across.minus_cross(t.rolling, mean);
+            let slip = slip.minus(n, slip.dot(n));
             f = f.plus(slip, L::splat(self.tangential * dt) * t.root);
             if SLIDING {
                 f = limited(f, limit);
@@ -129,7 +123,7 @@ impl Law {
         }
         let mut tangential = f;
         if self.damping > 0.0 {
-            tangential = f + viscous;
+            tangential = f.plus(across.minus_cross(t.rolling, n), dashpot * L::splat(share));
             if SLIDING {
                 tangential = limited(tangential, limit);
             }
@@ -154,7 +148,7 @@ fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
 fn carried<L: Lanes>(f: V3<L>, t: &Touch<L>, mean: V3<L>, dt: f64) -> V3<L> {
     let n = t.normal;
     let f = f.minus(mean, f.dot(n));
-    let angle = t.spin.dot(mean) * L::splat(dt);
+    let angle = t.spin.dot(mean) * L::splat(0.5 * dt);
     let shrink = (L::splat(0.5) * angle).mul_sub_from(angle, L::splat(1.0));
     f.scale(shrink).plus(n.cross(f), angle)
 }

@@ -25,6 +25,7 @@ pub mod lanes;
 pub mod law;
 mod neighbours;
 pub mod observe;
+mod geometry;
 mod order;
 mod pass;
 pub mod roofline;
@@ -32,6 +33,8 @@ mod run_state;
 pub mod simd;
 pub mod simulation;
 mod state;
+mod stress;
+mod sums;
 mod sweep;
 mod time_step;
 #[cfg(target_arch = "x86_64")]

@@ -3,8 +3,8 @@
 use crate::compute::Compute;
 use crate::contacts::{Block, Contacts, Pair, Sizes};
 use crate::error::DemError;
-use crate::lanes::{BLOCK, Lanes, V3, Wrench};
-use crate::pass::{Geometry, View};
+use crate::lanes::{BLOCK, Lanes, V3, Octad};
+use crate::geometry::{Geometry, View};
 use crate::simd::Kernel;
 use crate::state::State;
 use grains::Mat3;
@@ -38,7 +38,7 @@ pub(crate) fn snapshot(
     compute: &Compute,
 ) -> Result<Snapshot, DemError> {
     let friction = view.law.friction > 0.0;
-    let mut rows = vec![[[0.0; 8]; BLOCK]; contacts.blocks.len()];
+    let mut rows = vec![[Octad::default(); BLOCK]; contacts.blocks.len()];
     let mut total = Sums::default();
     let mut rest = rows.as_mut_slice();
     let chunks = contacts.chunks.windows(2).map(|c| {
@@ -95,7 +95,7 @@ struct Look<'a> {
     blocks: &'a [Block],
     sizes: &'a [Sizes],
     /// Elastic force on the second grain of each slot, N.
-    force: &'a mut [[Wrench; BLOCK]],
+    force: &'a mut [[Octad; BLOCK]],
 }
 
 struct LookAt<'a, const SIZES: bool> {
@@ -134,17 +134,22 @@ impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
                     // The smaller of two is the larger of their negatives.
                     let smaller = -(-g.radius[0]).max(-g.radius[1]);
                     deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
-                    let k_n = L::splat(view.law.normal) * g.root;
+                    let r_eff = match sizes.get(b) {
+                        Some(s) if SIZES => L::load(&s.r_eff, lane),
+                        _ => L::splat(view.equal.r_eff),
+                    };
+                    let root = (r_eff * g.overlap).sqrt();
+                    let k_n = L::splat(view.law.normal) * root;
                     let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
                     let f = g.normal.scale(elastic) - V3::load(&block.history, lane);
                     let f = V3::select(g.touching, f, V3::splat(0.0));
-                    L::store_rows([f.x, f.y, f.z, zero], &mut force[b], lane, 0);
+                    L::store_rows([f.x, f.y, f.z], &mut force[b], lane);
                     let l = g.branch;
                     let size = f.dot(f).sqrt();
                     let square = L::select(g.touching, g.distance * g.distance, zero);
                     let normal = k_n * square;
                     let across =
-                        if self.friction { L::splat(view.law.tangential) * g.root * square } else { zero };
+                        if self.friction { L::splat(view.law.tangential) * root * square } else { zero };
                     let t = strained(g.normal, normal, across, g.touching);
                     L::fold(
                         [
@@ -214,9 +219,9 @@ impl Bearing {
     }
 
     /// Mean of the net force, N, given the force on the second grain of each slot; `None` without such grains.
-    fn mean_net_force(&self, contacts: &Contacts, force: &[Wrench]) -> Option<f64> {
+    fn mean_net_force(&self, contacts: &Contacts, force: &[Octad]) -> Option<f64> {
         let mut net = vec![[0.0; 3]; self.alive.len()];
-        for (slot, f) in force.iter().enumerate() {
+        for (slot, Octad(f)) in force.iter().enumerate() {
             let Some(p) = contacts.pair(slot) else { continue };
             for k in 0..3 {
                 net[p.i as usize][k] -= f[k];

@@ -38,8 +38,7 @@ pub(crate) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
     take(&mut state.inverse_mass, order);
     take(&mut state.inverse_inertia, order);
     take(&mut state.position, order);
-    take(&mut state.velocity, order);
-    take(&mut state.spin, order);
+    take(&mut state.twist, order);
     let mut place = vec![0u32; order.len()];
     for (new, old) in order.iter().enumerate() {
         place[*old as usize] = new as u32;
@@ -58,7 +57,7 @@ pub(crate) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
         })
         .collect();
     pairs.sort_unstable_by_key(|p| (p.0, p.1, p.2));
-    let mut list = Builder::new(state, Images::new(state), pairs.len());
+    let mut list = Builder::new(state, Images::new(state), pairs.len(), false);
     for (i, j, image, root, history) in pairs {
         let image = list.contacts.images.index(image, &state.cell);
         list.push(state, Pair { i, j, image, root, history });

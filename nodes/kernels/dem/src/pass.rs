@@ -1,28 +1,18 @@
 //! One pass over the pairs of a chunk of grains: forces and torques, contact by contact, summed on the grains.
+//!
+//! In three stages, a few blocks at a time: where the pairs are, what the contact law says, whom it acts on. Each waits
+//! long for roots and sums, and only in a short loop does a processor see far enough ahead to have the next block's under
+//! way.
 
-use crate::contacts::{Block, Sizes};
-use crate::lanes::{BLOCK, Lanes, Quad, V3, Wrench};
-use crate::law::{Law, Touch};
+use crate::contacts::{Block, Crossing, Sizes};
+use crate::geometry::{Geometry, Grains, View};
+use crate::lanes::{BLOCK, Lanes, Octad, Rows, V3};
+use crate::law::Touch;
 use crate::simd::Kernel;
+use crate::stress::{self, Seen};
 
-/// Blocks between asking for the grains of one and working on it.
-const AHEAD: usize = 4;
-
-/// What all chunks read.
-#[derive(Clone, Copy)]
-pub(crate) struct View<'a> {
-    pub(crate) position: &'a [Quad],
-    pub(crate) velocity: &'a [Quad],
-    pub(crate) spin: &'a [Quad],
-    /// Shift of each periodic image.
-    pub(crate) shift: &'a [Quad],
-    /// Columns of the strain rate, 1/s.
-    pub(crate) rate: [[f64; 3]; 3],
-    pub(crate) law: Law,
-    pub(crate) dt: f64,
-    /// Radius, R*, effective mass of every pair, where grains are of one size.
-    pub(crate) equal: (f64, f64, f64),
-}
+/// Blocks that go through the stages together.
+const BATCH: usize = 8;
 
 /// One chunk.
 pub(crate) struct Chunk<'a> {
@@ -31,286 +21,324 @@ pub(crate) struct Chunk<'a> {
     pub(crate) blocks: &'a mut [Block],
     /// Empty where grains are of one size.
     pub(crate) sizes: &'a [Sizes],
-    /// Force and torque found for each of its grains, and for the second grain of each pair with another chunk.
-    pub(crate) sums: &'a mut [Wrench],
-}
-
-/// Adds the eight rows of a block to the sums, in the order of pairs. Loops of fixed length: what a branch predictor
-/// would have to guess costs more than what it might spare.
-///
-/// Where sizes differ, the spares of a row are the levers of its second (force) and first (torque) grain.
-#[inline(always)]
-fn sum<L: Lanes, const SIZES: bool>(
-    rows: &mut [Wrench; BLOCK],
-    block: &Block,
-    first: u32,
-    sums: &mut [Wrench],
-) {
-    for (lane, row) in rows.iter_mut().enumerate() {
-        let [lever_j, lever_i] = [row[3], row[7]];
-        let moment = [row[4], row[5], row[6]];
-        if SIZES {
-            row[4..7].copy_from_slice(&[moment[0] * lever_j, moment[1] * lever_j, moment[2] * lever_j]);
-        }
-        L::add_row(row, &mut sums[block.to[lane] as usize]);
-        if SIZES {
-            row[4..7].copy_from_slice(&[moment[0] * lever_i, moment[1] * lever_i, moment[2] * lever_i]);
-        }
-        L::add_reaction(row, &mut sums[(block.i[lane] - first) as usize]);
-    }
-}
-
-/// What one pass saw.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Seen {
-    /// Σ f ⊗ l of the elastic forces, symmetrised, Voigt order, J; two spares. Zero unless it was asked for.
-    pub(crate) virial: [f64; 8],
-}
-
-impl Seen {
-    /// This, then what the next chunk saw.
-    pub(crate) fn then(&mut self, next: &Self) {
-        self.virial.iter_mut().zip(next.virial).for_each(|(a, b)| *a += b);
-    }
+    /// Pairs across the faces of the cell.
+    pub(crate) crossing: &'a [Crossing],
+    /// Rows to add to: those of its grains, then others.
+    pub(crate) sums: &'a mut [Octad],
+    /// Whether these are zero.
+    pub(crate) clean: bool,
 }
 
 /// Contacts without friction: no spins, no tangential springs.
-pub(crate) struct Frictionless<'a, const SIZES: bool, const LOOK: bool> {
+pub(crate) struct Frictionless<'a, const SIZES: bool> {
     pub(crate) view: View<'a>,
     pub(crate) chunk: Chunk<'a>,
+    /// Whether to see the stress across the faces of the cell.
+    pub(crate) look: bool,
 }
 
-/// Contacts with friction; see [`Law::frictional`] for the switches.
+/// Contacts with friction; see [`crate::Law::frictional`] for the switches.
 pub(crate) struct Frictional<
     'a,
     const ADVANCE: bool,
     const SLIDING: bool,
     const RESCALED: bool,
     const SIZES: bool,
-    const LOOK: bool,
 > {
     pub(crate) view: View<'a>,
     pub(crate) chunk: Chunk<'a>,
+    pub(crate) look: bool,
 }
 
-/// Some lanes of a block, looked at: where the pairs are and whether they touch.
-pub(crate) struct Geometry<L: Lanes> {
-    pub(crate) i: L::Index,
-    pub(crate) j: L::Index,
-    pub(crate) radius: [L; 2],
-    pub(crate) m_eff: L,
-    pub(crate) branch: V3<L>,
-    pub(crate) normal: V3<L>,
-    pub(crate) distance: L,
-    pub(crate) inverse_distance: L,
-    /// Never negative.
-    pub(crate) overlap: L,
-    /// √(R* δ).
-    pub(crate) root: L,
-    pub(crate) touching: L::Mask,
+type Scalars = [f64; BLOCK];
+type Vectors = [Scalars; 3];
+
+/// Where the pairs of a block are.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct Near {
+    normal: Vectors,
+    overlap: Scalars,
+    inverse_distance: Scalars,
 }
 
-impl<L: Lanes> Geometry<L> {
-    /// `None` where no lane touches.
-    #[inline(always)]
-    pub(crate) fn of<const SIZES: bool>(
+/// Some blocks under way.
+#[repr(C, align(64))]
+struct Batch {
+    near: [Near; BATCH],
+    /// On the second grain of each pair, N.
+    force: [Vectors; BATCH],
+    /// On both grains, N m; where sizes differ to be multiplied by the levers of the second and the first grain.
+    moment: [Vectors; BATCH],
+    levers: [[Scalars; 2]; BATCH],
+    /// Lanes with a contact among them: block, first lane.
+    live: [(u8, u8); BATCH * BLOCK],
+}
+
+/// How a phase's contacts resist.
+trait Resist {
+    /// Whether they turn grains.
+    const TURN: bool;
+    const SIZES: bool;
+
+    /// What the contact law says about some lanes of a block.
+    fn resist<L: Lanes>(
         view: &View<'_>,
-        block: &Block,
+        block: &mut Block,
         sizes: Option<&Sizes>,
+        batch: &mut Batch,
+        b: usize,
         lane: usize,
-    ) -> Option<Self> {
-        let grains = view.position.len();
-        let i = L::index(&block.i, lane, grains);
-        let j = L::index(&block.j, lane, grains);
-        let image = L::index(&block.image, lane, view.shift.len());
-        let (radius, r_eff, m_eff) = match sizes {
-            Some(s) if SIZES => (
-                [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)],
-                L::load(&s.r_eff, lane),
-                L::load(&s.m_eff, lane),
-            ),
-            _ => {
-                let (radius, r_eff, m_eff) = view.equal;
-                ([L::splat(radius); 2], L::splat(r_eff), L::splat(m_eff))
-            }
+    );
+}
+
+/// All pairs of a chunk.
+#[inline(always)]
+fn pass<R: Resist, L: Lanes>(view: &View<'_>, chunk: Chunk<'_>, look: bool) -> Seen {
+    if !chunk.clean {
+        chunk.sums.fill(Octad::default());
+    }
+    let none = [0.0; BLOCK];
+    let near = Near { normal: [none; 3], overlap: none, inverse_distance: none };
+    let mut batch = Batch {
+        near: [near; BATCH],
+        force: [[none; 3]; BATCH],
+        moment: [[none; 3]; BATCH],
+        levers: [[none; 2]; BATCH],
+        live: [(0, 0); BATCH * BLOCK],
+    };
+    let mut seen = Seen::default();
+    let (mut start, mut crossed) = (0, 0);
+    while start < chunk.blocks.len() {
+        let end = (start + BATCH).min(chunk.blocks.len());
+        if R::TURN {
+            ask_for::<L>(view, &chunk.blocks[end..]);
+        }
+        let blocks = &mut chunk.blocks[start..end];
+        let sizes = if R::SIZES { &chunk.sizes[start..end] } else { &[] };
+        let count = if R::SIZES {
+            locate::<L, true>(view, blocks, sizes, &mut batch)
+        } else {
+            locate::<L, false>(view, blocks, sizes, &mut batch)
         };
-        let apart = V3::gather(view.position, j) - V3::gather(view.position, i);
-        let branch = apart + V3::gather(view.shift, image);
-        let reach = radius[0] + radius[1];
-        let square = branch.dot(branch);
-        if !L::any((reach * reach).gt(square)) {
-            return None;
+        for k in 0..count {
+            let (b, lane) = (batch.live[k].0 as usize, batch.live[k].1 as usize);
+            R::resist::<L>(view, &mut blocks[b], sizes.get(b), &mut batch, b, lane);
         }
-        let distance = square.sqrt();
-        // Not 1/distance: root and division need not wait for each other.
-        let inverse_distance = distance * (L::splat(1.0) / square);
-        let overlap = (reach - distance).max(L::splat(0.0));
-        let touching = overlap.gt(L::splat(0.0));
-        let root = (r_eff * overlap).sqrt();
-        Some(Self {
-            i,
-            j,
-            radius,
-            m_eff,
-            branch,
-            normal: branch.scale(inverse_distance),
-            distance,
-            inverse_distance,
-            overlap,
-            root,
-            touching,
-        })
-    }
-
-    #[inline(always)]
-    fn touch(&self, view: &View<'_>) -> Touch<L> {
-        let [x, y, z] = &view.rate;
-        let l = self.branch;
-        let affine = V3::row(x).scale(l.x).plus(V3::row(y), l.y).plus(V3::row(z), l.z);
-        Touch {
-            normal: self.normal,
-            inverse_distance: self.inverse_distance,
-            overlap: self.overlap,
-            root: self.root,
-            unloading: L::splat(1.0),
-            m_eff: self.m_eff,
-            relative: V3::gather(view.velocity, self.j) - V3::gather(view.velocity, self.i) + affine,
-            rolling: V3::splat(0.0),
-            spin: V3::splat(0.0),
+        act::<R, L>(blocks, chunk.first, &batch, count, chunk.sums);
+        if look {
+            let from = crossed;
+            while crossed < chunk.crossing.len() && (chunk.crossing[crossed].slot as usize) < end * BLOCK {
+                crossed += 1;
+            }
+            let crossing = &chunk.crossing[from..crossed];
+            stress::cross(&mut seen, crossing, start * BLOCK, view.shift, &batch.force);
         }
+        start = end;
     }
+    seen
+}
 
-    /// Adds f ⊗ l, symmetrised, where pairs touch. With l = |l| n, which keeps less at hand than l itself.
-    #[inline(always)]
-    fn look(&self, force: V3<L>, virial: &mut [f64; 8]) {
-        let (zero, half) = (L::splat(0.0), L::splat(0.5));
-        let (f, n) = (force.scale(L::select(self.touching, self.distance, zero)), self.normal);
-        let h = f.scale(half);
-        let terms = [
-            f.x * n.x,
-            f.y * n.y,
-            f.z * n.z,
-            h.y.mul_add(n.z, h.z * n.y),
-            h.x.mul_add(n.z, h.z * n.x),
-            h.x.mul_add(n.y, h.y * n.x),
-            zero,
-            zero,
-        ];
-        L::fold(terms, virial);
+/// Has the second grains of the next batch brought near.
+#[inline(always)]
+fn ask_for<L: Lanes>(view: &View<'_>, blocks: &[Block]) {
+    for block in &blocks[..blocks.len().min(BATCH)] {
+        L::prefetch(view.position, &block.j);
+        L::prefetch(view.twist, &block.j);
     }
 }
 
-impl<const SIZES: bool, const LOOK: bool> Kernel for Frictionless<'_, SIZES, LOOK> {
+/// First stage: where the pairs are. Returns how many lots of lanes have contacts; the others forget their history.
+#[inline(always)]
+fn locate<L: Lanes, const SIZES: bool>(
+    view: &View<'_>,
+    blocks: &mut [Block],
+    sizes: &[Sizes],
+    batch: &mut Batch,
+) -> usize {
+    let mut count = 0;
+    for (b, block) in blocks.iter_mut().enumerate() {
+        let mut lane = 0;
+        while lane < BLOCK {
+            let near = &mut batch.near[b];
+            match Geometry::<L>::of::<SIZES>(view, block, sizes.get(b), lane) {
+                Some(g) => {
+                    g.normal.store(&mut near.normal, lane);
+                    g.overlap.store(&mut near.overlap, lane);
+                    g.inverse_distance.store(&mut near.inverse_distance, lane);
+                    batch.live[count] = (b as u8, lane as u8);
+                    count += 1;
+                }
+                None => {
+                    let zero = V3::<L>::splat(0.0);
+                    zero.x.store(&mut block.root, lane);
+                    zero.store(&mut block.history, lane);
+                    zero.store(&mut batch.force[b], lane);
+                }
+            }
+            lane += L::WIDTH;
+        }
+    }
+    count
+}
+
+/// Last stage: forces and moments on grains.
+#[inline(always)]
+fn act<R: Resist, L: Lanes>(blocks: &[Block], first: u32, batch: &Batch, count: usize, sums: &mut [Octad]) {
+    let rows = sums.len();
+    let zero = L::splat(0.0);
+    for k in 0..count {
+        let (b, lane) = (batch.live[k].0 as usize, batch.live[k].1 as usize);
+        let block = &blocks[b];
+        let to = Rows::<L>::new(&block.to, lane, rows);
+        let from = Rows::<L>::new(&block.from, lane, rows);
+        let f = V3::<L>::load(&batch.force[b], lane);
+        let m = if R::TURN { V3::<L>::load(&batch.moment[b], lane) } else { V3::splat(0.0) };
+        let mut levers = [zero; 2];
+        if R::SIZES && R::TURN {
+            levers = [L::load(&batch.levers[b][0], lane), L::load(&batch.levers[b][1], lane)];
+        }
+        let components = [f.x, f.y, f.z, levers[0], m.x, m.y, m.z, levers[1]];
+        match (R::TURN, R::SIZES) {
+            (false, _) => L::scatter::<false, false>(components, from, to, sums),
+            (true, false) => L::scatter::<true, false>(components, from, to, sums),
+            (true, true) => L::scatter::<true, true>(components, from, to, sums),
+        }
+    }
+}
+
+/// Radii, R* and effective mass of some lanes of a block.
+#[inline(always)]
+fn sizes_of<L: Lanes, const SIZES: bool>(
+    view: &View<'_>,
+    sizes: Option<&Sizes>,
+    lane: usize,
+) -> ([L; 2], L, L) {
+    match sizes {
+        Some(s) if SIZES => {
+            let radius = [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)];
+            (radius, L::load(&s.r_eff, lane), L::load(&s.m_eff, lane))
+        }
+        _ => {
+            let e = &view.equal;
+            ([L::splat(e.radius); 2], L::splat(e.r_eff), L::splat(e.m_eff))
+        }
+    }
+}
+
+/// Velocity relative to each other of points that follow the affine motion, m/s.
+#[inline(always)]
+fn affine<L: Lanes>(view: &View<'_>, l: V3<L>) -> V3<L> {
+    let [x, y, z] = &view.rate;
+    V3::row(x).scale(l.x).plus(V3::row(y), l.y).plus(V3::row(z), l.z)
+}
+
+impl<const SIZES: bool> Resist for Frictionless<'_, SIZES> {
+    const TURN: bool = false;
+    const SIZES: bool = SIZES;
+
+    #[inline(always)]
+    fn resist<L: Lanes>(
+        view: &View<'_>,
+        block: &mut Block,
+        sizes: Option<&Sizes>,
+        batch: &mut Batch,
+        b: usize,
+        lane: usize,
+    ) {
+        let near = &batch.near[b];
+        let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
+        let grains = Grains::<L>::of(view, &block.i, &block.j, lane);
+        let (normal, overlap) = (V3::<L>::load(&near.normal, lane), L::load(&near.overlap, lane));
+        let root = (r_eff * overlap).sqrt();
+        let distance = radius[0] + radius[1] - overlap;
+        let [velocity, _] = L::relative(view.twist, grains.j, grains.i);
+        let relative = velocity + affine(view, normal.scale(distance));
+        let force = view.law.frictionless(overlap, root, m_eff, relative.dot(normal));
+        root.store(&mut block.root, lane);
+        let touching = overlap.gt(L::splat(0.0));
+        V3::select(touching, normal.scale(force), V3::splat(0.0)).store(&mut batch.force[b], lane);
+    }
+}
+
+impl<const SIZES: bool> Kernel for Frictionless<'_, SIZES> {
     type Output = Seen;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Seen {
-        let Self { view, chunk } = self;
-        chunk.sums.fill([0.0; 8]);
-        let mut rows = [[0.0; 8]; BLOCK];
-        let mut seen = Seen::default();
-        let zero = L::splat(0.0);
-        for (b, block) in chunk.blocks.iter_mut().enumerate() {
-            let mut lane = 0;
-            while lane < BLOCK {
-                match Geometry::<L>::of::<SIZES>(&view, block, chunk.sizes.get(b), lane) {
-                    Some(g) => {
-                        let (elastic, normal) = view.law.frictionless(&g.touch(&view));
-                        g.root.store(&mut block.root, lane);
-                        let force = g.normal.scale(normal);
-                        let force = V3::select(g.touching, force, V3::splat(0.0));
-                        L::store_rows([force.x, force.y, force.z, zero], &mut rows, lane, 0);
-                        if LOOK {
-                            g.look(g.normal.scale(elastic), &mut seen.virial);
-                        }
-                    }
-                    None => {
-                        zero.store(&mut block.root, lane);
-                        L::store_rows([zero; 4], &mut rows, lane, 0);
-                    }
-                }
-                lane += L::WIDTH;
-            }
-            sum::<L, false>(&mut rows, block, chunk.first, chunk.sums);
-        }
-        seen
+        pass::<Self, L>(&self.view, self.chunk, self.look)
     }
 }
 
-impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool, const LOOK: bool>
-    Kernel for Frictional<'_, ADVANCE, SLIDING, RESCALED, SIZES, LOOK>
+impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool> Resist
+    for Frictional<'_, ADVANCE, SLIDING, RESCALED, SIZES>
+{
+    const TURN: bool = true;
+    const SIZES: bool = SIZES;
+
+    #[inline(always)]
+    fn resist<L: Lanes>(
+        view: &View<'_>,
+        block: &mut Block,
+        sizes: Option<&Sizes>,
+        batch: &mut Batch,
+        b: usize,
+        lane: usize,
+    ) {
+        let near = &batch.near[b];
+        let (half, none) = (L::splat(0.5), V3::splat(0.0));
+        let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
+        let (normal, overlap) = (V3::<L>::load(&near.normal, lane), L::load(&near.overlap, lane));
+        let (root, was) = ((r_eff * overlap).sqrt(), L::load(&block.root, lane));
+        let lever = [half.mul_sub_from(overlap, radius[0]), half.mul_sub_from(overlap, radius[1])];
+        let grains = Grains::<L>::of(view, &block.i, &block.j, lane);
+        let [velocity, spin] = L::relative(view.twist, grains.j, grains.i);
+        let rolling = if SIZES {
+            let spins = [L::spins(view.twist, grains.i), L::spins(view.twist, grains.j)];
+            spins[0].scale(lever[0]) + spins[1].scale(lever[1])
+        } else {
+            spin.scale(lever[0])
+        };
+        let distance = radius[0] + radius[1] - overlap;
+        let touch = Touch {
+            normal,
+            inverse_distance: L::load(&near.inverse_distance, lane),
+            overlap,
+            root,
+            unloading: L::select(was.gt(root), root / was, L::splat(1.0)),
+            m_eff,
+            relative: velocity + affine(view, normal.scale(distance)),
+            rolling,
+            spin,
+        };
+        let history = V3::load(&block.history, lane);
+        let forces = view.law.frictional::<L, ADVANCE, SLIDING, RESCALED>(&touch, history, view.dt);
+        let touching = overlap.gt(L::splat(0.0));
+        root.store(&mut block.root, lane);
+        if ADVANCE {
+            V3::select(touching, forces.history, none).store(&mut block.history, lane);
+        }
+        let force = forces.tangential.from_scaled(normal, forces.normal);
+        V3::select(touching, force, none).store(&mut batch.force[b], lane);
+        let moment = V3::select(touching, normal.cross(forces.tangential), none);
+        // One size, one lever: taken into the moment here. Else each grain applies its own.
+        if SIZES {
+            moment.store(&mut batch.moment[b], lane);
+            lever[1].store(&mut batch.levers[b][0], lane);
+            lever[0].store(&mut batch.levers[b][1], lane);
+        } else {
+            moment.scale(lever[0]).store(&mut batch.moment[b], lane);
+        }
+    }
+}
+
+impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool> Kernel
+    for Frictional<'_, ADVANCE, SLIDING, RESCALED, SIZES>
 {
     type Output = Seen;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Seen {
-        let Self { view, chunk } = self;
-        chunk.sums.fill([0.0; 8]);
-        let mut rows = [[0.0; 8]; BLOCK];
-        let mut seen = Seen::default();
-        let zero = L::splat(0.0);
-        let (one, none) = (L::splat(1.0), V3::splat(0.0));
-        for b in 0..chunk.blocks.len() {
-            if let Some(ahead) = chunk.blocks.get(b + AHEAD) {
-                L::prefetch(view.position, &ahead.j);
-                L::prefetch(view.velocity, &ahead.j);
-                L::prefetch(view.spin, &ahead.j);
-            }
-            let block = &mut chunk.blocks[b];
-            let mut lane = 0;
-            while lane < BLOCK {
-                match Geometry::<L>::of::<SIZES>(&view, block, chunk.sizes.get(b), lane) {
-                    Some(g) => {
-                        let mut touch = g.touch(&view);
-                        let was = L::load(&block.root, lane);
-                        touch.unloading = L::select(was.gt(g.root), g.root / was, one);
-                        let half = L::splat(0.5);
-                        let lever = [
-                            half.mul_sub_from(g.overlap, g.radius[0]),
-                            half.mul_sub_from(g.overlap, g.radius[1]),
-                        ];
-                        let (spin_i, spin_j) = (V3::gather(view.spin, g.i), V3::gather(view.spin, g.j));
-                        let spin = spin_i + spin_j;
-                        touch.rolling = if SIZES {
-                            spin_i.scale(lever[0]) + spin_j.scale(lever[1])
-                        } else {
-                            spin.scale(lever[0])
-                        };
-                        touch.spin = spin.scale(half);
-                        let history = V3::load(&block.history, lane);
-                        let f =
-                            view.law.frictional::<L, ADVANCE, SLIDING, RESCALED>(&touch, history, view.dt);
-                        g.root.store(&mut block.root, lane);
-                        if ADVANCE {
-                            V3::select(g.touching, f.history, none).store(&mut block.history, lane);
-                        }
-                        let force = (V3::splat(0.0) - f.tangential).plus(g.normal, f.normal);
-                        let force = V3::select(g.touching, force, none);
-                        let moment = g.normal.cross(f.tangential);
-                        let moment = V3::select(g.touching, moment, none);
-                        // One size, one lever: taken into the moment here. Else each grain applies its own.
-                        let (moment, spare) = if SIZES {
-                            (moment, [lever[1], lever[0]])
-                        } else {
-                            (moment.scale(lever[0]), [zero; 2])
-                        };
-                        L::store_rows([force.x, force.y, force.z, spare[0]], &mut rows, lane, 0);
-                        L::store_rows([moment.x, moment.y, moment.z, spare[1]], &mut rows, lane, 4);
-                        if LOOK {
-                            g.look((V3::splat(0.0) - f.history).plus(g.normal, f.elastic), &mut seen.virial);
-                        }
-                    }
-                    None => {
-                        zero.store(&mut block.root, lane);
-                        none.store(&mut block.history, lane);
-                        L::store_rows([zero; 4], &mut rows, lane, 0);
-                        L::store_rows([zero; 4], &mut rows, lane, 4);
-                    }
-                }
-                lane += L::WIDTH;
-            }
-            sum::<L, SIZES>(&mut rows, block, chunk.first, chunk.sums);
-        }
-        seen
+        pass::<Self, L>(&self.view, self.chunk, self.look)
     }
 }

@@ -1,6 +1,6 @@
 //! Grains and cell.
 
-use crate::lanes::Quad;
+use crate::lanes::{Octad, Quad};
 use grains::{Cell, Mat3, Material, Vec3};
 
 /// A row of a table of vectors.
@@ -13,6 +13,11 @@ pub(crate) fn row(v: &Vec3) -> Quad {
 #[inline(always)]
 pub(crate) fn vector(row: &Quad) -> Vec3 {
     Vec3::new(row[0], row[1], row[2])
+}
+
+/// Velocity and spin in a row.
+pub(crate) fn twist(velocity: &Vec3, spin: &Vec3) -> Octad {
+    Octad([velocity.x, velocity.y, velocity.z, 0.0, spin.x, spin.y, spin.z, 0.0])
 }
 
 /// Everything that moves.
@@ -33,8 +38,8 @@ pub(crate) struct State {
     pub(crate) inverse_mass: Vec<f64>,
     pub(crate) inverse_inertia: Vec<f64>,
     pub(crate) position: Vec<Quad>,
-    pub(crate) velocity: Vec<Quad>,
-    pub(crate) spin: Vec<Quad>,
+    /// Velocity relative to the affine motion, m/s, and spin, rad/s.
+    pub(crate) twist: Vec<Octad>,
     /// Largest radius, m.
     pub(crate) largest_radius: f64,
     /// Smallest radius, m.
@@ -65,8 +70,7 @@ impl State {
             smallest_radius: radius.iter().copied().fold(f64::INFINITY, f64::min),
             radius,
             position: position.iter().map(row).collect(),
-            velocity: vec![[0.0; 4]; n],
-            spin: vec![[0.0; 4]; n],
+            twist: vec![Octad::default(); n],
         }
     }
 
@@ -79,15 +83,27 @@ impl State {
         self.smallest_radius == self.largest_radius
     }
 
+    /// Velocities, m/s.
+    pub(crate) fn velocities(&self) -> impl Iterator<Item = Vec3> {
+        self.twist.iter().map(|t| Vec3::new(t.0[0], t.0[1], t.0[2]))
+    }
+
+    /// Spins, rad/s.
+    pub(crate) fn spins(&self) -> impl Iterator<Item = Vec3> {
+        self.twist.iter().map(|t| Vec3::new(t.0[4], t.0[5], t.0[6]))
+    }
+
     /// Largest speed of a grain, m/s.
     pub(crate) fn largest_speed(&self) -> f64 {
-        let square = |v: &Quad| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-        self.velocity.iter().map(square).fold(0.0, f64::max).sqrt()
+        self.twist.iter().map(square_speed).fold(0.0, f64::max).sqrt()
     }
 
     /// Mean of v² over grains, m²/s².
     pub(crate) fn mean_square_speed(&self) -> f64 {
-        let sum: f64 = self.velocity.iter().map(|v| v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sum();
-        sum / self.grains() as f64
+        self.twist.iter().map(square_speed).sum::<f64>() / self.grains() as f64
     }
+}
+
+fn square_speed(Octad(t): &Octad) -> f64 {
+    t[0] * t[0] + t[1] * t[1] + t[2] * t[2]
 }

@@ -1,6 +1,6 @@
 //! Lanes of x86-64 processors. The only file with `unsafe` in it: intrinsics need it.
 
-use crate::lanes::{BLOCK, Lanes, Quad, Wrench};
+use crate::lanes::{BLOCK, Lanes, Octad, Quad, Row, Rows, V3};
 use crate::simd::Kernel;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -15,13 +15,6 @@ pub(crate) struct Avx2(__m256d);
 /// Eight lanes: AVX-512 F, DQ and VL.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(__m512d);
-
-/// Offsets of rows, and the rows that the table must have.
-#[derive(Clone, Copy)]
-pub(crate) struct Rows<I> {
-    offset: I,
-    rows: usize,
-}
 
 macro_rules! arithmetic {
     ($lanes:ty, $($operator:ident $method:ident $intrinsic:ident),*) => {$(
@@ -54,13 +47,121 @@ impl Neg for Avx512 {
     }
 }
 
-/// Row numbers are 32-bit offsets of four numbers each.
-const MOST_ROWS: usize = 1 << 29;
+/// Four numbers of each of `N` rows of a table, from the first or the fifth on.
+#[inline(always)]
+fn rows<L: Lanes, T: Copy, const N: usize>(table: &[T], at: Rows<'_, L>, second: bool) -> [__m256d; N] {
+    const { assert!(N == L::WIDTH && (size_of::<T>() == 32 || size_of::<T>() == 64)) };
+    assert!(table.len() >= at.below() && (!second || size_of::<T>() == 64));
+    // SAFETY: the table has all rows below that bound, and these four numbers in each.
+    unsafe {
+        let mut rows = [_mm256_setzero_pd(); N];
+        for (k, row) in rows.iter_mut().enumerate() {
+            let at = table.as_ptr().add(at.number(k)).cast::<f64>();
+            *row = _mm256_loadu_pd(at.add(if second { 4 } else { 0 }));
+        }
+        rows
+    }
+}
+
+/// The same place, of which the compiler does not know that it was read before.
+#[inline(always)]
+fn unseen<T>(of: &T) -> &T {
+    let mut place: *const T = of;
+    // SAFETY: nothing is done to it.
+    unsafe {
+        std::arch::asm!("/* {0} */", inout(reg) place, options(pure, nomem, nostack, preserves_flags));
+        &*place
+    }
+}
+
+/// Row by row, `a` less `b`.
+#[inline(always)]
+fn less<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N] {
+    for k in 0..N {
+        a[k] = unsafe { _mm256_sub_pd(a[k], b[k]) };
+    }
+    a
+}
+
+/// Row by row, `a` and `b`.
+#[inline(always)]
+fn both<const N: usize>(mut a: [__m256d; N], b: [__m256d; N]) -> [__m256d; N] {
+    for k in 0..N {
+        a[k] = unsafe { _mm256_add_pd(a[k], b[k]) };
+    }
+    a
+}
+
+/// Columns of four rows.
+#[inline(always)]
+fn columns4(rows: [__m256d; 4]) -> V3<Avx2> {
+    let [x, y, z, _] = transpose(rows);
+    V3 { x: Avx2(x), y: Avx2(y), z: Avx2(z) }
+}
+
+/// Columns of eight rows.
+#[inline(always)]
+fn columns8(r: [__m256d; 8]) -> V3<Avx512> {
+    unsafe {
+        let mut z = [_mm512_setzero_pd(); 4];
+        for k in 0..4 {
+            z[k] = _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(r[k]), r[k + 4]);
+        }
+        let (xz01, yw01) = (_mm512_unpacklo_pd(z[0], z[1]), _mm512_unpackhi_pd(z[0], z[1]));
+        let (xz23, yw23) = (_mm512_unpacklo_pd(z[2], z[3]), _mm512_unpackhi_pd(z[2], z[3]));
+        let first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+        let second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+        V3 {
+            x: Avx512(_mm512_permutex2var_pd(xz01, first, xz23)),
+            y: Avx512(_mm512_permutex2var_pd(yw01, first, yw23)),
+            z: Avx512(_mm512_permutex2var_pd(xz01, second, xz23)),
+        }
+    }
+}
+
+/// A row of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct Four(__m256d);
+
+impl Row for Four {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(unsafe { _mm256_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn load<const N: usize>(from: &[f64; N], at: usize) -> Self {
+        let from: &[f64] = &from[at..at + 4];
+        // SAFETY: the slice holds four numbers.
+        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store<const N: usize>(self, to: &mut [f64; N], at: usize) {
+        let to: &mut [f64] = &mut to[at..at + 4];
+        // SAFETY: the slice holds four numbers.
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(unsafe { _mm256_add_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(unsafe { _mm256_mul_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, by: Self, plus: Self) -> Self {
+        Self(unsafe { _mm256_fmadd_pd(self.0, by.0, plus.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+}
 
 impl Lanes for Avx2 {
     const WIDTH: usize = 4;
     type Mask = __m256d;
-    type Index = Rows<__m128i>;
+    type Row = Four;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -68,19 +169,19 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn load(from: &[f64; BLOCK], lane: usize) -> Self {
-        let from: &[f64] = &from[lane..lane + 4];
-        // SAFETY: the slice holds four numbers.
-        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+        Self(Four::load(from, lane).0)
     }
     #[inline(always)]
     fn store(self, to: &mut [f64; BLOCK], lane: usize) {
-        let to: &mut [f64] = &mut to[lane..lane + 4];
-        // SAFETY: the slice holds four numbers.
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
+        Four(self.0).store(to, lane);
     }
     #[inline(always)]
     fn mul_add(self, by: Self, plus: Self) -> Self {
         Self(unsafe { _mm256_fmadd_pd(self.0, by.0, plus.0) })
+    }
+    #[inline(always)]
+    fn mul_sub(self, by: Self, minus: Self) -> Self {
+        Self(unsafe { _mm256_fmsub_pd(self.0, by.0, minus.0) })
     }
     #[inline(always)]
     fn mul_sub_from(self, by: Self, from: Self) -> Self {
@@ -107,44 +208,76 @@ impl Lanes for Avx2 {
         Self(unsafe { _mm256_blendv_pd(b.0, a.0, mask) })
     }
     #[inline(always)]
-    fn index(from: &[u32; BLOCK], lane: usize, rows: usize) -> Rows<__m128i> {
-        assert!(rows > 0 && rows <= MOST_ROWS);
-        let from: &[u32] = &from[lane..lane + 4];
-        // SAFETY: the slice holds four numbers. The offsets stay below 4 × rows.
+    fn are_below(number: &[u32; BLOCK], lane: usize, bound: usize) -> bool {
+        let (number, bound): (&[u32], _) = (&number[lane..lane + 4], bound.min(u32::MAX as usize) as u32);
+        // SAFETY: the slice holds four numbers.
         unsafe {
-            let i = _mm_loadu_si128(from.as_ptr().cast());
-            let i = _mm_min_epu32(i, _mm_set1_epi32(rows as i32 - 1));
-            Rows { offset: _mm_slli_epi32::<2>(i), rows }
+            let number = _mm_loadu_si128(number.as_ptr().cast());
+            // Where the bound is no larger than a number, the larger of both is that number.
+            let beyond = _mm_cmpeq_epi32(_mm_max_epu32(number, _mm_set1_epi32(bound as i32)), number);
+            _mm_testz_si128(beyond, beyond) != 0
         }
     }
     #[inline(always)]
-    fn gather<const K: usize>(table: &[Quad], index: Rows<__m128i>) -> Self {
-        const { assert!(K < 4) };
-        assert!(table.len() >= index.rows);
-        // SAFETY: offsets are those of rows below `rows`, and the table has that many.
-        Self(unsafe { _mm256_i32gather_pd::<8>(table.as_ptr().cast::<f64>().add(K), index.offset) })
+    fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
+        unseen(number)
     }
     #[inline(always)]
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
+    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
+        columns4(rows(table, at, false))
+    }
+    #[inline(always)]
+    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
+        columns4(less(rows(table, a, false), rows(table, b, false)))
+    }
+    #[inline(always)]
+    fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
+        let velocity = columns4(less(rows(table, a, false), rows(table, b, false)));
+        [velocity, columns4(both(rows(table, a, true), rows(table, b, true)))]
+    }
+    #[inline(always)]
+    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
+        columns4(rows(table, at, true))
+    }
+    #[inline(always)]
+    fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
         prefetch(table, rows);
     }
     #[inline(always)]
-    fn store_rows([x, y, z, w]: [Self; 4], to: &mut [Wrench; BLOCK], lane: usize, at: usize) {
-        let rows = transpose([x.0, y.0, z.0, w.0]);
+    fn store_rows([x, y, z]: [Self; 3], to: &mut [Octad; BLOCK], lane: usize) {
+        let rows = transpose([x.0, y.0, z.0, Self::splat(0.0).0]);
         for k in 0..4 {
-            store_half(rows[k], &mut to[lane + k], at);
+            Self(rows[k]).store(&mut to[lane + k].0, 0);
         }
     }
     #[inline(always)]
-    fn add_row(row: &Wrench, to: &mut Wrench) {
-        for half in [0, 4] {
-            (Self::load(to, half) + Self::load(row, half)).store(to, half);
+    fn scatter<const TURN: bool, const LEVERS: bool>(
+        c: [Self; 8],
+        from: Rows<'_, Self>,
+        to: Rows<'_, Self>,
+        sums: &mut [Octad],
+    ) {
+        let force = transpose([c[0].0, c[1].0, c[2].0, c[3].0]);
+        let moment = transpose([c[4].0, c[5].0, c[6].0, c[7].0]);
+        for k in 0..4 {
+            let (force, moment) = (Self(force[k]), Self(moment[k]));
+            let (mut on_second, mut on_first) = (moment, moment);
+            if LEVERS {
+                (on_second, on_first) = (moment * last(force), moment * last(moment));
+                (on_second, on_first) = (without_spare(on_second), without_spare(on_first));
+            }
+            let force = if LEVERS { without_spare(force) } else { force };
+            let second = &mut sums[to.number(k)].0;
+            (Self::load(second, 0) + force).store(second, 0);
+            if TURN {
+                (Self::load(second, 4) + on_second).store(second, 4);
+            }
+            let first = &mut sums[from.number(k)].0;
+            (Self::load(first, 0) - force).store(first, 0);
+            if TURN {
+                (Self::load(first, 4) + on_first).store(first, 4);
+            }
         }
-    }
-    #[inline(always)]
-    fn add_reaction(row: &Wrench, to: &mut Wrench) {
-        (Self::load(to, 0) - Self::load(row, 0)).store(to, 0);
-        (Self::load(to, 4) + Self::load(row, 4)).store(to, 4);
     }
     #[inline(always)]
     fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
@@ -162,19 +295,23 @@ impl Lanes for Avx2 {
 
 /// Asks for rows of a table to be brought near; those that it does not have do no harm.
 #[inline(always)]
-fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
+fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
     for &row in rows {
         // SAFETY: a prefetch never faults, whatever the address.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(table.as_ptr().wrapping_add(row as usize).cast()) };
     }
 }
 
-/// Half a row.
+/// The last of four lanes in all.
 #[inline(always)]
-fn store_half(half: __m256d, to: &mut Wrench, at: usize) {
-    let to: &mut [f64] = &mut to[at..at + 4];
-    // SAFETY: the slice holds four numbers.
-    unsafe { _mm256_storeu_pd(to.as_mut_ptr(), half) };
+fn last(row: Avx2) -> Avx2 {
+    Avx2(unsafe { _mm256_permute4x64_pd::<0xFF>(row.0) })
+}
+
+/// The first three of four lanes.
+#[inline(always)]
+fn without_spare(row: Avx2) -> Avx2 {
+    Avx2(unsafe { _mm256_blend_pd::<8>(row.0, _mm256_setzero_pd()) })
 }
 
 /// Four by four.
@@ -195,7 +332,7 @@ fn transpose([x, y, z, w]: [__m256d; 4]) -> [__m256d; 4] {
 impl Lanes for Avx512 {
     const WIDTH: usize = 8;
     type Mask = __mmask8;
-    type Index = Rows<__m256i>;
+    type Row = Four;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -214,6 +351,10 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn mul_add(self, by: Self, plus: Self) -> Self {
         Self(unsafe { _mm512_fmadd_pd(self.0, by.0, plus.0) })
+    }
+    #[inline(always)]
+    fn mul_sub(self, by: Self, minus: Self) -> Self {
+        Self(unsafe { _mm512_fmsub_pd(self.0, by.0, minus.0) })
     }
     #[inline(always)]
     fn mul_sub_from(self, by: Self, from: Self) -> Self {
@@ -240,71 +381,155 @@ impl Lanes for Avx512 {
         Self(unsafe { _mm512_mask_blend_pd(mask, b.0, a.0) })
     }
     #[inline(always)]
-    fn index(from: &[u32; BLOCK], _: usize, rows: usize) -> Rows<__m256i> {
-        assert!(rows > 0 && rows <= MOST_ROWS);
-        // SAFETY: a block holds eight numbers. The offsets stay below 4 × rows.
+    fn are_below(number: &[u32; BLOCK], _: usize, bound: usize) -> bool {
+        let bound = bound.min(u32::MAX as usize) as u32;
+        // SAFETY: a block holds eight numbers.
         unsafe {
-            let i = _mm256_loadu_si256(from.as_ptr().cast());
-            let i = _mm256_min_epu32(i, _mm256_set1_epi32(rows as i32 - 1));
-            Rows { offset: _mm256_slli_epi32::<2>(i), rows }
+            let number = _mm256_loadu_si256(number.as_ptr().cast());
+            _mm256_cmpge_epu32_mask(number, _mm256_set1_epi32(bound as i32)) == 0
         }
     }
     #[inline(always)]
-    fn gather<const K: usize>(table: &[Quad], index: Rows<__m256i>) -> Self {
-        const { assert!(K < 4) };
-        assert!(table.len() >= index.rows);
-        // SAFETY: offsets are those of rows below `rows`, and the table has that many.
-        Self(unsafe { _mm512_i32gather_pd::<8>(index.offset, table.as_ptr().cast::<f64>().add(K)) })
+    fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
+        unseen(number)
     }
     #[inline(always)]
-    fn prefetch(table: &[Quad], rows: &[u32; BLOCK]) {
+    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
+        columns8(rows(table, at, false))
+    }
+    #[inline(always)]
+    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
+        columns8(less(rows(table, a, false), rows(table, b, false)))
+    }
+    #[inline(always)]
+    fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
+        assert!(table.len() >= a.below().max(b.below()));
+        let sign = Self(unsafe { _mm512_setr_pd(-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0) });
+        let mut rows = [sign; 8];
+        for (k, row) in rows.iter_mut().enumerate() {
+            // SAFETY: the table has these rows.
+            let (a, b) = unsafe { (table.get_unchecked(a.number(k)), table.get_unchecked(b.number(k))) };
+            *row = Self::load(&b.0, 0).mul_add(sign, Self::load(&a.0, 0));
+        }
+        columns_of(rows)
+    }
+    #[inline(always)]
+    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
+        columns8(rows(table, at, true))
+    }
+    #[inline(always)]
+    fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
         prefetch(table, rows);
     }
     #[inline(always)]
-    fn store_rows([x, y, z, w]: [Self; 4], to: &mut [Wrench; BLOCK], _: usize, at: usize) {
-        unsafe {
-            let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
-            let second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-            let (even_xy, odd_xy) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
-            let (even_zw, odd_zw) = (_mm512_unpacklo_pd(z.0, w.0), _mm512_unpackhi_pd(z.0, w.0));
-            let pairs = [
-                (0, _mm512_permutex2var_pd(even_xy, first, even_zw)),
-                (1, _mm512_permutex2var_pd(odd_xy, first, odd_zw)),
-                (4, _mm512_permutex2var_pd(even_xy, second, even_zw)),
-                (5, _mm512_permutex2var_pd(odd_xy, second, odd_zw)),
-            ];
-            for (row, pair) in pairs {
-                store_half(_mm512_castpd512_pd256(pair), &mut to[row], at);
-                store_half(_mm512_extractf64x4_pd::<1>(pair), &mut to[row + 2], at);
-            }
+    fn store_rows([x, y, z]: [Self; 3], to: &mut [Octad; BLOCK], _: usize) {
+        let pairs = halves([x, y, z, Self::splat(0.0)]);
+        for k in 0..BLOCK {
+            half(&pairs, k).store(&mut to[k].0, 0);
         }
     }
-    // By halves, as rows are written: a wide load cannot take what two narrow stores have just put down.
     #[inline(always)]
-    fn add_row(row: &Wrench, to: &mut Wrench) {
-        Avx2::add_row(row, to);
-    }
-    #[inline(always)]
-    fn add_reaction(row: &Wrench, to: &mut Wrench) {
-        Avx2::add_reaction(row, to);
+    fn scatter<const TURN: bool, const LEVERS: bool>(
+        c: [Self; 8],
+        from: Rows<'_, Self>,
+        to: Rows<'_, Self>,
+        sums: &mut [Octad],
+    ) {
+        assert!(sums.len() >= from.below().max(to.below()));
+        if !TURN {
+            return push([c[0], c[1], c[2], c[3]], from, to, sums);
+        }
+        // Spares are left out.
+        let same = Self(unsafe { _mm512_setr_pd(1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0) });
+        let opposite = Self(unsafe { _mm512_setr_pd(-1.0, -1.0, -1.0, 0.0, 1.0, 1.0, 1.0, 0.0) });
+        let rows = rows_of(c);
+        for (k, row) in rows.iter().enumerate() {
+            let row = *row;
+            // SAFETY: asserted.
+            let second = unsafe { &mut sums.get_unchecked_mut(to.number(k)).0 };
+            let by = if LEVERS { row * same.with_upper(row, 3) } else { row };
+            (Self::load(second, 0) + by).store(second, 0);
+            // SAFETY: asserted.
+            let first = unsafe { &mut sums.get_unchecked_mut(from.number(k)).0 };
+            let was = Self::load(first, 0);
+            let now = if LEVERS { was + row * opposite.with_upper(row, 7) } else { row.mul_add(opposite, was) };
+            now.store(first, 0);
+        }
     }
     #[inline(always)]
     fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
-        unsafe {
-            let mut even = [_mm512_setzero_pd(); 4];
-            let mut odd = even;
-            for k in 0..4 {
-                even[k] = _mm512_unpacklo_pd(c[2 * k].0, c[2 * k + 1].0);
-                odd[k] = _mm512_unpackhi_pd(c[2 * k].0, c[2 * k + 1].0);
-            }
-            let (even, odd) = (quarters(even), quarters(odd));
-            let mut total = _mm512_loadu_pd(sum.as_ptr());
-            for k in 0..4 {
-                total = _mm512_add_pd(total, even[k]);
-                total = _mm512_add_pd(total, odd[k]);
-            }
-            _mm512_storeu_pd(sum.as_mut_ptr(), total);
+        let rows = rows_of(c);
+        let mut total = Self::load(sum, 0);
+        for row in rows {
+            total = total + row;
         }
+        total.store(sum, 0);
+    }
+}
+
+impl Avx512 {
+    /// The number in `column` of `row` in lanes 4, 5 and 6.
+    #[inline(always)]
+    fn with_upper(self, row: Self, column: i64) -> Self {
+        Self(unsafe { _mm512_mask_permutexvar_pd(self.0, 0x70, _mm512_set1_epi64(column), row.0) })
+    }
+}
+
+/// Of eight rows the first three columns, and three from the fifth on.
+#[inline(always)]
+fn columns_of(r: [Avx512; 8]) -> [V3<Avx512>; 2] {
+    unsafe {
+        let mut even = [_mm512_setzero_pd(); 4];
+        let mut odd = even;
+        for k in 0..4 {
+            even[k] = _mm512_unpacklo_pd(r[2 * k].0, r[2 * k + 1].0);
+            odd[k] = _mm512_unpackhi_pd(r[2 * k].0, r[2 * k + 1].0);
+        }
+        let [x, z, u, w] = quarters(even);
+        let ab = _mm512_shuffle_f64x2::<0x88>(odd[0], odd[1]);
+        let cd = _mm512_shuffle_f64x2::<0x88>(odd[2], odd[3]);
+        let (y, v) = (_mm512_shuffle_f64x2::<0x88>(ab, cd), _mm512_shuffle_f64x2::<0xDD>(ab, cd));
+        [
+            V3 { x: Avx512(x), y: Avx512(y), z: Avx512(z) },
+            V3 { x: Avx512(u), y: Avx512(v), z: Avx512(w) },
+        ]
+    }
+}
+
+/// Eight by eight.
+#[inline(always)]
+fn rows_of(c: [Avx512; 8]) -> [Avx512; 8] {
+    unsafe {
+        let mut even = [_mm512_setzero_pd(); 4];
+        let mut odd = even;
+        for k in 0..4 {
+            even[k] = _mm512_unpacklo_pd(c[2 * k].0, c[2 * k + 1].0);
+            odd[k] = _mm512_unpackhi_pd(c[2 * k].0, c[2 * k + 1].0);
+        }
+        let (even, odd) = (quarters(even), quarters(odd));
+        let mut rows = c;
+        for k in 0..4 {
+            rows[2 * k] = Avx512(even[k]);
+            rows[2 * k + 1] = Avx512(odd[k]);
+        }
+        rows
+    }
+}
+
+/// Four components of eight lanes: the lanes by twos, 0 and 2, 1 and 3, 4 and 6, 5 and 7.
+#[inline(always)]
+fn halves([x, y, z, w]: [Avx512; 4]) -> [__m512d; 4] {
+    unsafe {
+        let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+        let second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+        let (even_xy, odd_xy) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
+        let (even_zw, odd_zw) = (_mm512_unpacklo_pd(z.0, w.0), _mm512_unpackhi_pd(z.0, w.0));
+        [
+            _mm512_permutex2var_pd(even_xy, first, even_zw),
+            _mm512_permutex2var_pd(odd_xy, first, odd_zw),
+            _mm512_permutex2var_pd(even_xy, second, even_zw),
+            _mm512_permutex2var_pd(odd_xy, second, odd_zw),
+        ]
     }
 }
 
@@ -320,6 +545,27 @@ fn quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
             _mm512_shuffle_f64x2::<0x88>(ab2, cd2),
             _mm512_shuffle_f64x2::<0xDD>(ab2, cd2),
         ]
+    }
+}
+
+/// Lane `k` of [`halves`].
+#[inline(always)]
+fn half(pairs: &[__m512d; 4], k: usize) -> Avx2 {
+    let pair = pairs[[0, 1, 0, 1, 2, 3, 2, 3][k]];
+    let upper = k & 2 != 0;
+    Avx2(unsafe { if upper { _mm512_extractf64x4_pd::<1>(pair) } else { _mm512_castpd512_pd256(pair) } })
+}
+
+/// Adds forces alone.
+#[inline(always)]
+fn push(force: [Avx512; 4], from: Rows<'_, Avx512>, to: Rows<'_, Avx512>, sums: &mut [Octad]) {
+    let pairs = halves(force);
+    for k in 0..BLOCK {
+        let force = half(&pairs, k);
+        let second = &mut sums[to.number(k)].0;
+        (Avx2::load(second, 0) + force).store(second, 0);
+        let first = &mut sums[from.number(k)].0;
+        (Avx2::load(first, 0) - force).store(first, 0);
     }
 }
 

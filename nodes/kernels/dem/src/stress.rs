@@ -1,0 +1,82 @@
+//! The stress along the way, from what acts on grains.
+//!
+//! Love–Weber, Σ_c f ⊗ l with l the branch vector x_j − x_i + s, is Σ_i F_i ⊗ x_i over grains plus Σ_c f ⊗ s over the
+//! contacts across the faces of the cell (Thompson, Plimpton & Mattson, J. Chem. Phys. 131, 154107 (2009), Eq. 21): far
+//! fewer terms, and none that has to be summed across lanes.
+
+use crate::contacts::Crossing;
+use crate::lanes::{BLOCK, Lanes, Octad, Quad};
+use crate::simd::{Kernel, Simd};
+use grains::{Mat3, SymTensor};
+
+/// Σ f ⊗ l so far, J: three rows, one for each component of the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Seen {
+    virial: [Quad; 3],
+}
+
+impl Seen {
+    /// This, then what was seen next.
+    #[inline(always)]
+    pub(crate) fn then(&mut self, next: &Self) {
+        for k in 0..3 {
+            for c in 0..4 {
+                self.virial[k][c] += next.virial[k][c];
+            }
+        }
+    }
+
+    /// Adds f ⊗ l.
+    #[inline(always)]
+    fn add(&mut self, f: [f64; 3], l: &Quad) {
+        for k in 0..3 {
+            for c in 0..4 {
+                self.virial[k][c] = f[k].mul_add(l[c], self.virial[k][c]);
+            }
+        }
+    }
+
+    /// The stress in a cell of `volume` (m³), Pa, positive in compression.
+    pub(crate) fn stress(&self, volume: f64) -> SymTensor {
+        SymTensor::symmetric_part(&(Mat3::from_fn(|k, c| self.virial[k][c]) / volume))
+    }
+}
+
+/// Adds what pairs across the faces do: `force` is that on their second grains, block by block from slot `from` on.
+#[inline(always)]
+pub(crate) fn cross(
+    seen: &mut Seen,
+    crossing: &[Crossing],
+    from: usize,
+    shift: &[Quad],
+    force: &[[[f64; BLOCK]; 3]],
+) {
+    for c in crossing {
+        let (block, lane) = ((c.slot as usize - from) / BLOCK, c.slot as usize % BLOCK);
+        let f = &force[block];
+        seen.add([f[0][lane], f[1][lane], f[2][lane]], &shift[c.image as usize]);
+    }
+}
+
+/// Σ F ⊗ x over some grains.
+pub(crate) fn inner(total: &[Octad], position: &[Quad], simd: Simd) -> Seen {
+    simd.run(Inner { total, position })
+}
+
+struct Inner<'a> {
+    total: &'a [Octad],
+    position: &'a [Quad],
+}
+
+impl Kernel for Inner<'_> {
+    type Output = Seen;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Seen {
+        let mut seen = Seen::default();
+        for (Octad(f), x) in self.total.iter().zip(self.position) {
+            seen.add([f[0], f[1], f[2]], x);
+        }
+        seen
+    }
+}
