@@ -177,7 +177,6 @@ impl Contacts {
         let Sums::Serial(Serial { rows, .. }) = &mut self.sums else { return None };
         let blocks = self.chunks[c] as usize..self.chunks[c + 1] as usize;
         let chunk = Chunk {
-            first: (c * CHUNK) as u32,
             sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks.clone()] },
             blocks: &mut self.blocks[blocks],
             crossing: &self.crossing[self.crossings[c] as usize..self.crossings[c + 1] as usize],
@@ -195,9 +194,8 @@ impl Contacts {
             Sums::Parallel(p) => (&mut p.rows[..], &p.start[..]),
         };
         let mut blocks = &mut self.blocks[..];
-        let bounds = self.chunks.windows(2).zip(starts.windows(2)).zip(self.crossings.windows(2)).enumerate();
-        let chunks = bounds.map(move |(c, ((range, row), cross))| Chunk {
-            first: (c * CHUNK) as u32,
+        let bounds = self.chunks.windows(2).zip(starts.windows(2)).zip(self.crossings.windows(2));
+        let chunks = bounds.map(move |((range, row), cross)| Chunk {
             sizes: if sizes.is_empty() { &[] } else { &sizes[range[0] as usize..range[1] as usize] },
             blocks: split(&mut blocks, (range[1] - range[0]) as usize),
             crossing: &crossing[cross[0] as usize..cross[1] as usize],

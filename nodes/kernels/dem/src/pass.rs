@@ -1,8 +1,8 @@
 //! One pass over the pairs of a chunk of grains: forces and torques, contact by contact, summed on the grains.
 //!
-//! In three stages, a few blocks at a time: where the pairs are, what the contact law says, whom it acts on. Each waits
-//! long for roots and sums, and only in a short loop does a processor see far enough ahead to have the next block's under
-//! way.
+//! In three stages: where the pairs are, what the contact law says, whom it acts on. Each waits long for the roots,
+//! quotients and sums of the one before. So the stages of three blocks that follow each other run side by side, and a
+//! processor always has something else to do.
 
 use crate::contacts::{Block, Crossing, Sizes};
 use crate::geometry::{Geometry, Grains, View};
@@ -11,13 +11,14 @@ use crate::law::Touch;
 use crate::simd::Kernel;
 use crate::stress::{self, Seen};
 
-/// Blocks that go through the stages together.
-const BATCH: usize = 8;
+/// Grains beyond which the rows of second grains are asked for ahead of time: fewer stay near by themselves.
+const MANY: usize = 8000;
+
+/// Blocks ahead that they are asked for.
+const AHEAD: usize = 6;
 
 /// One chunk.
 pub(crate) struct Chunk<'a> {
-    /// Its first grain.
-    pub(crate) first: u32,
     pub(crate) blocks: &'a mut [Block],
     /// Empty where grains are of one size.
     pub(crate) sizes: &'a [Sizes],
@@ -53,26 +54,32 @@ pub(crate) struct Frictional<
 type Scalars = [f64; BLOCK];
 type Vectors = [Scalars; 3];
 
-/// Where the pairs of a block are.
+/// A block under way.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
-struct Near {
+struct Way {
     normal: Vectors,
     overlap: Scalars,
     inverse_distance: Scalars,
+    /// On the second grain of each pair, N.
+    force: Vectors,
+    /// On both grains, N m; where sizes differ to be multiplied by the levers of the second and the first grain.
+    moment: Vectors,
+    levers: [Scalars; 2],
 }
 
-/// Some blocks under way.
-#[repr(C, align(64))]
-struct Batch {
-    near: [Near; BATCH],
-    /// On the second grain of each pair, N.
-    force: [Vectors; BATCH],
-    /// On both grains, N m; where sizes differ to be multiplied by the levers of the second and the first grain.
-    moment: [Vectors; BATCH],
-    levers: [[Scalars; 2]; BATCH],
-    /// Lanes with a contact among them: block, first lane.
-    live: [(u8, u8); BATCH * BLOCK],
+impl Way {
+    const NEW: Self = {
+        let none = [0.0; BLOCK];
+        Self {
+            normal: [none; 3],
+            overlap: none,
+            inverse_distance: none,
+            force: [none; 3],
+            moment: [none; 3],
+            levers: [none; 2],
+        }
+    };
 }
 
 /// How a phase's contacts resist.
@@ -81,129 +88,102 @@ trait Resist {
     const TURN: bool;
     const SIZES: bool;
 
-    /// What the contact law says about some lanes of a block.
-    fn resist<L: Lanes>(
-        view: &View<'_>,
-        block: &mut Block,
-        sizes: Option<&Sizes>,
-        batch: &mut Batch,
-        b: usize,
-        lane: usize,
-    );
+    /// Second stage: what the contact law says about some lanes of a block.
+    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize);
 }
 
 /// All pairs of a chunk.
 #[inline(always)]
 fn pass<R: Resist, L: Lanes>(view: &View<'_>, chunk: Chunk<'_>, look: bool) -> Seen {
-    if !chunk.clean {
-        chunk.sums.fill(Octad::default());
+    let Chunk { blocks, sizes, mut crossing, sums, clean } = chunk;
+    if !clean {
+        sums.fill(Octad::default());
     }
-    let none = [0.0; BLOCK];
-    let near = Near { normal: [none; 3], overlap: none, inverse_distance: none };
-    let mut batch = Batch {
-        near: [near; BATCH],
-        force: [[none; 3]; BATCH],
-        moment: [[none; 3]; BATCH],
-        levers: [[none; 2]; BATCH],
-        live: [(0, 0); BATCH * BLOCK],
-    };
     let mut seen = Seen::default();
-    let (mut start, mut crossed) = (0, 0);
-    while start < chunk.blocks.len() {
-        let end = (start + BATCH).min(chunk.blocks.len());
-        if R::TURN {
-            ask_for::<L>(view, &chunk.blocks[end..]);
+    let ask = view.position.len() > MANY;
+    let lots = BLOCK / L::WIDTH;
+    let end = blocks.len() * lots;
+    // Two blocks are under way at a time; lots of lanes go through the stages one after the other.
+    let mut ways = [Way::NEW; 2];
+    let (mut acted, mut located) = (false, end > 0 && locate::<R, L>(view, blocks, sizes, &mut ways, 0));
+    for u in 0..=end {
+        let (resisted, before) = (located, acted);
+        let (b, lane) = (u / lots, u % lots * L::WIDTH);
+        if resisted {
+            R::resist::<L>(view, &mut blocks[b], sizes.get(b), &mut ways[b % 2], lane);
+        } else if look {
+            V3::<L>::splat(0.0).store(&mut ways[b % 2].force, lane);
         }
-        let blocks = &mut chunk.blocks[start..end];
-        let sizes = if R::SIZES { &chunk.sizes[start..end] } else { &[] };
-        let count = if R::SIZES {
-            locate::<L, true>(view, blocks, sizes, &mut batch)
-        } else {
-            locate::<L, false>(view, blocks, sizes, &mut batch)
-        };
-        for k in 0..count {
-            let (b, lane) = (batch.live[k].0 as usize, batch.live[k].1 as usize);
-            R::resist::<L>(view, &mut blocks[b], sizes.get(b), &mut batch, b, lane);
+        located = u + 1 < end && locate::<R, L>(view, blocks, sizes, &mut ways, u + 1);
+        if before {
+            let (b, lane) = ((u - 1) / lots, (u - 1) % lots * L::WIDTH);
+            act::<R, L>(&blocks[b], &ways[b % 2], lane, sums);
         }
-        act::<R, L>(blocks, chunk.first, &batch, count, chunk.sums);
-        if look {
-            let from = crossed;
-            while crossed < chunk.crossing.len() && (chunk.crossing[crossed].slot as usize) < end * BLOCK {
-                crossed += 1;
+        acted = resisted;
+        if u > 0 && u % lots == 0 {
+            let b = u / lots - 1;
+            if look {
+                crossing = stress::cross(&mut seen, crossing, b, view.shift, &ways[b % 2].force);
             }
-            let crossing = &chunk.crossing[from..crossed];
-            stress::cross(&mut seen, crossing, start * BLOCK, view.shift, &batch.force);
+            if ask && let Some(ahead) = blocks.get(b + AHEAD) {
+                L::prefetch(view.position, &ahead.j);
+                L::prefetch(view.twist, &ahead.j);
+            }
         }
-        start = end;
     }
     seen
 }
 
-/// Has the second grains of the next batch brought near.
+/// First stage: where the pairs in lot `u` of lanes are. Whether any touch; if none, they forget their history.
 #[inline(always)]
-fn ask_for<L: Lanes>(view: &View<'_>, blocks: &[Block]) {
-    for block in &blocks[..blocks.len().min(BATCH)] {
-        L::prefetch(view.position, &block.j);
-        L::prefetch(view.twist, &block.j);
-    }
-}
-
-/// First stage: where the pairs are. Returns how many lots of lanes have contacts; the others forget their history.
-#[inline(always)]
-fn locate<L: Lanes, const SIZES: bool>(
+fn locate<R: Resist, L: Lanes>(
     view: &View<'_>,
     blocks: &mut [Block],
     sizes: &[Sizes],
-    batch: &mut Batch,
-) -> usize {
-    let mut count = 0;
-    for (b, block) in blocks.iter_mut().enumerate() {
-        let mut lane = 0;
-        while lane < BLOCK {
-            let near = &mut batch.near[b];
-            match Geometry::<L>::of::<SIZES>(view, block, sizes.get(b), lane) {
-                Some(g) => {
-                    g.normal.store(&mut near.normal, lane);
-                    g.overlap.store(&mut near.overlap, lane);
-                    g.inverse_distance.store(&mut near.inverse_distance, lane);
-                    batch.live[count] = (b as u8, lane as u8);
-                    count += 1;
-                }
-                None => {
-                    let zero = V3::<L>::splat(0.0);
-                    zero.x.store(&mut block.root, lane);
-                    zero.store(&mut block.history, lane);
-                    zero.store(&mut batch.force[b], lane);
-                }
-            }
-            lane += L::WIDTH;
+    ways: &mut [Way; 2],
+    u: usize,
+) -> bool {
+    let lots = BLOCK / L::WIDTH;
+    let (b, lane) = (u / lots, u % lots * L::WIDTH);
+    let (block, way) = (&mut blocks[b], &mut ways[b % 2]);
+    let found = if R::SIZES {
+        Geometry::<L>::of::<true>(view, block, sizes.get(b), lane)
+    } else {
+        Geometry::<L>::of::<false>(view, block, None, lane)
+    };
+    match found {
+        Some(g) => {
+            g.normal.store(&mut way.normal, lane);
+            g.overlap.store(&mut way.overlap, lane);
+            g.inverse_distance.store(&mut way.inverse_distance, lane);
+            true
+        }
+        None => {
+            let zero = V3::<L>::splat(0.0);
+            zero.x.store(&mut block.root, lane);
+            zero.store(&mut block.history, lane);
+            false
         }
     }
-    count
 }
 
 /// Last stage: forces and moments on grains.
 #[inline(always)]
-fn act<R: Resist, L: Lanes>(blocks: &[Block], first: u32, batch: &Batch, count: usize, sums: &mut [Octad]) {
-    let rows = sums.len();
-    let zero = L::splat(0.0);
-    for k in 0..count {
-        let (b, lane) = (batch.live[k].0 as usize, batch.live[k].1 as usize);
-        let block = &blocks[b];
-        let to = Rows::<L>::new(&block.to, lane, rows);
-        let from = Rows::<L>::new(&block.from, lane, rows);
-        let f = V3::<L>::load(&batch.force[b], lane);
-        let m = if R::TURN { V3::<L>::load(&batch.moment[b], lane) } else { V3::splat(0.0) };
-        let mut levers = [zero; 2];
-        if R::SIZES && R::TURN {
-            levers = [L::load(&batch.levers[b][0], lane), L::load(&batch.levers[b][1], lane)];
-        }
-        let components = [f.x, f.y, f.z, levers[0], m.x, m.y, m.z, levers[1]];
-        match (R::TURN, R::SIZES) {
-            (false, _) => L::scatter::<false, false>(components, from, to, sums),
-            (true, false) => L::scatter::<true, false>(components, from, to, sums),
-            (true, true) => L::scatter::<true, true>(components, from, to, sums),
-        }
+fn act<R: Resist, L: Lanes>(block: &Block, way: &Way, lane: usize, sums: &mut [Octad]) {
+    let (rows, zero) = (sums.len(), L::splat(0.0));
+    let to = Rows::<L>::new(&block.to, lane, rows);
+    let from = Rows::<L>::new(&block.from, lane, rows);
+    let f = V3::<L>::load(&way.force, lane);
+    let m = if R::TURN { V3::<L>::load(&way.moment, lane) } else { V3::splat(0.0) };
+    let mut levers = [zero; 2];
+    if R::SIZES && R::TURN {
+        levers = [L::load(&way.levers[0], lane), L::load(&way.levers[1], lane)];
+    }
+    let components = [f.x, f.y, f.z, levers[0], m.x, m.y, m.z, levers[1]];
+    match (R::TURN, R::SIZES) {
+        (false, _) => L::scatter::<false, false>(components, from, to, sums),
+        (true, false) => L::scatter::<true, false>(components, from, to, sums),
+        (true, true) => L::scatter::<true, true>(components, from, to, sums),
     }
 }
 
@@ -238,18 +218,10 @@ impl<const SIZES: bool> Resist for Frictionless<'_, SIZES> {
     const SIZES: bool = SIZES;
 
     #[inline(always)]
-    fn resist<L: Lanes>(
-        view: &View<'_>,
-        block: &mut Block,
-        sizes: Option<&Sizes>,
-        batch: &mut Batch,
-        b: usize,
-        lane: usize,
-    ) {
-        let near = &batch.near[b];
+    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize) {
         let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
         let grains = Grains::<L>::of(view, &block.i, &block.j, lane);
-        let (normal, overlap) = (V3::<L>::load(&near.normal, lane), L::load(&near.overlap, lane));
+        let (normal, overlap) = (V3::<L>::load(&way.normal, lane), L::load(&way.overlap, lane));
         let root = (r_eff * overlap).sqrt();
         let distance = radius[0] + radius[1] - overlap;
         let [velocity, _] = L::relative(view.twist, grains.j, grains.i);
@@ -257,7 +229,7 @@ impl<const SIZES: bool> Resist for Frictionless<'_, SIZES> {
         let force = view.law.frictionless(overlap, root, m_eff, relative.dot(normal));
         root.store(&mut block.root, lane);
         let touching = overlap.gt(L::splat(0.0));
-        V3::select(touching, normal.scale(force), V3::splat(0.0)).store(&mut batch.force[b], lane);
+        V3::select(touching, normal.scale(force), V3::splat(0.0)).store(&mut way.force, lane);
     }
 }
 
@@ -277,18 +249,10 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
     const SIZES: bool = SIZES;
 
     #[inline(always)]
-    fn resist<L: Lanes>(
-        view: &View<'_>,
-        block: &mut Block,
-        sizes: Option<&Sizes>,
-        batch: &mut Batch,
-        b: usize,
-        lane: usize,
-    ) {
-        let near = &batch.near[b];
+    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize) {
         let (half, none) = (L::splat(0.5), V3::splat(0.0));
         let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
-        let (normal, overlap) = (V3::<L>::load(&near.normal, lane), L::load(&near.overlap, lane));
+        let (normal, overlap) = (V3::<L>::load(&way.normal, lane), L::load(&way.overlap, lane));
         let (root, was) = ((r_eff * overlap).sqrt(), L::load(&block.root, lane));
         let lever = [half.mul_sub_from(overlap, radius[0]), half.mul_sub_from(overlap, radius[1])];
         let grains = Grains::<L>::of(view, &block.i, &block.j, lane);
@@ -302,7 +266,7 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
         let distance = radius[0] + radius[1] - overlap;
         let touch = Touch {
             normal,
-            inverse_distance: L::load(&near.inverse_distance, lane),
+            inverse_distance: L::load(&way.inverse_distance, lane),
             overlap,
             root,
             unloading: L::select(was.gt(root), root / was, L::splat(1.0)),
@@ -319,15 +283,15 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
             V3::select(touching, forces.history, none).store(&mut block.history, lane);
         }
         let force = forces.tangential.from_scaled(normal, forces.normal);
-        V3::select(touching, force, none).store(&mut batch.force[b], lane);
+        V3::select(touching, force, none).store(&mut way.force, lane);
         let moment = V3::select(touching, normal.cross(forces.tangential), none);
         // One size, one lever: taken into the moment here. Else each grain applies its own.
         if SIZES {
-            moment.store(&mut batch.moment[b], lane);
-            lever[1].store(&mut batch.levers[b][0], lane);
-            lever[0].store(&mut batch.levers[b][1], lane);
+            moment.store(&mut way.moment, lane);
+            lever[1].store(&mut way.levers[0], lane);
+            lever[0].store(&mut way.levers[1], lane);
         } else {
-            moment.scale(lever[0]).store(&mut batch.moment[b], lane);
+            moment.scale(lever[0]).store(&mut way.moment, lane);
         }
     }
 }

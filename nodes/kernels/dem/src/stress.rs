@@ -42,20 +42,24 @@ impl Seen {
     }
 }
 
-/// Adds what pairs across the faces do: `force` is that on their second grains, block by block from slot `from` on.
+/// Adds what pairs of block `b` do across the faces, with `force` on their second grains. Returns what is left of
+/// `crossing`.
 #[inline(always)]
-pub(crate) fn cross(
+pub(crate) fn cross<'a>(
     seen: &mut Seen,
-    crossing: &[Crossing],
-    from: usize,
+    mut crossing: &'a [Crossing],
+    b: usize,
     shift: &[Quad],
-    force: &[[[f64; BLOCK]; 3]],
-) {
-    for c in crossing {
-        let (block, lane) = ((c.slot as usize - from) / BLOCK, c.slot as usize % BLOCK);
-        let f = &force[block];
-        seen.add([f[0][lane], f[1][lane], f[2][lane]], &shift[c.image as usize]);
+    force: &[[f64; BLOCK]; 3],
+) -> &'a [Crossing] {
+    while let Some((c, rest)) = crossing.split_first()
+        && c.slot as usize / BLOCK == b
+    {
+        let lane = c.slot as usize % BLOCK;
+        seen.add([force[0][lane], force[1][lane], force[2][lane]], &shift[c.image as usize]);
+        crossing = rest;
     }
+    crossing
 }
 
 /// Σ F ⊗ x over some grains.
