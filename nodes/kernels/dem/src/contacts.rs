@@ -1,15 +1,12 @@
 //! Pairs that touch or soon may, eight to a block, with the history of their contacts.
 
-use crate::lanes::{BLOCK, Quad, V3};
+use crate::lanes::{BLOCK, CHUNK, Quad, V3};
 use crate::pass::Chunk;
-use crate::sums::{Serial, Sums};
 use crate::state::{State, row, vector};
+use crate::sums::{Serial, Sums};
 use grains::material::effective_radius;
 use grains::{Cell, Contact, Packing, Vec3};
 use std::collections::HashMap;
-
-/// Grains in a chunk: the unit of work of a thread, and of every sum over contacts.
-pub(crate) const CHUNK: usize = 256;
 
 /// The distinct periodic images in use, with their shifts in the present cell.
 #[derive(Clone, Debug)]
@@ -65,8 +62,7 @@ pub(crate) struct Block {
     pub(crate) i: [u32; BLOCK],
     pub(crate) j: [u32; BLOCK],
     pub(crate) image: [u32; BLOCK],
-    /// Rows, among those that the chunk adds to, for what acts on `i` and on `j`.
-    pub(crate) from: [u32; BLOCK],
+    /// Row, among those that the chunk adds to, for what acts on `j`. That for `i` is its place in the chunk.
     pub(crate) to: [u32; BLOCK],
 }
 
@@ -296,7 +292,6 @@ impl Builder {
             }
             (block.i[lane], block.j[lane]) = (pair.i, pair.j);
             (block.image[lane], block.to[lane]) = (pair.image, to);
-            block.from[lane] = (i % CHUNK) as u32;
         }
         if let Some(sizes) = c.sizes.last_mut() {
             let (r_i, r_j) = (state.radius[i], state.radius[j]);
@@ -315,7 +310,6 @@ impl Builder {
             i: [grain; BLOCK],
             j: [grain; BLOCK],
             image: [NOWHERE; BLOCK],
-            from: [(i % CHUNK) as u32; BLOCK],
             to: [(i % CHUNK) as u32; BLOCK],
         });
         if !self.equal_sized {

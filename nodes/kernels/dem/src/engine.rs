@@ -157,7 +157,8 @@ impl Engine {
     fn with(state: State, contacts: Contacts, setting: Setting) -> Self {
         let (found, drawn) = (Approach::new(setting.skin), Approach::new(setting.skin));
         let (compute, neighbours) = (Compute::default(), Neighbours::default());
-        let mut engine = Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false, ready: false };
+        let mut engine =
+            Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false, ready: false };
         engine.set(setting);
         engine
     }

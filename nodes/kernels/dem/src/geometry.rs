@@ -1,8 +1,8 @@
 //! Where pairs are and whether they touch.
 
 use crate::contacts::{Block, Sizes};
-use crate::lanes::{Lanes, Quad, Rows, V3};
 use crate::lanes::{BLOCK, Octad};
+use crate::lanes::{Lanes, Quad, Rows, V3};
 use crate::law::Law;
 
 /// What all pairs are seen from.
@@ -66,12 +66,8 @@ impl<L: Lanes> Geometry<L> {
         let grains = Grains::of(view, &block.i, &block.j, lane);
         let image = Rows::new(&block.image, lane, view.shift.len());
         let radius = match sizes {
-            Some(s) if SIZES => {
-                [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)]
-            }
-            _ => {
-                [L::splat(view.equal.radius); 2]
-            }
+            Some(s) if SIZES => [L::load(&s.radius_i, lane), L::load(&s.radius_j, lane)],
+            _ => [L::splat(view.equal.radius); 2],
         };
         let apart = L::difference(view.position, grains.j, grains.i);
         let branch = apart + L::rows(view.shift, image);

@@ -9,6 +9,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Contacts in a block.
 pub(crate) const BLOCK: usize = 8;
 
+/// Grains in a chunk: the unit of work of a thread, and of every sum over contacts.
+pub(crate) const CHUNK: usize = 256;
+
 /// A row of a table of vectors: x, y, z and a spare.
 pub(crate) type Quad = [f64; 4];
 
@@ -107,7 +110,7 @@ pub trait Lanes:
     /// Writes three components a lane to rows `lane..lane + WIDTH`.
     fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize);
     /// Adds what pairs do to their grains, pair after pair: force and moment to row `to` of the sums, the opposite force
-    /// and the same moment to row `from`. Of the eight components three are the force and, where `TURN`, three from the
+    /// and the same moment to row `from` modulo [`CHUNK`]. Of the eight components three are the force and, where `TURN`, three from the
     /// fifth on the moment. Where `LEVERS`, the fourth is the lever of the moment on `to` and the eighth that on `from`.
     fn scatter<const TURN: bool, const LEVERS: bool>(
         components: [Self; 8],
@@ -269,7 +272,7 @@ impl Lanes for f64 {
                 second[4 + k] += if LEVERS { c[4 + k] * c[3] } else { c[4 + k] };
             }
         }
-        let first = &mut sums[from.number(0)].0;
+        let first = &mut sums[from.number(0) % CHUNK].0;
         for k in 0..3 {
             first[k] -= c[k];
             if TURN {

@@ -3,8 +3,8 @@
 use crate::compute::Compute;
 use crate::contacts::{Block, Contacts, Pair, Sizes};
 use crate::error::DemError;
-use crate::lanes::{BLOCK, Lanes, V3, Octad};
 use crate::geometry::{Geometry, View};
+use crate::lanes::{BLOCK, Lanes, Octad, V3};
 use crate::simd::Kernel;
 use crate::state::State;
 use grains::Mat3;

@@ -89,7 +89,13 @@ trait Resist {
     const SIZES: bool;
 
     /// Second stage: what the contact law says about some lanes of a block.
-    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize);
+    fn resist<L: Lanes>(
+        view: &View<'_>,
+        block: &mut Block,
+        sizes: Option<&Sizes>,
+        way: &mut Way,
+        lane: usize,
+    );
 }
 
 /// All pairs of a chunk.
@@ -117,7 +123,7 @@ fn pass<R: Resist, L: Lanes>(view: &View<'_>, chunk: Chunk<'_>, look: bool) -> S
         located = u + 1 < end && locate::<R, L>(view, blocks, sizes, &mut ways, u + 1);
         if before {
             let (b, lane) = ((u - 1) / lots, (u - 1) % lots * L::WIDTH);
-            act::<R, L>(&blocks[b], &ways[b % 2], lane, sums);
+            act::<R, L>(view.position.len(), &blocks[b], &ways[b % 2], lane, sums);
         }
         acted = resisted;
         if u > 0 && u % lots == 0 {
@@ -128,6 +134,7 @@ fn pass<R: Resist, L: Lanes>(view: &View<'_>, chunk: Chunk<'_>, look: bool) -> S
             if ask && let Some(ahead) = blocks.get(b + AHEAD) {
                 L::prefetch(view.position, &ahead.j);
                 L::prefetch(view.twist, &ahead.j);
+                L::prefetch(sums, &ahead.to);
             }
         }
     }
@@ -169,10 +176,10 @@ fn locate<R: Resist, L: Lanes>(
 
 /// Last stage: forces and moments on grains.
 #[inline(always)]
-fn act<R: Resist, L: Lanes>(block: &Block, way: &Way, lane: usize, sums: &mut [Octad]) {
+fn act<R: Resist, L: Lanes>(grains: usize, block: &Block, way: &Way, lane: usize, sums: &mut [Octad]) {
     let (rows, zero) = (sums.len(), L::splat(0.0));
     let to = Rows::<L>::new(&block.to, lane, rows);
-    let from = Rows::<L>::new(&block.from, lane, rows);
+    let from = Rows::<L>::new(&block.i, lane, grains);
     let f = V3::<L>::load(&way.force, lane);
     let m = if R::TURN { V3::<L>::load(&way.moment, lane) } else { V3::splat(0.0) };
     let mut levers = [zero; 2];
@@ -218,7 +225,13 @@ impl<const SIZES: bool> Resist for Frictionless<'_, SIZES> {
     const SIZES: bool = SIZES;
 
     #[inline(always)]
-    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize) {
+    fn resist<L: Lanes>(
+        view: &View<'_>,
+        block: &mut Block,
+        sizes: Option<&Sizes>,
+        way: &mut Way,
+        lane: usize,
+    ) {
         let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
         let grains = Grains::<L>::of(view, &block.i, &block.j, lane);
         let (normal, overlap) = (V3::<L>::load(&way.normal, lane), L::load(&way.overlap, lane));
@@ -249,7 +262,13 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
     const SIZES: bool = SIZES;
 
     #[inline(always)]
-    fn resist<L: Lanes>(view: &View<'_>, block: &mut Block, sizes: Option<&Sizes>, way: &mut Way, lane: usize) {
+    fn resist<L: Lanes>(
+        view: &View<'_>,
+        block: &mut Block,
+        sizes: Option<&Sizes>,
+        way: &mut Way,
+        lane: usize,
+    ) {
         let (half, none) = (L::splat(0.5), V3::splat(0.0));
         let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(view, sizes, lane);
         let (normal, overlap) = (V3::<L>::load(&way.normal, lane), L::load(&way.overlap, lane));

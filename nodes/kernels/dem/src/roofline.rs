@@ -1,7 +1,7 @@
 //! What the contact law asks of a processor, and what the processor has to give: for benchmarks.
 
 use crate::engine::{Engine, Features, Setting, TimeStep};
-use crate::lanes::{BLOCK, Lanes, Octad, Quad, Rows, V3};
+use crate::lanes::{BLOCK, CHUNK, Lanes, Octad, Quad, Rows, V3};
 use crate::pass::{Frictional, Frictionless};
 use crate::simd::{Kernel, Simd};
 use crate::sweep;
@@ -115,7 +115,7 @@ impl Lanes for Counted {
         // One vector on each of two grains, or two with their levers.
         let operations = 6 * (1 + u64::from(TURN) * (1 + u64::from(LEVERS)));
         OPERATIONS.set(OPERATIONS.get() + operations);
-        for (row, sign) in [(to.number(0), 1.0), (from.number(0), -1.0)] {
+        for (row, sign) in [(to.number(0), 1.0), (from.number(0) % CHUNK, -1.0)] {
             for k in 0..3 {
                 sums[row].0[k] += sign * c[k].0;
                 sums[row].0[4 + k] += c[4 + k].0;

@@ -5,8 +5,7 @@
 //! chunk has one of its own for every pair with another chunk, and the sum is made when all are done. The bits are the
 //! same.
 
-use crate::contacts::CHUNK;
-use crate::lanes::{Lanes, Octad, Row};
+use crate::lanes::{CHUNK, Lanes, Octad, Row};
 use crate::simd::{Kernel, Simd};
 use std::ops::Range;
 
@@ -89,7 +88,13 @@ impl Sums {
     }
 
     /// What acts on the grains `range` of chunk `c`, once all were passed; `room` is used where it has to be summed.
-    pub(crate) fn total<'a>(&'a self, c: usize, range: Range<usize>, room: &'a mut Room, simd: Simd) -> &'a [Octad] {
+    pub(crate) fn total<'a>(
+        &'a self,
+        c: usize,
+        range: Range<usize>,
+        room: &'a mut Room,
+        simd: Simd,
+    ) -> &'a [Octad] {
         match self {
             Self::Serial(s) => &s.total[range],
             Self::Parallel(p) => {

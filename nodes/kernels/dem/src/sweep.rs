@@ -6,11 +6,11 @@
 //! move. The bits are the same.
 
 use crate::compute::Compute;
-use crate::contacts::{CHUNK, Contacts};
+use crate::contacts::Contacts;
 use crate::engine::{Features, Setting};
 use crate::geometry::{Equal, View};
 use crate::integrate::{self, Grains, Motion, Moved, Parts, Whole};
-use crate::lanes::{Octad, Quad};
+use crate::lanes::{CHUNK, Octad, Quad};
 use crate::law::Law;
 use crate::pass::{Chunk, Frictional, Frictionless};
 use crate::simd::Simd;

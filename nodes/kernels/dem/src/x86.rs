@@ -1,6 +1,6 @@
 //! Lanes of x86-64 processors. The only file with `unsafe` in it: intrinsics need it.
 
-use crate::lanes::{BLOCK, Lanes, Octad, Quad, Row, Rows, V3};
+use crate::lanes::{BLOCK, CHUNK, Lanes, Octad, Quad, Row, Rows, V3};
 use crate::simd::Kernel;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -272,7 +272,7 @@ impl Lanes for Avx2 {
             if TURN {
                 (Self::load(second, 4) + on_second).store(second, 4);
             }
-            let first = &mut sums[from.number(k)].0;
+            let first = &mut sums[from.number(k) % CHUNK].0;
             (Self::load(first, 0) - force).store(first, 0);
             if TURN {
                 (Self::load(first, 4) + on_first).store(first, 4);
@@ -435,7 +435,7 @@ impl Lanes for Avx512 {
         to: Rows<'_, Self>,
         sums: &mut [Octad],
     ) {
-        assert!(sums.len() >= from.below().max(to.below()));
+        assert!(sums.len() >= to.below());
         if !TURN {
             return push([c[0], c[1], c[2], c[3]], from, to, sums);
         }
@@ -449,10 +449,10 @@ impl Lanes for Avx512 {
             let second = unsafe { &mut sums.get_unchecked_mut(to.number(k)).0 };
             let by = if LEVERS { row * same.with_upper(row, 3) } else { row };
             (Self::load(second, 0) + by).store(second, 0);
-            // SAFETY: asserted.
-            let first = unsafe { &mut sums.get_unchecked_mut(from.number(k)).0 };
+            let first = &mut sums[from.number(k) % CHUNK].0;
             let was = Self::load(first, 0);
-            let now = if LEVERS { was + row * opposite.with_upper(row, 7) } else { row.mul_add(opposite, was) };
+            let now =
+                if LEVERS { was + row * opposite.with_upper(row, 7) } else { row.mul_add(opposite, was) };
             now.store(first, 0);
         }
     }
@@ -489,10 +489,7 @@ fn columns_of(r: [Avx512; 8]) -> [V3<Avx512>; 2] {
         let ab = _mm512_shuffle_f64x2::<0x88>(odd[0], odd[1]);
         let cd = _mm512_shuffle_f64x2::<0x88>(odd[2], odd[3]);
         let (y, v) = (_mm512_shuffle_f64x2::<0x88>(ab, cd), _mm512_shuffle_f64x2::<0xDD>(ab, cd));
-        [
-            V3 { x: Avx512(x), y: Avx512(y), z: Avx512(z) },
-            V3 { x: Avx512(u), y: Avx512(v), z: Avx512(w) },
-        ]
+        [V3 { x: Avx512(x), y: Avx512(y), z: Avx512(z) }, V3 { x: Avx512(u), y: Avx512(v), z: Avx512(w) }]
     }
 }
 
@@ -564,7 +561,7 @@ fn push(force: [Avx512; 4], from: Rows<'_, Avx512>, to: Rows<'_, Avx512>, sums: 
         let force = half(&pairs, k);
         let second = &mut sums[to.number(k)].0;
         (Avx2::load(second, 0) + force).store(second, 0);
-        let first = &mut sums[from.number(k)].0;
+        let first = &mut sums[from.number(k) % CHUNK].0;
         (Avx2::load(first, 0) - force).store(first, 0);
     }
 }
