@@ -62,7 +62,8 @@ pub struct Phase {
     pub damping: f64,
     /// Drag on velocities relative to the affine motion, 1/s.
     pub drag: f64,
-    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever.
+    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever, which no contact resists. A relaxing
+    /// or servoed phase that names none has √(G/ρ)/(1000 d): spins die away while a shear wave crosses a thousand grains.
     pub spin_drag: f64,
     /// Solver steps between two requests; in an event-driven gas a step is a mean free time.
     pub control_period: u32,
