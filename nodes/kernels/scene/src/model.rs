@@ -26,7 +26,8 @@ pub struct Scene {
 /// Numerical settings of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numerics {
-    /// Share of the stability bound that the time step takes, in (0, 1].
+    /// Share of the stability bound that the time step takes, in (0, 1]. What it leaves is for contacts that stiffen until
+    /// the next look at them, 200 steps later: without damping, 1 heats packings that are pressed at 40 1/s or faster.
     pub time_step_safety: f64,
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
