@@ -26,7 +26,8 @@ pub struct Scene {
 /// Numerical settings of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numerics {
-    /// Share of the stability bound that the time step takes, in (0, 1].
+    /// Share of the stability bound that the time step takes, in (0, 1]. What it leaves is for contacts that stiffen until
+    /// the next look at them, 200 steps later: without damping, 1 heats packings that are pressed at 40 1/s or faster.
     pub time_step_safety: f64,
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
@@ -62,7 +63,8 @@ pub struct Phase {
     pub damping: f64,
     /// Drag on velocities relative to the affine motion, 1/s.
     pub drag: f64,
-    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever.
+    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever, which no contact resists. A relaxing
+    /// or servoed phase that names none has √(G/ρ)/(1000 d): spins die away while a shear wave crosses a thousand grains.
     pub spin_drag: f64,
     /// Solver steps between two requests; in an event-driven gas a step is a mean free time.
     pub control_period: u32,

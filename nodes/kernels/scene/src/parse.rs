@@ -50,7 +50,7 @@ fn read_scene(r: &mut Reader<'_>) -> Scene {
         });
     let material = r.sub("material", read_material).unwrap_or(Material::GLASS);
     let numerics = r.sub("numerics", read_numerics).unwrap_or_default();
-    let phases = phases::read(r);
+    let phases = phases::read(r, phases::spin_drag(&material, diameter));
     Scene { name, description, seed, grains, diameter, material, numerics, phases }
 }
 

@@ -87,6 +87,22 @@ fn a_servo_phase_is_normalised_unless_it_says_otherwise() {
 }
 
 #[test]
+fn spins_are_damped_where_grains_are_to_come_to_rest_unless_the_scene_says_otherwise() {
+    let drags = |text: &str| -> Vec<f64> {
+        Scene::parse(text).unwrap().phases[..4].iter().map(|p| p.spin_drag).collect()
+    };
+    // √(G/ρ)/(1000 d) of glass: gas, relax, strain, servo.
+    let expected = (29e9f64 / 2500.0).sqrt() / 0.2;
+    for (found, expected) in drags(GOOD).iter().zip([0.0, expected, 0.0, expected]) {
+        assert!((found - expected).abs() <= 1e-9 * expected, "{found} {expected}");
+    }
+    let larger = GOOD.replace("diameter = 2e-4", "diameter = 2e-3\n[material]\ndensity = 1e4");
+    assert!((drags(&larger)[3] / expected - 0.05).abs() < 1e-12);
+    let own = GOOD.replace("response_time", "spin_drag = 0\nresponse_time");
+    assert_eq!(drags(&own)[3], 0.0);
+}
+
+#[test]
 fn every_fault_is_reported_at_once_with_its_place() {
     let bad = GOOD
         .replace("diameter = 2e-4", "diameter = -1\ncolour = 'red'")
