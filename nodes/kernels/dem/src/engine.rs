@@ -262,8 +262,9 @@ impl Engine {
         self.drive(steps, None)
     }
 
-    /// As many steps as told; `each` is given the Love–Weber stress (Pa, positive in compression) at the end of each,
-    /// which costs less than a [`Snapshot`].
+    /// As many steps as told; `each` is given the stress at the end of each (Pa, positive in compression): Love–Weber of
+    /// all contact forces, dashpots included, which is the momentum that contacts carry. Where nothing moves it is that
+    /// of a [`Snapshot`], and it costs far less.
     pub fn run_measured(&mut self, steps: u32, mut each: impl FnMut(SymTensor)) -> Result<Mat3, DemError> {
         self.drive(steps, Some(&mut each))
     }

@@ -364,10 +364,10 @@ impl<L: Lanes> V3<L> {
         )
     }
 
-    /// `v` × `by` − `self`.
+    /// `self` × `by` − `less`.
     #[inline(always)]
-    pub(crate) fn from_scaled(self, v: Self, by: L) -> Self {
-        Self::new(v.x.mul_sub(by, self.x), v.y.mul_sub(by, self.y), v.z.mul_sub(by, self.z))
+    pub(crate) fn scale_less(self, by: L, less: Self) -> Self {
+        Self::new(self.x.mul_sub(by, less.x), self.y.mul_sub(by, less.y), self.z.mul_sub(by, less.z))
     }
 
     /// `self` + `v` × `by`.

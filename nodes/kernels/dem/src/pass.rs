@@ -301,7 +301,7 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
         if ADVANCE {
             V3::select(touching, forces.history, none).store(&mut block.history, lane);
         }
-        let force = forces.tangential.from_scaled(normal, forces.normal);
+        let force = normal.scale_less(forces.normal, forces.tangential);
         V3::select(touching, force, none).store(&mut way.force, lane);
         let moment = V3::select(touching, normal.cross(forces.tangential), none);
         // One size, one lever: taken into the moment here. Else each grain applies its own.

@@ -19,19 +19,17 @@ impl Seen {
     /// This, then what was seen next.
     #[inline(always)]
     pub(crate) fn then(&mut self, next: &Self) {
-        for k in 0..3 {
-            for c in 0..4 {
-                self.virial[k][c] += next.virial[k][c];
-            }
+        for (row, next) in self.virial.iter_mut().zip(next.virial) {
+            row.iter_mut().zip(next).for_each(|(sum, next)| *sum += next);
         }
     }
 
     /// Adds f ⊗ l.
     #[inline(always)]
     fn add(&mut self, f: [f64; 3], l: &Quad) {
-        for k in 0..3 {
-            for c in 0..4 {
-                self.virial[k][c] = f[k].mul_add(l[c], self.virial[k][c]);
+        for (row, f) in self.virial.iter_mut().zip(f) {
+            for (sum, l) in row.iter_mut().zip(l) {
+                *sum = f.mul_add(*l, *sum);
             }
         }
     }

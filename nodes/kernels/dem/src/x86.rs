@@ -65,6 +65,7 @@ fn rows<L: Lanes, T: Copy, const N: usize>(table: &[T], at: Rows<'_, L>, second:
 
 /// The same place, of which the compiler does not know that it was read before.
 #[inline(always)]
+#[allow(clippy::pointers_in_nomem_asm_block)] // nothing is read or written through it
 fn unseen<T>(of: &T) -> &T {
     let mut place: *const T = of;
     // SAFETY: nothing is done to it.
@@ -424,8 +425,8 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn store_rows([x, y, z]: [Self; 3], to: &mut [Octad; BLOCK], _: usize) {
         let pairs = halves([x, y, z, Self::splat(0.0)]);
-        for k in 0..BLOCK {
-            half(&pairs, k).store(&mut to[k].0, 0);
+        for (k, row) in to.iter_mut().enumerate() {
+            half(&pairs, k).store(&mut row.0, 0);
         }
     }
     #[inline(always)]

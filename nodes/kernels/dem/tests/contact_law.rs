@@ -50,7 +50,7 @@ impl Pair {
             m_eff: 1.0,
             relative: lanes((branch - self.branch) / DT),
             rolling: lanes(spin * distance),
-            spin: lanes(spin),
+            spin: lanes(2.0 * spin),
         };
         let f = self.law.frictional::<f64, true, true, RESCALED>(&touch, lanes(self.history), DT);
         (self.history, self.root, self.branch) = (vector(f.history), touch.root, branch);

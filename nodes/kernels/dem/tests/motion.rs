@@ -111,6 +111,31 @@ fn a_cubic_lattice_has_the_stress_of_its_three_contacts() {
 }
 
 #[test]
+fn the_stress_along_the_way_is_the_momentum_that_contacts_carry_dashpots_included() {
+    let edge = 20.0 * RADIUS;
+    // Across a face of the cell, and not.
+    for x in [[0.0, 1.9998 * RADIUS], [0.02 * RADIUS, edge - 1.9798 * RADIUS]] {
+        let positions = x.map(|x| Vec3::new(x, 0.3 * RADIUS, -0.2 * RADIUS));
+        let damped = Setting { damping: 0.5, ..setting(0.3, 1e-9) };
+        let cell = Cell::cube(edge).unwrap();
+        let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, damped);
+        let towards = if x[1] < 0.5 * edge { 0.5 } else { -0.5 };
+        e.set_velocities(&[Vec3::x() * towards, -Vec3::x() * towards]);
+        let mut stress = 0.0;
+        e.run_measured(10, |s| stress = s.xx).unwrap();
+        let elastic = e.snapshot().unwrap().stress.tensor.xx;
+        let p = e.packing(Mat3::identity());
+        e.step().unwrap();
+        // F = m dv/dt over the step that follows.
+        let after = e.packing(Mat3::identity()).velocities[0];
+        let force = p.material.sphere_mass(RADIUS) * (after.x - p.velocities[0].x).abs() / 1e-9;
+        let expected = force * (2.0 * RADIUS - p.contacts[0].overlap) / edge.powi(3);
+        assert!((stress / expected - 1.0).abs() < 1e-9, "{stress} {expected}");
+        assert!(stress > 1.2 * elastic, "{stress} {elastic}");
+    }
+}
+
+#[test]
 fn affine_shear_loads_tangential_springs_across_periodic_images() {
     let overlap = 4e-8;
     let (mut e, edge) = cubic(overlap, f64::INFINITY);

@@ -102,17 +102,24 @@ fn steps_one_by_one_and_steps_together_are_the_same() {
 }
 
 #[test]
-fn the_stress_measured_along_the_way_is_that_of_a_snapshot() {
-    let mut engine = start(300, setting(0.3, Tangential::Rescaled), true, Compute::default());
-    let mut measured = Vec::new();
-    engine.run_measured(3000, |s| measured.push(s.voigt())).unwrap();
-    assert_eq!(measured.len(), 3000);
-    let seen = engine.snapshot().unwrap().stress.tensor.voigt();
-    let size = seen.iter().fold(0.0f64, |a, s| a.max(s.abs()));
-    assert!(size > 0.0);
-    for (a, b) in measured[2999].iter().zip(seen) {
-        assert!((a - b).abs() < 1e-12 * size, "{a} {b}");
+fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damped() {
+    let undamped = Setting { damping: 0.0, ..setting(0.3, Tangential::Rescaled) };
+    let compute = |threads| Compute::new(Simd::best(), threads).unwrap();
+    let mut ends = Vec::new();
+    for threads in [1, 2] {
+        let mut engine = start(600, undamped, true, compute(threads));
+        let mut measured = Vec::new();
+        engine.run_measured(3000, |s| measured.push(s.voigt())).unwrap();
+        assert_eq!(measured.len(), 3000);
+        let seen = engine.snapshot().unwrap().stress.tensor.voigt();
+        let size = seen.iter().fold(0.0f64, |a, s| a.max(s.abs()));
+        assert!(size > 0.0);
+        for (a, b) in measured[2999].iter().zip(seen) {
+            assert!((a - b).abs() < 1e-12 * size, "{a} {b}");
+        }
+        ends.push(measured);
     }
+    assert!(ends[0] == ends[1], "whatever the threads");
 }
 
 #[test]

@@ -118,6 +118,10 @@ fn a_box_barely_above_two_diameters_is_a_box_like_any_other() {
             last = p.contacts.len();
         }
     }
+    // In a contact, velocities half a step behind make energy seem to swing: look where nothing touches.
+    while !packing(&e).contacts.is_empty() {
+        e.step().unwrap();
+    }
     let p = packing(&e);
     assert!(collisions > 50, "{collisions} collisions");
     assert!(momentum(&p).norm() < 1e-12 * 5.0 * GLASS.sphere_mass(RADIUS) * 5.0);
