@@ -4,7 +4,7 @@
 //! estimate, so the same contact gives the same bits in every width and on every processor. `f64` is the one-lane form.
 
 use std::marker::PhantomData;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 /// Contacts in a block.
 pub(crate) const BLOCK: usize = 8;
@@ -56,7 +56,7 @@ impl<'a, L: Lanes> Rows<'a, L> {
 
 /// Some lanes of 64-bit floats.
 pub trait Lanes:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// Lanes in one value; divides 8.
     const WIDTH: usize;
@@ -107,8 +107,6 @@ pub trait Lanes:
     fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self>;
     /// Asks for rows of a table to be brought near, where the processor can be asked.
     fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]);
-    /// Writes three components a lane to rows `lane..lane + WIDTH`.
-    fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize);
     /// Adds what pairs do to their grains, pair after pair: force and moment to row `to` of the sums, the opposite force
     /// and the same moment to row `from` modulo [`CHUNK`]. Of the eight components three are the force and, where `TURN`, three from the
     /// fifth on the moment. Where `LEVERS`, the fourth is the lever of the moment on `to` and the eighth that on `from`.
@@ -119,7 +117,16 @@ pub trait Lanes:
         sums: &mut [Octad],
     );
     /// Adds eight components to `sum`, lane after lane.
-    fn fold(components: [Self; 8], sum: &mut [f64; 8]);
+    #[inline(always)]
+    fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
+        let mut parts = [[0.0; BLOCK]; 8];
+        for (part, component) in parts.iter_mut().zip(components) {
+            component.store(part, 0);
+        }
+        for (sum, part) in sum.iter_mut().zip(parts) {
+            part[..Self::WIDTH].iter().for_each(|p| *sum += p);
+        }
+    }
 }
 
 /// Four numbers of one grain.
@@ -255,10 +262,6 @@ impl Lanes for f64 {
     #[inline(always)]
     fn prefetch<T>(_: &[T], _: &[u32; BLOCK]) {}
     #[inline(always)]
-    fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize) {
-        to[lane].0[..3].copy_from_slice(&components);
-    }
-    #[inline(always)]
     fn scatter<const TURN: bool, const LEVERS: bool>(
         c: [Self; 8],
         from: Rows<'_, Self>,
@@ -278,12 +281,6 @@ impl Lanes for f64 {
             if TURN {
                 first[4 + k] += if LEVERS { c[4 + k] * c[7] } else { c[4 + k] };
             }
-        }
-    }
-    #[inline(always)]
-    fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
-        for (s, c) in sum.iter_mut().zip(components) {
-            *s += c;
         }
     }
 }

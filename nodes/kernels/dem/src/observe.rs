@@ -4,7 +4,7 @@ use crate::compute::Compute;
 use crate::contacts::{Block, Contacts, Pair, Sizes};
 use crate::error::DemError;
 use crate::geometry::{Geometry, View};
-use crate::lanes::{BLOCK, Lanes, Octad, V3};
+use crate::lanes::{BLOCK, Lanes, V3};
 use crate::simd::Kernel;
 use crate::state::State;
 use grains::Mat3;
@@ -38,7 +38,7 @@ pub(crate) fn snapshot(
     compute: &Compute,
 ) -> Result<Snapshot, DemError> {
     let friction = view.law.friction > 0.0;
-    let mut rows = vec![[Octad::default(); BLOCK]; contacts.blocks.len()];
+    let mut rows = vec![[[0.0; BLOCK]; 3]; contacts.blocks.len()];
     let mut total = Sums::default();
     let mut rest = rows.as_mut_slice();
     let chunks = contacts.chunks.windows(2).map(|c| {
@@ -74,7 +74,7 @@ pub(crate) fn snapshot(
         solid_fraction: 4.0 / 3.0 * std::f64::consts::PI * solid / volume,
         contacts: bearing.contacts,
         coordination: 2.0 * f64::from(bearing.contacts) / state.grains() as f64,
-        unbalanced: bearing.mean_net_force(contacts, rows.as_flattened()).map_or(1.0, |f| f / mean_force),
+        unbalanced: bearing.mean_net_force(contacts, &rows).map_or(1.0, |f| f / mean_force),
     })
 }
 
@@ -95,7 +95,7 @@ struct Look<'a> {
     blocks: &'a [Block],
     sizes: &'a [Sizes],
     /// Elastic force on the second grain of each slot, N.
-    force: &'a mut [[Octad; BLOCK]],
+    force: &'a mut [[[f64; BLOCK]; 3]],
 }
 
 struct LookAt<'a, const SIZES: bool> {
@@ -132,7 +132,7 @@ impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
             while lane < BLOCK {
                 if let Some(g) = Geometry::<L>::of::<SIZES>(&view, block, sizes.get(b), lane) {
                     // The smaller of two is the larger of their negatives.
-                    let smaller = -(-g.radius[0]).max(-g.radius[1]);
+                    let smaller = zero - (zero - g.radius[0]).max(zero - g.radius[1]);
                     deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
                     let r_eff = match sizes.get(b) {
                         Some(s) if SIZES => L::load(&s.r_eff, lane),
@@ -143,7 +143,7 @@ impl<const SIZES: bool> Kernel for LookAt<'_, SIZES> {
                     let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
                     let f = g.normal.scale(elastic) - V3::load(&block.history, lane);
                     let f = V3::select(g.touching, f, V3::splat(0.0));
-                    L::store_rows([f.x, f.y, f.z], &mut force[b], lane);
+                    f.store(&mut force[b], lane);
                     let l = g.branch;
                     let size = f.dot(f).sqrt();
                     let square = L::select(g.touching, g.distance * g.distance, zero);
@@ -219,13 +219,13 @@ impl Bearing {
     }
 
     /// Mean of the net force, N, given the force on the second grain of each slot; `None` without such grains.
-    fn mean_net_force(&self, contacts: &Contacts, force: &[Octad]) -> Option<f64> {
+    fn mean_net_force(&self, contacts: &Contacts, force: &[[[f64; BLOCK]; 3]]) -> Option<f64> {
         let mut net = vec![[0.0; 3]; self.alive.len()];
-        for (slot, Octad(f)) in force.iter().enumerate() {
+        for slot in 0..contacts.slots() {
             let Some(p) = contacts.pair(slot) else { continue };
-            for k in 0..3 {
-                net[p.i as usize][k] -= f[k];
-                net[p.j as usize][k] += f[k];
+            for (k, f) in force[slot / BLOCK].iter().enumerate() {
+                net[p.i as usize][k] -= f[slot % BLOCK];
+                net[p.j as usize][k] += f[slot % BLOCK];
             }
         }
         let bearing = self.alive.iter().filter(|a| **a).count();

@@ -9,7 +9,7 @@ use grains::{Cell, Material, Vec3};
 use scene::Tangential;
 use std::cell::Cell as Counter;
 use std::hint::black_box;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 thread_local! {
     static OPERATIONS: Counter<u64> = const { Counter::new(0) };
@@ -36,13 +36,6 @@ macro_rules! count {
 }
 
 count!(Add add +, Sub sub -, Mul mul *, Div div /);
-
-impl Neg for Counted {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
 
 impl Lanes for Counted {
     const WIDTH: usize = 1;
@@ -103,9 +96,6 @@ impl Lanes for Counted {
         V3 { x: row[4], y: row[5], z: row[6] }
     }
     fn prefetch<T>(_: &[T], _: &[u32; BLOCK]) {}
-    fn store_rows(components: [Self; 3], to: &mut [Octad; BLOCK], lane: usize) {
-        f64::store_rows(components.map(|c| c.0), to, lane);
-    }
     fn scatter<const TURN: bool, const LEVERS: bool>(
         c: [Self; 8],
         from: Rows<'_, Self>,
@@ -120,11 +110,6 @@ impl Lanes for Counted {
                 sums[row].0[k] += sign * c[k].0;
                 sums[row].0[4 + k] += c[4 + k].0;
             }
-        }
-    }
-    fn fold(components: [Self; 8], sum: &mut [f64; 8]) {
-        for (s, c) in sum.iter_mut().zip(components) {
-            *s = counted(*s + c.0).0;
         }
     }
 }

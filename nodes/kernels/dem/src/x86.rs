@@ -3,7 +3,7 @@
 use crate::lanes::{BLOCK, CHUNK, Lanes, Octad, Quad, Row, Rows, V3};
 use crate::simd::Kernel;
 use std::arch::x86_64::*;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
 // SAFETY, for every block below that only calls arithmetic intrinsics: values of these types are made nowhere but in
 // the two functions at the end of this file, which are entered only after the processor was asked for its features.
@@ -31,20 +31,54 @@ macro_rules! arithmetic {
 arithmetic!(Avx2, Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
 arithmetic!(Avx512, Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512_mul_pd, Div div _mm512_div_pd);
 
-impl Neg for Avx2 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
-    }
-}
-
-impl Neg for Avx512 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
-    }
+/// What both kinds of lanes do in the same way.
+macro_rules! alike {
+    ($splat:ident $fmadd:ident $fmsub:ident $fnmadd:ident $sqrt:ident $max:ident $columns:ident) => {
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self(unsafe { $splat(value) })
+        }
+        #[inline(always)]
+        fn mul_add(self, by: Self, plus: Self) -> Self {
+            Self(unsafe { $fmadd(self.0, by.0, plus.0) })
+        }
+        #[inline(always)]
+        fn mul_sub(self, by: Self, minus: Self) -> Self {
+            Self(unsafe { $fmsub(self.0, by.0, minus.0) })
+        }
+        #[inline(always)]
+        fn mul_sub_from(self, by: Self, from: Self) -> Self {
+            Self(unsafe { $fnmadd(self.0, by.0, from.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { $sqrt(self.0) })
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            Self(unsafe { $max(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
+            unseen(number)
+        }
+        #[inline(always)]
+        fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
+            $columns(rows(table, at, false))
+        }
+        #[inline(always)]
+        fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
+            $columns(less(rows(table, a, false), rows(table, b, false)))
+        }
+        #[inline(always)]
+        fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
+            $columns(rows(table, at, true))
+        }
+        #[inline(always)]
+        fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
+            prefetch(table, rows);
+        }
+    };
 }
 
 /// Four numbers of each of `N` rows of a table, from the first or the fifth on.
@@ -143,19 +177,19 @@ impl Row for Four {
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self(unsafe { _mm256_add_pd(self.0, other.0) })
+        Self((Avx2(self.0) + Avx2(other.0)).0)
     }
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self(unsafe { _mm256_mul_pd(self.0, other.0) })
+        Self((Avx2(self.0) * Avx2(other.0)).0)
     }
     #[inline(always)]
     fn mul_add(self, by: Self, plus: Self) -> Self {
-        Self(unsafe { _mm256_fmadd_pd(self.0, by.0, plus.0) })
+        Self(Avx2(self.0).mul_add(Avx2(by.0), Avx2(plus.0)).0)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+        Self(Avx2(self.0).max(Avx2(other.0)).0)
     }
 }
 
@@ -164,10 +198,8 @@ impl Lanes for Avx2 {
     type Mask = __m256d;
     type Row = Four;
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self(unsafe { _mm256_set1_pd(value) })
-    }
+    alike!(_mm256_set1_pd _mm256_fmadd_pd _mm256_fmsub_pd _mm256_fnmadd_pd _mm256_sqrt_pd _mm256_max_pd columns4);
+
     #[inline(always)]
     fn load(from: &[f64; BLOCK], lane: usize) -> Self {
         Self(Four::load(from, lane).0)
@@ -175,26 +207,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn store(self, to: &mut [f64; BLOCK], lane: usize) {
         Four(self.0).store(to, lane);
-    }
-    #[inline(always)]
-    fn mul_add(self, by: Self, plus: Self) -> Self {
-        Self(unsafe { _mm256_fmadd_pd(self.0, by.0, plus.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, by: Self, minus: Self) -> Self {
-        Self(unsafe { _mm256_fmsub_pd(self.0, by.0, minus.0) })
-    }
-    #[inline(always)]
-    fn mul_sub_from(self, by: Self, from: Self) -> Self {
-        Self(unsafe { _mm256_fnmadd_pd(self.0, by.0, from.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(unsafe { _mm256_max_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn gt(self, other: Self) -> __m256d {
@@ -220,36 +232,9 @@ impl Lanes for Avx2 {
         }
     }
     #[inline(always)]
-    fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
-        unseen(number)
-    }
-    #[inline(always)]
-    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
-        columns4(rows(table, at, false))
-    }
-    #[inline(always)]
-    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
-        columns4(less(rows(table, a, false), rows(table, b, false)))
-    }
-    #[inline(always)]
     fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
         let velocity = columns4(less(rows(table, a, false), rows(table, b, false)));
         [velocity, columns4(both(rows(table, a, true), rows(table, b, true)))]
-    }
-    #[inline(always)]
-    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
-        columns4(rows(table, at, true))
-    }
-    #[inline(always)]
-    fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
-        prefetch(table, rows);
-    }
-    #[inline(always)]
-    fn store_rows([x, y, z]: [Self; 3], to: &mut [Octad; BLOCK], lane: usize) {
-        let rows = transpose([x.0, y.0, z.0, Self::splat(0.0).0]);
-        for k in 0..4 {
-            Self(rows[k]).store(&mut to[lane + k].0, 0);
-        }
     }
     #[inline(always)]
     fn scatter<const TURN: bool, const LEVERS: bool>(
@@ -279,18 +264,6 @@ impl Lanes for Avx2 {
                 (Self::load(first, 4) + on_first).store(first, 4);
             }
         }
-    }
-    #[inline(always)]
-    fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
-        let first = transpose([c[0].0, c[1].0, c[2].0, c[3].0]);
-        let second = transpose([c[4].0, c[5].0, c[6].0, c[7].0]);
-        let (mut low, mut high) = (Self::load(sum, 0), Self::load(sum, 4));
-        for k in 0..4 {
-            low = low + Self(first[k]);
-            high = high + Self(second[k]);
-        }
-        low.store(sum, 0);
-        high.store(sum, 4);
     }
 }
 
@@ -335,10 +308,8 @@ impl Lanes for Avx512 {
     type Mask = __mmask8;
     type Row = Four;
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self(unsafe { _mm512_set1_pd(value) })
-    }
+    alike!(_mm512_set1_pd _mm512_fmadd_pd _mm512_fmsub_pd _mm512_fnmadd_pd _mm512_sqrt_pd _mm512_max_pd columns8);
+
     #[inline(always)]
     fn load(from: &[f64; BLOCK], _: usize) -> Self {
         // SAFETY: a block holds eight numbers.
@@ -348,26 +319,6 @@ impl Lanes for Avx512 {
     fn store(self, to: &mut [f64; BLOCK], _: usize) {
         // SAFETY: a block holds eight numbers.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) };
-    }
-    #[inline(always)]
-    fn mul_add(self, by: Self, plus: Self) -> Self {
-        Self(unsafe { _mm512_fmadd_pd(self.0, by.0, plus.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, by: Self, minus: Self) -> Self {
-        Self(unsafe { _mm512_fmsub_pd(self.0, by.0, minus.0) })
-    }
-    #[inline(always)]
-    fn mul_sub_from(self, by: Self, from: Self) -> Self {
-        Self(unsafe { _mm512_fnmadd_pd(self.0, by.0, from.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
@@ -391,18 +342,6 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
-        unseen(number)
-    }
-    #[inline(always)]
-    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
-        columns8(rows(table, at, false))
-    }
-    #[inline(always)]
-    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
-        columns8(less(rows(table, a, false), rows(table, b, false)))
-    }
-    #[inline(always)]
     fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
         assert!(table.len() >= a.below().max(b.below()));
         let sign = Self(unsafe { _mm512_setr_pd(-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0) });
@@ -415,21 +354,6 @@ impl Lanes for Avx512 {
         columns_of(rows)
     }
     #[inline(always)]
-    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
-        columns8(rows(table, at, true))
-    }
-    #[inline(always)]
-    fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
-        prefetch(table, rows);
-    }
-    #[inline(always)]
-    fn store_rows([x, y, z]: [Self; 3], to: &mut [Octad; BLOCK], _: usize) {
-        let pairs = halves([x, y, z, Self::splat(0.0)]);
-        for (k, row) in to.iter_mut().enumerate() {
-            half(&pairs, k).store(&mut row.0, 0);
-        }
-    }
-    #[inline(always)]
     fn scatter<const TURN: bool, const LEVERS: bool>(
         c: [Self; 8],
         from: Rows<'_, Self>,
@@ -437,13 +361,19 @@ impl Lanes for Avx512 {
         sums: &mut [Octad],
     ) {
         assert!(sums.len() >= to.below());
+        let rows = rows_of(c);
         if !TURN {
-            return push([c[0], c[1], c[2], c[3]], from, to, sums);
+            for k in 0..BLOCK {
+                let second = &mut sums[to.number(k)].0;
+                (Avx2::load(second, 0) + rows[k].lower()).store(second, 0);
+                let first = &mut sums[from.number(k) % CHUNK].0;
+                (Avx2::load(first, 0) - rows[k].lower()).store(first, 0);
+            }
+            return;
         }
         // Spares are left out.
         let same = Self(unsafe { _mm512_setr_pd(1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0) });
         let opposite = Self(unsafe { _mm512_setr_pd(-1.0, -1.0, -1.0, 0.0, 1.0, 1.0, 1.0, 0.0) });
-        let rows = rows_of(c);
         for (k, row) in rows.iter().enumerate() {
             let row = *row;
             // SAFETY: asserted.
@@ -457,18 +387,15 @@ impl Lanes for Avx512 {
             now.store(first, 0);
         }
     }
-    #[inline(always)]
-    fn fold(c: [Self; 8], sum: &mut [f64; 8]) {
-        let rows = rows_of(c);
-        let mut total = Self::load(sum, 0);
-        for row in rows {
-            total = total + row;
-        }
-        total.store(sum, 0);
-    }
 }
 
 impl Avx512 {
+    /// Lanes 0 to 3.
+    #[inline(always)]
+    fn lower(self) -> Avx2 {
+        Avx2(unsafe { _mm512_castpd512_pd256(self.0) })
+    }
+
     /// The number in `column` of `row` in lanes 4, 5 and 6.
     #[inline(always)]
     fn with_upper(self, row: Self, column: i64) -> Self {
@@ -514,23 +441,6 @@ fn rows_of(c: [Avx512; 8]) -> [Avx512; 8] {
     }
 }
 
-/// Four components of eight lanes: the lanes by twos, 0 and 2, 1 and 3, 4 and 6, 5 and 7.
-#[inline(always)]
-fn halves([x, y, z, w]: [Avx512; 4]) -> [__m512d; 4] {
-    unsafe {
-        let first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
-        let second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-        let (even_xy, odd_xy) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
-        let (even_zw, odd_zw) = (_mm512_unpacklo_pd(z.0, w.0), _mm512_unpackhi_pd(z.0, w.0));
-        [
-            _mm512_permutex2var_pd(even_xy, first, even_zw),
-            _mm512_permutex2var_pd(odd_xy, first, odd_zw),
-            _mm512_permutex2var_pd(even_xy, second, even_zw),
-            _mm512_permutex2var_pd(odd_xy, second, odd_zw),
-        ]
-    }
-}
-
 /// Four by four, of quarters of a register.
 #[inline(always)]
 fn quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
@@ -543,27 +453,6 @@ fn quarters([a, b, c, d]: [__m512d; 4]) -> [__m512d; 4] {
             _mm512_shuffle_f64x2::<0x88>(ab2, cd2),
             _mm512_shuffle_f64x2::<0xDD>(ab2, cd2),
         ]
-    }
-}
-
-/// Lane `k` of [`halves`].
-#[inline(always)]
-fn half(pairs: &[__m512d; 4], k: usize) -> Avx2 {
-    let pair = pairs[[0, 1, 0, 1, 2, 3, 2, 3][k]];
-    let upper = k & 2 != 0;
-    Avx2(unsafe { if upper { _mm512_extractf64x4_pd::<1>(pair) } else { _mm512_castpd512_pd256(pair) } })
-}
-
-/// Adds forces alone.
-#[inline(always)]
-fn push(force: [Avx512; 4], from: Rows<'_, Avx512>, to: Rows<'_, Avx512>, sums: &mut [Octad]) {
-    let pairs = halves(force);
-    for k in 0..BLOCK {
-        let force = half(&pairs, k);
-        let second = &mut sums[to.number(k)].0;
-        (Avx2::load(second, 0) + force).store(second, 0);
-        let first = &mut sums[from.number(k) % CHUNK].0;
-        (Avx2::load(first, 0) - force).store(first, 0);
     }
 }
 
@@ -585,32 +474,23 @@ pub(crate) fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
-/// Runs a kernel with one lane, where the processor has a fused multiply-add (else a library call does it).
-pub(crate) fn run_scalar<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[target_feature(enable = "fma")]
-    fn run<K: Kernel>(kernel: K) -> K::Output {
-        kernel.run::<f64>()
-    }
-    // SAFETY: the processor was asked.
-    if has_fma() { Ok(unsafe { run(kernel) }) } else { Err(kernel) }
+macro_rules! entry {
+    ($($what:literal $run:ident $lanes:ty, $features:literal if $has:ident;)*) => {$(
+        #[doc = concat!("Runs a kernel with ", $what, ", where the processor can.")]
+        pub(crate) fn $run<K: Kernel>(kernel: K) -> Result<K::Output, K> {
+            #[target_feature(enable = $features)]
+            fn run<K: Kernel>(kernel: K) -> K::Output {
+                kernel.run::<$lanes>()
+            }
+            // SAFETY: the processor was asked.
+            if $has() { Ok(unsafe { run(kernel) }) } else { Err(kernel) }
+        }
+    )*};
 }
 
-/// Runs a kernel with four lanes, where the processor can.
-pub(crate) fn run_avx2<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[target_feature(enable = "avx2,fma")]
-    fn run<K: Kernel>(kernel: K) -> K::Output {
-        kernel.run::<Avx2>()
-    }
-    // SAFETY: the processor was asked.
-    if has_avx2() { Ok(unsafe { run(kernel) }) } else { Err(kernel) }
-}
-
-/// Runs a kernel with eight lanes, where the processor can.
-pub(crate) fn run_avx512<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
-    fn run<K: Kernel>(kernel: K) -> K::Output {
-        kernel.run::<Avx512>()
-    }
-    // SAFETY: the processor was asked.
-    if has_avx512() { Ok(unsafe { run(kernel) }) } else { Err(kernel) }
+entry! {
+    // Without a fused multiply-add a library call does it.
+    "one lane" run_scalar f64, "fma" if has_fma;
+    "four lanes" run_avx2 Avx2, "avx2,fma" if has_avx2;
+    "eight lanes" run_avx512 Avx512, "avx2,fma,avx512f,avx512dq,avx512vl" if has_avx512;
 }

@@ -126,7 +126,7 @@ fn setting(features: Features, packing: &Packing) -> Setting {
 
 /// Floating-point operations of the contact law on one contact.
 pub(crate) fn operations_per_contact(packing: &Packing, case: &Case) -> f64 {
-    roofline::operations_per_contact(&setting(case.features, packing), case.servo)
+    roofline::operations_per_contact(&setting(case.features, packing))
 }
 
 fn invalid(error: dem::DemError) -> Failure {
