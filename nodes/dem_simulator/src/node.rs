@@ -100,7 +100,8 @@ impl DemSimulator {
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
-        let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::reliable(16))?;
+        // A rival says it again every second; a reliable reader of our own topic might fill our own window.
+        let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
         frames.publish(bus, &messages::frames())?;
         let own = bus.published().first().map_or([0; 12], |p| p.writer.participant());
         let now = bus.now();
