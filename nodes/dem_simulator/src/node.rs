@@ -1,10 +1,11 @@
 //! The node.
 
+use crate::ahead::{self, Ahead};
 use crate::barrier::Barrier;
 use crate::messages::{self, Packings};
 use crate::outbox::Outbox;
 use crate::rivals::Rivals;
-use crate::settings::Settings;
+use crate::settings::{Mode, Settings};
 use dem::{ComputeError, DemError, Simulation};
 use grainlab_msgs::msg::{Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
@@ -62,6 +63,12 @@ pub struct DemSimulator {
     pub(crate) stage: Stage,
     pub(crate) rivals: Rivals,
     pub(crate) barrier: Barrier,
+    /// The run as it will be if the answer is the one that the law gives.
+    pub(crate) ahead: Option<Ahead>,
+    /// Whether that is computed: not any more once a servo has answered otherwise.
+    pub(crate) looks_ahead: bool,
+    /// Answers that came as they were computed with.
+    pub(crate) foreseen: u64,
     pub(crate) outbox: Outbox,
     pub(crate) packings: Packings,
     /// The packing that the run goes on from, until it is published again for those who missed it.
@@ -115,6 +122,11 @@ impl DemSimulator {
             stage: Stage::Starting,
             rivals: Rivals::new(own),
             barrier: Barrier::new(&settings),
+            ahead: None,
+            looks_ahead: settings.ahead
+                && settings.mode == Mode::Lockstep
+                && run.scene().grains <= ahead::GRAINS,
+            foreseen: 0,
             outbox: Outbox::default(),
             packings,
             resumed: resume.is_some(),
@@ -236,6 +248,7 @@ impl Node for DemSimulator {
             .with("step", self.run.engine().steps())
             .with("steps", steps)
             .with("exchanges", counts.exchanges)
+            .with("foreseen", self.foreseen)
             .with("resends", counts.resends)
             .with("refused", counts.refused)
             .with("stale", counts.stale)

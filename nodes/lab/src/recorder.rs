@@ -109,7 +109,14 @@ impl Recorder {
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
         log::info!("recording to {}", writer.file().display());
         let company = Company::default();
-        Ok(Self { writer: Some(writer), channels, result, whole_run: settings.whole_run, recorded: 0, company })
+        Ok(Self {
+            writer: Some(writer),
+            channels,
+            result,
+            whole_run: settings.whole_run,
+            recorded: 0,
+            company,
+        })
     }
 
     /// Everything that arrived; true if anything did.
@@ -154,7 +161,8 @@ impl Recorder {
             }
             let outstanding = self.writer.as_ref().map_or(0, |w| w.ledger().outstanding());
             let settled = || {
-                self.company.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS)) || now - quiet_since >= SILENCE
+                self.company.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS))
+                    || now - quiet_since >= SILENCE
             };
             if now >= end || (outstanding == 0 && settled()) {
                 return Ok(());
