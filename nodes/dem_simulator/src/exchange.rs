@@ -74,22 +74,17 @@ impl DemSimulator {
         Ok(match delivered {
             false => Next::Wait(HOLD),
             true if free => Next::Again,
-            true => {
-                self.look_ahead(bus, &request);
-                Next::Wait(self.barrier.patience(bus.now()))
-            }
+            // By then the answer should be there, and there is nothing to wait for.
+            true if self.look_ahead(bus, &request) => Next::Again,
+            true => Next::Wait(self.barrier.patience(now)),
         })
     }
 
-    /// Computes on while the answer is on its way.
-    fn look_ahead(&mut self, bus: &dyn Bus, request: &Request) {
-        if !self.looks_ahead {
-            return;
-        }
-        self.ahead = Ahead::of(&self.run, request, || bus.now());
-        if let Some(ahead) = &self.ahead {
-            self.barrier.computed(ahead.took);
-        }
+    /// Computes on while the answer is on its way; false if it does not.
+    fn look_ahead(&mut self, bus: &dyn Bus, request: &Request) -> bool {
+        let ahead = self.looks_ahead.then(|| Ahead::of(&self.run, request, || bus.now()));
+        self.ahead = ahead.flatten();
+        self.ahead.as_ref().inspect(|ahead| self.barrier.computed(ahead.took)).is_some()
     }
 
     /// Obeys an answer, which may have been done already.
