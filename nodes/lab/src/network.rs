@@ -67,4 +67,12 @@ mod tests {
         let (a, b) = (FreeDomain::take().unwrap(), FreeDomain::take().unwrap());
         assert_ne!(a.id, b.id);
     }
+
+    #[test]
+    fn a_domain_with_any_participant_is_not_free() {
+        let id = FreeDomain::take().unwrap().id;
+        // The sixth participant, the first five having gone.
+        let _participant = UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + 20)).unwrap();
+        assert!(FreeDomain::try_take(id).is_none());
+    }
 }

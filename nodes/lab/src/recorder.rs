@@ -248,3 +248,20 @@ impl Node for Recorder {
         Ok(Exit::Done)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+        let writer = |who| WriterId([who; 16]);
+        let mut company = Company { own: Some([1; 12]), ..Company::default() };
+        assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
+        company.hear(writer(2));
+        assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
+        company.left.insert([2; 12]);
+        assert!(company.all_left(&[writer(1), writer(2)]));
+        assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");
+    }
+}
