@@ -17,7 +17,7 @@ setsid "$grainlab" run emt_inversion &
 others=$!
 setsid "$grainlab" run fabric_analyzer &
 others="$others $!"
-setsid "$grainlab" run servo_controller &
+setsid "$grainlab" run servo_controller --ros-args -p min_readers:=2 &
 others="$others $!"
 setsid "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
     -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &

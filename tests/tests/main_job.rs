@@ -102,6 +102,24 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
 }
 
 #[test]
+fn launches_without_a_domain_take_one_each_and_lose_nothing() {
+    let labs = [Lab::new(), Lab::new()];
+    let scene = golden("scenes/tiny.toml");
+    let start = |lab: &Lab| {
+        let mut launch = lab.command(&["launch", "--scene", &scene.to_string_lossy()]);
+        Process::start(launch.env_remove("ROS_DOMAIN_ID"))
+    };
+    let launchers = labs.each_ref().map(start);
+    for launcher in launchers {
+        let ended = launcher.ended(LIMIT);
+        assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    }
+    let [a, b] = labs.each_ref().map(Lab::last_run);
+    assert_ne!(summary(&a)["domain"], summary(&b)["domain"]);
+    assert_same(&a, &b);
+}
+
+#[test]
 fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
     let launcher: Process = lab.start(&["launch", "--scene", "demo"]);

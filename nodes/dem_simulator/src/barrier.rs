@@ -20,6 +20,8 @@ pub(crate) struct Barrier {
     /// The request before: empty for the first one.
     previous: Vec<u8>,
     asked: Duration,
+    /// Time since then that was not spent waiting.
+    busy: Duration,
     resend_at: Duration,
     pause: Duration,
     answer: Option<(u64, [f64; 6])>,
@@ -48,6 +50,7 @@ impl Barrier {
             body: Vec::new(),
             previous: Vec::new(),
             asked: Duration::ZERO,
+            busy: Duration::ZERO,
             resend_at: Duration::ZERO,
             pause: Duration::ZERO,
             answer: None,
@@ -64,9 +67,14 @@ impl Barrier {
     /// A request has been published.
     pub(crate) fn ask(&mut self, sequence: u64, stamp: Time, body: Vec<u8>, now: Duration) {
         self.previous = std::mem::replace(&mut self.body, body);
-        (self.sequence, self.stamp, self.asked) = (sequence, stamp, now);
+        (self.sequence, self.stamp, self.asked, self.busy) = (sequence, stamp, now, Duration::ZERO);
         self.pause = self.resend_after;
         self.resend_at = now + self.pause;
+    }
+
+    /// The run was computed on for this long while the answer was on its way.
+    pub(crate) fn computed(&mut self, time: Duration) {
+        self.busy += time;
     }
 
     /// Takes an answer in; one to another request is counted and dropped.
@@ -98,7 +106,7 @@ impl Barrier {
             return None;
         }
         self.counts.exchanges += 1;
-        self.counts.waiting += now.saturating_sub(self.asked);
+        self.counts.waiting += now.saturating_sub(self.asked + self.busy);
         Some(rate)
     }
 

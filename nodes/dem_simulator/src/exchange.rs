@@ -1,11 +1,12 @@
 //! After the start: one exchange after the other, to the end of the path or to the failure.
 
 use crate::DemSimulator;
+use crate::ahead::Ahead;
 use crate::barrier::REFUSALS_ALLOWED;
 use crate::messages;
 use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
 use crate::settings::Mode;
-use dem::Advanced;
+use dem::{Advanced, DemError, Request};
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::to_cdr;
@@ -73,16 +74,47 @@ impl DemSimulator {
         Ok(match delivered {
             false => Next::Wait(HOLD),
             true if free => Next::Again,
+            // By then the answer should be there, and there is nothing to wait for.
+            true if self.look_ahead(bus, &request) => Next::Again,
             true => Next::Wait(self.barrier.patience(now)),
         })
+    }
+
+    /// Computes on while the answer is on its way; false if it does not.
+    fn look_ahead(&mut self, bus: &dyn Bus, request: &Request) -> bool {
+        let ahead = self.looks_ahead.then(|| Ahead::of(&self.run, request, || bus.now()));
+        self.ahead = ahead.flatten();
+        self.ahead.as_ref().inspect(|ahead| self.barrier.computed(ahead.took)).is_some()
+    }
+
+    /// Obeys an answer, which may have been done already.
+    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<Advanced, DemError> {
+        let sequence = self.barrier.sequence();
+        match self.ahead.take() {
+            Some(ahead) if ahead.obeyed(sequence, rate) => {
+                self.foreseen += 1;
+                self.computing += ahead.took;
+                self.run = ahead.run;
+                return ahead.result;
+            }
+            Some(_) => {
+                log::info!(
+                    "the servo answers request {sequence} by a law of its own: the run is not computed ahead any more"
+                );
+                self.looks_ahead = false;
+            }
+            None => {}
+        }
+        let began = bus.now();
+        let result = self.run.answer(rate);
+        self.computing += bus.now().saturating_sub(began);
+        result
     }
 
     /// One exchange at most.
     pub(crate) fn exchange(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
         if let Some(rate) = self.barrier.pass(now) {
-            let result = self.run.answer(&rate);
-            self.computing += bus.now().saturating_sub(now);
-            return match result {
+            return match self.obey(bus, &rate) {
                 Ok(advanced) => self.advanced(bus, &advanced),
                 Err(error) => self.fail(bus, &error.to_string()),
             };

@@ -2,11 +2,12 @@
 //!
 //! - [`parameters`]: what can be set; [`Settings`]: the same, typed
 //! - [`DemSimulator`]: the node; `start`: before its first request; `exchange`: after it
-//! - `barrier`: the lockstep, one request and its answer
+//! - `barrier`: the lockstep, one request and its answer; `ahead`: what is computed while the answer is on its way
 //! - `outbox`: messages in their order, none lost where a reader is behind
 //! - `rivals`: other simulators on the same topics
 //! - `messages`: from the run to messages
 
+mod ahead;
 mod barrier;
 mod exchange;
 mod messages;

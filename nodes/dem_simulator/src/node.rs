@@ -1,10 +1,11 @@
 //! The node.
 
+use crate::ahead::{self, Ahead};
 use crate::barrier::Barrier;
 use crate::messages::{self, Packings};
 use crate::outbox::Outbox;
 use crate::rivals::Rivals;
-use crate::settings::Settings;
+use crate::settings::{Mode, Settings};
 use dem::{ComputeError, DemError, Simulation};
 use grainlab_msgs::msg::{Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
@@ -62,6 +63,12 @@ pub struct DemSimulator {
     pub(crate) stage: Stage,
     pub(crate) rivals: Rivals,
     pub(crate) barrier: Barrier,
+    /// The run as it will be if the answer is the one that the law gives.
+    pub(crate) ahead: Option<Ahead>,
+    /// Whether that is computed: not any more once a servo has answered otherwise.
+    pub(crate) looks_ahead: bool,
+    /// Answers that came as they were computed with.
+    pub(crate) foreseen: u64,
     pub(crate) outbox: Outbox,
     pub(crate) packings: Packings,
     /// The packing that the run goes on from, until it is published again for those who missed it.
@@ -100,7 +107,8 @@ impl DemSimulator {
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
-        let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::reliable(16))?;
+        // A rival says it again every second; a reliable reader of our own topic might fill our own window.
+        let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
         frames.publish(bus, &messages::frames())?;
         let own = bus.published().first().map_or([0; 12], |p| p.writer.participant());
         let now = bus.now();
@@ -114,6 +122,11 @@ impl DemSimulator {
             stage: Stage::Starting,
             rivals: Rivals::new(own),
             barrier: Barrier::new(&settings),
+            ahead: None,
+            looks_ahead: settings.ahead
+                && settings.mode == Mode::Lockstep
+                && run.scene().grains <= ahead::GRAINS,
+            foreseen: 0,
             outbox: Outbox::default(),
             packings,
             resumed: resume.is_some(),
@@ -235,6 +248,7 @@ impl Node for DemSimulator {
             .with("step", self.run.engine().steps())
             .with("steps", steps)
             .with("exchanges", counts.exchanges)
+            .with("foreseen", self.foreseen)
             .with("resends", counts.resends)
             .with("refused", counts.refused)
             .with("stale", counts.stale)

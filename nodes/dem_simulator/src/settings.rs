@@ -72,6 +72,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
             d.exit_when_finished,
             "end when the loading path is done; else stay, so that late readers get the last packing",
         ),
+        ParameterSpec::new(
+            "ahead",
+            d.ahead,
+            "compute on with the answer that the servo's law gives while the answer is on its way, in lockstep and up to 4000 \
+             grains; results do not depend on it",
+        ),
         ParameterSpec::new("threads", 0_i64, "threads to compute with, 0 for as many as pay; results do not depend on it")
             .within(Range::Integer { min: 0, max: 1024 }),
         ParameterSpec::new("simd", "best", "instruction set to compute with; results do not depend on it")
@@ -96,6 +102,8 @@ pub struct Settings {
     pub min_readers: usize,
     /// End when the loading path is done.
     pub exit_when_finished: bool,
+    /// Compute on with the answer that the servo's law gives while the answer is on its way.
+    pub ahead: bool,
     /// Threads to compute with; `None` for as many as pay.
     pub threads: Option<NonZeroUsize>,
     /// Instruction set to compute with; `None` for the widest.
@@ -123,6 +131,7 @@ impl Default for Settings {
             wait_for: Vec::new(),
             min_readers: 1,
             exit_when_finished: false,
+            ahead: true,
             threads: None,
             simd: None,
         }
@@ -148,6 +157,7 @@ impl From<&Parameters> for Settings {
                 .collect(),
             min_readers: count("min_readers") as usize,
             exit_when_finished: parameters.get("exit_when_finished"),
+            ahead: parameters.get("ahead"),
             threads: NonZeroUsize::new(count("threads") as usize),
             simd: parameters.get::<String>("simd").parse().ok(),
         }

@@ -36,6 +36,9 @@ pub(crate) struct FreeDomain {
 /// Domains above 101 reach into the ephemeral ports.
 const DOMAINS: std::ops::RangeInclusive<u16> = 0..=101;
 
+/// Participants of a domain whose ports precede that of the lock.
+const PARTICIPANTS: u16 = 119;
+
 impl FreeDomain {
     /// The first free domain, 0 (the one that ROS 2 tools use unless told otherwise) if it is.
     pub(crate) fn take() -> Result<Self, Failure> {
@@ -50,8 +53,8 @@ impl FreeDomain {
         let bind = |offset: u16| UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok();
         // The last port of the domain's range, which only its 120th participant would use, is the lock among launchers.
         let lock = bind(249)?;
-        // Unicast discovery of the first participants (RTPS 9.6.2.3): in use if there are any.
-        [10, 12].into_iter().all(|offset| bind(offset).is_some()).then_some(Self { id, _lock: lock })
+        // Unicast discovery of every participant there may be (RTPS 9.6.2.3): in use if there are any.
+        (0..PARTICIPANTS).all(|n| bind(10 + 2 * n).is_some()).then_some(Self { id, _lock: lock })
     }
 }
 
@@ -63,5 +66,13 @@ mod tests {
     fn a_domain_that_is_taken_is_not_given_twice() {
         let (a, b) = (FreeDomain::take().unwrap(), FreeDomain::take().unwrap());
         assert_ne!(a.id, b.id);
+    }
+
+    #[test]
+    fn a_domain_with_any_participant_is_not_free() {
+        let id = FreeDomain::take().unwrap().id;
+        // The sixth participant, the first five having gone.
+        let _participant = UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + 20)).unwrap();
+        assert!(FreeDomain::try_take(id).is_none());
     }
 }

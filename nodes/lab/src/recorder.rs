@@ -11,11 +11,12 @@ use crate::output::Table;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{from_cdr, topics};
 use node_kit::bus::Published;
-use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, SubscriptionId};
+use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, SubscriptionId, WriterId};
 use recordings::ledger::Guid;
 use recordings::writer::Finished;
 use recordings::{Incoming, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -28,12 +29,15 @@ const TICK: Duration = Duration::from_millis(100);
 /// Older than any message may become before it is handed to the system.
 const OLD_ENOUGH: Duration = Duration::from_secs(1);
 
-/// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence.
+/// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence, unless
+/// everyone has said goodbye.
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
 
 /// Where the recorder leaves what it finished, for whoever started it.
 pub(crate) type Result = Rc<RefCell<Option<Finished>>>;
+
+type Participant = [u8; 12];
 
 struct Channel {
     subscription: SubscriptionId,
@@ -51,6 +55,27 @@ pub(crate) struct Recorder {
     result: Result,
     whole_run: bool,
     recorded: u64,
+    company: Company,
+}
+
+/// Who was heard, and who said goodbye: a last report counts everything that its process ever published.
+#[derive(Debug, Default)]
+struct Company {
+    own: Option<Participant>,
+    heard: BTreeSet<Participant>,
+    left: BTreeSet<Participant>,
+}
+
+impl Company {
+    fn hear(&mut self, writer: WriterId) {
+        self.heard.insert(writer.participant());
+    }
+
+    /// Whether everyone who was heard, or has a writer in `present`, has said goodbye.
+    fn all_left(&self, present: &[WriterId]) -> bool {
+        let mut known = self.heard.iter().copied().chain(present.iter().map(WriterId::participant));
+        known.all(|p| Some(p) == self.own || self.left.contains(&p))
+    }
 }
 
 impl Recorder {
@@ -83,7 +108,15 @@ impl Recorder {
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
         log::info!("recording to {}", writer.file().display());
-        Ok(Self { writer: Some(writer), channels, result, whole_run: settings.whole_run, recorded: 0 })
+        let company = Company::default();
+        Ok(Self {
+            writer: Some(writer),
+            channels,
+            result,
+            whole_run: settings.whole_run,
+            recorded: 0,
+            company,
+        })
     }
 
     /// Everything that arrived; true if anything did.
@@ -93,8 +126,9 @@ impl Recorder {
         for channel in &self.channels {
             while let Some(sample) = bus.take(channel.subscription)? {
                 any = true;
-                if channel.reports {
-                    enter_reports(writer, &self.channels, &sample);
+                self.company.hear(sample.info.writer);
+                if channel.reports && enter_reports(writer, &self.channels, &sample) {
+                    self.company.left.insert(sample.info.writer.participant());
                 }
                 let incoming = Incoming {
                     guid: Guid(sample.info.writer.0),
@@ -115,8 +149,9 @@ impl Recorder {
         Ok(any)
     }
 
-    /// Waits for what is known to be on its way, then for a moment of silence.
+    /// Waits for what is known to be on its way, then for a moment of silence if anyone may still speak.
     fn last_call(&mut self, bus: &mut dyn Bus) -> std::result::Result<(), NodeError> {
+        self.company.own = bus.published().first().map(|p| p.writer.participant());
         let end = bus.now() + LAST_CALL;
         let mut quiet_since = bus.now();
         loop {
@@ -125,7 +160,11 @@ impl Recorder {
                 quiet_since = now;
             }
             let outstanding = self.writer.as_ref().map_or(0, |w| w.ledger().outstanding());
-            if now >= end || (outstanding == 0 && now - quiet_since >= SILENCE) {
+            let settled = || {
+                self.company.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS))
+                    || now - quiet_since >= SILENCE
+            };
+            if now >= end || (outstanding == 0 && settled()) {
                 return Ok(());
             }
             bus.wait(Duration::from_millis(20));
@@ -138,12 +177,14 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
     NodeError::new(Exit::DataLoss, error.to_string())
 }
 
-/// What each process says it published so far, and which node it is.
-fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) {
-    let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return };
+/// What each process says it published so far, and which node it is; true if it is the last that the writer will say.
+fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) -> bool {
+    let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
+    let mut goodbye = false;
     for report in Report::from_message(&message) {
         // A replayed report speaks of writers that are not there.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
+        goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
@@ -153,6 +194,7 @@ fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) 
             }
         }
     }
+    goodbye
 }
 
 /// Messages missing before the first one recorded of each writer, and those missing after it.
@@ -204,5 +246,22 @@ impl Node for Recorder {
             return Ok(Exit::DataLoss);
         }
         Ok(Exit::Done)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+        let writer = |who| WriterId([who; 16]);
+        let mut company = Company { own: Some([1; 12]), ..Company::default() };
+        assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
+        company.hear(writer(2));
+        assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
+        company.left.insert([2; 12]);
+        assert!(company.all_left(&[writer(1), writer(2)]));
+        assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");
     }
 }

@@ -230,7 +230,8 @@ pub trait Bus {
     /// Counts a taken sample whose content was refused.
     fn count_refused(&mut self, subscription: SubscriptionId);
 
-    /// Waits until every reliable reader has acknowledged everything, or `timeout` is over; true in the first case.
+    /// Waits until every reliable reader has acknowledged everything, or `timeout` is over; true in the first case. Topics
+    /// that this bus reads reliably itself are left out: nobody can tell there.
     fn flush(&mut self, timeout: Duration) -> bool;
 
     /// Time since an arbitrary start, never going back; virtual on the in-memory bus.

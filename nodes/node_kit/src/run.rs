@@ -29,9 +29,9 @@ const LOOK: Duration = Duration::from_millis(100);
 /// How long a leaving process waits for its readers' acknowledgements.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 
-/// How long it stays after that: a reader loses what it received but did not take when the writer goes, and a busy node's
-/// readers are emptied every 50 ms.
-const GRACE: Duration = Duration::from_millis(150);
+/// How long it stays after that: a reader loses what it received but did not take when the writer goes. A busy node's
+/// readers are emptied within 40 ms, on a busy host perhaps some ten milliseconds later.
+const GRACE: Duration = Duration::from_millis(90);
 
 /// What a node is called and which parameters it has.
 #[derive(Clone, Debug)]

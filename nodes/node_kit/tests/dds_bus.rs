@@ -320,3 +320,21 @@ fn a_process_hears_what_it_says_itself_once_whatever_it_asks_for() {
         assert_eq!(heard, far);
     }
 }
+
+#[test]
+fn a_node_that_reads_its_own_topic_does_not_wait_for_itself_when_it_leaves() {
+    let claimed = claim();
+    let network = claimed.network();
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    a.subscribe(&topics::DIAGNOSTICS, Demand::reliable(1000)).unwrap();
+    let both = [&topics::DIAGNOSTICS, &topics::STRAIN_RATE].map(|topic| {
+        let subscription = b.subscribe(topic, Demand::reliable(1000)).unwrap();
+        (a.advertise(topic).unwrap(), subscription)
+    });
+    for (publisher, subscription) in both {
+        until(&mut b, "match", |b| b.writers(subscription) == 1);
+        until(&mut a, "match", |a| a.readers(publisher) == 1);
+        a.publish(publisher, &grainlab_msgs::to_cdr(&rate(1))).unwrap();
+    }
+    assert!(a.flush(PATIENCE), "strain_rate, which only the other process reads, is acknowledged");
+}

@@ -2,15 +2,13 @@
 //!
 //! - [`answer`]: the whole work, a pure function of one message; the same question has the same answer, so a servo may
 //!   die and be replaced in the middle of a run
-//! - [`ServoController`]: the node; it has no parameters, because the question holds everything
+//! - [`ServoController`]: the node
+//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
 
 mod answer;
 mod node;
+mod settings;
 
 pub use answer::{Refusal, answer};
 pub use node::ServoController;
-
-/// The parameters of the node: none.
-pub fn parameters() -> Vec<node_kit::ParameterSpec> {
-    Vec::new()
-}
+pub use settings::{Settings, parameters};

@@ -1,17 +1,26 @@
 //! The node.
 
-use crate::{Refusal, answer};
+use crate::{Refusal, Settings, answer};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
 use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// There is nothing to do between two questions.
 const IDLE: Duration = Duration::from_secs(3600);
 
+/// Questions that may wait; the simulator asks one at a time, and in free run a few.
+const BACKLOG: u32 = 16;
+
 /// The servo: answers every stress, remembers nothing.
 #[derive(Debug)]
 pub struct ServoController {
+    settings: Settings,
+    /// Whether the readers waited for have been there.
+    heard: bool,
+    /// Questions asked before that.
+    early: VecDeque<Stress>,
     stress: Subscription<Stress>,
     strain_rate: Publisher<StrainRate>,
     answered: u64,
@@ -23,14 +32,33 @@ pub struct ServoController {
 impl ServoController {
     /// Joins the lockstep. It asks for best effort: the simulator repeats what gets lost, and a dead servo must not fill
     /// the simulator's window.
-    pub fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
+    pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
-            stress: Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(16))?,
+            settings,
+            heard: false,
+            early: VecDeque::new(),
+            stress: Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(BACKLOG))?,
             strain_rate: Publisher::advertise(bus, &topics::STRAIN_RATE)?,
             answered: 0,
             unanswered: 0,
             trouble: None,
         })
+    }
+
+    fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress) -> Result<(), BusError> {
+        match answer(stress) {
+            Ok(message) => match self.strain_rate.publish(bus, &message) {
+                Ok(_) => {
+                    self.answered += 1;
+                    self.trouble = None;
+                }
+                // The question comes again; the kit counts the answer lost.
+                Err(full @ BusError::Full { .. }) => self.trouble = Some(full.to_string()),
+                Err(error) => return Err(error),
+            },
+            Err(refusal) => self.refuse(bus, &refusal),
+        }
+        Ok(())
     }
 
     fn refuse(&mut self, bus: &mut dyn Bus, refusal: &Refusal) {
@@ -48,18 +76,20 @@ impl ServoController {
 
 impl Node for ServoController {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        self.heard = self.heard || bus.readers(self.strain_rate.id()) >= self.settings.min_readers;
+        if self.heard {
+            while let Some(stress) = self.early.pop_front() {
+                self.reply(bus, &stress)?;
+            }
+        }
         while let Some((stress, _)) = self.stress.take_valid(bus)? {
-            match answer(&stress) {
-                Ok(message) => match self.strain_rate.publish(bus, &message) {
-                    Ok(_) => {
-                        self.answered += 1;
-                        self.trouble = None;
-                    }
-                    // The question comes again; the kit counts the answer lost.
-                    Err(full @ BusError::Full { .. }) => self.trouble = Some(full.to_string()),
-                    Err(error) => return Err(error.into()),
-                },
-                Err(refusal) => self.refuse(bus, &refusal),
+            if self.heard {
+                self.reply(bus, &stress)?;
+            } else {
+                if self.early.len() >= BACKLOG as usize {
+                    self.early.pop_front();
+                }
+                self.early.push_back(stress);
             }
         }
         Ok(Next::Wait(IDLE))

@@ -6,7 +6,7 @@ use grainlab_msgs::{stamp, to_cdr, topics};
 use grains::{ComponentControl, ServoLaw, SymTensor};
 use node_kit::memory::{Actor, run_until};
 use node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
-use servo_controller::{Refusal, ServoController, answer};
+use servo_controller::{Refusal, ServoController, Settings, answer};
 use std::time::Duration;
 
 /// 10 kPa too little compression on zz, 200 MPa of tangent stiffness and 0.1 ms of response time: −0.5 per second.
@@ -71,7 +71,7 @@ fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
     let mut asker = Asker::new(&hub);
     for sequence in [3, 1, 3] {
         let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-        let mut servo = ServoController::new(&mut bus).unwrap();
+        let mut servo = ServoController::new(&mut bus, Settings::default()).unwrap();
         let mut actors = [Actor::new(&mut servo, bus)];
         for sequence in [sequence, 2, sequence] {
             asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
@@ -90,7 +90,7 @@ fn what_cannot_be_answered_is_counted_and_the_node_lives() {
     let hub = Hub::new(1);
     let mut asker = Asker::new(&hub);
     let mut bus = hub.bus(Names::new("servo_controller").unwrap());
-    let mut servo = ServoController::new(&mut bus).unwrap();
+    let mut servo = ServoController::new(&mut bus, Settings::default()).unwrap();
     let not_finite = Stress {
         stress: grainlab_msgs::msg::SymmetricTensor { zz: f64::NAN, ..Default::default() },
         ..question(1)
@@ -112,4 +112,24 @@ fn what_cannot_be_answered_is_counted_and_the_node_lives() {
     servo.step(&mut bus).unwrap();
     assert_eq!(asker.answers().len(), 1);
     assert_eq!(servo.health().level, Level::Ok);
+}
+
+#[test]
+fn the_first_answer_waits_for_its_readers_and_no_later_one_does() {
+    let hub = Hub::new(1);
+    let mut asker = Asker::new(&hub);
+    let mut bus = hub.bus(Names::new("servo_controller").unwrap());
+    let mut servo = ServoController::new(&mut bus, Settings { min_readers: 2 }).unwrap();
+    for sequence in [1, 2] {
+        asker.stress.publish(&mut asker.bus, &question(sequence)).unwrap();
+        servo.step(&mut bus).unwrap();
+    }
+    assert!(asker.answers().is_empty(), "there is one reader");
+    let late = Asker::new(&hub);
+    servo.step(&mut bus).unwrap();
+    assert_eq!(asker.answers().iter().map(|a| a.sequence).collect::<Vec<_>>(), [1, 2]);
+    drop(late);
+    asker.stress.publish(&mut asker.bus, &question(3)).unwrap();
+    servo.step(&mut bus).unwrap();
+    assert_eq!(asker.answers().len(), 1);
 }

@@ -138,7 +138,7 @@ impl Bench {
 
     pub(crate) fn servo(&self) -> (ServoController, MemoryBus) {
         let mut bus = self.bus("servo_controller");
-        (ServoController::new(&mut bus).expect("a servo"), bus)
+        (ServoController::new(&mut bus, Default::default()).expect("a servo"), bus)
     }
 
     pub(crate) fn analyzer(&self) -> (FabricAnalyzer, MemoryBus) {

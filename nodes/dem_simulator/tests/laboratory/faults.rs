@@ -1,6 +1,6 @@
 //! Messages that must not be believed, and runs that cannot go on.
 
-use crate::bench::{Bench, FOREVER, exit_of};
+use crate::bench::{Bench, FOREVER, Record, exit_of};
 use dem_simulator::Settings;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
@@ -45,10 +45,16 @@ impl Node for BadServo {
 }
 
 /// How a run with this servo ends, if it does within some seconds, and what was recorded.
-fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, crate::bench::Record) {
+fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, Record) {
+    let (exit, record, _) = run_ahead_with(honest, lies, lie, true);
+    (exit, record)
+}
+
+/// The same, computed ahead of the answers or not, and how many answers were foreseen, of all.
+fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit>, Record, [u64; 2]) {
     let bench = Bench::new(0);
     let (mut recorder, recorder_bus) = bench.recorder();
-    let (mut simulator, simulator_bus) = bench.simulator(&Settings::default(), None);
+    let (mut simulator, simulator_bus) = bench.simulator(&Settings { ahead, ..Settings::default() }, None);
     let mut servo_bus = bench.bus("servo_controller");
     let mut servo = BadServo::new(&mut servo_bus, honest, lies, lie);
     let mut actors = vec![
@@ -64,7 +70,26 @@ fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, crate::bench::Re
     run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
     let exit = exit_of(&actors[1]);
     drop(actors);
-    (exit, bench.record.take())
+    let health = simulator.health();
+    let count = |name| health.values.iter().find(|(n, _)| n == name).map_or(0, |(_, v)| v.parse().unwrap());
+    (exit, bench.record.take(), ["foreseen", "exchanges"].map(count))
+}
+
+#[test]
+fn computing_ahead_of_the_answers_changes_no_message_whether_they_are_foreseen_or_not() {
+    let (_, plain, [none, exchanges]) = run_ahead_with(0, 0, 0.0, false);
+    let (_, ahead, foreseen) = run_ahead_with(0, 0, 0.0, true);
+    assert!(exchanges > 400 && none == 0, "{exchanges} exchanges, {none} foreseen");
+    assert_eq!(foreseen, [exchanges; 2], "every answer is foreseen");
+    assert!(plain == ahead, "run_state and repetitions included");
+
+    // Another law is obeyed, and once is enough to know it.
+    let (_, plain, _) = run_ahead_with(300, 5, -0.7, false);
+    let (_, ahead, foreseen) = run_ahead_with(300, 5, -0.7, true);
+    assert_eq!(foreseen, [300, plain.without_repeats().bodies(&topics::STRAIN_RATE).len() as u64]);
+    assert!(plain == ahead);
+    let (_, honest) = run_with(0, 0, 0.0);
+    assert!(honest.bodies(&topics::STRESS) != plain.bodies(&topics::STRESS), "it mattered");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `grainlab launch`: the main job.
 
 use crate::failure::{Failure, worse};
-use crate::launch::plan::{DEFAULT, LaunchFile};
+use crate::launch::plan::{DEFAULT, LaunchFile, NodePlan};
 use crate::launch::supervisor::{Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
@@ -10,6 +10,7 @@ use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
+use node_kit::dds::Range;
 use node_kit::{Exit, Network};
 use recordings::Recording;
 use recordings::runs::{RUNS, create_run_directory};
@@ -61,7 +62,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
     let scene = scenes::load(name, seed)?;
-    let (domain, _lock) = domain()?;
+    let (domain, lock) = domain()?;
+    let alone = lock.is_some() && network()?.range == Range::Localhost;
     let directory = run_directory(&args.out, &scene)?;
     // Parameters are YAML: a path with a blank or a colon needs its quotes.
     let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
@@ -69,7 +71,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     values.insert("scene", path(&directory.join("scene.toml")));
     values.insert("seed", scene.scene.seed.to_string());
     values.insert("out", path(&directory));
-    let plans = file.nodes(&values).map_err(Failure::usage)?;
+    let mut plans = file.nodes(&values).map_err(Failure::usage)?;
+    if alone {
+        plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    }
     crate::output::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}; run {}",
         scene.scene.name,
@@ -77,7 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         scene.scene.grains,
         directory.display()
     );
-    let supervised = supervise(plans, domain, &directory, scene.scene.phases.len())?;
+    let supervised = supervise(plans, domain, alone, &directory, scene.scene.phases.len())?;
     finish(args.format, &directory, &scene, domain, supervised)
 }
 
@@ -108,9 +113,13 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
+fn network() -> Result<Network, Failure> {
+    Network::from_env().map_err(Failure::usage)
+}
+
 /// The domain of the environment, else a free one, kept while the second value lives.
 fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
-    let network = Network::from_env().map_err(Failure::usage)?;
+    let network = network()?;
     if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
         return Ok((network.domain, None));
     }
@@ -128,15 +137,16 @@ fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
 }
 
 fn supervise(
-    plans: Vec<crate::launch::plan::NodePlan>,
+    plans: Vec<NodePlan>,
     domain: u16,
+    alone: bool,
     directory: &Path,
     phases: usize,
 ) -> Result<Supervised, Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
     let logs = directory.join("logs");
-    runtime.block_on(async { Supervisor::new(plans, domain, &logs, phases)?.run().await })
+    runtime.block_on(async { Supervisor::new(plans, domain, alone, &logs, phases)?.run().await })
 }
 
 /// Reads the recording back, prints the result and writes it beside the recording.

@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let simulator = DemSimulator::new(bus, scene, None, parameters.into());
                 Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
             }
-            "servo_controller" => Box::new(ServoController::new(bus)?),
+            "servo_controller" => Box::new(ServoController::new(bus, parameters.into())?),
             "fabric_analyzer" => {
                 let settings = fabric_analyzer::Settings::try_from(parameters);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;

@@ -81,6 +81,17 @@ pub(crate) struct NodePlan {
     pub(crate) respawn: bool,
 }
 
+impl NodePlan {
+    /// A simulator in a domain that nobody else can be in has no rivals to look for, unless it is told to.
+    pub(crate) fn do_not_look_around(&mut self) {
+        if self.node == "dem_simulator" {
+            // Behind `run NODE`: a value of the launch file comes later and wins.
+            let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
+            self.arguments.splice(2..2, given);
+        }
+    }
+}
+
 /// A launch file that was read, with what its arguments default to.
 #[derive(Debug)]
 pub(crate) struct LaunchFile {

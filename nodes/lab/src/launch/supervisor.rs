@@ -36,6 +36,8 @@ const SIMULATOR: &str = "dem_simulator";
 pub(crate) struct Supervisor<'a> {
     children: Vec<Child>,
     domain: u16,
+    /// Nobody else can be in the domain.
+    alone: bool,
     logs: &'a Path,
     ended: UnboundedReceiver<Ended>,
     report_end: UnboundedSender<Ended>,
@@ -49,6 +51,19 @@ pub(crate) struct Supervisor<'a> {
     blind: bool,
     measured: BTreeSet<u64>,
     inverted: BTreeSet<u64>,
+    /// Processes that said their last word.
+    left: BTreeSet<u32>,
+}
+
+/// The three steps of an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    /// Every node is asked to end and says its last word, which belongs into the recording.
+    Farewell,
+    /// The recorder ends.
+    Record,
+    /// Nobody is asked any more; what still runs goes.
+    Exit,
 }
 
 /// What a run came to.
@@ -67,6 +82,7 @@ impl<'a> Supervisor<'a> {
     pub(crate) fn new(
         plans: Vec<NodePlan>,
         domain: u16,
+        alone: bool,
         logs: &'a Path,
         phases: usize,
     ) -> Result<Self, Failure> {
@@ -75,6 +91,7 @@ impl<'a> Supervisor<'a> {
         Ok(Self {
             children: plans.into_iter().map(Child::new).collect(),
             domain,
+            alone,
             logs,
             ended,
             report_end,
@@ -87,13 +104,14 @@ impl<'a> Supervisor<'a> {
             blind: false,
             measured: BTreeSet::new(),
             inverted: BTreeSet::new(),
+            left: BTreeSet::new(),
         })
     }
 
     /// Starts every node, waits for the end, ends every node.
     pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
-        let (watch, mut events) = Watch::start(self.domain)?;
+        let (watch, mut events) = Watch::start(self.domain, self.alone)?;
         if let Some(Event::Rival(writer)) = events.recv().await.filter(|e| matches!(e, Event::Rival(_))) {
             return Err(Failure::failed(format!(
                 "a run is already under way in DDS domain {} (writer {writer} of stress): end it, or unset ROS_DOMAIN_ID \
@@ -108,11 +126,12 @@ impl<'a> Supervisor<'a> {
                 failure.exit
             }
         };
-        // Nodes first: their last reports belong into the recording.
-        for recorder in [false, true] {
-            if self.end(recorder).await {
+        for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
+            if self.end(ending, &mut events).await {
                 exit = Exit::Interrupted;
             }
+            // It leaves while the processes do.
+            watch.stop();
         }
         let recorder = self.children.iter().find(|c| c.plan.node == RECORDER).and_then(|c| c.code);
         if recorder != Some(0) {
@@ -192,6 +211,9 @@ impl<'a> Supervisor<'a> {
                     RunStatus::Finished => self.finished = Some(state),
                     RunStatus::Failed => self.failed = Some(state.message),
                 }
+            }
+            Event::Goodbye(pid) => {
+                self.left.insert(pid);
             }
             Event::Clear | Event::Rival(_) => {}
             Event::Fabric(step) => {
@@ -277,23 +299,33 @@ impl<'a> Supervisor<'a> {
         }
     }
 
-    /// Ends the recorder, or every other process: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the
-    /// user asked to hurry, which kills what is left.
-    async fn end(&mut self, recorder: bool) -> bool {
+    /// Whether an end still waits for this child.
+    fn awaits(&self, child: &Child, ending: Ending) -> bool {
+        let recorder = child.plan.node == RECORDER;
+        match (ending, child.pid) {
+            (_, None) => false,
+            (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
+            (Ending::Record, _) => recorder,
+            (Ending::Exit, _) => true,
+        }
+    }
+
+    /// Takes one step of the end: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the user asked to hurry,
+    /// which kills what is left.
+    async fn end(&mut self, ending: Ending, events: &mut UnboundedReceiver<Event>) -> bool {
         let mut hurried = false;
         for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGKILL] {
             let signal = if hurried { libc::SIGKILL } else { signal };
-            self.children
-                .iter()
-                .filter(|c| (c.plan.node == RECORDER) == recorder)
-                .for_each(|c| c.signal(signal));
-            let running = |s: &Self| {
-                s.children.iter().any(|c| (c.plan.node == RECORDER) == recorder && c.pid.is_some())
-            };
+            // Who said its last word was asked already, and a second signal would end it at once.
+            if ending != Ending::Exit || signal != libc::SIGINT {
+                self.children.iter().filter(|c| self.awaits(c, ending)).for_each(|c| c.signal(signal));
+            }
+            let running = |s: &Self| s.children.iter().any(|c| s.awaits(c, ending));
             let deadline = tokio::time::Instant::now() + PATIENCE;
             while running(self) && !hurried {
                 tokio::select! {
                     Some(ended) = self.ended.recv() => { self.note_end(&ended); }
+                    Some(event) = events.recv() => self.take(event),
                     _ = self.interrupt.recv() => hurried = true,
                     _ = self.terminate.recv() => hurried = true,
                     () = sleep_until(deadline) => break,

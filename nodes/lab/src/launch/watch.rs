@@ -3,9 +3,10 @@
 use crate::failure::Failure;
 use crate::network::bus_in;
 use grainlab_msgs::boundary::RunStateReading;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, RunState};
 use grainlab_msgs::topics;
-use node_kit::{Bus, BusError, DdsBus, Demand, Subscription, WriterId};
+use node_kit::{Bus, BusError, DdsBus, Demand, Report, Subscription, WriterId};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -30,6 +31,8 @@ pub(crate) enum Event {
     Fabric(u64),
     /// The microstructure of the packing of this step was inferred.
     Microstructure(u64),
+    /// The process of this id said its last word.
+    Goodbye(u32),
     /// Nobody else simulates in this domain; the first event, unless a rival does.
     Clear,
     /// Another run's writer of stress.
@@ -46,15 +49,15 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Joins the domain and listens until it is dropped.
-    pub(crate) fn start(domain: u16) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
+    /// Joins the domain and listens until it is dropped. Another run is not looked for where we are `alone`.
+    pub(crate) fn start(domain: u16, alone: bool) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
         let (events, receiver) = unbounded_channel();
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
         let thread = std::thread::Builder::new().name("watch".into()).spawn(move || {
             let watched = bus_in(domain, "launcher")
                 .map_err(|e| e.to_string())
-                .and_then(|mut bus| watch(&mut bus, &events, &asked).map_err(|e| e.to_string()));
+                .and_then(|mut bus| watch(&mut bus, alone, &events, &asked).map_err(|e| e.to_string()));
             if let Err(message) = watched {
                 let _ = events.send(Event::Failed(message));
             }
@@ -64,21 +67,35 @@ impl Watch {
     }
 }
 
+impl Watch {
+    /// Asks the thread to end; dropping waits for that.
+    pub(crate) fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
 impl Drop for Watch {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop();
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
 }
 
-fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -> Result<(), BusError> {
+fn watch(
+    bus: &mut DdsBus,
+    alone: bool,
+    events: &UnboundedSender<Event>,
+    stop: &AtomicBool,
+) -> Result<(), BusError> {
     let demand = Demand::reliable(BACKLOG);
     let states = Subscription::<RunState>::subscribe(bus, &topics::RUN_STATE, demand)?;
     let fabrics = Subscription::<Fabric>::subscribe(bus, &topics::FABRIC, demand)?;
     let microstructures = Subscription::<Microstructure>::subscribe(bus, &topics::MICROSTRUCTURE, demand)?;
-    let look = bus.now() + LOOK_AROUND;
+    let heard = Demand::best_effort(BACKLOG);
+    let reports = Subscription::<DiagnosticArray>::subscribe(bus, &topics::DIAGNOSTICS, heard)?;
+    let look = if alone { bus.now() } else { bus.now() + LOOK_AROUND };
     while bus.now() < look && !stop.load(Ordering::Relaxed) {
         bus.wait(look.saturating_sub(bus.now()));
         // A latched state, before anything of ours runs, is of another run.
@@ -100,6 +117,10 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
         }
         while let Some((found, _)) = microstructures.take_valid(bus)? {
             send(events, Event::Microstructure(found.source_step));
+        }
+        while let Some((message, _)) = reports.take_valid(bus)? {
+            let last = Report::from_message(&message).into_iter().filter(Report::is_final);
+            last.for_each(|report| send(events, Event::Goodbye(report.pid)));
         }
         bus.wait(LOOK);
     }

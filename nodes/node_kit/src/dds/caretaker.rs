@@ -12,7 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a node may be away before its readers are emptied for it. A leaving node lingers longer than this.
-const ABSENCE: Duration = Duration::from_millis(50);
+const ABSENCE: Duration = Duration::from_millis(20);
 
 /// Readers of one bus, shared with the caretaker.
 pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;

@@ -54,3 +54,21 @@ fn what_is_not_supported_is_refused_and_named() {
     let error = nodes("launch: []", &[("seed", "3")]).unwrap_err();
     assert!(matches!(error, PlanError::NoSuchArgument { .. }), "{error}");
 }
+
+#[test]
+fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
+    let mut plans = nodes(DEFAULT, &[]).unwrap();
+    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    for plan in plans {
+        let (ros, plain) = node_kit::RosArgs::parse(&plan.arguments).unwrap();
+        let given = ros.parameters.iter().find(|p| p.name == "look_around").map(|p| p.yaml.as_str());
+        assert_eq!(given, (plan.node == "dem_simulator").then_some("0.0"));
+        assert_eq!(plain, ["run", &plan.node]);
+    }
+    let told = DEFAULT.replace("wait_for:=", "look_around:=2.0 -p wait_for:=");
+    let mut plans = nodes(&told, &[]).unwrap();
+    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    let simulator = plans.iter().find(|p| p.node == "dem_simulator").unwrap();
+    let (ros, _) = node_kit::RosArgs::parse(&simulator.arguments).unwrap();
+    assert_eq!(ros.parameters.iter().rfind(|p| p.name == "look_around").unwrap().yaml, "2.0");
+}

@@ -1,0 +1,45 @@
+//! What can be set.
+
+use node_kit::{ParameterSpec, Parameters, Range};
+
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let most = i64::from(u8::MAX);
+    vec![
+        ParameterSpec::new(
+            "min_readers",
+            Settings::default().min_readers as i64,
+            "readers of strain_rate that are waited for before the first answer, 1",
+        )
+        .within(Range::Integer { min: 0, max: most }),
+    ]
+}
+
+/// The parameters, typed. None of them enters an answer: the question holds everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Readers of `strain_rate` that are waited for before the first answer: a recorder must not miss it.
+    pub min_readers: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { min_readers: 1 }
+    }
+}
+
+impl From<&Parameters> for Settings {
+    fn from(parameters: &Parameters) -> Self {
+        Self { min_readers: parameters.get::<i64>("min_readers").unsigned_abs() as usize }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_declared_defaults_are_the_typed_ones() {
+        assert_eq!(Settings::from(&Parameters::defaults(&parameters())), Settings::default());
+    }
+}
