@@ -42,7 +42,7 @@ impl Checkpoint {
         (state.step, state.time, state.time_step) = (self.step, self.time, self.time_step);
         (state.cell, state.rate) = (self.cell, self.rate);
         (state.position, state.twist) = (self.position, self.twist);
-        let mut list = Builder::new(state, Images::new(state), self.touching.len(), false);
+        let mut list = Builder::new(state, Images::new(state), self.touching.len());
         for (i, j, image, root, history) in self.touching {
             let image = list.contacts.images.index(image, &state.cell);
             list.push(state, Pair { i, j, image, root, history });

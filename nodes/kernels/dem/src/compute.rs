@@ -4,6 +4,7 @@ use crate::simd::Simd;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Grains that make a thread of their own pay.
 const GRAINS_PER_THREAD: usize = 2000;
@@ -77,10 +78,11 @@ impl Compute {
         self.threads
     }
 
-    /// Runs many steps inside the threads at once, which spares each step the way in.
+    /// Does work that goes over and over to all threads, and keeps them awake meanwhile: a thread that has gone to sleep
+    /// takes longer to wake than a step takes.
     pub fn within<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
-            Some(pool) => pool.install(work),
+            Some(pool) => pool.install(|| awake(self.threads, work)),
             None => work(),
         }
     }
@@ -100,5 +102,36 @@ impl Compute {
                 results.into_iter().for_each(join);
             }
         }
+    }
+}
+
+/// Does `work` while the other threads of the pool look for their part in it without rest.
+fn awake<R>(threads: usize, work: impl FnOnce() -> R) -> R {
+    let leader = rayon::current_thread_index();
+    let done = AtomicBool::new(false);
+    rayon::in_place_scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|_| {
+                // The leader may come by here while it waits for a part of its own work; it must not stay.
+                while rayon::current_thread_index() != leader && !done.load(Ordering::Acquire) {
+                    if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                        std::thread::yield_now();
+                    }
+                }
+            });
+        }
+        let end = Ending(&done);
+        let result = work();
+        drop(end);
+        result
+    })
+}
+
+/// Lets the others rest, whatever happens.
+struct Ending<'a>(&'a AtomicBool);
+
+impl Drop for Ending<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
     }
 }

@@ -3,7 +3,7 @@
 use crate::lanes::{BLOCK, CHUNK, Quad, V3};
 use crate::pass::Chunk;
 use crate::state::{State, row, vector};
-use crate::sums::{Serial, Sums};
+use crate::sums::{Earlier, Layout, PART, PartSums, Sums};
 use grains::material::effective_radius;
 use grains::{Cell, Contact, Packing, Vec3};
 use std::collections::HashMap;
@@ -102,6 +102,37 @@ pub(crate) struct Crossing {
     pub(crate) image: u32,
 }
 
+/// Some chunks: what a thread works on at a time.
+pub(crate) struct Part<'a> {
+    blocks: &'a mut [Block],
+    /// Of all parts.
+    sizes: &'a [Sizes],
+    crossing: &'a [Crossing],
+    /// First block and first crossing of each of its chunks, and the end.
+    bounds: &'a [u32],
+    faces: &'a [u32],
+    pub(crate) sums: PartSums<'a>,
+}
+
+impl Part<'_> {
+    /// How many chunks.
+    pub(crate) fn chunks(&self) -> usize {
+        self.bounds.len() - 1
+    }
+
+    /// Chunk `c` of the part, to pass.
+    pub(crate) fn chunk(&mut self, c: usize) -> Chunk<'_> {
+        let blocks = self.bounds[c] as usize..self.bounds[c + 1] as usize;
+        let first = self.bounds[0] as usize;
+        Chunk {
+            sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks.clone()] },
+            blocks: &mut self.blocks[blocks.start - first..blocks.end - first],
+            crossing: &self.crossing[self.faces[c] as usize..self.faces[c + 1] as usize],
+            sums: self.sums.rows(),
+        }
+    }
+}
+
 /// One pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
@@ -123,13 +154,13 @@ impl Pair {
 impl Contacts {
     /// No pairs.
     pub(crate) fn none(state: &State) -> Self {
-        Builder::new(state, Images::new(state), 0, false).finish(state)
+        Builder::new(state, Images::new(state), 0).finish(state)
     }
 
     /// The contacts of a packing, as a list of their own.
     pub(crate) fn from_packing(packing: &Packing, state: &State) -> Self {
         let images = Images::new(state);
-        let mut list = Builder::new(state, images, packing.contacts.len(), false);
+        let mut list = Builder::new(state, images, packing.contacts.len());
         for c in &packing.contacts {
             let (r_i, r_j) = (state.radius[c.i as usize], state.radius[c.j as usize]);
             let root = (effective_radius(r_i, r_j) * c.overlap).sqrt();
@@ -168,37 +199,31 @@ impl Contacts {
             + vector(&self.images.shift[p.image as usize])
     }
 
-    /// One chunk to pass on the only thread, and the images. `None` where sums are shared.
-    pub(crate) fn chunk_mut(&mut self, c: usize) -> Option<(&Images, Chunk<'_>)> {
-        let Sums::Serial(Serial { rows, .. }) = &mut self.sums else { return None };
-        let blocks = self.chunks[c] as usize..self.chunks[c + 1] as usize;
-        let chunk = Chunk {
-            sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks.clone()] },
-            blocks: &mut self.blocks[blocks],
-            crossing: &self.crossing[self.crossings[c] as usize..self.crossings[c + 1] as usize],
-            sums: rows,
-            clean: true,
-        };
-        Some((&self.images, chunk))
+    /// All parts to pass at once, and the images.
+    pub(crate) fn parts_mut(&mut self) -> (&Images, impl Iterator<Item = Part<'_>>) {
+        let (sizes, crossing) = (&self.sizes[..], &self.crossing[..]);
+        let (bounds, faces) = (&self.chunks[..], &self.crossings[..]);
+        let mut blocks = &mut self.blocks[..];
+        let parts = self.sums.parts_mut().enumerate().map(move |(p, sums)| {
+            let chunks = p * PART..((p + 1) * PART).min(bounds.len() - 1) + 1;
+            let (bounds, faces) = (&bounds[chunks.clone()], &faces[chunks]);
+            let count = (bounds[bounds.len() - 1] - bounds[0]) as usize;
+            let (own, after) = std::mem::take(&mut blocks).split_at_mut(count);
+            blocks = after;
+            Part { blocks: own, sizes, crossing, bounds, faces, sums }
+        });
+        (&self.images, parts)
     }
 
-    /// All chunks to pass at once, and the images. None where sums are not shared.
-    pub(crate) fn chunks_mut(&mut self) -> (&Images, impl Iterator<Item = Chunk<'_>>) {
-        let (images, sizes, crossing) = (&self.images, &self.sizes[..], &self.crossing[..]);
-        let (mut rows, starts) = match &mut self.sums {
-            Sums::Serial(_) => (&mut [][..], &[][..]),
-            Sums::Parallel(p) => (&mut p.rows[..], &p.start[..]),
-        };
-        let mut blocks = &mut self.blocks[..];
-        let bounds = self.chunks.windows(2).zip(starts.windows(2)).zip(self.crossings.windows(2));
-        let chunks = bounds.map(move |((range, row), cross)| Chunk {
-            sizes: if sizes.is_empty() { &[] } else { &sizes[range[0] as usize..range[1] as usize] },
-            blocks: split(&mut blocks, (range[1] - range[0]) as usize),
-            crossing: &crossing[cross[0] as usize..cross[1] as usize],
-            sums: split(&mut rows, (row[1] - row[0]) as usize),
-            clean: false,
-        });
-        (images, chunks)
+    /// One part to pass, what earlier ones did, and the images.
+    pub(crate) fn part_mut(&mut self, p: usize) -> (&Images, Part<'_>, Earlier<'_>) {
+        let chunks = p * PART..((p + 1) * PART).min(self.chunks.len() - 1) + 1;
+        let (bounds, faces) = (&self.chunks[chunks.clone()], &self.crossings[chunks]);
+        let own = bounds[0] as usize..bounds[bounds.len() - 1] as usize;
+        let (sums, earlier) = self.sums.part_mut(p);
+        let (sizes, crossing) = (&self.sizes[..], &self.crossing[..]);
+        let part = Part { blocks: &mut self.blocks[own], sizes, crossing, bounds, faces, sums };
+        (&self.images, part, earlier)
     }
 
     /// The touching pairs as contacts, in the order of the sum.
@@ -237,24 +262,17 @@ fn distance(branch: &Vec3) -> f64 {
     branch.dot(branch).sqrt()
 }
 
-/// Takes the first `count` of a slice away from it.
-fn split<'a, T>(rest: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    let (first, after) = std::mem::take(rest).split_at_mut(count);
-    *rest = after;
-    first
-}
-
 /// Fills [`Contacts`] pair by pair, in order.
 pub(crate) struct Builder {
     pub(crate) contacts: Contacts,
+    layout: Layout,
     /// Pairs in the last block.
     filled: usize,
     equal_sized: bool,
 }
 
 impl Builder {
-    /// `shared`: several threads are to add to the sums.
-    pub(crate) fn new(state: &State, images: Images, expected: usize, shared: bool) -> Self {
+    pub(crate) fn new(state: &State, images: Images, expected: usize) -> Self {
         let blocks = expected / BLOCK + state.grains() / CHUNK + 2;
         let contacts = Contacts {
             images,
@@ -263,23 +281,24 @@ impl Builder {
             chunks: vec![0],
             crossing: Vec::new(),
             crossings: vec![0],
-            sums: Sums::new(state.grains(), shared),
+            sums: Sums::default(),
         };
-        Self { contacts, filled: BLOCK, equal_sized: state.equal_sized() }
+        let layout = Layout::new(state.grains());
+        Self { contacts, layout, filled: BLOCK, equal_sized: state.equal_sized() }
     }
 
     /// Adds a pair; pairs must come sorted by (i, j, image).
     pub(crate) fn push(&mut self, state: &State, pair: Pair) {
         let (i, j) = (pair.i as usize, pair.j as usize);
         while self.contacts.chunks.len() <= i / CHUNK {
-            self.end_chunk(state.grains());
+            self.end_chunk();
         }
         if self.filled == BLOCK {
             self.begin_block(state, pair.i);
         }
         let (lane, c) = (self.filled, &mut self.contacts);
         self.filled += 1;
-        let to = c.sums.row(i / CHUNK, j);
+        let to = self.layout.row(i / CHUNK, j);
         if c.images.number(pair.image) != [0; 3] {
             let before = c.chunks.last().map_or(0, |b| *b as usize);
             let slot = ((c.blocks.len() - 1 - before) * BLOCK + lane) as u32;
@@ -325,12 +344,10 @@ impl Builder {
     }
 
     /// What follows belongs to the next chunk.
-    fn end_chunk(&mut self, grains: usize) {
+    fn end_chunk(&mut self) {
         let c = &mut self.contacts;
-        let next = c.chunks.len() * CHUNK;
         c.chunks.push(c.blocks.len() as u32);
         c.crossings.push(c.crossing.len() as u32);
-        c.sums.end_chunk(CHUNK.min(grains.saturating_sub(next)));
         self.filled = BLOCK;
     }
 
@@ -338,10 +355,10 @@ impl Builder {
     pub(crate) fn finish(mut self, state: &State) -> Contacts {
         let chunks = state.grains().div_ceil(CHUNK);
         while self.contacts.chunks.len() <= chunks {
-            self.end_chunk(state.grains());
+            self.end_chunk();
         }
         let mut c = self.contacts;
-        c.sums.finish(chunks);
+        c.sums = self.layout.finish();
         c
     }
 }

@@ -165,8 +165,6 @@ impl Engine {
 
     /// Instruction set and threads from now on; results do not depend on them.
     pub fn set_compute(&mut self, compute: Compute) {
-        // One thread and several sum forces in different places.
-        self.ready &= (compute.threads() > 1) == self.contacts.sums.shared();
         self.compute = compute;
     }
 
@@ -372,10 +370,9 @@ impl Engine {
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
         let late = (2.0 * last.travel + last.strained * self.reach()) / last.steps.max(1) as f64;
         // Near its end the neighbour list bounds what can be drawn; it is found anew before that matters.
-        let shared = self.compute.threads() > 1;
         let left = self.setting.skin - 2.0 * self.found.travel - self.found.strained * self.reach();
         let skin = (DRAW_INTERVAL * now.max(late)).max(1e-3 * self.setting.skin).min(left.max(0.0));
-        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin, shared);
+        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin);
         self.drawn = Approach::new(skin);
     }
 

@@ -4,6 +4,7 @@ use crate::engine::{Features, Setting};
 use crate::lanes::{Lanes, Octad, Quad, Row};
 use crate::simd::{Kernel, Simd};
 use crate::state::State;
+use crate::sums::Act;
 use grains::Mat3;
 
 /// What one step did, for the checks that follow.
@@ -80,53 +81,19 @@ impl<'a> Grains<'a> {
         rows.map(|(position, twist)| Grains { position, twist })
     }
 
+    /// Positions, m.
+    pub(crate) fn positions(&self) -> &[Quad] {
+        self.position
+    }
+
     /// Chunk `c` of `size` grains.
     pub(crate) fn chunk(self, c: usize, size: usize) -> Self {
         let range = c * size..((c + 1) * size).min(self.position.len());
         Self { position: &mut self.position[range.clone()], twist: &mut self.twist[range] }
     }
-
-    /// Grains in it.
-    pub(crate) fn count(&self) -> usize {
-        self.position.len()
-    }
 }
 
-/// What acts on the grains of a chunk.
-pub(crate) trait Act {
-    /// Force and torque on grain `k` of the chunk, once.
-    fn on<R: Row>(&mut self, k: usize) -> [R; 2];
-}
-
-/// All there is.
-pub(crate) struct Whole<'a>(pub(crate) &'a [Octad]);
-
-/// In two parts, left zero.
-pub(crate) struct Parts<'a>(pub(crate) &'a mut [Octad], pub(crate) &'a mut [Octad]);
-
-impl Act for Whole<'_> {
-    #[inline(always)]
-    fn on<R: Row>(&mut self, k: usize) -> [R; 2] {
-        let row = &self.0[k].0;
-        [R::load(row, 0), R::load(row, 4)]
-    }
-}
-
-impl Act for Parts<'_> {
-    #[inline(always)]
-    fn on<R: Row>(&mut self, k: usize) -> [R; 2] {
-        let (a, b) = (&mut self.0[k].0, &mut self.1[k].0);
-        let sum = [R::load(a, 0).add(R::load(b, 0)), R::load(a, 4).add(R::load(b, 4))];
-        let zero = R::splat(0.0);
-        for at in [0, 4] {
-            zero.store(a, at);
-            zero.store(b, at);
-        }
-        sum
-    }
-}
-
-/// Moves a chunk of grains, of which the first is `first`, over one step.
+/// Moves a chunk of grains, of which the first is `first`, over one step, under what acts on them.
 pub(crate) fn advance<A: Act>(
     motion: &Motion<'_>,
     acts: A,
@@ -162,11 +129,10 @@ impl<A: Act, const FRICTION: bool, const SIZES: bool> Kernel for Move<'_, A, FRI
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Moved {
-        let mut acts = self.acts;
-        let m = self.motion;
+        let (m, mut acts) = (self.motion, self.acts);
         let Grains { position, twist } = self.grains;
         let zero = L::Row::splat(0.0);
-        let (mut sum, mut largest) = (zero, zero);
+        let (mut squares, mut largest) = (zero, zero);
         let rate = [L::Row::load(&m.rate[0], 0), L::Row::load(&m.rate[1], 0), L::Row::load(&m.rate[2], 0)];
         let (dt, keep) = (L::Row::splat(m.dt), [L::Row::splat(m.keep[0]), L::Row::splat(m.keep[1])]);
         let mut by = [L::Row::splat(m.inverse_mass[0]), L::Row::splat(m.inverse_inertia[0] * m.dt)];
@@ -193,11 +159,11 @@ impl<A: Act, const FRICTION: bool, const SIZES: bool> Kernel for Move<'_, A, FRI
                 w.mul(keep[1]).store(t, 4);
             }
             let square = v.mul(v);
-            sum = sum.add(square);
+            squares = squares.add(square);
             largest = square.max(largest);
         }
         let mut moved = Moved::default();
-        sum.store(&mut moved.sum, 0);
+        squares.store(&mut moved.sum, 0);
         largest.store(&mut moved.largest, 0);
         moved
     }

@@ -45,15 +45,8 @@ impl Neighbours {
 
     /// The pairs now closer than R_i + R_j + `skin`, the history of `old` carried over. `images` is the table that this
     /// list refers to.
-    pub(crate) fn draw(
-        &self,
-        state: &State,
-        images: Images,
-        old: &Contacts,
-        skin: f64,
-        shared: bool,
-    ) -> Contacts {
-        let mut list = Builder::new(state, images, old.slots(), shared);
+    pub(crate) fn draw(&self, state: &State, images: Images, old: &Contacts, skin: f64) -> Contacts {
+        let mut list = Builder::new(state, images, old.slots());
         let mut kept = (0..old.slots()).filter_map(|s| old.pair(s)).filter(Pair::touches).peekable();
         for i in 0..state.grains() {
             let (here, radius) = (vector(&state.position[i]), state.radius[i]);

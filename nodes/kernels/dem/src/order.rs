@@ -57,7 +57,7 @@ pub(crate) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
         })
         .collect();
     pairs.sort_unstable_by_key(|p| (p.0, p.1, p.2));
-    let mut list = Builder::new(state, Images::new(state), pairs.len(), false);
+    let mut list = Builder::new(state, Images::new(state), pairs.len());
     for (i, j, image, root, history) in pairs {
         let image = list.contacts.images.index(image, &state.cell);
         list.push(state, Pair { i, j, image, root, history });

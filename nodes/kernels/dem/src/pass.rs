@@ -26,8 +26,6 @@ pub(crate) struct Chunk<'a> {
     pub(crate) crossing: &'a [Crossing],
     /// Rows to add to: those of its grains, then others.
     pub(crate) sums: &'a mut [Octad],
-    /// Whether these are zero.
-    pub(crate) clean: bool,
 }
 
 /// Contacts without friction: no spins, no tangential springs.
@@ -101,10 +99,7 @@ trait Resist {
 /// All pairs of a chunk.
 #[inline(always)]
 fn pass<R: Resist, L: Lanes>(view: &View<'_>, chunk: Chunk<'_>, look: bool) -> Seen {
-    let Chunk { blocks, sizes, mut crossing, sums, clean } = chunk;
-    if !clean {
-        sums.fill(Octad::default());
-    }
+    let Chunk { blocks, sizes, mut crossing, sums } = chunk;
     let mut seen = Seen::default();
     let ask = view.position.len() > MANY;
     let lots = BLOCK / L::WIDTH;

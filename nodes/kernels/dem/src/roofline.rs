@@ -129,7 +129,8 @@ pub fn operations_per_contact(setting: &Setting) -> f64 {
     if engine.prepare().is_err() {
         return 0.0;
     }
-    let Some((images, chunk)) = engine.contacts.chunk_mut(0) else { return 0.0 };
+    let (images, mut part, _) = engine.contacts.part_mut(0);
+    let chunk = part.chunk(0);
     let view = sweep::view(&engine.state, images.shifts(), &setting);
     let rescaled = setting.tangential == Tangential::Rescaled;
     OPERATIONS.set(0);

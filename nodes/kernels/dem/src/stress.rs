@@ -5,8 +5,9 @@
 //! fewer terms, and none that has to be summed across lanes.
 
 use crate::contacts::Crossing;
-use crate::lanes::{BLOCK, Lanes, Octad, Quad};
+use crate::lanes::{BLOCK, Lanes, Quad, Row};
 use crate::simd::{Kernel, Simd};
+use crate::sums::Act;
 use grains::{Mat3, SymTensor};
 
 /// Σ f ⊗ l so far, J: three rows, one for each component of the force.
@@ -60,24 +61,34 @@ pub(crate) fn cross<'a>(
     crossing
 }
 
-/// Σ F ⊗ x over some grains.
-pub(crate) fn inner(total: &[Octad], position: &[Quad], simd: Simd) -> Seen {
-    simd.run(Inner { total, position })
+/// Σ F ⊗ x over the grains of a chunk.
+pub(crate) fn inner<A: Act>(acts: A, position: &[Quad], simd: Simd) -> Seen {
+    simd.run(Inner { acts, position })
 }
 
-struct Inner<'a> {
-    total: &'a [Octad],
+struct Inner<'a, A> {
+    acts: A,
     position: &'a [Quad],
 }
 
-impl Kernel for Inner<'_> {
+impl<A: Act> Kernel for Inner<'_, A> {
     type Output = Seen;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Seen {
+        let mut acts = self.acts;
+        let mut virial = [L::Row::splat(0.0); 3];
+        for (k, x) in self.position.iter().enumerate() {
+            let [force, _] = acts.on::<L::Row>(k);
+            let (mut f, x) = ([0.0; 4], L::Row::load(x, 0));
+            force.store(&mut f, 0);
+            for (sum, f) in virial.iter_mut().zip(f) {
+                *sum = L::Row::splat(f).mul_add(x, *sum);
+            }
+        }
         let mut seen = Seen::default();
-        for (Octad(f), x) in self.total.iter().zip(self.position) {
-            seen.add([f[0], f[1], f[2]], x);
+        for (row, sum) in seen.virial.iter_mut().zip(virial) {
+            sum.store(row, 0);
         }
         seen
     }

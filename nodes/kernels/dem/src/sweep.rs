@@ -6,20 +6,19 @@
 //! move. The bits are the same.
 
 use crate::compute::Compute;
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Part};
 use crate::engine::{Features, Setting};
 use crate::geometry::{Equal, View};
-use crate::integrate::{self, Grains, Motion, Moved, Parts, Whole};
-use crate::lanes::{CHUNK, Octad, Quad};
+use crate::integrate::{self, Grains, Motion, Moved};
+use crate::lanes::{CHUNK, Quad};
 use crate::law::Law;
 use crate::pass::{Chunk, Frictional, Frictionless};
 use crate::simd::Simd;
 use crate::state::State;
 use crate::stress::{self, Seen};
-use crate::sums::Sums;
+use crate::sums::{PART, Put};
 use grains::material::effective_radius;
 use scene::Tangential;
-use std::ops::Range;
 
 /// What becomes of the tangential history.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,55 +55,38 @@ pub(crate) fn evaluate(
 ) -> Seen {
     let pass = choose(setting, advance, !contacts.sizes.is_empty());
     let simd = compute.simd();
+    let (images, parts) = contacts.parts_mut();
+    let view = view(state, images.shifts(), setting);
     let mut seen = Seen::default();
-    for c in 0..state.grains().div_ceil(CHUNK) {
-        let Some((images, chunk)) = contacts.chunk_mut(c) else { break };
-        let crossed = pass(simd, view(state, images.shifts(), setting), chunk, look);
-        let range = range(state, c);
-        let Sums::Serial(sums) = &mut contacts.sums else { break };
-        let total = sums.settle(range.clone(), simd);
-        if look {
-            seen.then(&crossed);
-            seen.then(&stress::inner(total, &state.position[range], simd));
+    let work = |mut part: Part<'_>| {
+        let mut seen = Seen::default();
+        part.sums.begin();
+        for c in 0..part.chunks() {
+            seen.then(&pass(simd, view, part.chunk(c), look));
+            part.sums.end(c, simd);
         }
-    }
-    if contacts.sums.shared() {
-        let (images, chunks) = contacts.chunks_mut();
-        let view = view(state, images.shifts(), setting);
-        let mut crossed = Vec::new();
-        compute.each(chunks, |chunk| pass(simd, view, chunk, look), |next| crossed.push(next));
-        if look {
-            let chunks = 0..crossed.len();
-            let inner = |c: usize| {
-                let (range, mut room) = (range(state, c), [Octad::default(); CHUNK]);
-                let total = contacts.sums.total(c, range.clone(), &mut room, simd);
-                stress::inner(total, &state.position[range], simd)
-            };
-            let mut crossed = crossed.iter();
-            compute.each(chunks, inner, |next| {
-                crossed.next().into_iter().for_each(|c| seen.then(c));
-                seen.then(&next);
-            });
-        }
+        seen
+    };
+    compute.each(parts, work, |next| seen.then(&next));
+    contacts.sums.join();
+    if look {
+        let chunks = contacts.sums.chunks().zip(state.position.chunks(CHUNK));
+        let inner = |(acts, position): (Put<'_>, &[Quad])| stress::inner(acts, position, simd);
+        let mut within = Seen::default();
+        compute.each(chunks, inner, |next| within.then(&next));
+        seen.then(&within);
     }
     seen
-}
-
-/// Grains of a chunk.
-fn range(state: &State, c: usize) -> Range<usize> {
-    c * CHUNK..((c + 1) * CHUNK).min(state.grains())
 }
 
 /// Moves all grains over one step, under the forces last evaluated.
 pub(crate) fn advance(state: &mut State, contacts: &Contacts, setting: &Setting, compute: &Compute) -> Moved {
     let (motion, grains) = Motion::of(state, setting);
-    let chunks = grains.chunks(CHUNK).enumerate();
+    let chunks = grains.chunks(CHUNK).zip(contacts.sums.chunks()).enumerate();
     let mut moved = Moved::default();
     let simd = compute.simd();
-    let work = |(c, chunk): (usize, Grains<'_>)| {
-        let (first, mut room) = (c * CHUNK, [Octad::default(); CHUNK]);
-        let total = contacts.sums.total(c, first..first + chunk.count(), &mut room, simd);
-        integrate::advance(&motion, Whole(total), first, chunk, simd)
+    let work = |(c, (grains, acts)): (usize, (Grains<'_>, Put<'_>))| {
+        integrate::advance(&motion, acts, c * CHUNK, grains, simd)
     };
     compute.each(chunks, work, |next| moved.then(&next));
     moved
@@ -118,32 +100,36 @@ pub(crate) fn evaluate_and_advance(
     compute: &Compute,
     look: bool,
 ) -> (Seen, Moved) {
-    if contacts.sums.shared() {
+    if compute.threads() > 1 {
         let seen = evaluate(state, contacts, setting, compute, Advance::Step, look);
         return (seen, advance(state, contacts, setting, compute));
     }
     let simd = compute.simd();
     let pass = choose(setting, Advance::Step, !contacts.sizes.is_empty());
-    let (mut seen, mut moved) = (Seen::default(), Moved::default());
-    for c in 0..state.grains().div_ceil(CHUNK) {
-        let Some((images, chunk)) = contacts.chunk_mut(c) else { break };
-        let crossed = pass(simd, view(state, images.shifts(), setting), chunk, look);
-        let range = range(state, c);
-        let Sums::Serial(sums) = &mut contacts.sums else { break };
-        let first = range.start;
-        moved.then(&if look {
-            let total = sums.settle(range.clone(), simd);
-            seen.then(&crossed);
-            seen.then(&stress::inner(total, &state.position[range], simd));
+    let (mut across, mut within, mut moved) = (Seen::default(), Seen::default(), Moved::default());
+    for p in 0..state.grains().div_ceil(PART * CHUNK) {
+        let (images, mut part, mut earlier) = contacts.part_mut(p);
+        let mut seen = Seen::default();
+        part.sums.begin();
+        for c in 0..part.chunks() {
+            seen.then(&pass(simd, view(state, images.shifts(), setting), part.chunk(c), look));
+            let chunk = p * PART + c;
             let (motion, grains) = Motion::of(state, setting);
-            integrate::advance(&motion, Whole(total), first, grains.chunk(c, CHUNK), simd)
-        } else {
-            let (own, early) = sums.parts(range);
-            let (motion, grains) = Motion::of(state, setting);
-            integrate::advance(&motion, Parts(own, early), first, grains.chunk(c, CHUNK), simd)
-        });
+            let grains = grains.chunk(chunk, CHUNK);
+            moved.then(&if look {
+                part.sums.end(c, simd);
+                let acts = part.sums.ended(c, &mut earlier);
+                within.then(&stress::inner(acts, grains.positions(), simd));
+                integrate::advance(&motion, acts, chunk * CHUNK, grains, simd)
+            } else {
+                let acts = part.sums.take(c, &mut earlier);
+                integrate::advance(&motion, acts, chunk * CHUNK, grains, simd)
+            });
+        }
+        across.then(&seen);
     }
-    (seen, moved)
+    across.then(&within);
+    (across, moved)
 }
 
 type Pass = fn(Simd, View<'_>, Chunk<'_>, bool) -> Seen;

@@ -6,6 +6,9 @@ use scene::Tangential;
 
 const RADIUS: f64 = 1e-4;
 
+/// Grains enough for several threads to have something to do: more than two of the parts that they work on.
+const PARTS: u32 = 4500;
+
 fn setting(friction: f64, tangential: Tangential) -> Setting {
     Setting {
         friction,
@@ -83,7 +86,7 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
 fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() {
     let run = |threads| {
         let compute = Compute::new(Simd::best(), threads).unwrap();
-        end(start(1100, setting(0.3, Tangential::Rescaled), false, compute), 10_000)
+        end(start(PARTS, setting(0.3, Tangential::Rescaled), false, compute), 10_000)
     };
     let one = run(1);
     for threads in [2, 4] {
@@ -107,7 +110,7 @@ fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damp
     let compute = |threads| Compute::new(Simd::best(), threads).unwrap();
     let mut ends = Vec::new();
     for threads in [1, 2] {
-        let mut engine = start(600, undamped, true, compute(threads));
+        let mut engine = start(PARTS, undamped, true, compute(threads));
         let mut measured = Vec::new();
         engine.run_measured(3000, |s| measured.push(s.voigt())).unwrap();
         assert_eq!(measured.len(), 3000);
@@ -125,7 +128,7 @@ fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damp
 #[test]
 fn the_order_of_grains_in_memory_does_not_change_what_happens() {
     let short = |sorted: bool| {
-        let mut engine = start(300, setting(0.3, Tangential::Rescaled), true, Compute::default());
+        let mut engine = start(PARTS, setting(0.3, Tangential::Rescaled), true, Compute::default());
         engine.run(1500).unwrap();
         if sorted {
             engine.sort();
