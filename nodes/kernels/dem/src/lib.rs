@@ -9,9 +9,9 @@
 //! - [`observe`]: stress, tangent stiffness and balance of the present contacts
 //! - [`roofline`]: what the contact law asks of a processor, for benchmarks
 //!
-//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), chunk of grains by
-//! chunk, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the number of threads,
-//! and a state saved and loaded goes on bit for bit.
+//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), by chunks and parts of a
+//! fixed number of grains, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the
+//! number of threads, and a state saved and loaded goes on bit for bit.
 
 mod checkpoint;
 pub mod compute;
