@@ -7,7 +7,7 @@ use scene::{Condition, Measure, PhaseKind, Scene};
 
 const GRAINS: u32 = 200;
 
-/// Simulated time within which a servoed phase settles, s: ten times what the slowest takes, so that failing is quick.
+/// Simulated time within which a servoed phase settles, s: twenty times what the slowest takes, so that failing is quick.
 const TIMEOUT: f64 = 0.05;
 
 /// Where the targets of a scene go, Pa.
