@@ -1,5 +1,6 @@
 //! Runs a scene in this process alone, the servo as a function call: `cargo run --release -p dem --example prepare FILE`.
 
+use grains::ComponentControl;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -23,12 +24,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let seen = e.snapshot()?;
             let spent = mark.elapsed().as_secs_f64();
             println!(
-                "{name:12} steps {done:8} {spent:6.1} s {:5.2} M/s  dt {:.2e}  phi {:.4} k {:.3} stress {:?} unbalanced {:.1e}",
+                "{name:12} steps {done:8} {spent:6.1} s {:5.2} M/s  dt {:.2e}  phi {:.4} k {:.3} stress {:?} off target {:.1e} unbalanced {:.1e}",
                 done as f64 * f64::from(run.scene().grains) / spent / 1e6,
                 e.time_step(),
                 seen.solid_fraction,
                 seen.coordination,
                 seen.stress.tensor.voigt().map(|v| v.round()),
+                off_target(&seen.stress.tensor.voigt(), &r.controls),
                 seen.unbalanced
             );
             (mark, steps) = (Instant::now(), run.engine().steps());
@@ -39,6 +41,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     println!("{:.1} s in all", begin.elapsed().as_secs_f64());
     Ok(())
+}
+
+/// The largest error of a servoed component over the mean of the normal targets; NaN where none is servoed.
+fn off_target(stress: &[f64; 6], controls: &[ComponentControl; 6]) -> f64 {
+    let targets = controls.map(|c| match c {
+        ComponentControl::Stress(target) => Some(target),
+        _ => None,
+    });
+    let normal: Vec<f64> = targets[..3].iter().flatten().copied().collect();
+    let errors = stress.iter().zip(targets).filter_map(|(s, t)| Some((s - t?).abs()));
+    errors.fold(f64::NAN, f64::max) * normal.len() as f64 / normal.iter().sum::<f64>()
 }
 
 fn report(packing: &grains::Packing) -> Result<(), Box<dyn std::error::Error>> {

@@ -11,6 +11,7 @@ mod limits;
 mod lists;
 mod rattlers;
 mod refusals;
+mod scenes;
 mod sheared;
 mod sizes;
 mod support;
