@@ -28,7 +28,7 @@ const NEVER: Meeting = Meeting { time: f64::INFINITY, partner: NONE, image: [0; 
 const GROUP: usize = 16;
 
 /// A grain that comes closer.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Closing {
     near: Near,
     approach: Approach,
@@ -53,6 +53,8 @@ pub(super) struct Slice {
     /// Images, as bits, in which grains were near; all zero between two uses.
     marks: Vec<u32>,
     meetings: Vec<Meeting>,
+    /// Those of a group that come closer; only while it is looked at.
+    closing: [Closing; GROUP],
     /// When each grain reaches its margin.
     leaving: Vec<f64>,
     /// Cell vectors by which each grain was folded since the beginning.
@@ -124,6 +126,7 @@ impl Slice {
             spare: [Vec::new(), Vec::new()],
             marks: vec![0; n],
             meetings: vec![NEVER; n],
+            closing: [Closing::default(); GROUP],
             leaving: Vec::with_capacity(n),
             crossed: vec![[0; 3]; n],
             grid,
@@ -315,7 +318,6 @@ impl Slice {
         let mut found = None;
         for group in self.near[i].chunks(GROUP) {
             // Half of all pairs close, no telling which: counted, not branched upon.
-            let mut closing = [Closing::default(); GROUP];
             let (mut count, limit) = (0, best - now);
             for near in group {
                 let other = &self.grains[near.grain as usize];
@@ -324,10 +326,10 @@ impl Slice {
                 let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
                 let sum = g.radius + other.radius;
                 let approach = Approach::of(&d, &v, sum * scale, sum * self.growth);
-                closing[count] = Closing { near: *near, approach };
+                self.closing[count] = Closing { near: *near, approach };
                 count += usize::from(approach.may_meet(limit));
             }
-            for c in &closing[..count] {
+            for c in &self.closing[..count] {
                 // What the other grain meets before is its next collision, after which it looks again.
                 if let Some(wait) = c.approach.meeting(best - now)
                     && now + wait < self.meetings[c.near.grain as usize].time
