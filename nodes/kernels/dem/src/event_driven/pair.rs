@@ -49,34 +49,29 @@ impl Approach {
         Self { a: dot(v, v) - growth * growth, b: dot(d, v) - sigma * growth, c: dot(d, d) - sigma * sigma }
     }
 
-    /// Whether they may meet before `limit`, told without a square root and without a branch.
+    /// Whether they may meet before `limit`, told without a square root and without a branch: half of all pairs close,
+    /// and few of those meet soon, no telling which.
     #[inline(always)]
     pub(super) fn may_meet(&self, limit: f64) -> bool {
-        // With a ≥ 0 they must come closer, half of all pairs do, and the root is no earlier than c/(−2b).
-        (self.a < 0.0) | ((self.b < 0.0) & (self.c < (-2.0 * self.b * limit).max(0.0)))
+        let Self { a, b, c } = *self;
+        // With a ≥ 0 they must close, and the root is no earlier than c/(−2b).
+        let soon = (b < 0.0) & (c < (-2.0 * b * limit).max(0.0)) & (b * b >= a * c);
+        soon | (a < 0.0)
     }
 
-    /// Time until they meet, the first root, if that is before `limit`. 0 for a pair that overlaps (by rounding) and
-    /// closes.
+    /// Time until they meet, the first root, of a pair that [may](Self::may_meet); not a number where it never does. 0
+    /// for one that overlaps (by rounding) and closes.
     #[inline(always)]
-    pub(super) fn meeting(&self, limit: f64) -> Option<f64> {
+    pub(super) fn meeting(&self) -> f64 {
         let Self { a, b, c } = *self;
-        if !self.may_meet(limit) {
-            return None;
-        }
-        let time = if b < 0.0 {
-            if c <= 0.0 {
-                return Some(0.0);
-            }
-            let discriminant = b * b - a * c;
-            if discriminant < 0.0 {
-                return None;
-            }
-            c / (discriminant.sqrt() - b)
+        let square = b * b - a * c;
+        if b >= 0.0 {
+            (b + square.max(0.0).sqrt()) / -a
+        } else if c <= 0.0 {
+            0.0
         } else {
-            (b + (b * b - a * c).max(0.0).sqrt()) / -a
-        };
-        (time < limit).then_some(time)
+            c / (square.sqrt() - b)
+        }
     }
 }
 

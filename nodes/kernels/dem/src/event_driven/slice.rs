@@ -15,14 +15,13 @@ use grains::Vec3;
 /// A grain's next collision.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
-    time: f64,
     /// `NONE`: the collision was lost to another, or there is none before the end.
     partner: u32,
     /// Cell vectors from the partner, unwrapped since the beginning, to the image of it that is met.
     image: [i32; 3],
 }
 
-const NEVER: Meeting = Meeting { time: f64::INFINITY, partner: NONE, image: [0; 3] };
+const NOBODY: Meeting = Meeting { partner: NONE, image: [0; 3] };
 
 /// Near grains looked at together.
 const GROUP: usize = 16;
@@ -53,6 +52,8 @@ pub(super) struct Slice {
     /// Images, as bits, in which grains were near; all zero between two uses.
     marks: Vec<u32>,
     meetings: Vec<Meeting>,
+    /// When.
+    next: Vec<f64>,
     /// Those of a group that come closer; only while it is looked at.
     closing: [Closing; GROUP],
     /// When each grain reaches its margin.
@@ -125,7 +126,8 @@ impl Slice {
             near: vec![Vec::with_capacity(24); n],
             spare: [Vec::new(), Vec::new()],
             marks: vec![0; n],
-            meetings: vec![NEVER; n],
+            meetings: vec![NOBODY; n],
+            next: vec![f64::INFINITY; n],
             closing: [Closing::default(); GROUP],
             leaving: Vec::with_capacity(n),
             crossed: vec![[0; 3]; n],
@@ -161,14 +163,14 @@ impl Slice {
             }
             let i = i as usize;
             let meeting = self.meetings[i];
-            if self.leaving[i] <= meeting.time {
+            if self.leaving[i] <= self.next[i] {
                 self.leave(i, time);
             } else if meeting.partner == NONE {
-                self.meetings[i] = NEVER;
+                self.next[i] = f64::INFINITY;
                 self.seek(i, time);
                 self.queue.set(i, self.event(i));
             } else {
-                tally.impulse_length += self.collide(i, meeting);
+                tally.impulse_length += self.collide(i, meeting, time);
                 tally.collisions += 1;
             }
         }
@@ -194,7 +196,7 @@ impl Slice {
     /// Time of a grain's next event.
     #[inline(always)]
     fn event(&self, i: usize) -> f64 {
-        self.meetings[i].time.min(self.leaving[i])
+        self.next[i].min(self.leaving[i])
     }
 
     /// Distance of contact at `time`, and its rate.
@@ -288,8 +290,8 @@ impl Slice {
         self.spare[1] = old;
     }
 
-    fn collide(&mut self, i: usize, meeting: Meeting) -> f64 {
-        let (j, now) = (meeting.partner as usize, meeting.time);
+    fn collide(&mut self, i: usize, meeting: Meeting, now: f64) -> f64 {
+        let j = meeting.partner as usize;
         let (sigma, growth) = self.contact(i, j, now);
         let (mut a, mut b) = (self.grains[i], self.grains[j]);
         (a.x, b.x) = (a.at(now), b.at(now));
@@ -300,7 +302,7 @@ impl Slice {
         for (g, grain) in [(i, a), (j, b)] {
             self.grains[g] = grain;
             self.leaving[g] = self.exit(g);
-            self.meetings[g] = NEVER;
+            (self.meetings[g], self.next[g]) = (NOBODY, f64::INFINITY);
         }
         self.seek(i, now);
         self.seek(j, now);
@@ -314,11 +316,11 @@ impl Slice {
         let g = self.grains[i];
         let x = g.at(now);
         let scale = 1.0 + self.growth * now;
-        let mut best = self.meetings[i].time.min(self.end);
+        let mut best = self.next[i].min(self.end);
         let mut found = None;
         for group in self.near[i].chunks(GROUP) {
             // Half of all pairs close, no telling which: counted, not branched upon.
-            let (mut count, limit) = (0, best - now);
+            let (mut count, limit) = (0, best);
             for near in group {
                 let other = &self.grains[near.grain as usize];
                 let (p, s) = (other.at(now), &self.shifts[near.image as usize]);
@@ -327,15 +329,14 @@ impl Slice {
                 let sum = g.radius + other.radius;
                 let approach = Approach::of(&d, &v, sum * scale, sum * self.growth);
                 self.closing[count] = Closing { near: *near, approach };
-                count += usize::from(approach.may_meet(limit));
+                // What the other grain meets before is its next collision, after which it looks again.
+                let before = limit.min(self.next[near.grain as usize]);
+                count += usize::from(approach.may_meet(before - now));
             }
             for c in &self.closing[..count] {
-                // What the other grain meets before is its next collision, after which it looks again.
-                if let Some(wait) = c.approach.meeting(best - now)
-                    && now + wait < self.meetings[c.near.grain as usize].time
-                {
-                    best = now + wait;
-                    found = Some(c.near);
+                let wait = c.approach.meeting();
+                if wait < best - now && now + wait < self.next[c.near.grain as usize] {
+                    (best, found) = (now + wait, Some(c.near));
                 }
             }
         }
@@ -344,8 +345,9 @@ impl Slice {
         let image = std::array::from_fn(|k| vectors[k] + self.crossed[i][k] - self.crossed[j][k]);
         self.abandon(i, j);
         self.abandon(j, i);
-        self.meetings[i] = Meeting { time: best, partner: near.grain, image };
-        self.meetings[j] = Meeting { time: best, partner: i as u32, image: image.map(|k| -k) };
+        self.meetings[i] = Meeting { partner: near.grain, image };
+        self.meetings[j] = Meeting { partner: i as u32, image: image.map(|k| -k) };
+        (self.next[i], self.next[j]) = (best, best);
         self.queue.set(j, self.event(j));
     }
 
