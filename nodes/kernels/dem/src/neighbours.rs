@@ -238,8 +238,11 @@ impl Grid {
         let (bin, travelled) = self.home[i];
         let too_far = DemError::Image { grain: state.ids[i] };
         let here = vector(&state.position[i]) - state.cell.shift(travelled.map(|t| t as i8));
+        let edges = state.cell.matrix();
         for &(a, lap_a) in self.along(0, bin[0]) {
+            let from_a = here - edges.column(0) * f64::from(lap_a);
             for &(b, lap_b) in self.along(1, bin[1]) {
+                let from_b = from_a - edges.column(1) * f64::from(lap_b);
                 for &(c, lap_c) in self.along(2, bin[2]) {
                     let lap = [lap_a, lap_b, lap_c];
                     let index = self.index([a, b, c]);
@@ -250,7 +253,7 @@ impl Grid {
                     if lap.iter().any(|w| w.abs() > MAX_IMAGE) {
                         return Err(too_far);
                     }
-                    let from = here - state.cell.shift(lap.map(|l| l as i8));
+                    let from = from_b - edges.column(2) * f64::from(lap_c);
                     let least = state.radius[i] + skin;
                     for (&j, sphere) in self.members[range.clone()].iter().zip(&self.spheres[range]) {
                         let reach = least + sphere[3];
