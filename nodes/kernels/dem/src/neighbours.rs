@@ -6,8 +6,9 @@
 
 use crate::contacts::{Builder, Contacts, Images, Pair};
 use crate::error::DemError;
+use crate::lanes::{BLOCK, Quad};
 use crate::state::{State, vector};
-use grains::Vec3;
+use grains::{Cell, Vec3};
 
 /// Largest image number that a contact may carry.
 const MAX_IMAGE: i32 = 100;
@@ -26,47 +27,110 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// The list, and the table of images that it refers to.
     pub(crate) fn find(state: &State, skin: f64) -> Result<(Self, Images), DemError> {
-        let grid = Grid::new(state, 2.0 * state.largest_radius + skin)?;
-        let mut images = Images::new(state);
-        let mut list = Self { start: vec![0], ..Self::default() };
+        let mut grid = Grid::new(state, 2.0 * state.largest_radius + skin)?;
+        let mut rows = Rows::new(state);
+        let mut list = Self { start: Vec::with_capacity(state.grains() + 1), ..Self::default() };
+        list.start.push(0);
         let mut near: Vec<(u32, [i8; 3])> = Vec::new();
         for i in 0..state.grains() {
             near.clear();
             grid.around(state, i, skin, &mut near)?;
+            grid.leave_out(i);
             near.sort_unstable();
             for &(j, image) in &near {
                 list.j.push(j);
-                list.image.push(images.index(image, &state.cell));
+                list.image.push(rows.of(image, &state.cell));
             }
             list.start.push(list.j.len() as u32);
         }
-        Ok((list, images))
+        Ok((list, rows.images))
     }
 
     /// The pairs now closer than R_i + R_j + `skin`, the history of `old` carried over. `images` is the table that this
     /// list refers to.
     pub(crate) fn draw(&self, state: &State, images: Images, old: &Contacts, skin: f64) -> Contacts {
         let mut list = Builder::new(state, images, old.slots());
-        let mut kept = (0..old.slots()).filter_map(|s| old.pair(s)).filter(Pair::touches).peekable();
+        let mut kept = Kept { contacts: old, slot: 0 };
+        let longest = self.start.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+        let mut near = vec![0; longest as usize];
         for i in 0..state.grains() {
+            let range = self.start[i] as usize..self.start[i + 1] as usize;
+            let shifts = list.contacts.images.shifts();
             let (here, radius) = (vector(&state.position[i]), state.radius[i]);
-            for q in self.start[i] as usize..self.start[i + 1] as usize {
-                let j = self.j[q] as usize;
-                let branch = vector(&state.position[j]) - here
-                    + vector(&list.contacts.images.shifts()[self.image[q] as usize]);
-                let reach = radius + state.radius[j] + skin;
-                if branch.norm_squared() >= reach * reach {
-                    continue;
-                }
-                let key = (i as u32, self.j[q], list.contacts.images.number(self.image[q]));
-                let of = |p: &Pair| (p.i, p.j, old.images.number(p.image));
-                while kept.next_if(|p| of(p) < key).is_some() {}
-                let (root, history) =
-                    kept.next_if(|p| of(p) == key).map_or((0.0, Vec3::zeros()), |p| (p.root, p.history));
-                list.push(state, Pair { i: key.0, j: key.1, image: self.image[q], root, history });
+            // Which of them are near is anyone's guess: counted, not branched upon.
+            let mut count = 0;
+            for (q, (j, image)) in range.clone().zip(self.j[range.clone()].iter().zip(&self.image[range])) {
+                let branch = vector(&state.position[*j as usize]) - here + vector(&shifts[*image as usize]);
+                let reach = radius + state.radius[*j as usize] + skin;
+                near[count] = q;
+                count += usize::from(branch.norm_squared() < reach * reach);
+            }
+            for &q in &near[..count] {
+                let (j, image) = (self.j[q], self.image[q]);
+                let (root, history) = kept.take(i as u32, j, list.contacts.images.number(image));
+                list.push(state, Pair { i: i as u32, j, image, root, history });
             }
         }
         list.finish(state)
+    }
+}
+
+/// The touching pairs of a list, taken in order.
+struct Kept<'a> {
+    contacts: &'a Contacts,
+    /// Where the next may be.
+    slot: usize,
+}
+
+impl Kept<'_> {
+    /// √(R* δ) and history of a pair, zero where it did not touch. Pairs must be asked for in order.
+    #[inline]
+    fn take(&mut self, i: u32, j: u32, image: [i8; 3]) -> (f64, Vec3) {
+        while let Some(block) = self.contacts.blocks.get(self.slot / BLOCK) {
+            let lane = self.slot % BLOCK;
+            if block.root[lane] > 0.0 {
+                let number = || self.contacts.images.number(block.image[lane]);
+                let order = (block.i[lane], block.j[lane]).cmp(&(i, j)).then_with(|| number().cmp(&image));
+                if order.is_gt() {
+                    break;
+                }
+                if order.is_eq() {
+                    self.slot += 1;
+                    let h = &block.history;
+                    return (block.root[lane], Vec3::new(h[0][lane], h[1][lane], h[2][lane]));
+                }
+            }
+            self.slot += 1;
+        }
+        (0.0, Vec3::zeros())
+    }
+}
+
+/// A table of images, the nearest of them found without a search.
+struct Rows {
+    images: Images,
+    /// Rows of images up to [`NEAR`] cells away, 0 where unknown.
+    near: [u32; (2 * NEAR as usize + 1).pow(3)],
+}
+
+/// Cells along each axis within which images are looked up directly.
+const NEAR: i8 = 2;
+
+impl Rows {
+    fn new(state: &State) -> Self {
+        Self { images: Images::new(state), near: [0; _] }
+    }
+
+    #[inline]
+    fn of(&mut self, image: [i8; 3], cell: &Cell) -> u32 {
+        if image.iter().any(|k| k.abs() > NEAR) {
+            return self.images.index(image, cell);
+        }
+        let at = image.iter().fold(0, |at, k| (2 * NEAR as usize + 1) * at + (k + NEAR) as usize);
+        if self.near[at] == 0 {
+            self.near[at] = self.images.index(image, cell);
+        }
+        self.near[at]
     }
 }
 
@@ -75,10 +139,18 @@ struct Grid {
     bins: [i32; 3],
     /// Bins to look at on either side.
     span: [i32; 3],
+    /// Along each axis the bin, and the cell it is in, of each place from `span` bins before the cell on.
+    places: [Vec<(i32, i32)>; 3],
     /// Bin of each grain, and the whole cells it has travelled.
     home: Vec<([i32; 3], [i32; 3])>,
-    start: Vec<u32>,
+    /// First member of each bin that is not left out.
+    first: Vec<u32>,
+    /// End of the members of each bin.
+    end: Vec<u32>,
+    /// Grains, bin after bin, in ascending order in each.
     members: Vec<u32>,
+    /// Their centres, taken back to the cell, and radii, m.
+    spheres: Vec<Quad>,
 }
 
 impl Grid {
@@ -89,6 +161,8 @@ impl Grid {
         let bins: [i32; 3] = std::array::from_fn(|k| ((state.cell.width(k) / reach) as i32).clamp(1, most));
         let span: [i32; 3] =
             std::array::from_fn(|k| (reach / (state.cell.width(k) / f64::from(bins[k]))).ceil() as i32);
+        let place = |k: usize, at: i32| (at.rem_euclid(bins[k]), at.div_euclid(bins[k]));
+        let places = std::array::from_fn(|k| (-span[k]..bins[k] + span[k]).map(|at| place(k, at)).collect());
         let mut home = Vec::with_capacity(n);
         for i in 0..n {
             let s = state.cell.fractional(&vector(&state.position[i]));
@@ -102,24 +176,51 @@ impl Grid {
             });
             home.push((bin, travelled));
         }
-        let index = |b: [i32; 3]| ((b[0] * bins[1] + b[1]) * bins[2] + b[2]) as usize;
-        let mut start = vec![0u32; (bins[0] * bins[1] * bins[2]) as usize + 1];
-        for (b, _) in &home {
-            start[index(*b) + 1] += 1;
-        }
-        for b in 1..start.len() {
-            start[b] += start[b - 1];
-        }
-        let mut fill = start.clone();
-        let mut members = vec![0u32; n];
-        for (i, (b, _)) in home.iter().enumerate() {
-            members[fill[index(*b)] as usize] = i as u32;
-            fill[index(*b)] += 1;
-        }
-        Ok(Self { bins, span, home, start, members })
+        let mut grid =
+            Self { bins, span, places, home, first: vec![], end: vec![], members: vec![], spheres: vec![] };
+        grid.sort(state);
+        Ok(grid)
     }
 
-    /// Neighbours of grain `i` that pair with it (j > i, or its own image), unsorted.
+    /// Sorts the grains into their bins.
+    fn sort(&mut self, state: &State) {
+        let mut first = vec![0u32; self.bins.iter().product::<i32>() as usize + 1];
+        for (bin, _) in &self.home {
+            first[self.index(*bin) + 1] += 1;
+        }
+        for b in 1..first.len() {
+            first[b] += first[b - 1];
+        }
+        let mut end = first.clone();
+        self.members = vec![0; self.home.len()];
+        self.spheres = vec![[0.0; 4]; self.home.len()];
+        for (i, (bin, travelled)) in self.home.iter().enumerate() {
+            let next = &mut end[self.index(*bin)];
+            let x = vector(&state.position[i]) - state.cell.shift(travelled.map(|t| t as i8));
+            self.members[*next as usize] = i as u32;
+            self.spheres[*next as usize] = [x.x, x.y, x.z, state.radius[i]];
+            *next += 1;
+        }
+        (self.first, self.end) = (first, end);
+    }
+
+    fn index(&self, bin: [i32; 3]) -> usize {
+        ((bin[0] * self.bins[1] + bin[1]) * self.bins[2] + bin[2]) as usize
+    }
+
+    /// What along axis `k` is around a bin.
+    fn along(&self, k: usize, bin: i32) -> &[(i32, i32)] {
+        &self.places[k][bin as usize..=(bin + 2 * self.span[k]) as usize]
+    }
+
+    /// Leaves a grain out from now on; those of lower number must have been.
+    fn leave_out(&mut self, i: usize) {
+        let bin = self.index(self.home[i].0);
+        self.first[bin] += 1;
+    }
+
+    /// Neighbours of grain `i` that pair with it (j > i, or its own image), unsorted. All of lower number must have been
+    /// left out.
     fn around(
         &self,
         state: &State,
@@ -128,31 +229,38 @@ impl Grid {
         out: &mut Vec<(u32, [i8; 3])>,
     ) -> Result<(), DemError> {
         let (bin, travelled) = self.home[i];
-        let here = vector(&state.position[i]);
-        for a in -self.span[0]..=self.span[0] {
-            for b in -self.span[1]..=self.span[1] {
-                for c in -self.span[2]..=self.span[2] {
-                    let target = [bin[0] + a, bin[1] + b, bin[2] + c];
-                    let lap: [i32; 3] = std::array::from_fn(|k| target[k].div_euclid(self.bins[k]));
-                    let b: [i32; 3] = std::array::from_fn(|k| target[k].rem_euclid(self.bins[k]));
-                    let index = ((b[0] * self.bins[1] + b[1]) * self.bins[2] + b[2]) as usize;
-                    for &j in &self.members[self.start[index] as usize..self.start[index + 1] as usize] {
-                        if (j as usize) < i {
+        let too_far = DemError::Image { grain: state.ids[i] };
+        let here = vector(&state.position[i]) - state.cell.shift(travelled.map(|t| t as i8));
+        let edges = state.cell.matrix();
+        for &(a, lap_a) in self.along(0, bin[0]) {
+            let from_a = here - edges.column(0) * f64::from(lap_a);
+            for &(b, lap_b) in self.along(1, bin[1]) {
+                let from_b = from_a - edges.column(1) * f64::from(lap_b);
+                for &(c, lap_c) in self.along(2, bin[2]) {
+                    let lap = [lap_a, lap_b, lap_c];
+                    let index = self.index([a, b, c]);
+                    let range = self.first[index] as usize..self.end[index] as usize;
+                    if range.is_empty() {
+                        continue;
+                    }
+                    if lap.iter().any(|w| w.abs() > MAX_IMAGE) {
+                        return Err(too_far);
+                    }
+                    let from = from_b - edges.column(2) * f64::from(lap_c);
+                    let least = state.radius[i] + skin;
+                    for (&j, sphere) in self.members[range.clone()].iter().zip(&self.spheres[range]) {
+                        let reach = least + sphere[3];
+                        if (vector(sphere) - from).norm_squared() >= reach * reach {
                             continue;
                         }
                         let theirs = self.home[j as usize].1;
                         let wide: [i32; 3] = std::array::from_fn(|k| lap[k] - theirs[k] + travelled[k]);
                         if wide.iter().any(|w| w.abs() > MAX_IMAGE) {
-                            return Err(DemError::Image { grain: state.ids[i] });
+                            return Err(too_far);
                         }
                         let image = wide.map(|w| w as i8);
                         // A grain meets its own image twice; keep the positive one.
-                        if j as usize == i && image <= [0, 0, 0] {
-                            continue;
-                        }
-                        let d = vector(&state.position[j as usize]) - here + state.cell.shift(image);
-                        let reach = state.radius[i] + state.radius[j as usize] + skin;
-                        if d.norm_squared() < reach * reach {
+                        if j as usize != i || image > [0, 0, 0] {
                             out.push((j, image));
                         }
                     }

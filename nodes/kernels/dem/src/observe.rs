@@ -65,7 +65,7 @@ pub(crate) fn snapshot(
     let volume = state.cell.volume();
     let [xx, yy, zz, yz, xz, xy, zy, zx, yx, ..] = total.of;
     let virial = Mat3::new(xx, xy, xz, yx, yy, yz, zx, zy, zz);
-    let bearing = Bearing::of(contacts, state.grains(), if friction { 2 } else { 4 });
+    let bearing = Bearing::of(contacts, &rows, state.grains(), if friction { 2 } else { 4 });
     let mean_force = total.of[9] / f64::from(bearing.contacts);
     let solid: f64 = state.radius.iter().map(|r| r * r * r).sum();
     Ok(Snapshot {
@@ -74,7 +74,7 @@ pub(crate) fn snapshot(
         solid_fraction: 4.0 / 3.0 * std::f64::consts::PI * solid / volume,
         contacts: bearing.contacts,
         coordination: 2.0 * f64::from(bearing.contacts) / state.grains() as f64,
-        unbalanced: bearing.mean_net_force(contacts, &rows).map_or(1.0, |f| f / mean_force),
+        unbalanced: bearing.mean_net_force().map_or(1.0, |f| f / mean_force),
     })
 }
 
@@ -192,45 +192,69 @@ fn strained<L: Lanes>(n: V3<L>, normal: L, across: L, touching: L::Mask) -> [L; 
     energy
 }
 
-/// Grains that are no rattlers.
+/// Grains that are no rattlers, and what is in contact.
 struct Bearing {
     alive: Vec<bool>,
     contacts: u32,
+    /// Net force on each grain, N.
+    net: Vec<[f64; 3]>,
 }
 
 impl Bearing {
-    /// Recursively at least `least` contacts a grain.
-    fn of(contacts: &Contacts, grains: usize, least: u32) -> Self {
-        let pairs: Vec<(usize, usize)> = contacts.touching().map(|p| (p.i as usize, p.j as usize)).collect();
-        let mut alive = vec![true; grains];
-        loop {
-            let mut count = vec![0u32; grains];
-            for &(i, j) in &pairs {
-                let both = u32::from(alive[i] && alive[j]);
-                count[i] += both;
-                count[j] += both;
-            }
-            let before = alive.clone();
-            alive.iter_mut().zip(count).for_each(|(alive, count)| *alive &= count >= least);
-            if alive == before {
-                return Self { alive, contacts: pairs.len() as u32 };
+    /// Recursively at least `least` contacts a grain; `force` (N) is that on the second grain of each slot.
+    fn of(contacts: &Contacts, force: &[[[f64; BLOCK]; 3]], grains: usize, least: u32) -> Self {
+        let mut net = vec![[0.0; 3]; grains];
+        let mut count = vec![0u32; grains];
+        let mut pairs = vec![[0u32; 2]; contacts.slots()];
+        let mut touching = 0;
+        for (block, force) in contacts.blocks.iter().zip(force) {
+            for lane in 0..BLOCK {
+                // A slot that only fills up the block has no force and does not touch.
+                let (i, j) = (block.i[lane] as usize, block.j[lane] as usize);
+                for (k, f) in force.iter().enumerate() {
+                    net[i][k] -= f[lane];
+                    net[j][k] += f[lane];
+                }
+                let touches = block.root[lane] > 0.0;
+                count[i] += u32::from(touches);
+                count[j] += u32::from(touches);
+                pairs[touching] = [block.i[lane], block.j[lane]];
+                touching += usize::from(touches);
             }
         }
+        pairs.truncate(touching);
+        let mut alive = vec![true; grains];
+        while fall(&mut alive, &count, least) {
+            // The contacts of those that fell hold nothing.
+            pairs.retain(|pair| {
+                let [i, j] = pair.map(|grain| grain as usize);
+                let holds = alive[i] && alive[j];
+                if !holds {
+                    count[i] -= 1;
+                    count[j] -= 1;
+                }
+                holds
+            });
+        }
+        Self { alive, contacts: touching as u32, net }
     }
 
-    /// Mean of the net force, N, given the force on the second grain of each slot; `None` without such grains.
-    fn mean_net_force(&self, contacts: &Contacts, force: &[[[f64; BLOCK]; 3]]) -> Option<f64> {
-        let mut net = vec![[0.0; 3]; self.alive.len()];
-        for slot in 0..contacts.slots() {
-            let Some(p) = contacts.pair(slot) else { continue };
-            for (k, f) in force[slot / BLOCK].iter().enumerate() {
-                net[p.i as usize][k] -= f[slot % BLOCK];
-                net[p.j as usize][k] += f[slot % BLOCK];
-            }
-        }
+    /// Mean of the net force, N; `None` without such grains.
+    fn mean_net_force(&self) -> Option<f64> {
         let bearing = self.alive.iter().filter(|a| **a).count();
         let size = |n: &[f64; 3]| (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
-        let sum: f64 = net.iter().zip(&self.alive).filter(|(_, alive)| **alive).map(|(n, _)| size(n)).sum();
+        let sum: f64 =
+            self.net.iter().zip(&self.alive).filter(|(_, alive)| **alive).map(|(n, _)| size(n)).sum();
         (bearing > 0).then(|| sum / bearing as f64)
     }
+}
+
+/// Lets all grains fall that have less than `least` contacts; whether any did.
+fn fall(alive: &mut [bool], count: &[u32], least: u32) -> bool {
+    let mut fell = false;
+    for (alive, count) in alive.iter_mut().zip(count) {
+        fell |= *alive && *count < least;
+        *alive &= *count >= least;
+    }
+    fell
 }

@@ -47,6 +47,7 @@ impl Cell {
     }
 
     /// Shift of a periodic image, m.
+    #[inline]
     pub fn shift(&self, image: [i8; 3]) -> Vec3 {
         self.matrix * Vec3::new(f64::from(image[0]), f64::from(image[1]), f64::from(image[2]))
     }

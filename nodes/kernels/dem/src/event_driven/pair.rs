@@ -34,36 +34,45 @@ pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Time until two centres `d` apart, which move apart at `v`, come to the distance `sigma`, which grows at `growth`; if
-/// that is before `limit`. 0 for a pair that overlaps (by rounding) and closes.
-///
-/// The first root of a t² + 2b t + c, the square of the distance less that of contact.
-#[inline(always)]
-pub(super) fn meeting(d: &[f64; 3], v: &[f64; 3], sigma: f64, growth: f64, limit: f64) -> Option<f64> {
-    let b = dot(d, v) - sigma * growth;
-    let a = dot(v, v) - growth * growth;
-    // They part, and faster than they grow: half of all pairs.
-    if b >= 0.0 && a >= 0.0 {
-        return None;
+/// The square of the distance of two centres less that of contact, a t² + 2b t + c.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Approach {
+    a: f64,
+    b: f64,
+    c: f64,
+}
+
+impl Approach {
+    /// Of two centres `d` apart, which move apart at `v`, and the distance of contact `sigma`, which grows at `growth`.
+    #[inline(always)]
+    pub(super) fn of(d: &[f64; 3], v: &[f64; 3], sigma: f64, growth: f64) -> Self {
+        Self { a: dot(v, v) - growth * growth, b: dot(d, v) - sigma * growth, c: dot(d, d) - sigma * sigma }
     }
-    let c = dot(d, d) - sigma * sigma;
-    let time = if b < 0.0 {
-        if c <= 0.0 {
-            return Some(0.0);
+
+    /// Whether they may meet before `limit`, told without a square root and without a branch: half of all pairs close,
+    /// and few of those meet soon, no telling which.
+    #[inline(always)]
+    pub(super) fn may_meet(&self, limit: f64) -> bool {
+        let Self { a, b, c } = *self;
+        // With a ≥ 0 they must close, and the root is no earlier than c/(−2b).
+        let soon = (b < 0.0) & (c < (-2.0 * b * limit).max(0.0)) & (b * b >= a * c);
+        soon | (a < 0.0)
+    }
+
+    /// Time until they meet, the first root, of a pair that [may](Self::may_meet); not a number where it never does. 0
+    /// for one that overlaps (by rounding) and closes.
+    #[inline(always)]
+    pub(super) fn meeting(&self) -> f64 {
+        let Self { a, b, c } = *self;
+        let square = b * b - a * c;
+        if b >= 0.0 {
+            (b + square.max(0.0).sqrt()) / -a
+        } else if c <= 0.0 {
+            0.0
+        } else {
+            c / (square.sqrt() - b)
         }
-        // With a ≥ 0 the root is no earlier than c/(−2b): most of the rest need no square root.
-        if a >= 0.0 && c >= -2.0 * b * limit {
-            return None;
-        }
-        let discriminant = b * b - a * c;
-        if discriminant < 0.0 {
-            return None;
-        }
-        c / (discriminant.sqrt() - b)
-    } else {
-        (b + (b * b - a * c).max(0.0).sqrt()) / -a
-    };
-    (time < limit).then_some(time)
+    }
 }
 
 /// Reverses the rate at which two grains in contact close: an elastic collision of smooth spheres. `d` leads from `i` to

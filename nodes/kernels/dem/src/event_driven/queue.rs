@@ -57,8 +57,9 @@ impl Queue {
             if below >= self.heap.len() {
                 break;
             }
-            if below + 1 < self.heap.len() && self.heap[below + 1].0 < self.heap[below].0 {
-                below += 1;
+            // Counted, not branched upon: either is as likely.
+            if let [left, right, ..] = self.heap[below..] {
+                below += usize::from(right.0 < left.0);
             }
             if self.heap[below].0 >= moving.0 {
                 break;

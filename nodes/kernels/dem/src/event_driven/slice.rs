@@ -6,8 +6,8 @@
 //! a grain whose partner found an earlier collision keeps the time of the lost one, and looks again then.
 
 use super::ROUNDING;
-use super::grid::{Grid, Image, NONE, cell_vectors};
-use super::pair::{Grain, collide, dot, meeting};
+use super::grid::{Grid, Image, NONE, Near, cell_vectors};
+use super::pair::{Approach, Grain, collide, dot};
 use super::queue::Queue;
 use crate::error::DemError;
 use grains::Vec3;
@@ -15,20 +15,22 @@ use grains::Vec3;
 /// A grain's next collision.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
-    time: f64,
     /// `NONE`: the collision was lost to another, or there is none before the end.
     partner: u32,
     /// Cell vectors from the partner, unwrapped since the beginning, to the image of it that is met.
     image: [i32; 3],
 }
 
-const NEVER: Meeting = Meeting { time: f64::INFINITY, partner: NONE, image: [0; 3] };
+const NOBODY: Meeting = Meeting { partner: NONE, image: [0; 3] };
 
-/// A grain that another may meet before one of them reaches its margin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Near {
-    grain: u32,
-    image: Image,
+/// Near grains looked at together.
+const GROUP: usize = 16;
+
+/// A grain that comes closer.
+#[derive(Clone, Copy, Debug, Default)]
+struct Closing {
+    near: Near,
+    approach: Approach,
 }
 
 /// The interval under way.
@@ -43,8 +45,17 @@ pub(super) struct Slice {
     margin: f64,
     grains: Vec<Grain>,
     anchors: Vec<[f64; 3]>,
+    /// Grains that each may meet before one of the two reaches its margin; each pair is listed with both.
     near: Vec<Vec<Near>>,
+    /// Candidates, and the list before.
+    spare: [Vec<Near>; 2],
+    /// Images, as bits, in which grains were near; all zero between two uses.
+    marks: Vec<u32>,
     meetings: Vec<Meeting>,
+    /// When.
+    next: Vec<f64>,
+    /// Those of a group that come closer; only while it is looked at.
+    closing: [Closing; GROUP],
     /// When each grain reaches its margin.
     leaving: Vec<f64>,
     /// Cell vectors by which each grain was folded since the beginning.
@@ -113,7 +124,11 @@ impl Slice {
             margin,
             anchors: grains.iter().map(|g| g.x).collect(),
             near: vec![Vec::with_capacity(24); n],
-            meetings: vec![NEVER; n],
+            spare: [Vec::new(), Vec::new()],
+            marks: vec![0; n],
+            meetings: vec![NOBODY; n],
+            next: vec![f64::INFINITY; n],
+            closing: [Closing::default(); GROUP],
             leaving: Vec::with_capacity(n),
             crossed: vec![[0; 3]; n],
             grid,
@@ -148,14 +163,14 @@ impl Slice {
             }
             let i = i as usize;
             let meeting = self.meetings[i];
-            if self.leaving[i] <= meeting.time {
+            if self.leaving[i] <= self.next[i] {
                 self.leave(i, time);
             } else if meeting.partner == NONE {
-                self.meetings[i] = NEVER;
+                self.next[i] = f64::INFINITY;
                 self.seek(i, time);
                 self.queue.set(i, self.event(i));
             } else {
-                tally.impulse_length += self.collide(i, meeting);
+                tally.impulse_length += self.collide(i, meeting, time);
                 tally.collisions += 1;
             }
         }
@@ -181,7 +196,7 @@ impl Slice {
     /// Time of a grain's next event.
     #[inline(always)]
     fn event(&self, i: usize) -> f64 {
-        self.meetings[i].time.min(self.leaving[i])
+        self.next[i].min(self.leaving[i])
     }
 
     /// Distance of contact at `time`, and its rate.
@@ -193,20 +208,23 @@ impl Slice {
 
     /// The grains anchored so near to the anchor of `i` that they may touch it before either leaves its margin.
     fn list(&mut self, i: usize) {
-        let mut near = std::mem::take(&mut self.near[i]);
-        near.clear();
-        let anchor = &self.anchors[i];
+        let candidates = &mut self.spare[0];
+        let (anchor, radius) = (self.anchors[i], self.grains[i].radius);
         let scale = (1.0 + self.growth * self.end).max(1.0);
-        self.grid.around(anchor, |j, image| {
-            let (to, shift) = (&self.anchors[j], &self.shifts[image as usize]);
+        self.grid.around(&anchor, candidates);
+        let mut count = 0;
+        for k in 0..candidates.len() {
+            let near = candidates[k];
+            let j = near.grain as usize;
+            let (to, shift) = (&self.anchors[j], &self.shifts[near.image as usize]);
             let d: [f64; 3] = std::array::from_fn(|k| to[k] - anchor[k] + shift[k]);
-            let contact = (self.grains[i].radius + self.grains[j].radius) * scale;
+            let contact = (radius + self.grains[j].radius) * scale;
             let reach = (contact + 2.0 * self.margin) * (1.0 + ROUNDING);
-            if dot(&d, &d) < reach * reach && j != i {
-                near.push(Near { grain: j as u32, image });
-            }
-        });
-        self.near[i] = near;
+            candidates[count] = near;
+            count += usize::from((dot(&d, &d) < reach * reach) & (j != i));
+        }
+        self.near[i].clear();
+        self.near[i].extend_from_slice(&candidates[..count]);
     }
 
     /// When a grain reaches its margin, from where it is.
@@ -228,32 +246,52 @@ impl Slice {
         g.x = g.at(now);
         g.time = now;
         for k in 0..3 {
-            let turns = (g.x[k] / self.edges[k]).floor();
-            g.x[k] -= turns * self.edges[k];
-            self.crossed[i][k] += turns as i32;
+            // Seldom, and `floor` is a call where the processor may be any.
+            if !(0.0..self.edges[k]).contains(&g.x[k]) {
+                let turns = (g.x[k] / self.edges[k]).floor();
+                g.x[k] -= turns * self.edges[k];
+                self.crossed[i][k] += turns as i32;
+            }
         }
         self.anchors[i] = g.x;
         self.grid.place(i, &self.anchors[i]);
-        for k in 0..self.near[i].len() {
-            let old = self.near[i][k];
-            let theirs = &mut self.near[old.grain as usize];
-            let mine = Near { grain: i as u32, image: 26 - old.image };
-            if let Some(at) = theirs.iter().position(|n| *n == mine) {
-                theirs.swap_remove(at);
-            }
-        }
-        self.list(i);
-        for k in 0..self.near[i].len() {
-            let new = self.near[i][k];
-            self.near[new.grain as usize].push(Near { grain: i as u32, image: 26 - new.image });
-        }
+        self.relist(i);
         self.leaving[i] = self.exit(i);
         self.seek(i, now);
         self.queue.set(i, self.event(i));
     }
 
-    fn collide(&mut self, i: usize, meeting: Meeting) -> f64 {
-        let (j, now) = (meeting.partner as usize, meeting.time);
+    /// Lists `i` anew, with itself and with all that it came near to or went away from.
+    fn relist(&mut self, i: usize) {
+        let old = std::mem::replace(&mut self.near[i], std::mem::take(&mut self.spare[1]));
+        self.list(i);
+        for near in &old {
+            self.marks[near.grain as usize] |= 1 << near.image;
+        }
+        for k in 0..self.near[i].len() {
+            let near = self.near[i][k];
+            let (marks, bit) = (&mut self.marks[near.grain as usize], 1 << near.image);
+            if *marks & bit == 0 {
+                self.near[near.grain as usize].push(Near { grain: i as u32, image: 26 - near.image });
+            }
+            *marks &= !bit;
+        }
+        for near in &old {
+            let (marks, bit) = (&mut self.marks[near.grain as usize], 1 << near.image);
+            if *marks & bit != 0 {
+                *marks &= !bit;
+                let mine = Near { grain: i as u32, image: 26 - near.image };
+                let theirs = &mut self.near[near.grain as usize];
+                if let Some(at) = theirs.iter().position(|n| *n == mine) {
+                    theirs.swap_remove(at);
+                }
+            }
+        }
+        self.spare[1] = old;
+    }
+
+    fn collide(&mut self, i: usize, meeting: Meeting, now: f64) -> f64 {
+        let j = meeting.partner as usize;
         let (sigma, growth) = self.contact(i, j, now);
         let (mut a, mut b) = (self.grains[i], self.grains[j]);
         (a.x, b.x) = (a.at(now), b.at(now));
@@ -264,7 +302,7 @@ impl Slice {
         for (g, grain) in [(i, a), (j, b)] {
             self.grains[g] = grain;
             self.leaving[g] = self.exit(g);
-            self.meetings[g] = NEVER;
+            (self.meetings[g], self.next[g]) = (NOBODY, f64::INFINITY);
         }
         self.seek(i, now);
         self.seek(j, now);
@@ -278,20 +316,28 @@ impl Slice {
         let g = self.grains[i];
         let x = g.at(now);
         let scale = 1.0 + self.growth * now;
-        let mut best = self.meetings[i].time.min(self.end);
+        let mut best = self.next[i].min(self.end);
         let mut found = None;
-        for near in &self.near[i] {
-            let other = &self.grains[near.grain as usize];
-            let (p, s) = (other.at(now), &self.shifts[near.image as usize]);
-            let d = [p[0] - x[0] + s[0], p[1] - x[1] + s[1], p[2] - x[2] + s[2]];
-            let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
-            let sum = g.radius + other.radius;
-            // What the other grain meets before is its next collision, after which it looks again.
-            if let Some(wait) = meeting(&d, &v, sum * scale, sum * self.growth, best - now)
-                && now + wait < self.meetings[near.grain as usize].time
-            {
-                best = now + wait;
-                found = Some(*near);
+        for group in self.near[i].chunks(GROUP) {
+            // Half of all pairs close, no telling which: counted, not branched upon.
+            let (mut count, limit) = (0, best);
+            for near in group {
+                let other = &self.grains[near.grain as usize];
+                let (p, s) = (other.at(now), &self.shifts[near.image as usize]);
+                let d = [p[0] - x[0] + s[0], p[1] - x[1] + s[1], p[2] - x[2] + s[2]];
+                let v = [other.v[0] - g.v[0], other.v[1] - g.v[1], other.v[2] - g.v[2]];
+                let sum = g.radius + other.radius;
+                let approach = Approach::of(&d, &v, sum * scale, sum * self.growth);
+                self.closing[count] = Closing { near: *near, approach };
+                // What the other grain meets before is its next collision, after which it looks again.
+                let before = limit.min(self.next[near.grain as usize]);
+                count += usize::from(approach.may_meet(before - now));
+            }
+            for c in &self.closing[..count] {
+                let wait = c.approach.meeting();
+                if wait < best - now && now + wait < self.next[c.near.grain as usize] {
+                    (best, found) = (now + wait, Some(c.near));
+                }
             }
         }
         let Some(near) = found else { return };
@@ -299,8 +345,9 @@ impl Slice {
         let image = std::array::from_fn(|k| vectors[k] + self.crossed[i][k] - self.crossed[j][k]);
         self.abandon(i, j);
         self.abandon(j, i);
-        self.meetings[i] = Meeting { time: best, partner: near.grain, image };
-        self.meetings[j] = Meeting { time: best, partner: i as u32, image: image.map(|k| -k) };
+        self.meetings[i] = Meeting { partner: near.grain, image };
+        self.meetings[j] = Meeting { partner: i as u32, image: image.map(|k| -k) };
+        (self.next[i], self.next[j]) = (best, best);
         self.queue.set(j, self.event(j));
     }
 
