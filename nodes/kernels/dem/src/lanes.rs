@@ -12,6 +12,10 @@ pub(crate) const BLOCK: usize = 8;
 /// Grains in a chunk: the unit of work of a thread, and of every sum over contacts.
 pub(crate) const CHUNK: usize = 256;
 
+/// The bits of a float, read as an integer, are its logarithm, roughly: this less half of them is that of the inverse
+/// root.
+pub(crate) const ABOUT_INVERSE_ROOT: u64 = 0x5fe6_eb50_c7b5_37a9;
+
 /// A row of a table of vectors: x, y, z and a spare.
 pub(crate) type Quad = [f64; 4];
 
@@ -79,6 +83,8 @@ pub trait Lanes:
     fn mul_sub_from(self, by: Self, from: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// 1/√x for positive x, to one part in 28: a start for [`inverse_root`]. Large and finite where x is zero.
+    fn about_inverse_root(self) -> Self;
     /// The larger of two; the second where they do not compare.
     fn max(self, other: Self) -> Self;
     /// Where `self` exceeds `other`.
@@ -220,6 +226,10 @@ impl Lanes for f64 {
         f64::sqrt(self)
     }
     #[inline(always)]
+    fn about_inverse_root(self) -> Self {
+        f64::from_bits(ABOUT_INVERSE_ROOT - (self.to_bits() >> 1))
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -283,6 +293,19 @@ impl Lanes for f64 {
             }
         }
     }
+}
+
+/// 1/√x for positive x, to about 1e-15; large and finite for zero. Without root and division, which a processor has only
+/// one unit for, and which other parts of the contact law keep busy.
+#[inline(always)]
+pub(crate) fn inverse_root<L: Lanes>(x: L) -> L {
+    let (one, half, three) = (L::splat(1.0), L::splat(0.5), L::splat(0.375));
+    // 1/√(1 − e) = 1 + e/2 + 3e²/8 + 5e³/16 + …
+    let y = x.about_inverse_root();
+    let e = (x * y).mul_sub_from(y, one);
+    let y = e.mul_add(L::splat(0.3125), three).mul_add(e, half).mul_add(e * y, y);
+    let e = (x * y).mul_sub_from(y, one);
+    e.mul_add(three, half).mul_add(e * y, y)
 }
 
 /// A vector in each lane.

@@ -3,7 +3,7 @@
 //! Written once for any number of lanes: with `f64` it is the scalar specification, with the lanes of an instruction
 //! set it is what the engine runs.
 
-use crate::lanes::{Lanes, V3};
+use crate::lanes::{Lanes, V3, inverse_root};
 use grains::Material;
 
 /// Coefficients of the contact law for one phase.
@@ -137,7 +137,10 @@ impl Law {
 fn limited<L: Lanes>(f: V3<L>, limit: L) -> V3<L> {
     let square = f.dot(f);
     let sliding = square.gt(limit * limit);
-    if L::any(sliding) { V3::select(sliding, f.scale(limit / square.sqrt()), f) } else { f }
+    if !L::any(sliding) {
+        return f;
+    }
+    V3::select(sliding, f.scale(limit * inverse_root(square)), f)
 }
 
 /// The history after the rotation of its contact over one step: the shortest rotation of the normal, then the twist.

@@ -63,6 +63,9 @@ impl Lanes for Counted {
     fn sqrt(self) -> Self {
         counted(self.0.sqrt())
     }
+    fn about_inverse_root(self) -> Self {
+        counted(self.0.about_inverse_root())
+    }
     fn max(self, other: Self) -> Self {
         counted(<f64 as Lanes>::max(self.0, other.0))
     }

@@ -1,6 +1,6 @@
 //! Lanes of x86-64 processors. The only file with `unsafe` in it: intrinsics need it.
 
-use crate::lanes::{BLOCK, CHUNK, Lanes, Octad, Quad, Row, Rows, V3};
+use crate::lanes::{ABOUT_INVERSE_ROOT, BLOCK, CHUNK, Lanes, Octad, Quad, Row, Rows, V3};
 use crate::simd::Kernel;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
@@ -209,6 +209,14 @@ impl Lanes for Avx2 {
         Four(self.0).store(to, lane);
     }
     #[inline(always)]
+    fn about_inverse_root(self) -> Self {
+        unsafe {
+            let half = _mm256_srli_epi64::<1>(_mm256_castpd_si256(self.0));
+            let bits = _mm256_sub_epi64(_mm256_set1_epi64x(ABOUT_INVERSE_ROOT as i64), half);
+            Self(_mm256_castsi256_pd(bits))
+        }
+    }
+    #[inline(always)]
     fn gt(self, other: Self) -> __m256d {
         unsafe { _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, other.0) }
     }
@@ -319,6 +327,14 @@ impl Lanes for Avx512 {
     fn store(self, to: &mut [f64; BLOCK], _: usize) {
         // SAFETY: a block holds eight numbers.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) };
+    }
+    #[inline(always)]
+    fn about_inverse_root(self) -> Self {
+        unsafe {
+            let half = _mm512_srli_epi64::<1>(_mm512_castpd_si512(self.0));
+            let bits = _mm512_sub_epi64(_mm512_set1_epi64(ABOUT_INVERSE_ROOT as i64), half);
+            Self(_mm512_castsi512_pd(bits))
+        }
     }
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
