@@ -33,7 +33,8 @@ arithmetic!(Avx512, Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512
 
 /// What both kinds of lanes do in the same way.
 macro_rules! alike {
-    ($splat:ident $fmadd:ident $fmsub:ident $fnmadd:ident $sqrt:ident $max:ident $columns:ident) => {
+    ($splat:ident $fmadd:ident $fmsub:ident $fnmadd:ident $sqrt:ident $max:ident $columns:ident
+        $bits:ident $half:ident $number:ident $less:ident $float:ident) => {
         #[inline(always)]
         fn splat(value: f64) -> Self {
             Self(unsafe { $splat(value) })
@@ -59,6 +60,13 @@ macro_rules! alike {
             Self(unsafe { $max(self.0, other.0) })
         }
         #[inline(always)]
+        fn about_inverse_root(self) -> Self {
+            unsafe {
+                let half = $half::<1>($bits(self.0));
+                Self($float($less($number(ABOUT_INVERSE_ROOT as i64), half)))
+            }
+        }
+        #[inline(always)]
         fn anew(number: &[u32; BLOCK]) -> &[u32; BLOCK] {
             unseen(number)
         }
@@ -76,7 +84,10 @@ macro_rules! alike {
         }
         #[inline(always)]
         fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
-            prefetch(table, rows);
+            for &row in rows {
+                // SAFETY: a prefetch never faults, whatever the address.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(table.as_ptr().wrapping_add(row as usize).cast()) };
+            }
         }
     };
 }
@@ -198,7 +209,8 @@ impl Lanes for Avx2 {
     type Mask = __m256d;
     type Row = Four;
 
-    alike!(_mm256_set1_pd _mm256_fmadd_pd _mm256_fmsub_pd _mm256_fnmadd_pd _mm256_sqrt_pd _mm256_max_pd columns4);
+    alike!(_mm256_set1_pd _mm256_fmadd_pd _mm256_fmsub_pd _mm256_fnmadd_pd _mm256_sqrt_pd _mm256_max_pd columns4
+        _mm256_castpd_si256 _mm256_srli_epi64 _mm256_set1_epi64x _mm256_sub_epi64 _mm256_castsi256_pd);
 
     #[inline(always)]
     fn load(from: &[f64; BLOCK], lane: usize) -> Self {
@@ -207,14 +219,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn store(self, to: &mut [f64; BLOCK], lane: usize) {
         Four(self.0).store(to, lane);
-    }
-    #[inline(always)]
-    fn about_inverse_root(self) -> Self {
-        unsafe {
-            let half = _mm256_srli_epi64::<1>(_mm256_castpd_si256(self.0));
-            let bits = _mm256_sub_epi64(_mm256_set1_epi64x(ABOUT_INVERSE_ROOT as i64), half);
-            Self(_mm256_castsi256_pd(bits))
-        }
     }
     #[inline(always)]
     fn gt(self, other: Self) -> __m256d {
@@ -275,15 +279,6 @@ impl Lanes for Avx2 {
     }
 }
 
-/// Asks for rows of a table to be brought near; those that it does not have do no harm.
-#[inline(always)]
-fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]) {
-    for &row in rows {
-        // SAFETY: a prefetch never faults, whatever the address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(table.as_ptr().wrapping_add(row as usize).cast()) };
-    }
-}
-
 /// The last of four lanes in all.
 #[inline(always)]
 fn last(row: Avx2) -> Avx2 {
@@ -316,7 +311,8 @@ impl Lanes for Avx512 {
     type Mask = __mmask8;
     type Row = Four;
 
-    alike!(_mm512_set1_pd _mm512_fmadd_pd _mm512_fmsub_pd _mm512_fnmadd_pd _mm512_sqrt_pd _mm512_max_pd columns8);
+    alike!(_mm512_set1_pd _mm512_fmadd_pd _mm512_fmsub_pd _mm512_fnmadd_pd _mm512_sqrt_pd _mm512_max_pd columns8
+        _mm512_castpd_si512 _mm512_srli_epi64 _mm512_set1_epi64 _mm512_sub_epi64 _mm512_castsi512_pd);
 
     #[inline(always)]
     fn load(from: &[f64; BLOCK], _: usize) -> Self {
@@ -327,14 +323,6 @@ impl Lanes for Avx512 {
     fn store(self, to: &mut [f64; BLOCK], _: usize) {
         // SAFETY: a block holds eight numbers.
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), self.0) };
-    }
-    #[inline(always)]
-    fn about_inverse_root(self) -> Self {
-        unsafe {
-            let half = _mm512_srli_epi64::<1>(_mm512_castpd_si512(self.0));
-            let bits = _mm512_sub_epi64(_mm512_set1_epi64(ABOUT_INVERSE_ROOT as i64), half);
-            Self(_mm512_castsi512_pd(bits))
-        }
     }
     #[inline(always)]
     fn gt(self, other: Self) -> __mmask8 {
