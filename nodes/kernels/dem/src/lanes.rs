@@ -83,7 +83,7 @@ pub trait Lanes:
     fn mul_sub_from(self, by: Self, from: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// 1/√x for positive x, to one part in 28: a start for [`inverse_root`]. Large and finite where x is zero.
+    /// 1/√x for positive x, to one part in 28: a start for Newton's method. Large and finite where x is zero.
     fn about_inverse_root(self) -> Self;
     /// The larger of two; the second where they do not compare.
     fn max(self, other: Self) -> Self;
@@ -114,7 +114,7 @@ pub trait Lanes:
     /// Asks for rows of a table to be brought near, where the processor can be asked.
     fn prefetch<T>(table: &[T], rows: &[u32; BLOCK]);
     /// Adds what pairs do to their grains, pair after pair: force and moment to row `to` of the sums, the opposite force
-    /// and the same moment to row `from` modulo [`CHUNK`]. Of the eight components three are the force and, where `TURN`, three from the
+    /// and the same moment to row `from` modulo the grains of a chunk. Of the eight components three are the force and, where `TURN`, three from the
     /// fifth on the moment. Where `LEVERS`, the fourth is the lever of the moment on `to` and the eighth that on `from`.
     fn scatter<const TURN: bool, const LEVERS: bool>(
         components: [Self; 8],
