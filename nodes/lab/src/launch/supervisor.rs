@@ -113,6 +113,8 @@ impl<'a> Supervisor<'a> {
         let begin = Instant::now();
         let (watch, mut events) = Watch::start(self.domain, self.alone)?;
         if let Some(Event::Rival(writer)) = events.recv().await.filter(|e| matches!(e, Event::Rival(_))) {
+            // Left to the end of the process: RustDDS may panic where a participant leaves in the midst of discovery.
+            std::mem::forget(watch);
             return Err(Failure::failed(format!(
                 "a run is already under way in DDS domain {} (writer {writer} of stress): end it, or unset ROS_DOMAIN_ID \
                  to get a domain of its own",
