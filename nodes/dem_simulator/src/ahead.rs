@@ -28,15 +28,7 @@ impl Ahead {
     ///
     /// `None` where the law gives none.
     pub(crate) fn of(run: &Simulation, request: &Request, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = servo::answer(&servo::Request {
-            stress: request.snapshot.stress.tensor,
-            controls: request.controls,
-            rate: request.rate,
-            rate_limit: request.rate_limit,
-            law: request.law,
-            tangent: request.snapshot.tangent,
-            control_interval: request.control_interval,
-        });
+        let answer = servo::answer(&request.question());
         let rate = answer.ok()?.rate;
         let began = now();
         let mut run = run.clone();

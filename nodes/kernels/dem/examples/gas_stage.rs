@@ -46,15 +46,7 @@ fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
     let mut run = dem::Simulation::new(scene::Scene::parse(text)?)?;
     let mut out = Outcome { seconds: 0.0, jammed: 0.0, loaded: [0.0; 3] };
     while let Some(r) = run.request() {
-        let answer = servo::answer(&servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        })?;
+        let answer = servo::answer(&r.question())?;
         match run.answer(&answer.rate)?.ended.as_deref() {
             Some("gas") => out.seconds = begin.elapsed().as_secs_f64(),
             Some("jam") => out.jammed = run.packing().solid_fraction(),

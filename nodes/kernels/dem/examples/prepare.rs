@@ -9,15 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut run = dem::Simulation::new(scene)?;
     let (begin, mut mark, mut steps) = (Instant::now(), Instant::now(), 0);
     while let Some(r) = run.request() {
-        let answer = servo::answer(&servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        })?;
+        let answer = servo::answer(&r.question())?;
         let advanced = run.answer(&answer.rate)?;
         if let Some(name) = advanced.ended {
             let (e, done) = (run.engine(), run.engine().steps() - steps);

@@ -47,15 +47,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
     );
     let mut run = Simulation::new(Scene::parse(&text)?)?;
     while let Some(r) = run.request() {
-        let answer = servo::answer(&servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        })?;
+        let answer = servo::answer(&r.question())?;
         run.answer(&answer.rate)?;
     }
     print(&run.packing());

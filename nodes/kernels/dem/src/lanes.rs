@@ -1,7 +1,8 @@
 //! Numbers in lanes: one source text for the contact law, compiled for one, four or eight contacts at a time.
 //!
-//! Every operation is one correctly rounded IEEE 754 operation, the fused multiply-add one of them, and none is an
-//! estimate, so the same contact gives the same bits in every width and on every processor. `f64` is the one-lane form.
+//! Every operation is one correctly rounded IEEE 754 operation, the fused multiply-add one of them, or one on integers,
+//! and none is a processor's own estimate, so the same contact gives the same bits in every width and on every
+//! processor. `f64` is the one-lane form.
 
 use std::marker::PhantomData;
 use std::ops::{Add, Div, Mul, Sub};

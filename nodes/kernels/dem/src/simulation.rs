@@ -71,6 +71,21 @@ pub struct Request {
     pub strain: SymTensor,
 }
 
+impl Request {
+    /// What a servo is asked.
+    pub fn question(&self) -> servo::Request {
+        servo::Request {
+            stress: self.snapshot.stress.tensor,
+            controls: self.controls,
+            rate: self.rate,
+            rate_limit: self.rate_limit,
+            law: self.law,
+            tangent: self.snapshot.tangent,
+            control_interval: self.control_interval,
+        }
+    }
+}
+
 /// An event-driven phase under way.
 #[derive(Clone, Copy, Debug)]
 struct EventDriven {

@@ -47,16 +47,7 @@ publish = true
 
 fn advance(run: &mut Simulation) -> bool {
     let Some(r) = run.request() else { return false };
-    let request = servo::Request {
-        stress: r.snapshot.stress.tensor,
-        controls: r.controls,
-        rate: r.rate,
-        rate_limit: r.rate_limit,
-        law: r.law,
-        tangent: r.snapshot.tangent,
-        control_interval: r.control_interval,
-    };
-    run.answer(&servo::answer(&request).unwrap().rate).unwrap();
+    run.answer(&servo::answer(&r.question()).unwrap().rate).unwrap();
     true
 }
 

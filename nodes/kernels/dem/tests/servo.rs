@@ -45,16 +45,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
         let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
         let mut out = Vec::new();
         while let Some(r) = run.request() {
-            let request = servo::Request {
-                stress: r.snapshot.stress.tensor,
-                controls: r.controls,
-                rate: r.rate,
-                rate_limit: r.rate_limit,
-                law: r.law,
-                tangent: r.snapshot.tangent,
-                control_interval: r.control_interval,
-            };
-            let advanced = run.answer(&servo::answer(&request).unwrap().rate).unwrap();
+            let advanced = run.answer(&servo::answer(&r.question()).unwrap().rate).unwrap();
             if advanced.packing_due {
                 let target = PRESSURES[out.len()];
                 let stress = run.engine().snapshot().unwrap().stress.tensor.voigt();

@@ -61,16 +61,7 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
     let mut run = Simulation::new(scene).unwrap();
     let mut errors = Vec::new();
     while let Some(r) = run.request() {
-        let request = servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        };
-        let advanced = run.answer(&servo::answer(&request).unwrap().rate);
+        let advanced = run.answer(&servo::answer(&r.question()).unwrap().rate);
         let advanced = advanced.unwrap_or_else(|e| panic!("{label}{e}"));
         let targets = r.controls.map(|c| match c {
             ComponentControl::Stress(target) => target,

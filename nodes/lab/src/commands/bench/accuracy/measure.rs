@@ -45,15 +45,7 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
             let tangent = r.snapshot.tangent[..3].iter().copied().fold(0.0, f64::max);
             servoed = Some(Servoed { tangent, interval: r.control_interval });
         }
-        let answer = servo::answer(&servo::Request {
-            stress: r.snapshot.stress.tensor,
-            controls: r.controls,
-            rate: r.rate,
-            rate_limit: r.rate_limit,
-            law: r.law,
-            tangent: r.snapshot.tangent,
-            control_interval: r.control_interval,
-        })
+        let answer = servo::answer(&r.question())
         .map_err(|e| e.to_string())?;
         run.answer(&answer.rate).map_err(|e| e.to_string())?;
     }
