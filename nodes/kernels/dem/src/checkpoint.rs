@@ -1,9 +1,9 @@
 //! The part of an engine that cannot be found again, to go back to.
 
-use crate::contacts::{Builder, Contacts, Images, Pair};
+use crate::contacts::{Contacts, Kept};
 use crate::lanes::{Octad, Quad};
 use crate::state::State;
-use grains::{Cell, Mat3, Vec3};
+use grains::{Cell, Mat3};
 
 /// A state to go back to: no lists, no forces, nothing that never changes.
 #[derive(Clone, Debug)]
@@ -15,12 +15,11 @@ pub(crate) struct Checkpoint {
     rate: Mat3,
     position: Vec<Quad>,
     twist: Vec<Octad>,
-    touching: Vec<(u32, u32, [i8; 3], f64, Vec3)>,
+    touching: Vec<Kept>,
 }
 
 impl Checkpoint {
     pub(crate) fn of(state: &State, contacts: &Contacts) -> Self {
-        let image = |p: &Pair| contacts.images.number(p.image);
         Self {
             step: state.step,
             time: state.time,
@@ -29,7 +28,7 @@ impl Checkpoint {
             rate: state.rate,
             position: state.position.clone(),
             twist: state.twist.clone(),
-            touching: contacts.touching().map(|p| (p.i, p.j, image(&p), p.root, p.history)).collect(),
+            touching: contacts.kept().collect(),
         }
     }
 
@@ -42,11 +41,7 @@ impl Checkpoint {
         (state.step, state.time, state.time_step) = (self.step, self.time, self.time_step);
         (state.cell, state.rate) = (self.cell, self.rate);
         (state.position, state.twist) = (self.position, self.twist);
-        let mut list = Builder::new(state, Images::new(state), self.touching.len());
-        for (i, j, image, root, history) in self.touching {
-            let image = list.contacts.images.index(image, &state.cell);
-            list.push(state, Pair { i, j, image, root, history });
-        }
-        list.finish(state)
+        let count = self.touching.len();
+        Contacts::of(state, self.touching.into_iter(), count)
     }
 }

@@ -62,8 +62,8 @@ impl Compute {
         Ok(Self { simd, threads, pool })
     }
 
-    /// Threads worth using for so many grains on so many cores: each needs some thousands of grains to pay for waiting on
-    /// the others twice a step.
+    /// Threads worth using for so many grains on so many cores: each needs some thousands of grains to pay for what
+    /// it does twice over: pairs across the border of its share.
     pub fn threads_that_pay(grains: usize, cores: usize) -> usize {
         (grains / GRAINS_PER_THREAD).clamp(1, cores.max(1))
     }
@@ -87,6 +87,22 @@ impl Compute {
         }
     }
 
+    /// Does all pieces of work, one a thread as long as there are threads, and gives their results in their order. They
+    /// should take about as long as each other, and little: who is done first does not rest until the others are.
+    pub(crate) fn share<T: Send, R: Send>(
+        &self,
+        pieces: impl Iterator<Item = T>,
+        work: impl Fn(T) -> R + Sync + Send,
+    ) -> Vec<R> {
+        match &self.pool {
+            None => pieces.map(work).collect(),
+            Some(pool) => {
+                let pieces = pieces.collect();
+                pool.install(|| side_by_side(pieces, &work))
+            }
+        }
+    }
+
     /// Does all work items, and joins their results in their order, whatever thread they came from.
     pub(crate) fn each<T: Send, R: Send>(
         &self,
@@ -103,6 +119,34 @@ impl Compute {
             }
         }
     }
+}
+
+/// Halves of the pieces on two threads, and so on.
+fn side_by_side<T: Send, R: Send>(mut pieces: Vec<T>, work: &(impl Fn(T) -> R + Sync)) -> Vec<R> {
+    if pieces.len() < 2 {
+        return pieces.into_iter().map(work).collect();
+    }
+    let others = pieces.split_off(pieces.len() / 2);
+    let (begun, done) = (AtomicBool::new(false), AtomicBool::new(false));
+    let one = || {
+        let results = side_by_side(pieces, work);
+        // A thread that the pool lets wait goes to sleep; waking up takes longer than the others take. Where they take
+        // long after all, they may be in want of this very core.
+        let mut looks = 0u32;
+        while begun.load(Ordering::Acquire) && !done.load(Ordering::Acquire) {
+            looks += 1;
+            if looks.is_multiple_of(1000) { std::thread::yield_now() } else { std::hint::spin_loop() }
+        }
+        results
+    };
+    let other = || {
+        begun.store(true, Ordering::Release);
+        let _end = Ending(&done);
+        side_by_side(others, work)
+    };
+    let (mut results, others) = rayon::join(one, other);
+    results.extend(others);
+    results
 }
 
 /// Does `work` while the other threads of the pool look for their part in it without rest.

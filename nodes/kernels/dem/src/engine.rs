@@ -1,18 +1,23 @@
 //! Stepping grains at a given strain rate.
 
+use crate::approach::Approach;
 use crate::checkpoint::Checkpoint;
 use crate::compute::Compute;
-use crate::contacts::{Contacts, Images};
+use crate::contacts::Contacts;
 use crate::error::DemError;
+use crate::homes::Homes;
+use crate::images::Images;
 use crate::integrate::{self, Moved};
 use crate::neighbours::Neighbours;
 use crate::observe::{self, Snapshot};
 use crate::order;
 use crate::state::{State, twist, vector};
-use crate::sweep::{self, Advance};
+use crate::stress::Seen;
+use crate::sweep::{self, Job, Sweep};
 use crate::time_step;
 use grains::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
 use scene::Tangential;
+use std::borrow::Cow;
 
 /// Solver steps between two looks at the stiffness of the contacts for the time step.
 const TIME_STEP_INTERVAL: u64 = 200;
@@ -79,6 +84,7 @@ impl Setting {
 pub struct Engine {
     pub(crate) state: State,
     pub(crate) contacts: Contacts,
+    homes: Homes,
     setting: Setting,
     compute: Compute,
     neighbours: Neighbours,
@@ -89,37 +95,6 @@ pub struct Engine {
     listed: bool,
     /// Whether the forces are those of the present state.
     ready: bool,
-}
-
-/// A bound on how much closer pairs came since a list was made.
-#[derive(Clone, Copy, Debug)]
-struct Approach {
-    /// Skin of the list, m.
-    skin: f64,
-    /// No grain travelled farther relative to the affine motion, m.
-    travel: f64,
-    /// Sum of |L| dt.
-    strained: f64,
-    steps: u64,
-}
-
-impl Approach {
-    fn new(skin: f64) -> Self {
-        Self { skin, travel: 0.0, strained: 0.0, steps: 0 }
-    }
-
-    fn advance(&mut self, travel: f64, strain: f64) {
-        self.strained += strain;
-        // What was travelled before is strained along.
-        self.travel += travel * (1.0 + self.strained);
-        self.steps += 1;
-    }
-
-    /// Whether a pair missing from the list could touch: the list holds pairs closer than S + skin, the affine motion
-    /// brings the others no closer than (1 − strained)(S + skin), and each grain of a pair travelled at most `travel`.
-    fn is_stale(&self, reach: f64) -> bool {
-        (1.0 - self.strained) * (reach + self.skin) - 2.0 * self.travel <= reach
-    }
 }
 
 impl Engine {
@@ -156,9 +131,18 @@ impl Engine {
 
     fn with(state: State, contacts: Contacts, setting: Setting) -> Self {
         let (found, drawn) = (Approach::new(setting.skin), Approach::new(setting.skin));
-        let (compute, neighbours) = (Compute::default(), Neighbours::default());
-        let mut engine =
-            Self { state, contacts, setting, compute, neighbours, found, drawn, listed: false, ready: false };
+        let mut engine = Self {
+            state,
+            contacts,
+            homes: Homes::default(),
+            setting,
+            compute: Compute::default(),
+            neighbours: Neighbours::default(),
+            found,
+            drawn,
+            listed: false,
+            ready: false,
+        };
         engine.set(setting);
         engine
     }
@@ -175,11 +159,13 @@ impl Engine {
 
     /// Sets velocities relative to the affine motion, m/s, one a grain.
     pub fn set_velocities(&mut self, velocities: &[Vec3]) {
+        self.leave();
         self.state.twist.iter_mut().zip(velocities).for_each(|(t, v)| t.0[..3].copy_from_slice(v.as_slice()));
     }
 
     /// Sets spins, rad/s, one a grain.
     pub fn set_spins(&mut self, spins: &[Vec3]) {
+        self.leave();
         self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
     }
 
@@ -191,6 +177,7 @@ impl Engine {
     /// Changes the setting; takes effect with the next step. Without friction spins and tangential forces are dropped.
     pub fn set(&mut self, setting: Setting) {
         if setting.features() == Features::Frictionless {
+            self.leave();
             self.state.twist.iter_mut().for_each(|t| t.0[4..].fill(0.0));
             self.contacts.forget();
         }
@@ -233,6 +220,7 @@ impl Engine {
     /// Puts grains that are neighbours in space next to each other in memory, which large packings gain from. Their
     /// ids go with them. Call [`Engine::prepare`] before the next step.
     pub fn sort(&mut self) {
+        self.leave();
         let order = order::along_curve(&self.state);
         self.contacts = order::reorder(&mut self.state, &self.contacts, &order);
         (self.listed, self.ready) = (false, false);
@@ -241,8 +229,7 @@ impl Engine {
     /// Finds contacts and evaluates forces at the present state without moving on: needed once before the first step.
     pub fn prepare(&mut self) -> Result<(), DemError> {
         self.find()?;
-        let Self { state, contacts, setting, compute, .. } = self;
-        sweep::evaluate(state, contacts, setting, compute, Advance::Held, false);
+        self.sweep(Job::Resume, false);
         self.ready = true;
         if self.state.time_step == 0.0 {
             self.renew_time_step();
@@ -275,31 +262,49 @@ impl Engine {
         // Motion under the forces of this step's positions, if it was done with them.
         let mut gone: Option<Moved> = None;
         for left in (0..steps).rev() {
-            let Self { state, contacts, setting, compute, .. } = self;
-            let moved = gone.take().unwrap_or_else(|| sweep::advance(state, contacts, setting, compute));
-            let stretch = integrate::stretch(state);
+            let moved = gone.take().unwrap_or_else(|| self.sweep(Job::Advance, false).1);
+            let stretch = integrate::stretch(&self.state);
             total = stretch * total;
             self.arrive(&moved, &stretch)?;
             // The next motion waits for the last step's observers, and for a new time step.
             let renew = self.state.step.is_multiple_of(TIME_STEP_INTERVAL);
-            let Self { state, contacts, setting, compute, .. } = self;
-            let seen = if left == 0 || renew {
-                sweep::evaluate(state, contacts, setting, compute, Advance::Step, each.is_some())
-            } else {
-                let (seen, moved) =
-                    sweep::evaluate_and_advance(state, contacts, setting, compute, each.is_some());
-                gone = Some(moved);
-                seen
-            };
+            let wait = left == 0 || renew;
+            let job = if wait { Job::Evaluate } else { Job::EvaluateAndAdvance };
+            let (seen, moved) = self.sweep(job, each.is_some());
+            gone = (!wait).then_some(moved);
             if let Some(each) = &mut each {
-                let volume = self.state.cell.volume();
-                each(seen.stress(volume));
+                each(seen.stress(self.state.cell.volume()));
             }
             if renew {
                 self.renew_time_step();
             }
         }
         Ok(total)
+    }
+
+    fn sweep(&mut self, job: Job, look: bool) -> (Seen, Moved) {
+        let Self { state, homes, contacts, setting, compute, .. } = self;
+        Sweep { state, homes, contacts, setting, compute }.run(job, look)
+    }
+
+    /// Brings the state back from where several threads have it: before it is looked at more than once.
+    pub(crate) fn settle(&mut self) {
+        self.homes.settle(&mut self.state, &self.compute);
+    }
+
+    /// The same, and takes it from them: before it is changed.
+    fn leave(&mut self) {
+        self.settle();
+        self.homes.leave();
+    }
+
+    /// The state, wherever it is.
+    fn settled(&self) -> Cow<'_, State> {
+        let mut state = Cow::Borrowed(&self.state);
+        if self.homes.have_it_alone() {
+            self.homes.tell(state.to_mut(), &self.compute);
+        }
+        state
     }
 
     /// What follows when all grains have moved: checks, thermostat, cell, lists.
@@ -309,7 +314,7 @@ impl Engine {
             let mean = moved.sum_square_speed() / self.state.grains() as f64;
             if mean > cap * cap {
                 let factor = cap / mean.sqrt();
-                self.state.twist.iter_mut().flat_map(|t| &mut t.0[..4]).for_each(|v| *v *= factor);
+                self.slow(factor);
             }
         }
         self.state.step += 1;
@@ -321,13 +326,24 @@ impl Engine {
         self.relist(moved)
     }
 
+    /// Multiplies all velocities.
+    fn slow(&mut self, factor: f64) {
+        if self.homes.have_it_alone() {
+            self.homes.scale(factor);
+        } else {
+            self.leave();
+            self.state.twist.iter_mut().flat_map(|t| &mut t.0[..4]).for_each(|v| *v *= factor);
+        }
+    }
+
     /// Refuses what no longer moves as grains do.
-    fn check(&self, moved: &Moved) -> Result<(), DemError> {
+    fn check(&mut self, moved: &Moved) -> Result<(), DemError> {
         let limit = 0.1 * self.state.smallest_radius / self.state.time_step;
         // A sum that is not finite betrays any speed that is not.
         if moved.sum_square_speed().is_finite() && moved.largest_square_speed() <= limit * limit {
             return Ok(());
         }
+        self.settle();
         // The bound may be too large where several grains are fast.
         let fast = |v: Vec3| {
             let speed = v.norm();
@@ -355,6 +371,7 @@ impl Engine {
     }
 
     fn find(&mut self) -> Result<(), DemError> {
+        self.settle();
         let (neighbours, images) = Neighbours::find(&self.state, self.setting.skin)?;
         self.neighbours = neighbours;
         self.found = Approach::new(self.setting.skin);
@@ -365,6 +382,7 @@ impl Engine {
 
     /// Draws the contact list from the neighbours, with a skin that lasts for a while at the present speed.
     fn draw(&mut self, images: Images) {
+        self.settle();
         // What pairs come closer in one step, now and on the average of late.
         let (dt, last) = (self.state.time_step, self.drawn);
         let now = 2.0 * self.state.largest_speed() * dt + self.state.rate.norm() * dt * self.reach();
@@ -372,8 +390,9 @@ impl Engine {
         // Near its end the neighbour list bounds what can be drawn; it is found anew before that matters.
         let left = self.setting.skin - 2.0 * self.found.travel - self.found.strained * self.reach();
         let skin = (DRAW_INTERVAL * now.max(late)).max(1e-3 * self.setting.skin).min(left.max(0.0));
-        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin);
+        self.contacts = self.neighbours.draw(&self.state, images, &self.contacts, skin, &self.compute);
         self.drawn = Approach::new(skin);
+        self.leave();
     }
 
     fn reach(&self) -> f64 {
@@ -381,29 +400,31 @@ impl Engine {
     }
 
     pub(crate) fn checkpoint(&self) -> Checkpoint {
-        Checkpoint::of(&self.state, &self.contacts)
+        Checkpoint::of(&self.settled(), &self.contacts)
     }
 
     /// Goes back; forces must be evaluated anew before the next step.
     pub(crate) fn restore(&mut self, kept: Checkpoint) {
+        self.leave();
         self.contacts = kept.restore(&mut self.state);
         (self.listed, self.ready) = (false, false);
     }
 
     /// Stress, tangent stiffness and balance of the present contacts.
     pub fn snapshot(&self) -> Result<Snapshot, DemError> {
-        let view = sweep::view(&self.state, self.contacts.images.shifts(), &self.setting);
-        observe::snapshot(&self.state, &self.contacts, view, &self.compute)
+        let state = self.settled();
+        let view = sweep::view(&state, self.contacts.images.shifts(), &self.setting);
+        observe::snapshot(&state, &self.contacts, view, &self.compute)
     }
 
     /// Root mean square speed relative to the affine motion, m/s.
     pub fn speed(&self) -> f64 {
-        self.state.mean_square_speed().sqrt()
+        self.settled().mean_square_speed().sqrt()
     }
 
     /// The mechanical state; `deformation` is the deformation gradient since the reference state.
     pub fn packing(&self, deformation: Mat3) -> Packing {
-        let s = &self.state;
+        let s = &*self.settled();
         Packing {
             step: s.step,
             time: s.time,
@@ -423,6 +444,7 @@ impl Engine {
 
     /// Chooses the time step anew from the contacts present (or, in a gas, from the speeds).
     pub fn renew_time_step(&mut self) {
+        self.settle();
         let safety = match self.setting.time_step {
             TimeStep::Safety(share) => share,
             TimeStep::Fixed(step) => {

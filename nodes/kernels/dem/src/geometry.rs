@@ -1,9 +1,8 @@
 //! Where pairs are and whether they touch.
 
-use crate::contacts::{Block, Sizes};
-use crate::lanes::{BLOCK, Octad};
-use crate::lanes::{Lanes, Quad, Rows, V3};
+use crate::lanes::{BLOCK, Lanes, Octad, Quad, Rows, V3};
 use crate::law::Law;
+use crate::share::{Block, Sizes};
 
 /// What all pairs are seen from.
 #[derive(Clone, Copy)]

@@ -57,33 +57,56 @@ pub(crate) struct Grains<'a> {
 impl<'a> Motion<'a> {
     /// Splits a state into what moves and how.
     pub(crate) fn of(state: &'a mut State, setting: &Setting) -> (Self, Grains<'a>) {
-        let equal_sized = state.equal_sized();
-        let State { position, twist, inverse_mass, inverse_inertia, rate, time_step: dt, .. } = state;
+        let (equal_sized, rate, dt) = (state.equal_sized(), state.rate, state.time_step);
+        let State { position, twist, inverse_mass, inverse_inertia, .. } = state;
+        let motion = Self::new([inverse_mass, inverse_inertia], equal_sized, &rate, dt, setting);
+        (motion, Grains::of(position, twist))
+    }
+
+    /// How the grains of a state move, wherever they are.
+    pub(crate) fn still(state: &'a State, setting: &Setting) -> Self {
+        let inertia = [&state.inverse_mass[..], &state.inverse_inertia];
+        Self::new(inertia, state.equal_sized(), &state.rate, state.time_step, setting)
+    }
+
+    fn new(
+        [inverse_mass, inverse_inertia]: [&'a [f64]; 2],
+        equal_sized: bool,
+        rate: &Mat3,
+        dt: f64,
+        setting: &Setting,
+    ) -> Self {
         // Drag stops a grain, it never turns it round.
-        let left = |drag: f64| (1.0 - drag * *dt).max(0.0);
-        let motion = Self {
+        let left = |drag: f64| (1.0 - drag * dt).max(0.0);
+        Self {
             inverse_mass,
             inverse_inertia,
             equal_sized,
             rate: [0, 1, 2].map(|c| [rate[(0, c)], rate[(1, c)], rate[(2, c)], 0.0]),
-            dt: *dt,
+            dt,
             keep: [left(setting.drag), left(setting.spin_drag)],
             friction: setting.features() != Features::Frictionless,
-        };
-        (motion, Grains { position, twist })
+        }
     }
 }
 
 impl<'a> Grains<'a> {
-    /// Chunks of `size` grains.
-    pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Grains<'a>> {
-        let rows = self.position.chunks_mut(size).zip(self.twist.chunks_mut(size));
-        rows.map(|(position, twist)| Grains { position, twist })
+    pub(crate) fn of(position: &'a mut [Quad], twist: &'a mut [Octad]) -> Self {
+        Self { position, twist }
     }
 
-    /// Positions, m.
-    pub(crate) fn positions(&self) -> &[Quad] {
-        self.position
+    /// The first `count` of those that are left, and leaves the rest.
+    pub(crate) fn take(&mut self, count: usize) -> Self {
+        let (position, positions) = std::mem::take(&mut self.position).split_at_mut(count);
+        let (twist, twists) = std::mem::take(&mut self.twist).split_at_mut(count);
+        (self.position, self.twist) = (positions, twists);
+        Self { position, twist }
+    }
+
+    /// Makes these what others are.
+    pub(crate) fn copy(&mut self, position: &[Quad], twist: &[Octad]) {
+        self.position.copy_from_slice(position);
+        self.twist.copy_from_slice(twist);
     }
 
     /// Chunk `c` of `size` grains.

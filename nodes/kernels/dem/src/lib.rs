@@ -9,10 +9,11 @@
 //! - [`observe`]: stress, tangent stiffness and balance of the present contacts
 //! - [`roofline`]: what the contact law asks of a processor, for benchmarks
 //!
-//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), by chunks and parts of a
-//! fixed number of grains, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the
+//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), by chunks and parts that
+//! follow from the number of grains, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the
 //! number of threads, and a state saved and loaded goes on bit for bit.
 
+mod approach;
 mod checkpoint;
 pub mod compute;
 mod contacts;
@@ -21,15 +22,19 @@ pub mod error;
 pub mod event_driven;
 pub mod gas;
 mod geometry;
+mod homes;
+mod images;
 mod integrate;
 pub mod lanes;
 pub mod law;
 mod neighbours;
 pub mod observe;
 mod order;
+mod own;
 mod pass;
 pub mod roofline;
 mod run_state;
+mod share;
 pub mod simd;
 pub mod simulation;
 mod state;

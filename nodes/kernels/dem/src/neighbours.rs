@@ -4,11 +4,16 @@
 //! the contact pass works on. The second is drawn from the first, often and cheaply, so that what the contact pass sees
 //! is little more than the contacts.
 
-use crate::contacts::{Builder, Contacts, Images, Pair};
+use crate::compute::Compute;
+use crate::contacts::Contacts;
 use crate::error::DemError;
+use crate::images::Images;
 use crate::lanes::{BLOCK, Quad};
+use crate::own::Own;
+use crate::share::{Block, Builder, Pair, Share};
 use crate::state::{State, vector};
 use grains::{Cell, Vec3};
+use std::ops::Range;
 
 /// Largest image number that a contact may carry.
 const MAX_IMAGE: i32 = 100;
@@ -46,16 +51,47 @@ impl Neighbours {
         Ok((list, rows.images))
     }
 
-    /// The pairs now closer than R_i + R_j + `skin`, the history of `old` carried over. `images` is the table that this
-    /// list refers to.
-    pub(crate) fn draw(&self, state: &State, images: Images, old: &Contacts, skin: f64) -> Contacts {
-        let mut list = Builder::new(state, images, old.slots());
-        let mut kept = Kept { contacts: old, slot: 0 };
+    /// The pairs now closer than R_i + R_j + `skin`, the history of `old` carried over, in a share for each thread that can
+    /// have one. `images` is the table that this list refers to.
+    pub(crate) fn draw(
+        &self,
+        state: &State,
+        images: Images,
+        old: &Contacts,
+        skin: f64,
+        compute: &Compute,
+    ) -> Contacts {
+        let owners = Own::shares(state.grains(), compute.threads());
+        let expected = old.slots() / owners.len();
+        let shares = compute.share(owners.enumerate(), |(k, own)| {
+            let mut share = Builder::new(state, own.clone(), expected);
+            self.share(state, &images, Kept::of(old, k, &own), skin, own.grains(), &mut share);
+            share.finish()
+        });
+        Contacts { images, shares }
+    }
+
+    /// Those of them that act on the grains `own`.
+    fn share(
+        &self,
+        state: &State,
+        images: &Images,
+        mut kept: Kept<'_>,
+        skin: f64,
+        own: Range<usize>,
+        share: &mut Builder,
+    ) {
         let longest = self.start.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
         let mut near = vec![0; longest as usize];
-        for i in 0..state.grains() {
-            let range = self.start[i] as usize..self.start[i + 1] as usize;
-            let shifts = list.contacts.images.shifts();
+        let shifts = images.shifts();
+        for i in 0..own.end {
+            let mut range = self.start[i] as usize..self.start[i + 1] as usize;
+            if i < own.start {
+                // Sorted by j.
+                let ours = &self.j[range.clone()];
+                let [from, to] = [own.start, own.end].map(|g| ours.partition_point(|j| (*j as usize) < g));
+                range = range.start + from..range.start + to;
+            }
             let (here, radius) = (vector(&state.position[i]), state.radius[i]);
             // Which of them are near is anyone's guess: counted, not branched upon.
             let mut count = 0;
@@ -67,29 +103,44 @@ impl Neighbours {
             }
             for &q in &near[..count] {
                 let (j, image) = (self.j[q], self.image[q]);
-                let (root, history) = kept.take(i as u32, j, list.contacts.images.number(image));
-                list.push(state, Pair { i: i as u32, j, image, root, history });
+                let (root, history) = kept.take(i as u32, j, images.number(image));
+                share.push(state, images, Pair { i: i as u32, j, image, root, history });
             }
         }
-        list.finish(state)
     }
 }
 
 /// The touching pairs of a list, taken in order.
 struct Kept<'a> {
-    contacts: &'a Contacts,
-    /// Where the next may be.
+    images: &'a Images,
+    /// Those that may be asked for, in order.
+    blocks: Vec<&'a [Block]>,
+    /// Where the next may be: in which of them, and where in it.
+    run: usize,
     slot: usize,
 }
 
-impl Kept<'_> {
+impl<'a> Kept<'a> {
+    /// Of the pairs that act on the grains `own`, those of share `k` from now on.
+    fn of(old: &'a Contacts, k: usize, own: &Own) -> Self {
+        let blocks = match old.shares.get(k) {
+            Some(share) if share.own() == own => vec![&share.blocks[..]],
+            _ => old.shares.iter().map(Share::own_blocks).collect(),
+        };
+        Self { images: &old.images, blocks, run: 0, slot: 0 }
+    }
+
     /// √(R* δ) and history of a pair, zero where it did not touch. Pairs must be asked for in order.
     #[inline]
     fn take(&mut self, i: u32, j: u32, image: [i8; 3]) -> (f64, Vec3) {
-        while let Some(block) = self.contacts.blocks.get(self.slot / BLOCK) {
+        while let Some(blocks) = self.blocks.get(self.run) {
+            let Some(block) = blocks.get(self.slot / BLOCK) else {
+                (self.run, self.slot) = (self.run + 1, 0);
+                continue;
+            };
             let lane = self.slot % BLOCK;
             if block.root[lane] > 0.0 {
-                let number = || self.contacts.images.number(block.image[lane]);
+                let number = || self.images.number(block.image[lane]);
                 let order = (block.i[lane], block.j[lane]).cmp(&(i, j)).then_with(|| number().cmp(&image));
                 if order.is_gt() {
                     break;

@@ -1,10 +1,11 @@
 //! Stress, tangent stiffness and balance of the present contacts.
 
 use crate::compute::Compute;
-use crate::contacts::{Block, Contacts, Pair, Sizes};
+use crate::contacts::Contacts;
 use crate::error::DemError;
 use crate::geometry::{Geometry, View};
 use crate::lanes::{BLOCK, Lanes, V3};
+use crate::share::{Block, Pair, Share, Sizes};
 use crate::simd::Kernel;
 use crate::state::State;
 use grains::Mat3;
@@ -38,15 +39,13 @@ pub(crate) fn snapshot(
     compute: &Compute,
 ) -> Result<Snapshot, DemError> {
     let friction = view.law.friction > 0.0;
-    let mut rows = vec![[[0.0; BLOCK]; 3]; contacts.blocks.len()];
+    let mut rows = vec![[[0.0; BLOCK]; 3]; contacts.blocks().count()];
     let mut total = Sums::default();
     let mut rest = rows.as_mut_slice();
-    let chunks = contacts.chunks.windows(2).map(|c| {
-        let range = c[0] as usize..c[1] as usize;
-        let (force, after) = std::mem::take(&mut rest).split_at_mut(range.len());
+    let chunks = contacts.shares.iter().flat_map(Share::own_chunks).map(|(blocks, sizes)| {
+        let (force, after) = std::mem::take(&mut rest).split_at_mut(blocks.len());
         rest = after;
-        let sizes = if contacts.sizes.is_empty() { &[] } else { &contacts.sizes[range.clone()] };
-        Look { view, blocks: &contacts.blocks[range], sizes, force }
+        Look { view, blocks, sizes, force }
     });
     compute.each(
         chunks,
@@ -207,7 +206,7 @@ impl Bearing {
         let mut count = vec![0u32; grains];
         let mut pairs = vec![[0u32; 2]; contacts.slots()];
         let mut touching = 0;
-        for (block, force) in contacts.blocks.iter().zip(force) {
+        for (block, force) in contacts.blocks().zip(force) {
             for lane in 0..BLOCK {
                 // A slot that only fills up the block has no force and does not touch.
                 let (i, j) = (block.i[lane] as usize, block.j[lane] as usize);

@@ -1,8 +1,7 @@
 //! Putting grains that are neighbours in space next to each other in memory.
 
-use crate::contacts::{Builder, Contacts, Images, Pair};
+use crate::contacts::{Contacts, Kept};
 use crate::state::{State, vector};
-use grains::Vec3;
 
 /// Bits of each coordinate along the curve.
 const BITS: u32 = 10;
@@ -43,24 +42,13 @@ pub(crate) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
     for (new, old) in order.iter().enumerate() {
         place[*old as usize] = new as u32;
     }
-    let mut pairs: Vec<(u32, u32, [i8; 3], f64, Vec3)> = contacts
-        .touching()
-        .map(|p| {
-            let (i, j) = (place[p.i as usize], place[p.j as usize]);
-            let image = contacts.images.number(p.image);
-            // Seen from the other grain the image is on the other side, and the force is the opposite.
-            if i <= j {
-                (i, j, image, p.root, p.history)
-            } else {
-                (j, i, image.map(|k| -k), p.root, -p.history)
-            }
-        })
-        .collect();
+    let moved = |(i, j, image, root, history): Kept| {
+        let (i, j) = (place[i as usize], place[j as usize]);
+        // Seen from the other grain the image is on the other side, and the force is the opposite.
+        if i <= j { (i, j, image, root, history) } else { (j, i, image.map(|k| -k), root, -history) }
+    };
+    let mut pairs: Vec<Kept> = contacts.kept().map(moved).collect();
     pairs.sort_unstable_by_key(|p| (p.0, p.1, p.2));
-    let mut list = Builder::new(state, Images::new(state), pairs.len());
-    for (i, j, image, root, history) in pairs {
-        let image = list.contacts.images.index(image, &state.cell);
-        list.push(state, Pair { i, j, image, root, history });
-    }
-    list.finish(state)
+    let count = pairs.len();
+    Contacts::of(state, pairs.into_iter(), count)
 }

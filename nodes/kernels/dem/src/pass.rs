@@ -4,10 +4,10 @@
 //! quotients and sums of the one before. So the stages of three blocks that follow each other run side by side, and a
 //! processor always has something else to do.
 
-use crate::contacts::{Block, Crossing, Sizes};
 use crate::geometry::{Geometry, Grains, View};
 use crate::lanes::{BLOCK, Lanes, Octad, Rows, V3};
 use crate::law::Touch;
+use crate::share::{Block, Crossing, Sizes};
 use crate::simd::Kernel;
 use crate::stress::{self, Seen};
 

@@ -132,9 +132,11 @@ pub fn operations_per_contact(setting: &Setting) -> f64 {
     if engine.prepare().is_err() {
         return 0.0;
     }
-    let (images, mut part, _) = engine.contacts.part_mut(0);
+    let contacts = &mut engine.contacts;
+    let view = sweep::view(&engine.state, contacts.images.shifts(), &setting);
+    let Some(share) = contacts.shares.first_mut() else { return 0.0 };
+    let (mut part, _) = share.part_mut(0);
     let chunk = part.chunk(0);
-    let view = sweep::view(&engine.state, images.shifts(), &setting);
     let rescaled = setting.tangential == Tangential::Rescaled;
     OPERATIONS.set(0);
     macro_rules! frictional {

@@ -247,6 +247,7 @@ impl Simulation {
             None => self.engine.run(period)?,
         };
         self.deform(&stretch);
+        self.engine.settle();
         self.seen = self.engine.snapshot()?;
         self.sequence += 1;
         let seen = Observation {

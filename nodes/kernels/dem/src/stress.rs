@@ -4,8 +4,8 @@
 //! contacts across the faces of the cell (Thompson, Plimpton & Mattson, J. Chem. Phys. 131, 154107 (2009), Eq. 21): far
 //! fewer terms, and none that has to be summed across lanes.
 
-use crate::contacts::Crossing;
 use crate::lanes::{BLOCK, Lanes, Quad, Row};
+use crate::share::Crossing;
 use crate::simd::{Kernel, Simd};
 use crate::sums::Act;
 use grains::{Mat3, SymTensor};

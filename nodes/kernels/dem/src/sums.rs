@@ -1,43 +1,40 @@
 //! Where the forces of contacts come together on grains.
 //!
-//! Chunks of grains make up parts, and a part is what one thread works on at a time. What acts on a grain is the sum over
+//! Chunks of grains make up parts, and a thread has some parts for its own. What acts on a grain is the sum over
 //! the pairs of its own chunk, plus that over the pairs of earlier chunks of its part, plus those over the pairs of each
-//! earlier part, all in the order of pairs. Nothing in that depends on how many threads there are.
+//! earlier part, all in the order of pairs. Nothing in that depends on how parts are shared out among threads.
 
 use crate::lanes::{CHUNK, Lanes, Octad, Row};
+use crate::own::Own;
 use crate::simd::{Kernel, Simd};
 use std::ops::Range;
-
-/// Chunks in a part. Fewer would mean more rows for grains of other parts, more would leave threads without work.
-pub(crate) const PART: usize = 8;
-
-/// Grains in a part.
-const GRAINS: usize = PART * CHUNK;
 
 /// The row that is always zero.
 const ZERO: u32 = 0;
 
-/// Forces and torques on grains.
+/// Forces and torques on the grains of some parts: its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sums {
-    /// A zero; then of each part: rows for its chunk at work, a row for each of its grains, a row for each grain of a later
-    /// part that it acts on.
+    own: Own,
+    /// A zero; then of each part: rows for its chunk at work, a row for each of its grains if it is an own one, a row for
+    /// each grain of a later part that it acts on.
     rows: Vec<Octad>,
-    /// First row of each part, and the end.
+    /// First row of each part up to the last own one, and the end.
     start: Vec<u32>,
-    /// Row that sums what earlier parts do to each grain.
+    /// Row that sums what earlier parts do to each own grain.
     far: Vec<u32>,
     /// Rows to add to those: (row of `far`, row), chunk by chunk.
     more: Vec<(u32, u32)>,
-    /// First of `more` of each chunk, and the end.
+    /// First of `more` of each own chunk, and the end.
     more_start: Vec<u32>,
-    /// What the part of each grain does to it, where it was not moved at once.
+    /// What the part of each own grain does to it, where it was not moved at once.
     total: Vec<Octad>,
 }
 
 /// The sums of one part.
 pub(crate) struct PartSums<'a> {
     rows: &'a mut [Octad],
+    /// Empty if the part is not an own one.
     total: &'a mut [Octad],
 }
 
@@ -55,9 +52,10 @@ impl PartSums<'_> {
         self.rows
     }
 
-    /// Zeroes the rows of later parts: before the first chunk.
+    /// Zeroes the rows of later parts: before the first chunk. Where nobody takes what acts on the part itself, that too.
     pub(crate) fn begin(&mut self) {
-        self.rows[CHUNK + self.total.len()..].fill(Octad::default());
+        let taken = if self.total.is_empty() { 0 } else { CHUNK + self.total.len() };
+        self.rows[taken..].fill(Octad::default());
     }
 
     /// Ends the pass of chunk `c` of the part: what acts on its grains is put down.
@@ -96,37 +94,25 @@ impl Earlier<'_> {
 }
 
 impl Sums {
-    /// All parts, each to pass on its own.
-    pub(crate) fn parts_mut(&mut self) -> impl Iterator<Item = PartSums<'_>> {
-        let mut rows = &mut self.rows[1..];
-        let totals = self.total.chunks_mut(GRAINS);
-        self.start.windows(2).zip(totals).map(move |(s, total)| {
-            let (first, after) = std::mem::take(&mut rows).split_at_mut((s[1] - s[0]) as usize);
-            rows = after;
-            PartSums { rows: first, total }
-        })
-    }
-
     /// One part, and what earlier ones did.
     pub(crate) fn part_mut(&mut self, part: usize) -> (PartSums<'_>, Earlier<'_>) {
-        let grains = part * GRAINS..((part + 1) * GRAINS).min(self.total.len());
         let (lower, rows) = self.rows.split_at_mut(self.start[part] as usize);
         let count = (self.start[part + 1] - self.start[part]) as usize;
+        // None of a part that is not an own one.
+        let own = self.own.parts().contains(&part);
+        let (grains, chunk) = (self.own.grains_of(part), self.own.chunks_of(part).start);
+        let (first, first_chunk) = (self.own.grains().start, self.own.chunks().start);
+        let grains = if own { grains.start - first..grains.end - first } else { 0..0 };
         let earlier = Earlier {
             rows: lower,
             far: &self.far[grains.clone()],
             more: &self.more,
-            more_start: &self.more_start[part * PART..],
+            more_start: if own { &self.more_start[chunk - first_chunk..] } else { &[] },
         };
         (PartSums { rows: &mut rows[..count], total: &mut self.total[grains] }, earlier)
     }
 
-    /// Adds up what several parts did to one grain: once, when all were passed.
-    pub(crate) fn join(&mut self) {
-        add(&mut self.rows, &self.more);
-    }
-
-    /// What acts on each chunk, joined.
+    /// What was put down for each own chunk.
     pub(crate) fn chunks(&self) -> impl Iterator<Item = Put<'_>> {
         let chunks = self.total.chunks(CHUNK).zip(self.far.chunks(CHUNK));
         chunks.map(|(total, of)| Put { total, far: Far { rows: &self.rows, of } })
@@ -225,32 +211,46 @@ impl Kernel for Settle<'_> {
 #[derive(Debug)]
 pub(crate) struct Layout {
     sums: Sums,
+    /// Own grains.
+    grains: Range<usize>,
+    /// Those of the present part.
+    part: Range<usize>,
     rows: u32,
     /// Row of each grain of a later part; below those of the present part if it has none yet.
     row_of: Vec<u32>,
-    /// (chunk, grain, row).
+    /// (chunk, grain, row), of own grains.
     far: Vec<(u32, u32, u32)>,
 }
 
 impl Layout {
-    pub(crate) fn new(grains: usize) -> Self {
-        Self { sums: Sums::default(), rows: ZERO + 1, row_of: vec![ZERO; grains], far: Vec::new() }
+    /// For the parts `own` of so many grains.
+    pub(crate) fn new(own: Own, grains: usize) -> Self {
+        let (row_of, far) = (vec![ZERO; grains], Vec::new());
+        let grains = own.grains();
+        Self { sums: Sums { own, ..Sums::default() }, grains, part: 0..0, rows: ZERO + 1, row_of, far }
+    }
+
+    /// Own grains.
+    pub(crate) fn grains(&self) -> Range<usize> {
+        self.grains.clone()
     }
 
     /// Row, among those of its part, that sums what the next pair, of chunk `chunk`, does to grain `j`.
     pub(crate) fn row(&mut self, chunk: usize, j: usize) -> u32 {
-        let part = chunk / PART;
+        let part = self.sums.own.part_of(chunk);
         self.begin(part);
         let start = self.sums.start[part];
         if j / CHUNK == chunk {
             return (j % CHUNK) as u32;
         }
-        if j / GRAINS == part {
-            return (CHUNK + j % GRAINS) as u32;
+        if self.part.contains(&j) {
+            return (CHUNK + j - self.part.start) as u32;
         }
         if self.row_of[j] < start {
             self.row_of[j] = self.rows;
-            self.far.push(((j / CHUNK) as u32, j as u32, self.rows));
+            if self.grains.contains(&j) {
+                self.far.push(((j / CHUNK) as u32, j as u32, self.rows));
+            }
             self.rows += 1;
         }
         self.row_of[j] - start
@@ -259,31 +259,33 @@ impl Layout {
     /// Begins parts up to this one.
     fn begin(&mut self, part: usize) {
         while self.sums.start.len() <= part {
-            let first = self.sums.start.len() * GRAINS;
+            let p = self.sums.start.len();
             self.sums.start.push(self.rows);
-            self.rows += (CHUNK + GRAINS.min(self.row_of.len().saturating_sub(first))) as u32;
+            self.part = self.sums.own.grains_of(p);
+            let own = if self.sums.own.parts().contains(&p) { self.part.len() } else { 0 };
+            self.rows += (CHUNK + own) as u32;
         }
     }
 
     /// The sums, all zero.
     pub(crate) fn finish(mut self) -> Sums {
-        let grains = self.row_of.len();
-        self.begin(grains.div_ceil(GRAINS).saturating_sub(1));
+        self.begin(self.sums.own.parts().end - 1);
         let mut sums = self.sums;
         sums.start.push(self.rows);
-        sums.far = vec![ZERO; grains];
+        sums.far = vec![ZERO; self.grains.len()];
+        let first = sums.own.chunks().start;
         // Rows of a grain ascend with the parts that they are of.
         self.far.sort_unstable();
         for &(chunk, grain, row) in &self.far {
-            sums.more_start.resize(chunk as usize + 1, sums.more.len() as u32);
-            match &mut sums.far[grain as usize] {
+            sums.more_start.resize(chunk as usize - first + 1, sums.more.len() as u32);
+            match &mut sums.far[grain as usize - self.grains.start] {
                 first if *first == ZERO => *first = row,
                 first => sums.more.push((*first, row)),
             }
         }
-        sums.more_start.resize(grains.div_ceil(CHUNK) + 1, sums.more.len() as u32);
+        sums.more_start.resize(sums.own.chunks().len() + 1, sums.more.len() as u32);
         sums.rows = vec![Octad::default(); self.rows as usize];
-        sums.total = vec![Octad::default(); grains];
+        sums.total = vec![Octad::default(); self.grains.len()];
         sums
     }
 }

@@ -1,32 +1,38 @@
 //! Sweeping over the chunks of grains: forces, motion, or both at once, in the form compiled for the phase.
 //!
-//! A chunk's pass reads positions of its own grains and of later ones only (the first grain of a pair has the lower
-//! number), and a grain's force is complete once its own chunk was passed. So on one thread a chunk can move as soon as
-//! it was passed, while everything about it is still in the cache. On several threads all chunks are passed, then all
-//! move. The bits are the same.
+//! What acts on a grain is complete once its own chunk was passed, so it can move at once, while everything about it is
+//! still in the cache. A chunk's pass reads its own grains and later ones only (the first grain of a pair has the lower
+//! number), so a thread that has all grains moves them where they are. Where there are several, each has a home for its
+//! own. The bits are the same.
 
 use crate::compute::Compute;
-use crate::contacts::{Contacts, Part};
+use crate::contacts::Contacts;
 use crate::engine::{Features, Setting};
 use crate::geometry::{Equal, View};
-use crate::integrate::{self, Grains, Motion, Moved};
+use crate::homes::{Homes, Resident};
+use crate::integrate::{self, Motion, Moved};
 use crate::lanes::{CHUNK, Quad};
 use crate::law::Law;
 use crate::pass::{Chunk, Frictional, Frictionless};
+use crate::share::Share;
 use crate::simd::Simd;
 use crate::state::State;
 use crate::stress::{self, Seen};
-use crate::sums::{PART, Put};
+use crate::sums::Act;
 use grains::material::effective_radius;
 use scene::Tangential;
 
-/// What becomes of the tangential history.
+/// What a sweep does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Advance {
-    /// Brought forward by one step.
-    Step,
-    /// Taken as it is (after a resume), with the same forces.
-    Held,
+pub(crate) enum Job {
+    /// Evaluates forces at the present positions.
+    Evaluate,
+    /// The same, with the tangential history as it is instead of a step on (after a resume).
+    Resume,
+    /// Moves all grains over one step, under the forces last evaluated.
+    Advance,
+    /// Evaluates forces, and moves all grains over one step under them.
+    EvaluateAndAdvance,
 }
 
 /// What the contacts are seen from.
@@ -44,111 +50,193 @@ pub(crate) fn view<'a>(state: &'a State, shift: &'a [Quad], setting: &Setting) -
     }
 }
 
-/// Evaluates forces at the present positions; with `look` also the stress.
-pub(crate) fn evaluate(
-    state: &State,
-    contacts: &mut Contacts,
-    setting: &Setting,
-    compute: &Compute,
-    advance: Advance,
-    look: bool,
-) -> Seen {
-    let pass = choose(setting, advance, !contacts.sizes.is_empty());
-    let simd = compute.simd();
-    let (images, parts) = contacts.parts_mut();
-    let view = view(state, images.shifts(), setting);
-    let mut seen = Seen::default();
-    let work = |mut part: Part<'_>| {
-        let mut seen = Seen::default();
-        part.sums.begin();
-        for c in 0..part.chunks() {
-            seen.then(&pass(simd, view, part.chunk(c), look));
-            part.sums.end(c, simd);
-        }
-        seen
-    };
-    compute.each(parts, work, |next| seen.then(&next));
-    contacts.sums.join();
-    if look {
-        let chunks = contacts.sums.chunks().zip(state.position.chunks(CHUNK));
-        let inner = |(acts, position): (Put<'_>, &[Quad])| stress::inner(acts, position, simd);
-        let mut within = Seen::default();
-        compute.each(chunks, inner, |next| within.then(&next));
-        seen.then(&within);
-    }
-    seen
+/// What is swept over, and with what.
+pub(crate) struct Sweep<'a> {
+    pub(crate) state: &'a mut State,
+    pub(crate) homes: &'a mut Homes,
+    pub(crate) contacts: &'a mut Contacts,
+    pub(crate) setting: &'a Setting,
+    pub(crate) compute: &'a Compute,
 }
 
-/// Moves all grains over one step, under the forces last evaluated.
-pub(crate) fn advance(state: &mut State, contacts: &Contacts, setting: &Setting, compute: &Compute) -> Moved {
-    let (motion, grains) = Motion::of(state, setting);
-    let chunks = grains.chunks(CHUNK).zip(contacts.sums.chunks()).enumerate();
-    let mut moved = Moved::default();
-    let simd = compute.simd();
-    let work = |(c, (grains, acts)): (usize, (Grains<'_>, Put<'_>))| {
-        integrate::advance(&motion, acts, c * CHUNK, grains, simd)
-    };
-    compute.each(chunks, work, |next| moved.then(&next));
-    moved
+impl Sweep<'_> {
+    /// Does the job on all grains; with `look` stress is seen where forces are evaluated.
+    pub(crate) fn run(self, job: Job, look: bool) -> (Seen, Moved) {
+        let Self { state, homes, contacts, setting, compute } = self;
+        let over = Over { job, pass: choose(setting, job, !state.equal_sized()), simd: compute.simd(), look };
+        if let [share] = &mut contacts.shares[..] {
+            let shift = contacts.images.shifts();
+            return join([over.share(share, &mut InPlace { state, shift, setting })]);
+        }
+        homes.enter(state, contacts, compute);
+        let (view, motion) = (view(state, contacts.images.shifts(), setting), Motion::still(state, setting));
+        let work = |(mut resident, share): (Resident<'_>, &mut Share)| {
+            resident.fetch();
+            let mut place = AtHome { resident, view, motion };
+            let parts = over.share(share, &mut place);
+            if over.moves() {
+                place.resident.post();
+            }
+            parts
+        };
+        let parts = compute.share(homes.residents().zip(&mut contacts.shares), work);
+        if over.moves() {
+            homes.moved();
+        }
+        join(parts)
+    }
 }
 
-/// Evaluates forces at the present positions, and moves all grains over one step under them.
-pub(crate) fn evaluate_and_advance(
-    state: &mut State,
-    contacts: &mut Contacts,
-    setting: &Setting,
-    compute: &Compute,
-    look: bool,
-) -> (Seen, Moved) {
-    if compute.threads() > 1 {
-        let seen = evaluate(state, contacts, setting, compute, Advance::Step, look);
-        return (seen, advance(state, contacts, setting, compute));
+/// What a part saw and how it moved, part after part.
+type Parts = Vec<(Seen, Moved)>;
+
+/// All of it, in the order of parts.
+fn join(shares: impl IntoIterator<Item = Parts>) -> (Seen, Moved) {
+    let mut all = (Seen::default(), Moved::default());
+    for (seen, moved) in shares.into_iter().flatten() {
+        all.0.then(&seen);
+        all.1.then(&moved);
     }
-    let simd = compute.simd();
-    let pass = choose(setting, Advance::Step, !contacts.sizes.is_empty());
-    let (mut across, mut within, mut moved) = (Seen::default(), Seen::default(), Moved::default());
-    for p in 0..state.grains().div_ceil(PART * CHUNK) {
-        let (images, mut part, mut earlier) = contacts.part_mut(p);
-        let mut seen = Seen::default();
+    all
+}
+
+/// Where the grains of a share are.
+trait Place {
+    /// What contacts are seen from.
+    fn view(&self) -> View<'_>;
+
+    /// Moves the grains of a chunk.
+    fn advance(&mut self, chunk: usize, acts: impl Act, simd: Simd) -> Moved;
+}
+
+/// All in the state.
+struct InPlace<'a> {
+    state: &'a mut State,
+    shift: &'a [Quad],
+    setting: &'a Setting,
+}
+
+impl Place for InPlace<'_> {
+    fn view(&self) -> View<'_> {
+        view(self.state, self.shift, self.setting)
+    }
+
+    fn advance(&mut self, chunk: usize, acts: impl Act, simd: Simd) -> Moved {
+        let (motion, grains) = Motion::of(self.state, self.setting);
+        integrate::advance(&motion, acts, chunk * CHUNK, grains.chunk(chunk, CHUNK), simd)
+    }
+}
+
+/// In a home of their own.
+struct AtHome<'a> {
+    resident: Resident<'a>,
+    /// Of the state.
+    view: View<'a>,
+    motion: Motion<'a>,
+}
+
+impl Place for AtHome<'_> {
+    fn view(&self) -> View<'_> {
+        self.resident.view(self.view)
+    }
+
+    fn advance(&mut self, chunk: usize, acts: impl Act, simd: Simd) -> Moved {
+        let grains = self.resident.grains().chunk(chunk, CHUNK);
+        integrate::advance(&self.motion, acts, chunk * CHUNK, grains, simd)
+    }
+}
+
+/// How to go over a share.
+#[derive(Clone, Copy)]
+struct Over {
+    job: Job,
+    pass: Pass,
+    simd: Simd,
+    look: bool,
+}
+
+impl Over {
+    fn moves(&self) -> bool {
+        matches!(self.job, Job::Advance | Job::EvaluateAndAdvance)
+    }
+
+    /// What each part of the share's own saw and how it moved.
+    fn share(&self, share: &mut Share, place: &mut impl Place) -> Parts {
+        if self.job == Job::Advance {
+            return self.advance(share, place);
+        }
+        let own = share.own().parts();
+        for p in 0..own.start {
+            self.foreign(share, p, place);
+        }
+        own.map(|p| self.part(share, p, place)).collect()
+    }
+
+    fn advance(&self, share: &Share, place: &mut impl Place) -> Parts {
+        let own = share.own();
+        let mut parts = vec![(Seen::default(), Moved::default()); own.parts().len()];
+        for (chunk, acts) in own.chunks().zip(share.acts()) {
+            parts[own.part_of(chunk) - own.parts().start].1.then(&place.advance(chunk, acts, self.simd));
+        }
+        parts
+    }
+
+    /// A part of another share's, that acts on the own ones; what it sees is seen there.
+    fn foreign(&self, share: &mut Share, p: usize, place: &impl Place) {
+        let (mut part, _) = share.part_mut(p);
         part.sums.begin();
         for c in 0..part.chunks() {
-            seen.then(&pass(simd, view(state, images.shifts(), setting), part.chunk(c), look));
-            let chunk = p * PART + c;
-            let (motion, grains) = Motion::of(state, setting);
-            let grains = grains.chunk(chunk, CHUNK);
-            moved.then(&if look {
-                part.sums.end(c, simd);
-                let acts = part.sums.ended(c, &mut earlier);
-                within.then(&stress::inner(acts, grains.positions(), simd));
-                integrate::advance(&motion, acts, chunk * CHUNK, grains, simd)
-            } else {
-                let acts = part.sums.take(c, &mut earlier);
-                integrate::advance(&motion, acts, chunk * CHUNK, grains, simd)
-            });
+            (self.pass)(self.simd, place.view(), part.chunk(c), false);
         }
-        across.then(&seen);
     }
-    across.then(&within);
-    (across, moved)
+
+    /// One of the share's own.
+    fn part(&self, share: &mut Share, p: usize, place: &mut impl Place) -> (Seen, Moved) {
+        let first = share.own().chunks_of(p).start;
+        let (mut part, mut earlier) = share.part_mut(p);
+        let (mut across, mut within, mut moved) = (Seen::default(), Seen::default(), Moved::default());
+        part.sums.begin();
+        for c in 0..part.chunks() {
+            across.then(&(self.pass)(self.simd, place.view(), part.chunk(c), self.look));
+            let chunk = first + c;
+            if self.moves() && !self.look {
+                moved.then(&place.advance(chunk, part.sums.take(c, &mut earlier), self.simd));
+                continue;
+            }
+            part.sums.end(c, self.simd);
+            let acts = part.sums.ended(c, &mut earlier);
+            if self.look {
+                let all = place.view().position;
+                let positions = &all[chunk * CHUNK..((chunk + 1) * CHUNK).min(all.len())];
+                within.then(&stress::inner(acts, positions, self.simd));
+            }
+            if self.moves() {
+                moved.then(&place.advance(chunk, acts, self.simd));
+            }
+        }
+        across.then(&within);
+        (across, moved)
+    }
 }
 
 type Pass = fn(Simd, View<'_>, Chunk<'_>, bool) -> Seen;
 
 /// The pass compiled for these features.
-fn choose(setting: &Setting, advance: Advance, sizes: bool) -> Pass {
-    if sizes { with::<true>(setting, advance) } else { with::<false>(setting, advance) }
+fn choose(setting: &Setting, job: Job, sizes: bool) -> Pass {
+    let held = job == Job::Resume;
+    if sizes { with::<true>(setting, held) } else { with::<false>(setting, held) }
 }
 
-fn with<const SIZES: bool>(setting: &Setting, advance: Advance) -> Pass {
+fn with<const SIZES: bool>(setting: &Setting, held: bool) -> Pass {
     let rescaled = setting.tangential == Tangential::Rescaled;
-    match (setting.features(), rescaled, advance) {
+    match (setting.features(), rescaled, held) {
         (Features::Frictionless, ..) => frictionless::<SIZES>,
-        (Features::Coulomb, true, Advance::Step) => frictional::<true, true, true, SIZES>,
-        (Features::Coulomb, false, Advance::Step) => frictional::<true, true, false, SIZES>,
-        (Features::Stuck, true, Advance::Step) => frictional::<true, false, true, SIZES>,
-        (Features::Stuck, false, Advance::Step) => frictional::<true, false, false, SIZES>,
-        (Features::Coulomb, _, Advance::Held) => frictional::<false, true, false, SIZES>,
-        (Features::Stuck, _, Advance::Held) => frictional::<false, false, false, SIZES>,
+        (Features::Coulomb, true, false) => frictional::<true, true, true, SIZES>,
+        (Features::Coulomb, false, false) => frictional::<true, true, false, SIZES>,
+        (Features::Stuck, true, false) => frictional::<true, false, true, SIZES>,
+        (Features::Stuck, false, false) => frictional::<true, false, false, SIZES>,
+        (Features::Coulomb, _, true) => frictional::<false, true, false, SIZES>,
+        (Features::Stuck, _, true) => frictional::<false, false, false, SIZES>,
     }
 }
 

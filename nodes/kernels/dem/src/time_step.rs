@@ -1,7 +1,8 @@
 //! The time step, from the stiffness of the contacts present.
 
-use crate::contacts::{Contacts, Pair};
+use crate::contacts::Contacts;
 use crate::engine::{Features, Setting};
+use crate::share::Pair;
 use crate::state::State;
 
 /// m R²/I of a sphere.

@@ -94,6 +94,49 @@ fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() 
     }
 }
 
+/// A gas that is held at a speed, strained into contact, then given friction, spins and another order in memory, by as
+/// many threads as each leg of the way is told; everything seen along it.
+fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
+    let compute = |leg: usize| Compute::new(Simd::best(), threads[leg % threads.len()]).unwrap();
+    let gas = Setting { speed_cap: Some(0.15), ..setting(0.0, Tangential::Rescaled) };
+    let mut engine = start(PARTS, gas, unequal, compute(0));
+    let (mut seen, mut contacts) = (Vec::new(), 0);
+    for leg in 0..12 {
+        engine.set_compute(compute(leg));
+        match leg {
+            4 => engine.set(setting(0.3, Tangential::Rescaled)),
+            6 => {
+                let spins: Vec<Vec3> = (0..PARTS).map(|i| Vec3::y() * f64::from(i % 7)).collect();
+                engine.set_spins(&spins);
+            }
+            8 => engine.sort(),
+            10 => engine.set_rate(&[-500.0, 0.0, 0.0, 0.0, 0.0, 100.0]).unwrap(),
+            _ => {}
+        }
+        let steps = if leg % 3 == 0 { 1 } else { 211 };
+        let run = || engine.run_measured(steps, |s| seen.extend(s.voigt().map(f64::to_bits)));
+        compute(leg).within(run).unwrap();
+        let look = engine.snapshot().unwrap();
+        seen.extend(look.stress.tensor.voigt().iter().chain(&look.tangent).map(|v| v.to_bits()));
+        seen.extend([look.unbalanced.to_bits(), engine.speed().to_bits()]);
+        let packing = engine.packing(Mat3::identity());
+        seen.extend(bits(&packing));
+        contacts = contacts.max(packing.contacts.len());
+    }
+    assert!(contacts > 50, "{contacts} contacts");
+    seen
+}
+
+#[test]
+fn threads_may_come_and_go_along_the_way() {
+    for unequal in [false, true] {
+        let alone = journey(&[1], unequal);
+        for threads in [&[2][..], &[3], &[2, 1], &[1, 3, 2, 4]] {
+            assert!(journey(threads, unequal) == alone, "{threads:?} threads, unequal: {unequal}");
+        }
+    }
+}
+
 #[test]
 fn steps_one_by_one_and_steps_together_are_the_same() {
     let engine = || start(300, setting(0.3, Tangential::Rescaled), false, Compute::default());
