@@ -24,7 +24,7 @@ pub(crate) struct Chunk<'a> {
     pub(crate) sizes: &'a [Sizes],
     /// Pairs across the faces of the cell.
     pub(crate) crossing: &'a [Crossing],
-    /// Rows to add to: those of its grains, then others.
+    /// Rows to add to: those of its grains first.
     pub(crate) sums: &'a mut [Octad],
 }
 

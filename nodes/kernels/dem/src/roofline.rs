@@ -135,7 +135,7 @@ pub fn operations_per_contact(setting: &Setting) -> f64 {
     let contacts = &mut engine.contacts;
     let view = sweep::view(&engine.state, contacts.images.shifts(), &setting);
     let Some(share) = contacts.shares.first_mut() else { return 0.0 };
-    let (mut part, _) = share.part_mut(0);
+    let mut part = share.part_mut(0);
     let chunk = part.chunk(0);
     let rescaled = setting.tangential == Tangential::Rescaled;
     OPERATIONS.set(0);

@@ -5,7 +5,7 @@ use crate::lanes::{BLOCK, CHUNK};
 use crate::own::Own;
 use crate::pass::Chunk;
 use crate::state::State;
-use crate::sums::{Earlier, Layout, PartSums, Put, Sums};
+use crate::sums::{Layout, PartSums, Put, Sums};
 use grains::Vec3;
 use grains::material::effective_radius;
 
@@ -20,7 +20,7 @@ pub(crate) struct Block {
     pub(crate) i: [u32; BLOCK],
     pub(crate) j: [u32; BLOCK],
     pub(crate) image: [u32; BLOCK],
-    /// Row, among those that the chunk adds to, for what acts on `j`. That for `i` is its place in the chunk.
+    /// Row for what acts on `j`. That for `i` is its place in the chunk.
     pub(crate) to: [u32; BLOCK],
 }
 
@@ -154,15 +154,15 @@ impl Share {
         &self.blocks[self.chunks[self.own.chunks().start] as usize..]
     }
 
-    /// One part to pass, and what earlier ones did.
-    pub(crate) fn part_mut(&mut self, p: usize) -> (Part<'_>, Earlier<'_>) {
+    /// One part to pass; earlier ones must have been.
+    pub(crate) fn part_mut(&mut self, p: usize) -> Part<'_> {
         let chunks = self.own.chunks_of(p);
         let chunks = chunks.start..chunks.end + 1;
         let (bounds, faces) = (&self.chunks[chunks.clone()], &self.crossings[chunks]);
         let own = bounds[0] as usize..bounds[bounds.len() - 1] as usize;
-        let (sums, earlier) = self.sums.part_mut(p);
+        let sums = self.sums.part_mut(p);
         let (sizes, crossing) = (&self.sizes[..], &self.crossing[..]);
-        (Part { blocks: &mut self.blocks[own], sizes, crossing, bounds, faces, sums }, earlier)
+        Part { blocks: &mut self.blocks[own], sizes, crossing, bounds, faces, sums }
     }
 
     /// What acts on each chunk of its own, where it was put down.

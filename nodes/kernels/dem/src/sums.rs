@@ -9,16 +9,15 @@ use crate::own::Own;
 use crate::simd::{Kernel, Simd};
 use std::ops::Range;
 
-/// The row that is always zero.
-const ZERO: u32 = 0;
-
 /// Forces and torques on the grains of some parts: its own.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sums {
     own: Own,
-    /// A zero; then of each part: rows for its chunk at work, a row for each of its grains if it is an own one, a row for
-    /// each grain of a later part that it acts on.
+    /// Rows for the chunk at work; a row for each grain of the part at work; a zero; then of each part a row for each grain
+    /// of a later part that it acts on.
     rows: Vec<Octad>,
+    /// Which row is the zero.
+    zero: u32,
     /// First row of each part up to the last own one, and the end.
     start: Vec<u32>,
     /// Row that sums what earlier parts do to each own grain.
@@ -33,14 +32,14 @@ pub(crate) struct Sums {
 
 /// The sums of one part.
 pub(crate) struct PartSums<'a> {
+    /// Of all parts.
     rows: &'a mut [Octad],
+    /// Where the rows for grains of later parts are.
+    later: Range<usize>,
+    zero: usize,
     /// Empty if the part is not an own one.
     total: &'a mut [Octad],
-}
-
-/// Rows of earlier parts that were all passed.
-pub(crate) struct Earlier<'a> {
-    rows: &'a mut [Octad],
+    /// What earlier parts do to it.
     far: &'a [u32],
     more: &'a [(u32, u32)],
     more_start: &'a [u32],
@@ -52,10 +51,14 @@ impl PartSums<'_> {
         self.rows
     }
 
-    /// Zeroes the rows of later parts: before the first chunk. Where nobody takes what acts on the part itself, that too.
+    /// Zeroes the rows of later parts: before the first chunk.
     pub(crate) fn begin(&mut self) {
-        let taken = if self.total.is_empty() { 0 } else { CHUNK + self.total.len() };
-        self.rows[taken..].fill(Octad::default());
+        self.rows[self.later.clone()].fill(Octad::default());
+    }
+
+    /// Drops what acts on the grains of the part itself: after the last chunk of one that is not an own one.
+    pub(crate) fn drop_own(&mut self) {
+        self.rows[..CHUNK].fill(Octad::default());
     }
 
     /// Ends the pass of chunk `c` of the part: what acts on its grains is put down.
@@ -67,17 +70,29 @@ impl PartSums<'_> {
     }
 
     /// Ends the pass of chunk `c` of the part, where earlier parts were passed: what acts on its grains, to be taken once.
-    pub(crate) fn take<'s>(&'s mut self, c: usize, earlier: &'s mut Earlier<'_>) -> Taken<'s> {
+    pub(crate) fn take(&mut self, c: usize) -> Taken<'_> {
         let range = self.grains(c);
-        let far = earlier.join(c, range.clone());
-        let (own, early) = self.rows.split_at_mut(CHUNK);
+        self.join(c);
+        let (rows, far) = self.rows.split_at_mut(self.zero);
+        let (own, early) = rows.split_at_mut(CHUNK);
+        let far = Far { rows: far, zero: self.zero, of: &self.far[range.clone()] };
         Taken { own: &mut own[..range.len()], early: &mut early[range], far }
     }
 
     /// The same for a chunk that was put down.
-    pub(crate) fn ended<'s>(&'s self, c: usize, earlier: &'s mut Earlier<'_>) -> Put<'s> {
+    pub(crate) fn ended(&mut self, c: usize) -> Put<'_> {
         let range = self.grains(c);
-        Put { total: &self.total[range.clone()], far: earlier.join(c, range) }
+        self.join(c);
+        let far = Far { rows: &self.rows[self.zero..], zero: self.zero, of: &self.far[range.clone()] };
+        Put { total: &self.total[range], far }
+    }
+
+    /// Adds up what earlier parts do to each grain of a chunk: once.
+    fn join(&mut self, c: usize) {
+        for &(to, from) in &self.more[self.more_start[c] as usize..self.more_start[c + 1] as usize] {
+            let from = self.rows[from as usize].0;
+            self.rows[to as usize].0.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        }
     }
 
     /// Grains of chunk `c`, counted from the first of the part.
@@ -86,44 +101,30 @@ impl PartSums<'_> {
     }
 }
 
-impl Earlier<'_> {
-    fn join(&mut self, c: usize, grains: Range<usize>) -> Far<'_> {
-        add(self.rows, &self.more[self.more_start[c] as usize..self.more_start[c + 1] as usize]);
-        Far { rows: self.rows, of: &self.far[grains] }
-    }
-}
-
 impl Sums {
-    /// One part, and what earlier ones did.
-    pub(crate) fn part_mut(&mut self, part: usize) -> (PartSums<'_>, Earlier<'_>) {
-        let (lower, rows) = self.rows.split_at_mut(self.start[part] as usize);
-        let count = (self.start[part + 1] - self.start[part]) as usize;
-        // None of a part that is not an own one.
+    /// One part; earlier ones must have been passed.
+    pub(crate) fn part_mut(&mut self, part: usize) -> PartSums<'_> {
+        // Of those that are not own ones nothing is put down.
         let own = self.own.parts().contains(&part);
         let (grains, chunk) = (self.own.grains_of(part), self.own.chunks_of(part).start);
         let (first, first_chunk) = (self.own.grains().start, self.own.chunks().start);
         let grains = if own { grains.start - first..grains.end - first } else { 0..0 };
-        let earlier = Earlier {
-            rows: lower,
-            far: &self.far[grains.clone()],
+        PartSums {
+            rows: &mut self.rows,
+            later: self.start[part] as usize..self.start[part + 1] as usize,
+            zero: self.zero as usize,
+            total: &mut self.total[grains.clone()],
+            far: &self.far[grains],
             more: &self.more,
             more_start: if own { &self.more_start[chunk - first_chunk..] } else { &[] },
-        };
-        (PartSums { rows: &mut rows[..count], total: &mut self.total[grains] }, earlier)
+        }
     }
 
     /// What was put down for each own chunk.
     pub(crate) fn chunks(&self) -> impl Iterator<Item = Put<'_>> {
+        let zero = self.zero as usize;
         let chunks = self.total.chunks(CHUNK).zip(self.far.chunks(CHUNK));
-        chunks.map(|(total, of)| Put { total, far: Far { rows: &self.rows, of } })
-    }
-}
-
-/// Adds rows to others.
-fn add(rows: &mut [Octad], more: &[(u32, u32)]) {
-    for &(to, from) in more {
-        let from = rows[from as usize].0;
-        rows[to as usize].0.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        chunks.map(move |(total, of)| Put { total, far: Far { rows: &self.rows[zero..], zero, of } })
     }
 }
 
@@ -136,14 +137,16 @@ pub(crate) trait Act {
 /// What earlier parts do to the grains of a chunk.
 #[derive(Clone, Copy)]
 struct Far<'a> {
+    /// Rows from the zero on.
     rows: &'a [Octad],
+    zero: usize,
     of: &'a [u32],
 }
 
 impl Far<'_> {
     #[inline(always)]
     fn add<R: Row>(&self, k: usize, [force, torque]: [R; 2]) -> [R; 2] {
-        let row = &self.rows[self.of[k] as usize].0;
+        let row = &self.rows[self.of[k] as usize - self.zero].0;
         [force.add(R::load(row, 0)), torque.add(R::load(row, 4))]
     }
 }
@@ -225,9 +228,11 @@ pub(crate) struct Layout {
 impl Layout {
     /// For the parts `own` of so many grains.
     pub(crate) fn new(own: Own, grains: usize) -> Self {
-        let (row_of, far) = (vec![ZERO; grains], Vec::new());
+        let largest = own.parts().map(|p| own.grains_of(p).len()).max().unwrap_or(0);
+        let zero = (CHUNK + largest) as u32;
+        let (row_of, far) = (vec![zero; grains], Vec::new());
         let grains = own.grains();
-        Self { sums: Sums { own, ..Sums::default() }, grains, part: 0..0, rows: ZERO + 1, row_of, far }
+        Self { sums: Sums { own, zero, ..Sums::default() }, grains, part: 0..0, rows: zero + 1, row_of, far }
     }
 
     /// Own grains.
@@ -235,35 +240,31 @@ impl Layout {
         self.grains.clone()
     }
 
-    /// Row, among those of its part, that sums what the next pair, of chunk `chunk`, does to grain `j`.
+    /// Row that sums what the next pair, of chunk `chunk`, does to grain `j`.
     pub(crate) fn row(&mut self, chunk: usize, j: usize) -> u32 {
         let part = self.sums.own.part_of(chunk);
         self.begin(part);
-        let start = self.sums.start[part];
         if j / CHUNK == chunk {
             return (j % CHUNK) as u32;
         }
         if self.part.contains(&j) {
             return (CHUNK + j - self.part.start) as u32;
         }
-        if self.row_of[j] < start {
+        if self.row_of[j] < self.sums.start[part] {
             self.row_of[j] = self.rows;
             if self.grains.contains(&j) {
                 self.far.push(((j / CHUNK) as u32, j as u32, self.rows));
             }
             self.rows += 1;
         }
-        self.row_of[j] - start
+        self.row_of[j]
     }
 
     /// Begins parts up to this one.
     fn begin(&mut self, part: usize) {
         while self.sums.start.len() <= part {
-            let p = self.sums.start.len();
+            self.part = self.sums.own.grains_of(self.sums.start.len());
             self.sums.start.push(self.rows);
-            self.part = self.sums.own.grains_of(p);
-            let own = if self.sums.own.parts().contains(&p) { self.part.len() } else { 0 };
-            self.rows += (CHUNK + own) as u32;
         }
     }
 
@@ -272,14 +273,14 @@ impl Layout {
         self.begin(self.sums.own.parts().end - 1);
         let mut sums = self.sums;
         sums.start.push(self.rows);
-        sums.far = vec![ZERO; self.grains.len()];
+        sums.far = vec![sums.zero; self.grains.len()];
         let first = sums.own.chunks().start;
         // Rows of a grain ascend with the parts that they are of.
         self.far.sort_unstable();
         for &(chunk, grain, row) in &self.far {
             sums.more_start.resize(chunk as usize - first + 1, sums.more.len() as u32);
             match &mut sums.far[grain as usize - self.grains.start] {
-                first if *first == ZERO => *first = row,
+                first if *first == sums.zero => *first = row,
                 first => sums.more.push((*first, row)),
             }
         }

@@ -183,28 +183,29 @@ impl Over {
 
     /// A part of another share's, that acts on the own ones; what it sees is seen there.
     fn foreign(&self, share: &mut Share, p: usize, place: &impl Place) {
-        let (mut part, _) = share.part_mut(p);
+        let mut part = share.part_mut(p);
         part.sums.begin();
         for c in 0..part.chunks() {
             (self.pass)(self.simd, place.view(), part.chunk(c), false);
         }
+        part.sums.drop_own();
     }
 
     /// One of the share's own.
     fn part(&self, share: &mut Share, p: usize, place: &mut impl Place) -> (Seen, Moved) {
         let first = share.own().chunks_of(p).start;
-        let (mut part, mut earlier) = share.part_mut(p);
+        let mut part = share.part_mut(p);
         let (mut across, mut within, mut moved) = (Seen::default(), Seen::default(), Moved::default());
         part.sums.begin();
         for c in 0..part.chunks() {
             across.then(&(self.pass)(self.simd, place.view(), part.chunk(c), self.look));
             let chunk = first + c;
             if self.moves() && !self.look {
-                moved.then(&place.advance(chunk, part.sums.take(c, &mut earlier), self.simd));
+                moved.then(&place.advance(chunk, part.sums.take(c), self.simd));
                 continue;
             }
             part.sums.end(c, self.simd);
-            let acts = part.sums.ended(c, &mut earlier);
+            let acts = part.sums.ended(c);
             if self.look {
                 let all = place.view().position;
                 let positions = &all[chunk * CHUNK..((chunk + 1) * CHUNK).min(all.len())];
