@@ -82,7 +82,7 @@ impl Compute {
     /// takes longer to wake than a step takes.
     pub fn within<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
-            Some(pool) => pool.install(|| awake(self.threads, work)),
+            Some(pool) => pool.install(|| awake(work)),
             None => work(),
         }
     }
@@ -150,20 +150,18 @@ fn side_by_side<T: Send, R: Send>(mut pieces: Vec<T>, work: &(impl Fn(T) -> R + 
 }
 
 /// Does `work` while the other threads of the pool look for their part in it without rest.
-fn awake<R>(threads: usize, work: impl FnOnce() -> R) -> R {
+fn awake<R>(work: impl FnOnce() -> R) -> R {
     let leader = rayon::current_thread_index();
     let done = AtomicBool::new(false);
     rayon::in_place_scope(|scope| {
-        for _ in 1..threads {
-            scope.spawn(|_| {
-                // The leader may come by here while it waits for a part of its own work; it must not stay.
-                while rayon::current_thread_index() != leader && !done.load(Ordering::Acquire) {
-                    if rayon::yield_now() != Some(rayon::Yield::Executed) {
-                        std::thread::yield_now();
-                    }
+        scope.spawn_broadcast(|_, _| {
+            // The leader comes by here too; it must not stay.
+            while rayon::current_thread_index() != leader && !done.load(Ordering::Acquire) {
+                if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                    std::thread::yield_now();
                 }
-            });
-        }
+            }
+        });
         let end = Ending(&done);
         let result = work();
         drop(end);

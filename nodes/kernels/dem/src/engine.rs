@@ -149,6 +149,8 @@ impl Engine {
 
     /// Instruction set and threads from now on; results do not depend on them.
     pub fn set_compute(&mut self, compute: Compute) {
+        // Another number of threads shares out the contacts anew.
+        self.listed &= compute.threads() == self.compute.threads();
         self.compute = compute;
     }
 

@@ -13,8 +13,8 @@ use crate::share::Share;
 use crate::state::State;
 use std::ops::Range;
 
-/// Homes of all shares.
-#[derive(Clone, Debug, Default)]
+/// Homes of all shares. They take 96 bytes a grain and share.
+#[derive(Debug, Default)]
 pub(crate) struct Homes {
     homes: Vec<Home>,
     /// Grains that other shares reach to, in ascending order.
@@ -40,6 +40,18 @@ struct Home {
     abroad: Vec<(u32, u32)>,
 }
 
+impl Clone for Homes {
+    /// What the state has as well is not worth a copy.
+    fn clone(&self) -> Self {
+        if !self.alone {
+            return Self::default();
+        }
+        let Self { homes, border, posted, next, entered, alone } = self;
+        let (homes, border) = (homes.clone(), border.clone());
+        Self { homes, border, posted: posted.clone(), next: next.clone(), entered: *entered, alone: *alone }
+    }
+}
+
 /// One home, for a thread.
 pub(crate) struct Resident<'a> {
     home: &'a mut Home,
@@ -53,6 +65,14 @@ impl Homes {
     /// The state is no longer what it was, or the shares are not: homes are to be entered anew.
     pub(crate) fn leave(&mut self) {
         (self.entered, self.alone) = (false, false);
+    }
+
+    /// Nobody lives here any more.
+    pub(crate) fn clear(&mut self) {
+        debug_assert!(!self.alone, "a state is lost");
+        if !self.homes.is_empty() {
+            *self = Self::default();
+        }
     }
 
     /// Brings the state to the shares' homes, if it is not there.

@@ -6,35 +6,41 @@
 use crate::lanes::CHUNK;
 use std::ops::Range;
 
-/// Chunks in a part, at least. Fewer would mean more sums for grains of other parts.
+/// Chunks in a part, at least, where there is more than one. Fewer would mean more sums for grains of other parts.
 const LEAST: usize = 4;
 
 /// Some parts of the grains: what one thread has for its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Own {
     parts: Range<usize>,
-    /// Chunks in a part, and in all.
-    part: usize,
+    /// Parts, chunks and grains in all.
+    count: usize,
     chunks: usize,
-    /// Grains in all.
     grains: usize,
 }
 
 impl Own {
     /// All of so many grains.
     pub(crate) fn all(grains: usize) -> Self {
-        let chunks = grains.div_ceil(CHUNK).max(1);
-        // A power of two of them, so that two, four or eight threads have as much each.
-        let parts = 1 << (chunks / LEAST).max(1).ilog2();
-        let part = chunks.div_ceil(parts);
-        Self { parts: 0..chunks.div_ceil(part), part, chunks, grains }
+        let chunks = grains.div_ceil(CHUNK);
+        // So that two, three, four or six threads have as much each.
+        let count = match chunks / LEAST {
+            0 | 1 => 1,
+            2 | 3 => 2,
+            4 | 5 => 4,
+            6 | 7 => 6,
+            8..12 => 8,
+            many => many - many % 12,
+        };
+        Self { parts: 0..count, count, chunks, grains }
     }
 
     /// All of so many grains, for so many threads if there are parts enough.
     pub(crate) fn shares(grains: usize, threads: usize) -> impl ExactSizeIterator<Item = Self> {
         let all = Self::all(grains);
-        let (parts, count) = (all.parts.end, threads.clamp(1, all.parts.end));
-        (0..count).map(move |k| Self { parts: k * parts / count..(k + 1) * parts / count, ..all.clone() })
+        let shares = threads.clamp(1, all.count);
+        let first = move |k, parts| k * parts / shares;
+        (0..shares).map(move |k| Self { parts: first(k, all.count)..first(k + 1, all.count), ..all.clone() })
     }
 
     /// The parts.
@@ -44,29 +50,29 @@ impl Own {
 
     /// Their chunks.
     pub(crate) fn chunks(&self) -> Range<usize> {
-        self.chunks_of(self.parts.start).start..self.chunks_of(self.parts.end).start
+        self.chunks_of(self.parts.start).start..self.chunks_of(self.parts.end - 1).end
     }
 
     /// Their grains.
     pub(crate) fn grains(&self) -> Range<usize> {
-        self.grains_of(self.parts.start).start..self.grains_of(self.parts.end).start
+        self.grains_of(self.parts.start).start..self.grains_of(self.parts.end - 1).end
     }
 
     /// The part of a chunk.
     pub(crate) fn part_of(&self, chunk: usize) -> usize {
-        chunk / self.part
+        ((chunk + 1) * self.count - 1) / self.chunks
     }
 
     /// The chunks of a part, be it one of these or not.
     pub(crate) fn chunks_of(&self, part: usize) -> Range<usize> {
-        let chunk = |part: usize| (part * self.part).min(self.chunks);
-        chunk(part)..chunk(part + 1)
+        let first = |part| part * self.chunks / self.count;
+        first(part)..first(part + 1)
     }
 
     /// The grains of a part, be it one of these or not.
     pub(crate) fn grains_of(&self, part: usize) -> Range<usize> {
-        let grain = |part: usize| (part * self.part * CHUNK).min(self.grains);
-        grain(part)..grain(part + 1)
+        let chunks = self.chunks_of(part);
+        (chunks.start * CHUNK).min(self.grains)..(chunks.end * CHUNK).min(self.grains)
     }
 }
 
@@ -76,7 +82,7 @@ mod tests {
 
     #[test]
     fn each_grain_belongs_to_one_share_whatever_the_number_of_threads() {
-        for grains in [1, 2, 256, 257, 2000, 4097, 16_000, 128_001] {
+        for grains in [0, 1, 2, 256, 257, 1279, 2000, 4097, 8448, 12_345, 16_000, 128_001] {
             for threads in [1, 2, 3, 4, 64] {
                 let shares: Vec<Own> = Own::shares(grains, threads).collect();
                 let owned: Vec<usize> = shares.iter().flat_map(Own::grains).collect();
@@ -92,10 +98,14 @@ mod tests {
     }
 
     #[test]
-    fn two_threads_have_about_as_many_grains_each_from_two_thousand_on() {
-        for grains in [2000, 3000, 5000, 10_000, 12_345, 16_000, 100_000] {
-            let sizes: Vec<usize> = Own::shares(grains, 2).map(|own| own.grains().len()).collect();
-            assert!(sizes.len() == 2 && sizes[0] < sizes[1] + sizes[1] / 2, "{sizes:?} of {grains}");
+    fn threads_that_pay_have_about_as_many_grains_each() {
+        for grains in [4000, 5000, 6000, 8448, 10_000, 12_345, 16_000, 33_333, 100_000] {
+            for threads in [2, 3, 4, 6].into_iter().filter(|t| grains / t >= 2000) {
+                let sizes: Vec<usize> = Own::shares(grains, threads).map(|own| own.grains().len()).collect();
+                let mean = grains / threads;
+                let most = sizes.iter().copied().fold(0, usize::max);
+                assert!(sizes.len() == threads && most <= mean + mean / 4, "{sizes:?} of {grains}");
+            }
         }
     }
 }

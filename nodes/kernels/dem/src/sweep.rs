@@ -65,6 +65,7 @@ impl Sweep<'_> {
         let Self { state, homes, contacts, setting, compute } = self;
         let over = Over { job, pass: choose(setting, job, !state.equal_sized()), simd: compute.simd(), look };
         if let [share] = &mut contacts.shares[..] {
+            homes.clear();
             let shift = contacts.images.shifts();
             return join([over.share(share, &mut InPlace { state, shift, setting })]);
         }
