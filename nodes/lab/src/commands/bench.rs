@@ -4,6 +4,9 @@ mod accuracy;
 mod cpu_time;
 mod dem;
 mod lockstep;
+mod numbers;
+mod packing;
+mod stiffness;
 
 use crate::failure::Failure;
 use clap::Subcommand;
@@ -18,6 +21,8 @@ pub(crate) enum Command {
     Dem(dem::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
     Lockstep(lockstep::Args),
+    /// The stiffness of a packing: time against error of every method and tolerance.
+    Stiffness(stiffness::Args),
 }
 
 /// Runs the command.
@@ -26,5 +31,6 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Accuracy(args) => accuracy::run(args),
         Command::Dem(args) => dem::run(args),
         Command::Lockstep(args) => lockstep::run(args),
+        Command::Stiffness(args) => stiffness::run(args),
     }
 }

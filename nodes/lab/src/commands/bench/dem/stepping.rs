@@ -1,6 +1,6 @@
 //! The loop that is timed: all that this bench asks of the engine.
 
-use super::packing::repeated;
+use super::super::packing::repeated;
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
 use clap::ValueEnum;

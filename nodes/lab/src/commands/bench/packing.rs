@@ -1,4 +1,4 @@
-//! What is stepped: a packing from a file or the one built in, repeated along each axis.
+//! What is measured on: a packing from a file or the one built in, repeated along each axis.
 
 use crate::failure::Failure;
 use flate2::read::GzDecoder;
@@ -8,7 +8,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// 2,000 glass spheres made by LAMMPS at 100 kPa, z = 5.11: see its README.
-const BUILT_IN: &[u8] = include_bytes!("../../../../../../tests/golden/packings/packing_2000.data.gz");
+const BUILT_IN: &[u8] = include_bytes!("../../../../../tests/golden/packings/packing_2000.data.gz");
 
 /// The first packing of the file, or the one built in. Glass where a file does not name the material.
 pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
