@@ -3,28 +3,16 @@
 use crate::contacts::{Contacts, Kept};
 use crate::state::{State, vector};
 
-/// Bits of each coordinate along the curve.
-const BITS: u32 = 10;
-
 /// Where each grain comes along a space-filling (Morton) curve through the cell: a function of positions alone. Grains
 /// of one bin follow each other by id.
 pub(crate) fn along_curve(state: &State) -> Vec<u32> {
     let place = |g: &u32| {
-        let s = state.cell.fractional(&vector(&state.position[*g as usize]));
-        let code = (0..3).map(|k| {
-            let inside = s[k] - s[k].floor();
-            spread((inside * f64::from(1u32 << BITS)) as u32) << k
-        });
-        (code.sum::<u32>(), state.ids[*g as usize])
+        let g = *g as usize;
+        (state.cell.place_on_curve(&vector(&state.position[g])), state.ids[g])
     };
     let mut order: Vec<u32> = (0..state.grains() as u32).collect();
     order.sort_by_cached_key(place);
     order
-}
-
-/// Two zero bits after each of the lowest ten.
-fn spread(v: u32) -> u32 {
-    (0..BITS).map(|b| (v >> b & 1) << (3 * b)).sum()
 }
 
 /// Takes the grains in a new order; pairs keep their history.

@@ -57,10 +57,26 @@ impl Cell {
         self.inverse * x
     }
 
+    /// Place of a position, folded into the cell, along a space-filling (Morton) curve: what is near in place is near in
+    /// space. 30 bits.
+    pub fn place_on_curve(&self, x: &Vec3) -> u32 {
+        let s = self.fractional(x);
+        let coordinate = |k: usize| (s[k] - s[k].floor()) * f64::from(1u32 << CURVE_BITS);
+        (0..3).map(|k| spread(coordinate(k) as u32) << k).sum()
+    }
+
     /// The cell after the deformation `f` (new vectors = `f` · old vectors). `None` where it degenerates.
     pub fn deformed(&self, f: &Mat3) -> Option<Self> {
         Self::new(f * self.matrix)
     }
+}
+
+/// Bits of each coordinate along the curve.
+const CURVE_BITS: u32 = 10;
+
+/// Two zero bits after each of the lowest ten.
+fn spread(v: u32) -> u32 {
+    (0..CURVE_BITS).map(|b| (v >> b & 1) << (3 * b)).sum()
 }
 
 #[cfg(test)]

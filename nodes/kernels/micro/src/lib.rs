@@ -18,8 +18,10 @@ pub mod analyse;
 pub mod anisotropy;
 pub mod balance;
 pub mod column;
+mod descent;
 pub mod error;
 pub mod fabric;
+mod lanes;
 pub mod network;
 pub mod preconditioner;
 pub mod probe;
@@ -27,6 +29,7 @@ pub mod rattlers;
 pub mod relax;
 pub mod solve;
 pub mod stiffness;
+mod sweep;
 
 pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};

@@ -16,18 +16,18 @@ pub type Motion<const L: usize> = [[f64; L]; 6];
 
 /// One contact of the network, in what the operator needs: 64 bytes.
 #[derive(Clone, Copy, Debug)]
-struct Spring {
-    i: u32,
-    j: u32,
-    normal: [f64; 3],
+pub(crate) struct Spring {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    pub(crate) normal: [f64; 3],
     /// |l|/2, m.
     half_branch: f64,
     /// |l|/(2a): lever of a scaled rotation.
-    lever: f64,
+    pub(crate) lever: f64,
     /// k_t, N/m.
-    tangential: f64,
+    pub(crate) tangential: f64,
     /// k_n − k_t, N/m.
-    excess: f64,
+    pub(crate) excess: f64,
 }
 
 /// The frozen contact network of a packing: grains, springs, volume.
@@ -37,6 +37,8 @@ pub struct Network {
     grains: usize,
     volume: f64,
     rotation_length: f64,
+    /// Grains along a space-filling curve.
+    order: Vec<u32>,
 }
 
 impl Network {
@@ -70,7 +72,9 @@ impl Network {
         for s in &mut springs {
             s.lever = s.half_branch / rotation_length;
         }
-        Ok(Self { springs, grains: packing.grains(), volume: packing.cell.volume(), rotation_length })
+        let mut order: Vec<u32> = (0..packing.grains() as u32).collect();
+        order.sort_by_cached_key(|g| packing.cell.place_on_curve(&packing.positions[*g as usize]));
+        Ok(Self { springs, grains: packing.grains(), volume: packing.cell.volume(), rotation_length, order })
     }
 
     /// Number of grains, those without contacts included.
@@ -81,6 +85,15 @@ impl Network {
     /// Number of contacts.
     pub fn contacts(&self) -> usize {
         self.springs.len()
+    }
+
+    pub(crate) fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// Grains in an order that keeps neighbours close in memory: a function of the positions.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
     }
 
     /// The length a that scales rotations, m: θ = φ/a.

@@ -1,12 +1,31 @@
-//! Block-Jacobi conjugate gradients for several right-hand sides of one network.
+//! Several right-hand sides of one network at once: conjugate gradients in single precision, refined in double.
 //!
 //! The operator is singular (uniform translation, rattlers, floppy grains), but loads made by contact forces lie in
 //! its range, and there conjugate gradients converge to a solution; which one of them does not matter to any force.
-//! Everything runs in one fixed order on one thread: the same input gives the same bits.
+//!
+//! Each round solves for what the last one left of the loads, computed in double precision with the operator itself, so
+//! that neither the precision of a round nor its recurrences limit the result. Single precision halves what must be moved
+//! through memory and doubles what one instruction does; where it stops helping, double takes over. Everything runs
+//! in one fixed order on one thread: the same input gives the same bits.
 
+use crate::descent::{Descent, Goal, Precision};
 use crate::error::MicroError;
+use crate::lanes::WIDTH;
 use crate::network::{Motion, Network};
-use crate::preconditioner::{Block, generalised_inverse};
+use crate::sweep::Sweeps;
+
+/// A round reduces the residual by this much at most in single precision (10⁻⁷ relative rounding)…
+const SINGLE: f64 = 3e-6;
+
+/// …and in double.
+const DOUBLE: f64 = 1e-13;
+
+/// A round that leaves more than this share of a residual did not help.
+const HELPED: f64 = 0.1;
+
+/// Iterations of one round in single precision. A network that needs more is so close to a mechanism that rounding would
+/// decide.
+const SINGLE_ROUND: u32 = 500;
 
 /// Motions that balance the loads.
 #[derive(Clone, Debug)]
@@ -19,8 +38,8 @@ pub struct Solution<const L: usize> {
     pub iterations: u32,
 }
 
-/// Solves K x = `load` (one entry per grain, N) for `L` columns at once until the norm of each residual is at most
-/// `tolerance` times its entry in `scale` (N). Columns with a scale of zero are left at zero.
+/// Solves K x = `load` (one entry per grain, N) for `L` columns at once, at most eight, until the norm of each residual
+/// is at most `tolerance` times its entry in `scale` (N). Columns with a scale of zero are left at zero.
 pub fn solve<const L: usize>(
     network: &Network,
     load: &[Motion<L>],
@@ -28,114 +47,120 @@ pub fn solve<const L: usize>(
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Solution<L>, MicroError> {
-    let inverse: Vec<Block> = network.diagonal_blocks().iter().map(generalised_inverse).collect();
-    // The recurrence drifts from the true residual by rounding; half the tolerance leaves it room.
-    let targets = scale.map(|s| (0.5 * tolerance * s).powi(2));
-    let zero = vec![[[0.0; L]; 6]; load.len()];
-    let mut state = State {
-        motion: zero.clone(),
-        rest: load.to_vec(),
-        step: zero.clone(),
-        image: zero.clone(),
-        guess: zero,
-    };
-    let (mut iterations, mut previous) = (0, f64::INFINITY);
-    loop {
-        iterations += state.descend(network, &inverse, &targets, max_iterations - iterations);
-        network.apply(&state.motion, &mut state.image);
-        let mut squares = [0.0; L];
-        for ((rest, image), load) in state.rest.iter_mut().zip(&state.image).zip(load) {
-            for k in 0..6 {
-                for l in 0..L {
-                    rest[k][l] = load[k][l] - image[k][l];
-                    squares[l] += rest[k][l] * rest[k][l];
-                }
-            }
-        }
-        let ratio = |l: usize| if scale[l] > 0.0 { squares[l].sqrt() / scale[l] } else { 0.0 };
-        // Not f64::max, which would hide a NaN.
-        let residual =
-            (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
-        if residual <= tolerance {
-            return Ok(Solution { motion: state.motion, residual, iterations });
-        }
-        // Starting again from the true residual cures drift; once that no longer helps, rounding is the limit.
-        let helped = residual < 0.5 * previous;
-        if iterations >= max_iterations || !helped {
-            return Err(MicroError::NotConverged { residual, tolerance, iterations });
-        }
-        previous = residual;
+    const { assert!(L <= WIDTH) }
+    let mut refinement = Refinement::new(load, scale, tolerance, max_iterations);
+    if !refinement.rounds(network, &Sweeps::<f32>::new(network), SINGLE, SINGLE_ROUND) {
+        refinement.rounds(network, &Sweeps::<f64>::new(network), DOUBLE, u32::MAX);
+    }
+    let Refinement { motion, residual, iterations, .. } = refinement;
+    if residual <= tolerance {
+        Ok(Solution { motion, residual, iterations })
+    } else {
+        Err(MicroError::NotConverged { residual, tolerance, iterations })
     }
 }
 
-struct State<const L: usize> {
-    /// x.
+/// What is found so far and what is left, in double precision.
+struct Refinement<'a, const L: usize> {
+    load: &'a [Motion<L>],
+    scale: &'a [f64; L],
+    tolerance: f64,
+    max_iterations: u32,
     motion: Vec<Motion<L>>,
-    /// r = load − K x, by recurrence.
-    rest: Vec<Motion<L>>,
-    /// Search direction p.
-    step: Vec<Motion<L>>,
-    /// K p.
+    /// K x.
     image: Vec<Motion<L>>,
-    /// z = M r.
-    guess: Vec<Motion<L>>,
+    /// Squared norms of load − K x.
+    squares: [f64; L],
+    /// The worst of the columns.
+    residual: f64,
+    iterations: u32,
 }
 
-impl<const L: usize> State<L> {
-    /// Conjugate gradients from the present motion and residual until every column's squared residual is at most its
-    /// target, or `limit` iterations are done. Returns the iterations done.
-    fn descend(&mut self, network: &Network, inverse: &[Block], targets: &[f64; L], limit: u32) -> u32 {
-        let (mut rho, mut squares) = self.advance(inverse, &[0.0; L]);
-        self.step.copy_from_slice(&self.guess);
-        for iteration in 0..limit {
-            let active: [bool; L] = std::array::from_fn(|l| squares[l] > targets[l]);
-            if active.iter().all(|a| !a) {
-                return iteration;
-            }
-            let energy = network.apply(&self.step, &mut self.image);
-            // A column that is done stands still, so that its last digits cannot blow up while others go on.
-            let alpha =
-                std::array::from_fn(|l| if active[l] && energy[l] > 0.0 { rho[l] / energy[l] } else { 0.0 });
-            let before = rho;
-            (rho, squares) = self.advance(inverse, &alpha);
-            let beta: [f64; L] =
-                std::array::from_fn(|l| if before[l] > 0.0 { rho[l] / before[l] } else { 0.0 });
-            for (p, z) in self.step.iter_mut().zip(&self.guess) {
-                for k in 0..6 {
-                    for l in 0..L {
-                        p[k][l] = z[k][l] + beta[l] * p[k][l];
-                    }
-                }
-            }
-        }
-        limit
+impl<'a, const L: usize> Refinement<'a, L> {
+    fn new(load: &'a [Motion<L>], scale: &'a [f64; L], tolerance: f64, max_iterations: u32) -> Self {
+        let zero = vec![[[0.0; L]; 6]; load.len()];
+        let (squares, residual) = ([0.0; L], f64::INFINITY);
+        let mut new = Self {
+            load,
+            scale,
+            tolerance,
+            max_iterations,
+            motion: zero.clone(),
+            image: zero,
+            squares,
+            residual,
+            iterations: 0,
+        };
+        new.look();
+        new
     }
 
-    /// x += α p, r −= α K p, z = M r in one pass; returns rᵀz and rᵀr.
-    fn advance(&mut self, inverse: &[Block], alpha: &[f64; L]) -> ([f64; L], [f64; L]) {
-        let (mut rho, mut squares) = ([0.0; L], [0.0; L]);
-        let grains = self.motion.iter_mut().zip(&mut self.rest).zip(&mut self.guess);
-        for ((((x, r), z), (p, q)), m) in grains.zip(self.step.iter().zip(&self.image)).zip(inverse) {
+    /// What is left of the loads.
+    fn look(&mut self) {
+        self.squares = [0.0; L];
+        for (load, image) in self.load.iter().zip(&self.image) {
             for k in 0..6 {
                 for l in 0..L {
-                    x[k][l] += alpha[l] * p[k][l];
-                    r[k][l] -= alpha[l] * q[k][l];
+                    self.squares[l] += (load[k][l] - image[k][l]).powi(2);
                 }
-            }
-            for k in 0..6 {
-                let mut sum = [0.0; L];
-                for c in 0..6 {
-                    for l in 0..L {
-                        sum[l] += m[k][c] * r[c][l];
-                    }
-                }
-                for l in 0..L {
-                    rho[l] += sum[l] * r[k][l];
-                    squares[l] += r[k][l] * r[k][l];
-                }
-                z[k] = sum;
             }
         }
-        (rho, squares)
+        let ratio = |l: usize| if self.scale[l] > 0.0 { self.squares[l].sqrt() / self.scale[l] } else { 0.0 };
+        // Not f64::max, which would hide a NaN.
+        self.residual =
+            (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
+    }
+
+    /// Rounds of conjugate gradients, each reducing the residual by `reach` at most in at most `most` iterations, as long
+    /// as they help. True if nothing more is to be done.
+    fn rounds<T: Precision>(&mut self, network: &Network, sweeps: &Sweeps<T>, reach: f64, most: u32) -> bool {
+        let mut descent = Descent::new(sweeps);
+        while self.residual > self.tolerance && self.iterations < self.max_iterations {
+            let before = self.residual;
+            self.round(&mut descent, sweeps, reach, most);
+            network.apply(&self.motion, &mut self.image);
+            self.look();
+            // A NaN does not help either.
+            if !(self.residual < HELPED * before || self.residual <= self.tolerance) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn round<T: Precision>(&mut self, descent: &mut Descent<T>, sweeps: &Sweeps<T>, reach: f64, most: u32) {
+        // Rounding leaves more than the recurrence says: half the tolerance leaves it room. The rounds that are still to be
+        // done share what is left evenly.
+        let whole = 0.5 * self.tolerance / self.residual;
+        let rounds = (whole.ln() / reach.ln()).ceil().max(1.0);
+        let reduction = whole.powf(1.0 / rounds);
+        // Loads of length one: single precision has a narrow range.
+        let (mut squares, mut targets, mut norms) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+        for l in 0..L {
+            norms[l] = self.squares[l].sqrt();
+            if self.scale[l] > 0.0 && norms[l] > 0.0 {
+                squares[l] = 1.0;
+                targets[l] = (reduction * self.residual * self.scale[l] / norms[l]).powi(2);
+            }
+        }
+        for (at, grain) in sweeps.order.iter().enumerate() {
+            let (load, image) = (&self.load[*grain as usize], &self.image[*grain as usize]);
+            for k in 0..6 {
+                for l in 0..L {
+                    let left = (load[k][l] - image[k][l]) / norms[l];
+                    descent.rest[at][k][l] = if squares[l] > 0.0 { T::of(left) } else { T::ZERO };
+                }
+            }
+        }
+        let limit = most.min(self.max_iterations - self.iterations);
+        self.iterations += T::run(descent, &Goal { squares, targets, limit });
+        for (at, grain) in sweeps.order.iter().enumerate() {
+            let found = &descent.motion[at];
+            for (row, found) in self.motion[*grain as usize].iter_mut().zip(found) {
+                for l in 0..L {
+                    row[l] += found[l].wide() * (norms[l] / sweeps.unit);
+                }
+            }
+        }
     }
 }

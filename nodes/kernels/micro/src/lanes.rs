@@ -1,0 +1,181 @@
+//! Eight columns at once, in either precision, with whatever vectors the processor has.
+//!
+//! Each operation is rounded the same way everywhere (a multiply-add once), and no operation mixes columns, so every
+//! implementation gives the same bits.
+
+use std::marker::PhantomData;
+
+/// Columns solved at once: one vector register of `f32` on most processors.
+pub(crate) const WIDTH: usize = 8;
+
+/// `f32` or `f64`.
+pub(crate) trait Real: Copy {
+    const ZERO: Self;
+    /// Rounded to nearest.
+    fn of(value: f64) -> Self;
+    fn wide(self) -> f64;
+    fn plus(self, other: Self) -> Self;
+    fn times(self, other: Self) -> Self;
+    /// self · factor + term, rounded once.
+    fn times_plus(self, factor: Self, term: Self) -> Self;
+}
+
+macro_rules! real {
+    ($t:ty) => {
+        impl Real for $t {
+            const ZERO: Self = 0.0;
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $t
+            }
+            #[inline(always)]
+            fn wide(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn plus(self, other: Self) -> Self {
+                self + other
+            }
+            #[inline(always)]
+            fn times(self, other: Self) -> Self {
+                self * other
+            }
+            #[inline(always)]
+            fn times_plus(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
+            }
+        }
+    };
+}
+real!(f32);
+real!(f64);
+
+/// Arithmetic on eight columns.
+pub(crate) trait Lanes: Copy {
+    type T: Real;
+    type Row: Copy;
+    fn load(self, from: &[Self::T; WIDTH]) -> Self::Row;
+    fn store(self, row: Self::Row, to: &mut [Self::T; WIDTH]);
+    fn splat(self, value: Self::T) -> Self::Row;
+    fn add(self, a: Self::Row, b: Self::Row) -> Self::Row;
+    fn mul(self, a: Self::Row, b: Self::Row) -> Self::Row;
+    /// a b + c.
+    fn mul_add(self, a: Self::Row, b: Self::Row, c: Self::Row) -> Self::Row;
+}
+
+/// One column after the other, or what the compiler makes of that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain<T>(pub(crate) PhantomData<T>);
+
+impl<T: Real> Lanes for Plain<T> {
+    type T = T;
+    type Row = [T; WIDTH];
+
+    #[inline(always)]
+    fn load(self, from: &[T; WIDTH]) -> [T; WIDTH] {
+        *from
+    }
+
+    #[inline(always)]
+    fn store(self, row: [T; WIDTH], to: &mut [T; WIDTH]) {
+        *to = row;
+    }
+
+    #[inline(always)]
+    fn splat(self, value: T) -> [T; WIDTH] {
+        [value; WIDTH]
+    }
+
+    #[inline(always)]
+    fn add(self, mut a: [T; WIDTH], b: [T; WIDTH]) -> [T; WIDTH] {
+        for l in 0..WIDTH {
+            a[l] = a[l].plus(b[l]);
+        }
+        a
+    }
+
+    #[inline(always)]
+    fn mul(self, mut a: [T; WIDTH], b: [T; WIDTH]) -> [T; WIDTH] {
+        for l in 0..WIDTH {
+            a[l] = a[l].times(b[l]);
+        }
+        a
+    }
+
+    #[inline(always)]
+    fn mul_add(self, mut a: [T; WIDTH], b: [T; WIDTH], c: [T; WIDTH]) -> [T; WIDTH] {
+        for l in 0..WIDTH {
+            a[l] = a[l].times_plus(b[l], c[l]);
+        }
+        a
+    }
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod x86 {
+    use super::{Lanes, WIDTH};
+    use pulp::x86::V3;
+    use pulp::{cast, f32x8};
+
+    /// Single precision in one register of AVX2.
+    impl Lanes for V3 {
+        type T = f32;
+        type Row = f32x8;
+
+        #[inline(always)]
+        fn load(self, from: &[f32; WIDTH]) -> f32x8 {
+            cast(*from)
+        }
+
+        #[inline(always)]
+        fn store(self, row: f32x8, to: &mut [f32; WIDTH]) {
+            *to = cast(row);
+        }
+
+        #[inline(always)]
+        fn splat(self, value: f32) -> f32x8 {
+            self.splat_f32x8(value)
+        }
+
+        #[inline(always)]
+        fn add(self, a: f32x8, b: f32x8) -> f32x8 {
+            cast(self.avx._mm256_add_ps(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn mul(self, a: f32x8, b: f32x8) -> f32x8 {
+            cast(self.avx._mm256_mul_ps(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn mul_add(self, a: f32x8, b: f32x8, c: f32x8) -> f32x8 {
+            self.mul_add_f32x8(a, b, c)
+        }
+    }
+}
+
+#[cfg(all(test, any(target_arch = "x86", target_arch = "x86_64")))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn avx2_rounds_as_plain_arithmetic_does() {
+        let Some(avx2) = pulp::x86::V3::try_new() else { return };
+        let plain = Plain::<f32>(PhantomData);
+        let number = |n: u32| (n as f32 * 0.618_034).sin() * (n as f32 * 0.1).cos().exp();
+        for n in 0..2_000 {
+            let row = |m: u32| -> [f32; WIDTH] { std::array::from_fn(|l| number(24 * n + 8 * m + l as u32)) };
+            let (a, b, c) = (row(0), row(1), row(2));
+            let (x, y, z) = (avx2.load(&a), avx2.load(&b), avx2.load(&c));
+            let same = |fast, slow: [f32; WIDTH]| {
+                let mut stored = [0.0; WIDTH];
+                avx2.store(fast, &mut stored);
+                assert_eq!(stored.map(f32::to_bits), slow.map(f32::to_bits), "{a:?} {b:?} {c:?}");
+            };
+            same(avx2.add(x, y), plain.add(a, b));
+            same(avx2.mul(x, y), plain.mul(a, b));
+            same(avx2.mul_add(x, y, z), plain.mul_add(a, b, c));
+            same(avx2.splat(a[3]), plain.splat(a[3]));
+        }
+    }
+}

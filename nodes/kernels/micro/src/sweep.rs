@@ -1,0 +1,298 @@
+//! The operator K = L + D + Lᵀ in triangular halves: D the 6×6 blocks of the grains, L what an earlier grain does to a
+//! later one.
+//!
+//! Conjugate gradients run on Â = (D + L)⁻¹ K (D + L)⁻ᵀ with the preconditioner D⁻¹, which is symmetric Gauss–Seidel on
+//! K. As K = (D + L) + (D + L)ᵀ − D, one product Â p = t + (D + L)⁻¹ (p − D t), t = (D + L)⁻ᵀ p, touches every contact
+//! twice by half: as much work as one product with K (Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1 (1981)).
+//!
+//! Blocks may be singular: a null vector of a block is one of the whole network, so a generalised inverse serves.
+
+use crate::lanes::{Lanes, Real, WIDTH};
+use crate::network::{Network, Spring};
+use crate::preconditioner::{Block, generalised_inverse};
+
+/// Motion of one grain, or the forces conjugate to it, in the units of the sweeps: rows u_x, u_y, u_z, φ_x, φ_y, φ_z.
+pub(crate) type Rows<T> = [[T; WIDTH]; 6];
+
+/// No motion.
+pub(crate) const fn still<T: Real>() -> Rows<T> {
+    [[T::ZERO; WIDTH]; 6]
+}
+
+/// [`Rows`] in registers.
+type Six<V> = [<V as Lanes>::Row; 6];
+
+/// The halves of one network, grains in an order that follows space, stiffnesses in units of [`Sweeps::unit`].
+#[derive(Clone, Debug)]
+pub(crate) struct Sweeps<T> {
+    /// Between different grains, the earlier one first, sorted by both; contacts with own images are in D alone.
+    springs: Vec<Half<T>>,
+    /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
+    first: Vec<u32>,
+    /// D.
+    blocks: Vec<[[T; 6]; 6]>,
+    /// D⁻¹.
+    inverse: Vec<[[T; 6]; 6]>,
+    /// Grain of the packing at each place.
+    pub(crate) order: Vec<u32>,
+    /// Mean stiffness of a block's displacements, N/m.
+    pub(crate) unit: f64,
+}
+
+/// One contact as the earlier of its grains sees it.
+#[derive(Clone, Copy, Debug)]
+struct Half<T> {
+    later: u32,
+    /// Towards the later grain.
+    normal: [T; 3],
+    /// Lever times normal, and its opposite.
+    arm: [T; 3],
+    against: [T; 3],
+    tangential: T,
+    excess: T,
+}
+
+impl<T: Real> Sweeps<T> {
+    pub(crate) fn new(network: &Network) -> Self {
+        let order = network.order().to_vec();
+        let mut place = vec![0u32; order.len()];
+        for (at, grain) in order.iter().enumerate() {
+            place[*grain as usize] = at as u32;
+        }
+        let blocks = network.diagonal_blocks();
+        let traces: f64 = blocks.iter().map(|b| b[0][0] + b[1][1] + b[2][2]).sum();
+        let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
+        let between = |s: &&Spring| s.i != s.j;
+        let mut springs: Vec<(u32, Half<T>)> =
+            network.springs().iter().filter(between).map(|s| Half::of(s, &place, unit)).collect();
+        springs.sort_by_key(|(earlier, half)| (*earlier, half.later));
+        let mut first = vec![0u32; order.len() + 1];
+        springs.iter().for_each(|(earlier, _)| first[*earlier as usize + 1] += 1);
+        for g in 0..order.len() {
+            first[g + 1] += first[g];
+        }
+        let rounded = |block: &Block, unit: f64| block.map(|row| row.map(|v| T::of(v * unit)));
+        Self {
+            springs: springs.into_iter().map(|(_, half)| half).collect(),
+            first,
+            inverse: order
+                .iter()
+                .map(|g| rounded(&generalised_inverse(&blocks[*g as usize]), unit))
+                .collect(),
+            blocks: order.iter().map(|g| rounded(&blocks[*g as usize], 1.0 / unit)).collect(),
+            order,
+            unit,
+        }
+    }
+
+    /// Number of grains.
+    #[inline(always)]
+    pub(crate) fn grains(&self) -> usize {
+        self.order.len()
+    }
+
+    /// D x of grain `g`.
+    #[inline(always)]
+    pub(crate) fn diagonal<V: Lanes<T = T>>(&self, v: V, g: usize, x: &Six<V>) -> Six<V> {
+        product(v, &self.blocks[g], x)
+    }
+
+    /// y = (D + L)⁻¹ y in place.
+    #[inline(always)]
+    pub(crate) fn forward<V: Lanes<T = T>>(&self, v: V, y: &mut [Rows<T>]) {
+        for g in 0..self.grains() {
+            let u = self.forward_step(v, g, y);
+            store(v, &u, &mut y[g]);
+        }
+    }
+
+    /// One step of that, from the first grain to the last: returns u of grain `g` and takes what it does to later grains
+    /// off their entries.
+    #[inline(always)]
+    pub(crate) fn forward_step<V: Lanes<T = T>>(&self, v: V, g: usize, y: &mut [Rows<T>]) -> Six<V> {
+        let u = product(v, &self.inverse[g], &load(v, &y[g]));
+        for s in self.later(g) {
+            let y = &mut y[s.later as usize];
+            let rest = s.push(v, &u, load(v, y));
+            store(v, &rest, y);
+        }
+        u
+    }
+
+    /// y = (D + L)⁻ᵀ y in place.
+    #[inline(always)]
+    pub(crate) fn backward<V: Lanes<T = T>>(&self, v: V, y: &mut [Rows<T>]) {
+        for g in (0..self.grains()).rev() {
+            let rest = self.left_by_later(v, g, load(v, &y[g]), y);
+            store(v, &product(v, &self.inverse[g], &rest), &mut y[g]);
+        }
+    }
+
+    /// One step of t = (D + L)⁻ᵀ p, from the last grain to the first: t and s = p − D t of grain `g`, from its p and the
+    /// t of later grains.
+    #[inline(always)]
+    pub(crate) fn backward_step<V: Lanes<T = T>>(
+        &self,
+        v: V,
+        g: usize,
+        p: &Six<V>,
+        t: &[Rows<T>],
+    ) -> (Six<V>, Six<V>) {
+        let rest = self.left_by_later(v, g, *p, t);
+        let minus = v.splat(T::of(-1.0));
+        let mut taken = *p;
+        for k in 0..6 {
+            taken[k] = v.mul_add(rest[k], minus, p[k]);
+        }
+        (product(v, &self.inverse[g], &rest), taken)
+    }
+
+    /// Squared norms of (D + L) r, the residual of K.
+    #[inline(always)]
+    pub(crate) fn squares<V: Lanes<T = T>>(
+        &self,
+        v: V,
+        r: &[Rows<T>],
+        scratch: &mut [Rows<T>],
+    ) -> [f64; WIDTH] {
+        for g in 0..self.grains() {
+            store(v, &product(v, &self.blocks[g], &load(v, &r[g])), &mut scratch[g]);
+        }
+        let mut squares = [0.0; WIDTH];
+        let minus = v.splat(T::of(-1.0));
+        for g in 0..self.grains() {
+            let mut opposite = load(v, &r[g]);
+            for row in &mut opposite {
+                *row = v.mul(*row, minus);
+            }
+            for s in self.later(g) {
+                let y = &mut scratch[s.later as usize];
+                let sum = s.push(v, &opposite, load(v, y));
+                store(v, &sum, y);
+            }
+            let y = load(v, &scratch[g]);
+            add_products(v, &y, &y, &mut squares);
+        }
+        squares
+    }
+
+    /// `rest` less what the motions of later grains do to grain `g`.
+    #[inline(always)]
+    fn left_by_later<V: Lanes<T = T>>(&self, v: V, g: usize, mut rest: Six<V>, motion: &[Rows<T>]) -> Six<V> {
+        for s in self.later(g) {
+            rest = s.pull(v, &load(v, &motion[s.later as usize]), rest);
+        }
+        rest
+    }
+
+    #[inline(always)]
+    fn later(&self, g: usize) -> &[Half<T>] {
+        &self.springs[self.first[g] as usize..self.first[g + 1] as usize]
+    }
+}
+
+impl<T: Real> Half<T> {
+    /// With the place of the earlier grain.
+    fn of(s: &Spring, place: &[u32], unit: f64) -> (u32, Self) {
+        let (i, j) = (place[s.i as usize], place[s.j as usize]);
+        let side = if i < j { 1.0 } else { -1.0 };
+        let half = Self {
+            later: i.max(j),
+            normal: s.normal.map(|n| T::of(side * n)),
+            arm: s.normal.map(|n| T::of(side * n * s.lever)),
+            against: s.normal.map(|n| T::of(-side * n * s.lever)),
+            tangential: T::of(s.tangential / unit),
+            excess: T::of(s.excess / unit),
+        };
+        (i.min(j), half)
+    }
+
+    /// `rest` of the later grain less what the motion `a` of the earlier one does to it.
+    #[inline(always)]
+    fn push<V: Lanes<T = T>>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
+        self.taken_off(v, a, &self.arm, &self.against, rest)
+    }
+
+    /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arm on the
+    /// other side.
+    #[inline(always)]
+    fn pull<V: Lanes<T = T>>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
+        self.taken_off(v, b, &self.against, &self.arm, rest)
+    }
+
+    #[inline(always)]
+    fn taken_off<V: Lanes<T = T>>(
+        &self,
+        v: V,
+        a: &Six<V>,
+        arm: &[T; 3],
+        against: &[T; 3],
+        mut rest: Six<V>,
+    ) -> Six<V> {
+        let [nx, ny, nz] = splats(v, &self.normal);
+        let [mx, my, mz] = splats(v, arm);
+        let [ox, oy, oz] = splats(v, against);
+        let (tangential, excess) = (v.splat(self.tangential), v.splat(self.excess));
+        // u + φ×m, of this grain alone.
+        let wx = v.mul_add(a[4], mz, v.mul_add(a[5], oy, a[0]));
+        let wy = v.mul_add(a[5], mx, v.mul_add(a[3], oz, a[1]));
+        let wz = v.mul_add(a[3], my, v.mul_add(a[4], ox, a[2]));
+        let along = v.mul(excess, v.mul_add(nz, wz, v.mul_add(ny, wy, v.mul(nx, wx))));
+        let fx = v.mul_add(tangential, wx, v.mul(along, nx));
+        let fy = v.mul_add(tangential, wy, v.mul(along, ny));
+        let fz = v.mul_add(tangential, wz, v.mul(along, nz));
+        rest[0] = v.add(rest[0], fx);
+        rest[1] = v.add(rest[1], fy);
+        rest[2] = v.add(rest[2], fz);
+        // −m×f.
+        rest[3] = v.mul_add(oy, fz, v.mul_add(mz, fy, rest[3]));
+        rest[4] = v.mul_add(oz, fx, v.mul_add(mx, fz, rest[4]));
+        rest[5] = v.mul_add(ox, fy, v.mul_add(my, fx, rest[5]));
+        rest
+    }
+}
+
+#[inline(always)]
+fn splats<V: Lanes>(v: V, three: &[V::T; 3]) -> [V::Row; 3] {
+    [v.splat(three[0]), v.splat(three[1]), v.splat(three[2])]
+}
+
+#[inline(always)]
+pub(crate) fn load<V: Lanes>(v: V, x: &Rows<V::T>) -> Six<V> {
+    [v.load(&x[0]), v.load(&x[1]), v.load(&x[2]), v.load(&x[3]), v.load(&x[4]), v.load(&x[5])]
+}
+
+#[inline(always)]
+pub(crate) fn store<V: Lanes>(v: V, x: &Six<V>, to: &mut Rows<V::T>) {
+    for k in 0..6 {
+        v.store(x[k], &mut to[k]);
+    }
+}
+
+/// m x.
+#[inline(always)]
+fn product<V: Lanes>(v: V, m: &[[V::T; 6]; 6], x: &Six<V>) -> Six<V> {
+    let mut y = *x;
+    for k in 0..6 {
+        let mut sum = v.mul(v.splat(m[k][0]), x[0]);
+        for c in 1..6 {
+            sum = v.mul_add(v.splat(m[k][c]), x[c], sum);
+        }
+        y[k] = sum;
+    }
+    y
+}
+
+/// Adds xᵀ y of each column to `sum`. Six products are added up in T before they are widened.
+#[inline(always)]
+pub(crate) fn add_products<V: Lanes>(v: V, x: &Six<V>, y: &Six<V>, sum: &mut [f64; WIDTH]) {
+    let mut local = v.mul(x[0], y[0]);
+    for k in 1..6 {
+        local = v.mul_add(x[k], y[k], local);
+    }
+    let mut columns = [V::T::ZERO; WIDTH];
+    v.store(local, &mut columns);
+    for l in 0..WIDTH {
+        sum[l] += columns[l].wide();
+    }
+}
