@@ -5,7 +5,7 @@ use super::check::{Check, ratios, vector_message};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
-use grains::{Anisotropy, Fabric, Material, Moduli, Stiffness, Vec3};
+use grains::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, Vec3};
 
 const CHECK: Check = Check("Moduli");
 
@@ -20,6 +20,8 @@ pub enum ModuliMethod {
     Probe,
     /// From wave speeds.
     Acoustic,
+    /// Relaxed frozen network with the prestress term, solved.
+    PrestressedNetwork,
 }
 
 /// Moduli as an inversion takes them: checked, and with `None` for what the sender did not know.
@@ -41,6 +43,8 @@ pub struct ModuliReading {
     pub theta: f64,
     /// Reuss bulk modulus, Pa.
     pub theta_reuss: Option<f64>,
+    /// Lower bound of that, Pa.
+    pub theta_bound: Option<f64>,
     /// Projected C11, Pa.
     pub c11: Option<f64>,
     /// C33, Pa.
@@ -49,8 +53,12 @@ pub struct ModuliReading {
     pub c13: Option<f64>,
     /// Full stiffness.
     pub stiffness: Option<Stiffness>,
+    /// Standard error of each entry of the stiffness, as a measurement of one packing.
+    pub stddev: Option<Stiffness>,
     /// Affine stiffness.
     pub affine: Option<Stiffness>,
+    /// Stiffness of affine motion with one spin of all grains.
+    pub mean_spin: Option<Stiffness>,
     /// Covariance of (g12, g13, Θ), row-major, Pa².
     pub covariance: Option<[f64; 9]>,
     /// Confining pressure, Pa, 0 or more.
@@ -71,8 +79,8 @@ pub struct ModuliReading {
     pub material: Material,
 }
 
-/// The message of the moduli of a packing by the frozen network; `header` and `source_step` are those of the packing.
-/// `pressure` in Pa. Standard deviations are left unknown: one packing has none.
+/// The message of the moduli of a packing; `header` and `source_step` are those of the packing. `pressure` in Pa. The
+/// covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
 pub fn moduli_message(
     header: Header,
     source_step: u64,
@@ -87,15 +95,21 @@ pub fn moduli_message(
     let message = msg::Moduli {
         header,
         source_step,
-        method: msg::Moduli::METHOD_FROZEN_NETWORK,
+        method: match moduli.method {
+            Method::FrozenNetwork => msg::Moduli::METHOD_FROZEN_NETWORK,
+            Method::PrestressedNetwork => msg::Moduli::METHOD_PRESTRESSED_NETWORK,
+            Method::Probe => msg::Moduli::METHOD_PROBE,
+        },
         grains: fabric.grains,
         stiffness: moduli.stiffness.row_major(),
-        stiffness_stddev: [0.0; 36],
+        stiffness_stddev: moduli.stddev.row_major(),
         stiffness_affine: moduli.affine.row_major(),
+        stiffness_mean_spin: moduli.mean_spin.row_major(),
         g12: projected.g12,
         g13: projected.g13,
         theta: moduli.stiffness.bulk_voigt(),
         theta_reuss: moduli.stiffness.bulk_reuss().unwrap_or(0.0),
+        theta_bound: moduli.reuss_bound.unwrap_or(0.0),
         covariance: [0.0; 9],
         pressure,
         solid_fraction,
@@ -143,7 +157,10 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             c11: projected.map(|t| t.c11),
             c33: projected.map(|t| t.c33),
             c13: projected.map(|t| t.c13),
+            theta_bound: CHECK.known("theta_bound", m.theta_bound)?,
             stiffness,
+            stddev: known_stiffness("stiffness_stddev", &m.stiffness_stddev)?,
+            mean_spin: known_stiffness("stiffness_mean_spin", &m.stiffness_mean_spin)?,
             affine: known_stiffness("stiffness_affine", &m.stiffness_affine)?,
             covariance: CHECK.covariance("covariance", &m.covariance)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
@@ -175,7 +192,19 @@ impl TryFrom<&msg::Moduli> for Moduli {
         };
         Ok(Self {
             stiffness: reading.stiffness.ok_or_else(|| missing("stiffness"))?,
+            stddev: reading.stddev.ok_or_else(|| missing("stiffness_stddev"))?,
             affine: reading.affine.ok_or_else(|| missing("stiffness_affine"))?,
+            mean_spin: reading.mean_spin.ok_or_else(|| missing("stiffness_mean_spin"))?,
+            method: match reading.method {
+                ModuliMethod::FrozenNetwork => Method::FrozenNetwork,
+                ModuliMethod::PrestressedNetwork => Method::PrestressedNetwork,
+                ModuliMethod::Probe => Method::Probe,
+                ModuliMethod::Affine | ModuliMethod::Acoustic => {
+                    let measured = "0 (frozen network), 2 (probe), 4 (prestressed network)";
+                    return Err(CHECK.code("method", m.method, measured));
+                }
+            },
+            reuss_bound: reading.theta_bound,
             residual: m.residual,
             iterations: m.iterations,
         })
@@ -194,7 +223,11 @@ fn method(code: u8) -> Result<ModuliMethod, BoundaryError> {
         msg::Moduli::METHOD_AFFINE => Ok(ModuliMethod::Affine),
         msg::Moduli::METHOD_PROBE => Ok(ModuliMethod::Probe),
         msg::Moduli::METHOD_ACOUSTIC => Ok(ModuliMethod::Acoustic),
-        other => Err(CHECK.code("method", other, "0 (frozen network), 1 (affine), 2 (probe), 3 (acoustic)")),
+        msg::Moduli::METHOD_PRESTRESSED_NETWORK => Ok(ModuliMethod::PrestressedNetwork),
+        other => {
+            let known = "0 (frozen network), 1 (affine), 2 (probe), 3 (acoustic), 4 (prestressed network)";
+            Err(CHECK.code("method", other, known))
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use grainlab_msgs::boundary::{
 use grainlab_msgs::msg;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{from_cdr, stamp, to_cdr};
-use grains::{Anisotropy, Fabric, Material, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3};
+use grains::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
@@ -44,7 +44,17 @@ fn moduli() -> Moduli {
         residual: 0.0,
     };
     let affine = TransverseIsotropy { c11: 460e6, g13: 200e6, ..relaxed };
-    Moduli { stiffness: relaxed.stiffness(), affine: affine.stiffness(), residual: 1e-9, iterations: 91 }
+    let mean_spin = TransverseIsotropy { c11: 460e6, g13: 199e6, ..relaxed };
+    Moduli {
+        method: Method::FrozenNetwork,
+        stiffness: relaxed.stiffness(),
+        stddev: Stiffness::from_row_major(&[0.5; 36]),
+        affine: affine.stiffness(),
+        mean_spin: mean_spin.stiffness(),
+        reuss_bound: Some(1.2e8),
+        residual: 1e-9,
+        iterations: 91,
+    }
 }
 
 fn moduli_sent() -> msg::Moduli {
@@ -61,8 +71,12 @@ fn a_fabric_crosses_the_wire_and_back() {
 
 #[test]
 fn moduli_cross_the_wire_and_back() {
-    let received: msg::Moduli = from_cdr(&to_cdr(&moduli_sent())).unwrap();
-    assert_eq!(Moduli::try_from(&received).unwrap(), moduli());
+    for method in [Method::FrozenNetwork, Method::PrestressedNetwork, Method::Probe] {
+        let moduli = Moduli { method, ..moduli() };
+        let sent = moduli_message(header(), 7, &fabric(), &moduli, 5e4, 0.64, &Material::GLASS).unwrap();
+        let received: msg::Moduli = from_cdr(&to_cdr(&sent)).unwrap();
+        assert_eq!(Moduli::try_from(&received).unwrap(), moduli);
+    }
 }
 
 #[test]
@@ -132,10 +146,12 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
         &moduli_sent(),
         &[
             (|m| m.header.stamp.nanosec = u32::MAX, "Moduli.header.stamp.nanosec"),
-            (|m| m.method = 4, "Moduli.method = 4 is refused: it must be one of 0 (frozen network)"),
+            (|m| m.method = 5, "Moduli.method = 5 is refused: it must be one of 0 (frozen network)"),
             (|m| m.stiffness[35] = NAN, "Moduli.stiffness[35] = NaN is refused"),
             (|m| m.stiffness_stddev[3] = -1.0, "Moduli.stiffness_stddev[3] = -1.0 is refused"),
             (|m| m.stiffness_affine[0] = INF, "Moduli.stiffness_affine[0] = inf is refused"),
+            (|m| m.stiffness_mean_spin[7] = NAN, "Moduli.stiffness_mean_spin[7] = NaN is refused"),
+            (|m| m.theta_bound = -1.0, "Moduli.theta_bound = -1.0 is refused"),
             (|m| m.g12 = NAN, "Moduli.g12 = NaN is refused"),
             (|m| m.g13 = INF, "Moduli.g13 = inf is refused"),
             (|m| m.theta = NAN, "Moduli.theta = NaN is refused"),

@@ -20,12 +20,15 @@ pub struct Moduli {
     /// Pa, row-major, all 0 = only the moduli below are known
     #[serde(with = "crate::fixed_array")]
     pub stiffness: [f64; 36],
-    /// Pa, row-major, 0 = unknown
+    /// Pa, row-major, as a measurement of this packing, 0 = unknown
     #[serde(with = "crate::fixed_array")]
     pub stiffness_stddev: [f64; 36],
     /// Pa, row-major, all 0 = not computed
     #[serde(with = "crate::fixed_array")]
     pub stiffness_affine: [f64; 36],
+    /// Pa, row-major, affine motion with one spin of all grains, all 0 = not computed
+    #[serde(with = "crate::fixed_array")]
+    pub stiffness_mean_spin: [f64; 36],
     /// Pa, shear modulus in the plane of isotropy: (C11 + C22)/8 - C12/4 + C66/2
     pub g12: f64,
     /// Pa, shear modulus along e3: (C44 + C55)/2
@@ -34,6 +37,8 @@ pub struct Moduli {
     pub theta: f64,
     /// Pa, Reuss bulk modulus, 0 = undefined
     pub theta_reuss: f64,
+    /// Pa, lower bound of theta_reuss by the forces present, 0 = unknown
+    pub theta_bound: f64,
     /// Pa2, of (g12, g13, theta), row-major, all 0 = unknown
     pub covariance: [f64; 9],
     /// Pa, confining, compression positive
@@ -84,6 +89,9 @@ impl Moduli {
 
     /// from wave speeds
     pub const METHOD_ACOUSTIC: u8 = 3;
+
+    /// relaxed frozen network with the prestress term
+    pub const METHOD_PRESTRESSED_NETWORK: u8 = 4;
 }
 
 impl Default for Moduli {
@@ -96,10 +104,12 @@ impl Default for Moduli {
             stiffness: [f64::default(); 36],
             stiffness_stddev: [f64::default(); 36],
             stiffness_affine: [f64::default(); 36],
+            stiffness_mean_spin: [f64::default(); 36],
             g12: Default::default(),
             g13: Default::default(),
             theta: Default::default(),
             theta_reuss: Default::default(),
+            theta_bound: Default::default(),
             covariance: Default::default(),
             pressure: Default::default(),
             solid_fraction: Default::default(),
@@ -126,7 +136,7 @@ impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_548191a709d86706077c4b45a9ec720b08572817dcba1f0673cd367113132223";
+    const HASH: &'static str = "RIHS01_75e6a4e979049896abedb4e982322c480b1bd930c9d0cd07ec059af07a425e03";
     const DEFINITION: &'static str = definition!(
         "msg/Moduli.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

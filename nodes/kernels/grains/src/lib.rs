@@ -26,6 +26,6 @@ pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::Material;
 pub use packing::{Contact, Packing, PackingError};
-pub use results::{Anisotropy, Fabric, Moduli};
+pub use results::{Anisotropy, Fabric, Method, Moduli};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use tensor::{Mat3, SymTensor, Vec3};

@@ -23,6 +23,18 @@ pub struct Contact {
     pub tangential_force: Vec3,
 }
 
+/// Share of the Coulomb limit from which a contact counts as sliding.
+const SLIDING: f64 = 0.999;
+
+impl Contact {
+    /// Whether the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. None is where there is no such limit (μ = 0 or
+    /// infinite).
+    pub fn slides(&self, friction: f64) -> bool {
+        let limited = friction > 0.0 && friction.is_finite();
+        limited && self.tangential_force.norm() >= SLIDING * friction * self.normal_force
+    }
+}
+
 /// A packing of spheres: the mechanical state that is measured, displayed and resumed.
 ///
 /// Built by [`Packing::validated`], which is what makes the fields safe to use as they are: `n = radii.len()` in every

@@ -48,13 +48,33 @@ pub struct Fabric {
     pub mobilised: f64,
 }
 
+/// How a stiffness was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Linear response of the frozen contact network.
+    FrozenNetwork,
+    /// The same with the prestress term.
+    PrestressedNetwork,
+    /// Small strains imposed on the packing with its whole contact law.
+    Probe,
+}
+
 /// Effective stiffness of a packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moduli {
-    /// Relaxed stiffness of the frozen network.
+    /// How [`Moduli::stiffness`] was found.
+    pub method: Method,
+    /// Relaxed stiffness.
     pub stiffness: Stiffness,
+    /// Standard error of each entry of [`Moduli::stiffness`], Pa, as a measurement of this packing: what the solve or the
+    /// probe left open. How much packings of one kind differ is not in it.
+    pub stddev: Stiffness,
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
+    /// The same where all grains also spin alike: between relaxed and affine.
+    pub mean_spin: Stiffness,
+    /// Lower bound of the bulk modulus under isotropic stress, Pa; `None` without forces.
+    pub reuss_bound: Option<f64>,
     /// Relative residual of the solve, the worst of the six columns.
     pub residual: f64,
     /// Iterations of the solve.

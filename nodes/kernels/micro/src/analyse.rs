@@ -2,6 +2,7 @@
 
 use crate::anisotropy;
 use crate::balance::unbalanced;
+use crate::bounds::reuss_bulk;
 use crate::error::{MicroError, NoNetwork};
 use crate::fabric::fabric;
 use crate::network::Network;
@@ -9,7 +10,7 @@ use crate::probe::{Probe, ProbeResult, probe};
 use crate::rattlers::{contacts_needed, participating};
 use crate::stiffness;
 use grains::stress::{Stress, stress};
-use grains::{Fabric, Moduli, Packing, Vec3};
+use grains::{Fabric, Method, Moduli, Packing, Vec3};
 
 /// How a packing is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +25,22 @@ pub struct Settings {
     pub axis: Vec3,
     /// Whether contacts keep their tangential stiffness ("friction set very high"), or have none (frictionless).
     pub tangential: bool,
+    /// Whether the frozen network has the prestress term: see [`Network::with_prestress`].
+    pub prestress: bool,
     /// With a probe the stiffness is measured by straining the packing, instead of that of the frozen network.
     pub probe: Option<Probe>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, max_iterations: 20_000, axis: Vec3::z(), tangential: true, probe: None }
+        Self {
+            tolerance: 1e-9,
+            max_iterations: 20_000,
+            axis: Vec3::z(),
+            tangential: true,
+            prestress: false,
+            probe: None,
+        }
     }
 }
 
@@ -88,7 +98,9 @@ pub fn analyse(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
 /// Puts the stiffness of the probe in the place of the network's; iterations are then solver steps.
 fn probed(packing: &Packing, settings: &Probe, moduli: &mut Moduli) -> Result<ProbeResult, MicroError> {
     let found = probe(packing, settings)?;
+    moduli.method = Method::Probe;
     moduli.stiffness = found.stiffness;
+    moduli.stddev = found.stddev();
     moduli.residual = found.columns.iter().map(|c| c.residual).fold(0.0, f64::max);
     moduli.iterations = found.rest_steps + found.columns.iter().map(|c| c.steps).sum::<u32>();
     Ok(found)
@@ -106,8 +118,15 @@ fn measured_moduli(
     if present.iter().all(|p| !p) {
         return Ok(Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(packing.friction) }));
     }
-    let network = Network::new(packing, settings.tangential)?;
-    stiffness::moduli(&network, settings.tolerance, settings.max_iterations)
+    let mut network = Network::new(packing, settings.tangential)?;
+    if settings.prestress {
+        network = network.with_prestress(packing);
+    }
+    let mut moduli = stiffness::moduli(&network, settings.tolerance, settings.max_iterations)?;
+    if let Ok(moduli) = &mut moduli {
+        moduli.reuss_bound = reuss_bulk(packing, settings.tangential);
+    }
+    Ok(moduli)
 }
 
 fn checked_axis(settings: &Settings) -> Result<Vec3, MicroError> {

@@ -40,6 +40,8 @@ pub struct Column {
     pub opened: u32,
     /// Contacts that either strain made.
     pub closed: u32,
+    /// Contacts at the Coulomb limit under either strain.
+    pub sliding: u32,
 }
 
 impl Column {
@@ -123,9 +125,11 @@ pub(crate) fn strained(
             column.forward_backward = (settings.sides == Sides::Central)
                 .then(|| difference(&side(&one, 1.0), &side(&other, -1.0)) / largest);
             for engine in relaxation.engines() {
-                let (opened, closed) = changes(&calm.contacts, &contacts(engine));
+                let strained = contacts(engine);
+                let (opened, closed) = changes(&calm.contacts, &strained);
                 column.opened += opened;
                 column.closed += closed;
+                column.sliding += strained.iter().filter(|c| c.slides(settings.friction)).count() as u32;
             }
             return Ok((entries, column));
         }

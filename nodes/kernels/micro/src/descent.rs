@@ -6,8 +6,8 @@ use std::marker::PhantomData;
 
 /// The vectors of the conjugate gradients, one entry a grain, in the order of the sweeps.
 #[derive(Debug)]
-pub(crate) struct Descent<'a, T> {
-    sweeps: &'a Sweeps<T>,
+pub(crate) struct Descent<'a, T, const G: bool> {
+    pub(crate) sweeps: &'a Sweeps<T, G>,
     /// x̂ = (D + L)ᵀ x; in the end x.
     pub(crate) motion: Vec<Rows<T>>,
     /// r̂ = (D + L)⁻¹ r, by recurrence; in the beginning r.
@@ -18,12 +18,22 @@ pub(crate) struct Descent<'a, T> {
     half: Vec<Rows<T>>,
     /// s = p − D t = Lᵀ t, which the forward sweep uses up.
     taken: Vec<Rows<T>>,
+    /// Whether a direction of negative stiffness was met, which only prestress can make.
+    pub(crate) unstable: bool,
 }
 
-impl<'a, T: Real> Descent<'a, T> {
-    pub(crate) fn new(sweeps: &'a Sweeps<T>) -> Self {
+impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
+    pub(crate) fn new(sweeps: &'a Sweeps<T, G>) -> Self {
         let zero = || vec![still(); sweeps.grains()];
-        Self { sweeps, motion: zero(), rest: zero(), step: zero(), half: zero(), taken: zero() }
+        Self {
+            sweeps,
+            motion: zero(),
+            rest: zero(),
+            step: zero(),
+            half: zero(),
+            taken: zero(),
+            unstable: false,
+        }
     }
 
     /// From the residual r that `rest` holds, whose squared norms are `squares`, until that of every column is at most its
@@ -47,6 +57,7 @@ impl<'a, T: Real> Descent<'a, T> {
             let energy = self.back(v, &alpha, &beta);
             alpha = ratios(&rho, &energy);
             for l in 0..WIDTH {
+                self.unstable |= G && far[l] && (energy[l] < 0.0 || rho[l] < 0.0);
                 // A column that is done stands still, so that its last digits cannot blow up while others go on.
                 if !far[l] {
                     alpha[l] = 0.0;
@@ -164,12 +175,12 @@ pub(crate) struct Goal {
 /// A precision that a descent can run in, with the widest vectors that the processor has for it.
 pub(crate) trait Precision: Real {
     /// See [`Descent::descend`]. All processors give the same bits.
-    fn run(descent: &mut Descent<'_, Self>, goal: &Goal) -> u32;
+    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32;
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl Precision for f32 {
-    fn run(descent: &mut Descent<'_, Self>, goal: &Goal) -> u32 {
+    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
         match pulp::x86::V3::try_new() {
             Some(avx2) => avx2.vectorize(x86::Run { descent, goal, lanes: avx2 }),
             None => descent.descend(Plain(PhantomData), goal),
@@ -179,7 +190,7 @@ impl Precision for f32 {
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl Precision for f64 {
-    fn run(descent: &mut Descent<'_, Self>, goal: &Goal) -> u32 {
+    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
         match pulp::x86::V3::try_new() {
             Some(avx2) => avx2.vectorize(x86::Run { descent, goal, lanes: Plain(PhantomData) }),
             None => descent.descend(Plain(PhantomData), goal),
@@ -189,7 +200,7 @@ impl Precision for f64 {
 
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
 impl<T: Real> Precision for T {
-    fn run(descent: &mut Descent<'_, Self>, goal: &Goal) -> u32 {
+    fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32 {
         descent.descend(Plain(PhantomData), goal)
     }
 }
@@ -202,13 +213,13 @@ mod x86 {
 
     /// [`Descent::descend`] with its arguments, to be compiled for an instruction set. No closures in there: those are not
     /// inlined, and then run with the instructions of the oldest processor.
-    pub(super) struct Run<'d, 'a, V: Lanes> {
-        pub(super) descent: &'d mut Descent<'a, V::T>,
+    pub(super) struct Run<'d, 'a, V: Lanes, const G: bool> {
+        pub(super) descent: &'d mut Descent<'a, V::T, G>,
         pub(super) goal: &'d Goal,
         pub(super) lanes: V,
     }
 
-    impl<V: Lanes> NullaryFnOnce for Run<'_, '_, V> {
+    impl<V: Lanes, const G: bool> NullaryFnOnce for Run<'_, '_, V, G> {
         type Output = u32;
 
         #[inline(always)]

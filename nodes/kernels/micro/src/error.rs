@@ -72,6 +72,15 @@ pub enum MicroError {
         /// Iterations done.
         iterations: u32,
     },
+    /// Prestress makes the network a mechanism that gives way.
+    #[error(
+        "the prestressed network has a direction of negative stiffness: the packing is not at rest in a stable state \
+         (relative residual {residual:e}); relax it further, or leave the prestress term out"
+    )]
+    Unstable {
+        /// The worst relative residual of the columns.
+        residual: f64,
+    },
     /// Two evaluations of the same stiffness, by energy and by stress, differ.
     #[error(
         "stiffness by energy and by stress differ by {relative:e} of the largest entry of the affine stiffness (at most \

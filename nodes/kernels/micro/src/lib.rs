@@ -7,16 +7,19 @@
 //! - [`fabric`]: coordination, fabric tensors, ε
 //! - [`anisotropy`]: the three ratios γ/Δ
 //! - [`balance`]: how far the packing is from equilibrium
+//! - [`bounds`]: the stiffness with a mean spin, and a lower bound of the bulk modulus
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
-//! - [`preconditioner`], [`solve`]: block-Jacobi conjugate gradients on the singular operator
+//! - [`solve`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
+//!   own blocks ([`preconditioner`])
 //! - [`stiffness`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
 //! - [`mod@probe`]: the same stiffness by straining the packing with the whole contact law; [`mod@column`] and [`relax`]
-//!   serve it
+//!   serve it; [`mod@scan`]: over which strains it is linear
 //! - [`error`]: what can go wrong, typed
 
 pub mod analyse;
 pub mod anisotropy;
 pub mod balance;
+pub mod bounds;
 pub mod column;
 mod descent;
 pub mod error;
@@ -27,6 +30,7 @@ pub mod preconditioner;
 pub mod probe;
 pub mod rattlers;
 pub mod relax;
+pub mod scan;
 pub mod solve;
 pub mod stiffness;
 mod sweep;

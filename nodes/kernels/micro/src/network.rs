@@ -28,6 +28,8 @@ pub(crate) struct Spring {
     pub(crate) tangential: f64,
     /// k_n − k_t, N/m.
     pub(crate) excess: f64,
+    /// F_n/|l|, N/m, taken off what resists the centres' displacement across the normal; 0 without prestress.
+    pub(crate) geometric: f64,
 }
 
 /// The frozen contact network of a packing: grains, springs, volume.
@@ -39,6 +41,7 @@ pub struct Network {
     rotation_length: f64,
     /// Grains along a space-filling curve.
     order: Vec<u32>,
+    prestressed: bool,
 }
 
 impl Network {
@@ -65,6 +68,7 @@ impl Network {
                 lever: 0.0,
                 tangential: k_t,
                 excess: k_n - k_t,
+                geometric: 0.0,
             });
         }
         let total: f64 = springs.iter().map(|s| s.half_branch).sum();
@@ -74,7 +78,33 @@ impl Network {
         }
         let mut order: Vec<u32> = (0..packing.grains() as u32).collect();
         order.sort_by_cached_key(|g| packing.cell.place_on_curve(&packing.positions[*g as usize]));
-        Ok(Self { springs, grains: packing.grains(), volume: packing.cell.volume(), rotation_length, order })
+        Ok(Self {
+            springs,
+            grains: packing.grains(),
+            volume: packing.cell.volume(),
+            rotation_length,
+            order,
+            prestressed: false,
+        })
+    }
+
+    /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force turns with
+    /// its branch. It is of the order of (2/3) overlap/diameter next to a tangential spring, and decides whether a network
+    /// without such springs is stiff at all near isostaticity. `packing` is the one the network was made of. Terms of the
+    /// order of the pressure that depend on the choice of strain and stress measures are left out.
+    #[must_use]
+    pub fn with_prestress(mut self, packing: &Packing) -> Self {
+        assert_eq!(self.springs.len(), packing.contacts.len(), "the packing of the network");
+        for (s, c) in self.springs.iter_mut().zip(&packing.contacts) {
+            s.geometric = c.normal_force / (2.0 * s.half_branch);
+        }
+        self.prestressed = true;
+        self
+    }
+
+    /// Whether the prestress term is in.
+    pub fn prestressed(&self) -> bool {
+        self.prestressed
     }
 
     /// Number of grains, those without contacts included.
@@ -85,6 +115,11 @@ impl Network {
     /// Number of contacts.
     pub fn contacts(&self) -> usize {
         self.springs.len()
+    }
+
+    /// Volume of the cell, m³.
+    pub fn volume(&self) -> f64 {
+        self.volume
     }
 
     pub(crate) fn springs(&self) -> &[Spring] {
@@ -108,12 +143,15 @@ impl Network {
         y.fill([[0.0; L]; 6]);
         let mut energy = [0.0; L];
         for s in &self.springs {
-            let w = s.relative(&x[s.i as usize], &x[s.j as usize]);
-            let f = s.force(&w);
-            for lane in 0..L {
-                energy[lane] += w[0][lane] * f[0][lane] + w[1][lane] * f[1][lane] + w[2][lane] * f[2][lane];
+            let (a, b) = (&x[s.i as usize], &x[s.j as usize]);
+            let (w, d) = (s.relative(a, b), s.apart(a, b));
+            let (f, h) = (s.force(&w), s.turned(&d));
+            for k in 0..3 {
+                for lane in 0..L {
+                    energy[lane] += w[k][lane] * f[k][lane] + d[k][lane] * h[k][lane];
+                }
             }
-            s.scatter(&f, y);
+            s.scatter(&f, &h, y);
         }
         energy
     }
@@ -126,11 +164,12 @@ impl Network {
         let zero = [[0.0; 6]; 6];
         for s in &self.springs {
             let mut add = |grain: u32, a: &Motion<6>, b: &Motion<6>| {
-                let w = s.relative(a, b);
-                let f = s.force(&w);
+                let (w, d) = (s.relative(a, b), s.apart(a, b));
+                let (f, h) = (s.force(&w), s.turned(&d));
                 for (row, entries) in blocks[grain as usize].iter_mut().enumerate() {
                     for (column, entry) in entries.iter_mut().enumerate() {
-                        *entry += (0..3).map(|k| w[k][row] * f[k][column]).sum::<f64>();
+                        *entry +=
+                            (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum::<f64>();
                     }
                 }
             };
@@ -151,11 +190,12 @@ impl Network {
         let mut loads = vec![[[0.0; 6]; 6]; self.grains];
         let mut squares = [0.0; 6];
         for s in &self.springs {
-            let f = s.force(&s.affine());
+            let affine = s.affine();
+            let (f, h) = (s.force(&affine), s.turned(&affine));
             for lane in 0..6 {
                 squares[lane] += 2.0 * (0..3).map(|k| f[k][lane] * f[k][lane]).sum::<f64>();
             }
-            s.scatter(&f.map(|row| row.map(|v| -v)), &mut loads);
+            s.scatter(&f.map(|row| row.map(|v| -v)), &h.map(|row| row.map(|v| -v)), &mut loads);
         }
         (loads, squares.map(f64::sqrt))
     }
@@ -167,19 +207,23 @@ impl Network {
         let (mut energy, mut stress) = (Matrix6::zeros(), Matrix6::zeros());
         for s in &self.springs {
             let affine = s.affine();
-            let mut w = affine;
+            let (mut w, mut d) = (affine, affine);
             if let Some(x) = motion {
-                let relaxed = s.relative(&x[s.i as usize], &x[s.j as usize]);
-                for (row, extra) in w.iter_mut().zip(&relaxed) {
-                    row.iter_mut().zip(extra).for_each(|(a, b)| *a += b);
+                let (a, b) = (&x[s.i as usize], &x[s.j as usize]);
+                let (relaxed, apart) = (s.relative(a, b), s.apart(a, b));
+                for k in 0..3 {
+                    for lane in 0..6 {
+                        w[k][lane] += relaxed[k][lane];
+                        d[k][lane] += apart[k][lane];
+                    }
                 }
             }
-            let f = s.force(&w);
+            let (f, h) = (s.force(&w), s.turned(&d));
             for k in 0..3 {
                 for a in 0..6 {
                     for b in 0..6 {
-                        energy[(a, b)] += w[k][a] * f[k][b];
-                        stress[(a, b)] += affine[k][a] * f[k][b];
+                        energy[(a, b)] += w[k][a] * f[k][b] + d[k][a] * h[k][b];
+                        stress[(a, b)] += affine[k][a] * (f[k][b] + h[k][b]);
                     }
                 }
             }
@@ -204,9 +248,37 @@ impl Spring {
         w
     }
 
+    /// u_j − u_i, m.
+    #[inline(always)]
+    fn apart<const L: usize>(&self, a: &Motion<L>, b: &Motion<L>) -> [[f64; L]; 3] {
+        let mut d = [[0.0; L]; 3];
+        for k in 0..3 {
+            for l in 0..L {
+                d[k][l] = b[k][l] - a[k][l];
+            }
+        }
+        d
+    }
+
+    /// −(F_n/|l|)(1 − nn) d, N: what the normal force gains by turning with the branch.
+    #[inline(always)]
+    fn turned<const L: usize>(&self, d: &[[f64; L]; 3]) -> [[f64; L]; 3] {
+        let mut h = [[0.0; L]; 3];
+        if self.geometric != 0.0 {
+            let n = self.normal;
+            for l in 0..L {
+                let along = n[0] * d[0][l] + n[1] * d[1][l] + n[2] * d[2][l];
+                for k in 0..3 {
+                    h[k][l] = self.geometric * (along * n[k] - d[k][l]);
+                }
+            }
+        }
+        h
+    }
+
     /// k_c w, N.
     #[inline(always)]
-    fn force<const L: usize>(&self, w: &[[f64; L]; 3]) -> [[f64; L]; 3] {
+    pub(crate) fn force<const L: usize>(&self, w: &[[f64; L]; 3]) -> [[f64; L]; 3] {
         let [nx, ny, nz] = self.normal;
         let mut f = [[0.0; L]; 3];
         for l in 0..L {
@@ -218,9 +290,9 @@ impl Spring {
         f
     }
 
-    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on both.
+    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on both; and `h`, which is without torque.
     #[inline(always)]
-    fn scatter<const L: usize>(&self, f: &[[f64; L]; 3], y: &mut [Motion<L>]) {
+    fn scatter<const L: usize>(&self, f: &[[f64; L]; 3], h: &[[f64; L]; 3], y: &mut [Motion<L>]) {
         let [nx, ny, nz] = self.normal.map(|n| n * self.lever);
         let mut torque = [[0.0; L]; 3];
         for l in 0..L {
@@ -232,23 +304,29 @@ impl Spring {
         let on_i = &mut y[self.i as usize];
         for k in 0..3 {
             for l in 0..L {
-                on_i[k][l] -= f[k][l];
+                on_i[k][l] -= f[k][l] + h[k][l];
                 on_i[3 + k][l] -= torque[k][l];
             }
         }
         let on_j = &mut y[self.j as usize];
         for k in 0..3 {
             for l in 0..L {
-                on_j[k][l] += f[k][l];
+                on_j[k][l] += f[k][l] + h[k][l];
                 on_j[3 + k][l] -= torque[k][l];
             }
         }
     }
 
+    /// l, m.
+    #[inline(always)]
+    pub(crate) fn branch(&self) -> [f64; 3] {
+        self.normal.map(|n| 2.0 * self.half_branch * n)
+    }
+
     /// E·l of the six unit strains in Voigt order with engineering shear, m: rows x, y, z.
     #[inline(always)]
-    fn affine(&self) -> [[f64; 6]; 3] {
-        let [x, y, z] = self.normal.map(|n| 2.0 * self.half_branch * n);
+    pub(crate) fn affine(&self) -> [[f64; 6]; 3] {
+        let [x, y, z] = self.branch();
         [
             [x, 0.0, 0.0, 0.0, 0.5 * z, 0.5 * y],
             [0.0, y, 0.0, 0.5 * z, 0.0, 0.5 * x],

@@ -79,6 +79,22 @@ pub struct ProbeResult {
     pub columns: [Column; 6],
 }
 
+impl ProbeResult {
+    /// Standard error of each entry, Pa: what the relaxation left open, what forward and backward strain say apart, and what
+    /// the two places of an entry do; the worst of the three.
+    pub fn stddev(&self) -> Stiffness {
+        let c = &self.stiffness.0;
+        let mut stddev = nalgebra::Matrix6::zeros();
+        for (b, column) in self.columns.iter().enumerate() {
+            let left = column.residual.max(column.drift).max(0.5 * column.forward_backward.unwrap_or(0.0));
+            for a in 0..6 {
+                stddev[(a, b)] = (left * c.column(b).amax()).max(0.5 * (c[(a, b)] - c[(b, a)]).abs());
+            }
+        }
+        Stiffness(stddev)
+    }
+}
+
 /// Measures the stiffness of `packing` by straining it, all six columns.
 ///
 /// The packing is first relaxed under the friction of the probe, from rest; the strained copies relax side by side, so

@@ -12,7 +12,9 @@ use crate::descent::{Descent, Goal, Precision};
 use crate::error::MicroError;
 use crate::lanes::WIDTH;
 use crate::network::{Motion, Network};
+use crate::preconditioner::Block;
 use crate::sweep::Sweeps;
+use nalgebra::Matrix6;
 
 /// A round reduces the residual by this much at most in single precision (10⁻⁷ relative rounding)…
 const SINGLE: f64 = 3e-6;
@@ -26,6 +28,9 @@ const HELPED: f64 = 0.1;
 /// Iterations of one round in single precision. A network that needs more is so close to a mechanism that rounding would
 /// decide.
 const SINGLE_ROUND: u32 = 500;
+
+/// Negative eigenvalues of a block up to this share of its largest are rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Motions that balance the loads.
 #[derive(Clone, Debug)]
@@ -49,8 +54,10 @@ pub fn solve<const L: usize>(
 ) -> Result<Solution<L>, MicroError> {
     const { assert!(L <= WIDTH) }
     let mut refinement = Refinement::new(load, scale, tolerance, max_iterations);
-    if !refinement.rounds(network, &Sweeps::<f32>::new(network), SINGLE, SINGLE_ROUND) {
-        refinement.rounds(network, &Sweeps::<f64>::new(network), DOUBLE, u32::MAX);
+    if network.prestressed() {
+        refinement.solve::<true>(network)?;
+    } else {
+        refinement.solve::<false>(network)?;
     }
     let Refinement { motion, residual, iterations, .. } = refinement;
     if residual <= tolerance {
@@ -111,13 +118,35 @@ impl<'a, const L: usize> Refinement<'a, L> {
             (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
     }
 
+    /// In single precision, and in double if that is not enough. `G`: with the prestress term.
+    fn solve<const G: bool>(&mut self, network: &Network) -> Result<(), MicroError> {
+        if G && network.diagonal_blocks().iter().any(gives_way) {
+            return Err(MicroError::Unstable { residual: self.residual });
+        }
+        let single = Sweeps::<f32, G>::new(network);
+        if !self.rounds(network, &mut Descent::new(&single), SINGLE, SINGLE_ROUND) {
+            let double = Sweeps::<f64, G>::new(network);
+            let mut descent = Descent::new(&double);
+            self.rounds(network, &mut descent, DOUBLE, u32::MAX);
+            if descent.unstable && !(self.residual <= self.tolerance) {
+                return Err(MicroError::Unstable { residual: self.residual });
+            }
+        }
+        Ok(())
+    }
+
     /// Rounds of conjugate gradients, each reducing the residual by `reach` at most in at most `most` iterations, as long
     /// as they help. True if nothing more is to be done.
-    fn rounds<T: Precision>(&mut self, network: &Network, sweeps: &Sweeps<T>, reach: f64, most: u32) -> bool {
-        let mut descent = Descent::new(sweeps);
+    fn rounds<T: Precision, const G: bool>(
+        &mut self,
+        network: &Network,
+        descent: &mut Descent<T, G>,
+        reach: f64,
+        most: u32,
+    ) -> bool {
         while self.residual > self.tolerance && self.iterations < self.max_iterations {
             let before = self.residual;
-            self.round(&mut descent, sweeps, reach, most);
+            self.round(descent, reach, most);
             network.apply(&self.motion, &mut self.image);
             self.look();
             // A NaN does not help either.
@@ -128,7 +157,8 @@ impl<'a, const L: usize> Refinement<'a, L> {
         true
     }
 
-    fn round<T: Precision>(&mut self, descent: &mut Descent<T>, sweeps: &Sweeps<T>, reach: f64, most: u32) {
+    fn round<T: Precision, const G: bool>(&mut self, descent: &mut Descent<T, G>, reach: f64, most: u32) {
+        let sweeps = descent.sweeps;
         // Rounding leaves more than the recurrence says: half the tolerance leaves it room. The rounds that are still to be
         // done share what is left evenly.
         let whole = 0.5 * self.tolerance / self.residual;
@@ -163,4 +193,10 @@ impl<'a, const L: usize> Refinement<'a, L> {
             }
         }
     }
+}
+
+/// Whether a grain that moves alone, with this block, meets less than no resistance.
+fn gives_way(block: &Block) -> bool {
+    let eigenvalues = Matrix6::from_fn(|i, j| block[i][j]).symmetric_eigenvalues();
+    eigenvalues.min() < -ROUNDING * eigenvalues.max()
 }

@@ -22,9 +22,10 @@ pub(crate) const fn still<T: Real>() -> Rows<T> {
 /// [`Rows`] in registers.
 type Six<V> = [<V as Lanes>::Row; 6];
 
-/// The halves of one network, grains in an order that follows space, stiffnesses in units of [`Sweeps::unit`].
+/// The halves of one network, grains in an order that follows space, stiffnesses in units of [`Sweeps::unit`]. `G`:
+/// with the prestress term.
 #[derive(Clone, Debug)]
-pub(crate) struct Sweeps<T> {
+pub(crate) struct Sweeps<T, const G: bool> {
     /// Between different grains, the earlier one first, sorted by both; contacts with own images are in D alone.
     springs: Vec<Half<T>>,
     /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
@@ -50,9 +51,10 @@ struct Half<T> {
     against: [T; 3],
     tangential: T,
     excess: T,
+    geometric: T,
 }
 
-impl<T: Real> Sweeps<T> {
+impl<T: Real, const G: bool> Sweeps<T, G> {
     pub(crate) fn new(network: &Network) -> Self {
         let order = network.order().to_vec();
         let mut place = vec![0u32; order.len()];
@@ -113,7 +115,7 @@ impl<T: Real> Sweeps<T> {
         let u = product(v, &self.inverse[g], &load(v, &y[g]));
         for s in self.later(g) {
             let y = &mut y[s.later as usize];
-            let rest = s.push(v, &u, load(v, y));
+            let rest = s.push::<V, G>(v, &u, load(v, y));
             store(v, &rest, y);
         }
         u
@@ -167,7 +169,7 @@ impl<T: Real> Sweeps<T> {
             }
             for s in self.later(g) {
                 let y = &mut scratch[s.later as usize];
-                let sum = s.push(v, &opposite, load(v, y));
+                let sum = s.push::<V, G>(v, &opposite, load(v, y));
                 store(v, &sum, y);
             }
             let y = load(v, &scratch[g]);
@@ -180,7 +182,7 @@ impl<T: Real> Sweeps<T> {
     #[inline(always)]
     fn left_by_later<V: Lanes<T = T>>(&self, v: V, g: usize, mut rest: Six<V>, motion: &[Rows<T>]) -> Six<V> {
         for s in self.later(g) {
-            rest = s.pull(v, &load(v, &motion[s.later as usize]), rest);
+            rest = s.pull::<V, G>(v, &load(v, &motion[s.later as usize]), rest);
         }
         rest
     }
@@ -203,25 +205,26 @@ impl<T: Real> Half<T> {
             against: s.normal.map(|n| T::of(-side * n * s.lever)),
             tangential: T::of(s.tangential / unit),
             excess: T::of(s.excess / unit),
+            geometric: T::of(s.geometric / unit),
         };
         (i.min(j), half)
     }
 
     /// `rest` of the later grain less what the motion `a` of the earlier one does to it.
     #[inline(always)]
-    fn push<V: Lanes<T = T>>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off(v, a, &self.arm, &self.against, rest)
+    fn push<V: Lanes<T = T>, const G: bool>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
+        self.taken_off::<V, G>(v, a, &self.arm, &self.against, rest)
     }
 
     /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arm on the
     /// other side.
     #[inline(always)]
-    fn pull<V: Lanes<T = T>>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off(v, b, &self.against, &self.arm, rest)
+    fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
+        self.taken_off::<V, G>(v, b, &self.against, &self.arm, rest)
     }
 
     #[inline(always)]
-    fn taken_off<V: Lanes<T = T>>(
+    fn taken_off<V: Lanes<T = T>, const G: bool>(
         &self,
         v: V,
         a: &Six<V>,
@@ -248,6 +251,14 @@ impl<T: Real> Half<T> {
         rest[3] = v.mul_add(oy, fz, v.mul_add(mz, fy, rest[3]));
         rest[4] = v.mul_add(oz, fx, v.mul_add(mx, fz, rest[4]));
         rest[5] = v.mul_add(ox, fy, v.mul_add(my, fx, rest[5]));
+        if G {
+            // −g (1 − nn) u.
+            let (gain, loss) = (v.splat(self.geometric), v.splat(T::of(-1.0).times(self.geometric)));
+            let along = v.mul(gain, v.mul_add(nz, a[2], v.mul_add(ny, a[1], v.mul(nx, a[0]))));
+            rest[0] = v.mul_add(loss, a[0], v.mul_add(along, nx, rest[0]));
+            rest[1] = v.mul_add(loss, a[1], v.mul_add(along, ny, rest[1]));
+            rest[2] = v.mul_add(loss, a[2], v.mul_add(along, nz, rest[2]));
+        }
         rest
     }
 }

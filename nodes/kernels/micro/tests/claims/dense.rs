@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Matrix6};
 
 /// C = A − ΞᵀK⁺Ξ/V by brute force: B_c as a 3×6N matrix with cross-product matrices, K⁺ from all eigenvalues, rotations
 /// in radians times the first radius.
-fn dense_stiffness(p: &Packing, tangential: bool) -> Matrix6<f64> {
+pub(crate) fn dense_stiffness(p: &Packing, tangential: bool) -> Matrix6<f64> {
     let dof = 6 * p.grains();
     let length = p.radii[0];
     let (mut k, mut xi) = (DMatrix::zeros(dof, dof), DMatrix::zeros(dof, 6));

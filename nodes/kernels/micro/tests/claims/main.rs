@@ -1,7 +1,9 @@
 //! What this kernel claims, each claim a test.
 
+mod bounds;
 mod dense;
 mod golden;
+mod hard;
 mod invariance;
 mod lattices;
 mod probe;

@@ -60,6 +60,39 @@ fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged
     assert!(small.columns[1].forward_backward.unwrap() < 3e-4);
 }
 
+/// Where Hertz's law bends the response by less than the agreement asked for, from where rounding of stresses shows to where
+/// contacts open in numbers.
+#[test]
+fn a_scan_of_amplitudes_finds_the_linear_regime() {
+    let packing = reference();
+    let amplitudes = [1e-5, 1e-7, 1e-8, 1e-6, 1e-7];
+    let scan = micro::scan::scan(&packing, &Probe::default(), &amplitudes, 2e-3).unwrap();
+    let seen: Vec<f64> = scan.probes.iter().map(|(a, _)| *a).collect();
+    assert_eq!(seen, [1e-8, 1e-7, 1e-6, 1e-5]);
+    assert_eq!(scan.linear, Some(0..=2));
+    // The error that a probe states covers its distance from the plateau's middle.
+    let plateau = scan.probes[1].1.as_ref().unwrap().stiffness.0;
+    for (amplitude, found) in &scan.probes {
+        let found = found.as_ref().unwrap();
+        let off = (found.stiffness.0 - plateau).amax();
+        assert!(off <= 2.0 * found.stddev().0.amax() + 1e-5 * plateau.amax(), "{amplitude:e}: {off:e}");
+    }
+    let refused = micro::scan::scan(&packing, &Probe::default(), &[1e-7, 0.5], 2e-3).unwrap_err();
+    assert!(matches!(refused, ProbeError::Setting { name: "amplitude", .. }), "{refused}");
+}
+
+/// With the friction it was made by the packing slides where it is strained; stuck, nowhere.
+#[test]
+fn contacts_that_slide_under_the_strain_are_counted() {
+    let packing = reference();
+    let sliding = |friction| {
+        let settings = Probe { friction, amplitude: 1e-6, tolerance: 1e-3, ..Probe::default() };
+        probe(&packing, &settings).unwrap().columns[1].sliding
+    };
+    assert!(sliding(packing.friction) > 0);
+    assert_eq!(sliding(f64::INFINITY), 0);
+}
+
 #[test]
 fn forward_probe_at_1e_6_is_that_of_lammps() {
     let settings = Probe { amplitude: 1e-6, sides: Sides::Forward, ..Probe::default() };

@@ -1,5 +1,6 @@
 //! Packings to measure.
 
+use grains::material::effective_radius;
 use grains::packing::Contact;
 use grains::{Cell, Mat3, Material, Packing, Vec3};
 
@@ -12,6 +13,18 @@ pub(crate) fn packing(
     friction: f64,
     uniform: Option<f64>,
 ) -> Packing {
+    let radii = vec![radius; positions.len()];
+    packing_of_sizes(cell, positions, radii, friction, uniform)
+}
+
+/// The same with spheres of these radii.
+pub(crate) fn packing_of_sizes(
+    cell: Cell,
+    positions: Vec<Vec3>,
+    radii: Vec<f64>,
+    friction: f64,
+    uniform: Option<f64>,
+) -> Packing {
     let n = positions.len();
     let mut packing = Packing {
         step: 7,
@@ -19,7 +32,7 @@ pub(crate) fn packing(
         cell,
         deformation: Mat3::identity(),
         ids: (1..=n as u32).collect(),
-        radii: vec![radius; n],
+        radii,
         positions,
         velocities: vec![Vec3::zeros(); n],
         spins: vec![Vec3::zeros(); n],
@@ -37,7 +50,7 @@ pub(crate) fn packing(
                     continue;
                 }
                 let l = packing.positions[j] - packing.positions[i] + packing.cell.shift(image);
-                let overlap = 2.0 * radius - l.norm();
+                let overlap = packing.radii[i] + packing.radii[j] - l.norm();
                 if overlap > 0.0 {
                     let overlap = uniform.unwrap_or(overlap);
                     packing.contacts.push(Contact {
@@ -46,7 +59,8 @@ pub(crate) fn packing(
                         image,
                         overlap,
                         normal: l.normalize(),
-                        normal_force: Material::GLASS.normal_force(radius / 2.0, overlap),
+                        normal_force: Material::GLASS
+                            .normal_force(effective_radius(packing.radii[i], packing.radii[j]), overlap),
                         tangential_force: Vec3::zeros(),
                     });
                 }
@@ -86,6 +100,18 @@ pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
         }
     }
     packing(cell, positions, 0.5 * swell * diameter, 0.1, None)
+}
+
+/// The packing without its weakest contacts, so that grains have `coordination` of them on average.
+pub(crate) fn thinned(p: &Packing, coordination: f64) -> Packing {
+    let mut out = p.clone();
+    let kept = (0.5 * coordination * p.grains() as f64).round() as usize;
+    assert!(kept < p.contacts.len(), "nothing to take away");
+    let mut overlaps: Vec<f64> = p.contacts.iter().map(|c| c.overlap).collect();
+    overlaps.sort_by(f64::total_cmp);
+    let least = overlaps[overlaps.len() - kept];
+    out.contacts.retain(|c| c.overlap >= least);
+    out.validated().expect("fewer contacts are a packing, too")
 }
 
 /// `copies` of the packing side by side along edge vector 0.
