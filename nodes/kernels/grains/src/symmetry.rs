@@ -94,7 +94,11 @@ pub fn symmetry(stiffness: &Stiffness, tolerance: f64) -> Option<Symmetry> {
     let class = if isotropic <= tolerance {
         SymmetryClass::Isotropic
     } else if cubic.residual.min(axial.residual) <= tolerance {
-        if cubic.residual < axial.residual { SymmetryClass::Cubic } else { SymmetryClass::TransverselyIsotropic }
+        if cubic.residual < axial.residual {
+            SymmetryClass::Cubic
+        } else {
+            SymmetryClass::TransverselyIsotropic
+        }
     } else if orthotropic.residual <= tolerance {
         SymmetryClass::Orthotropic
     } else {

@@ -69,7 +69,9 @@ fn a_transversely_isotropic_stiffness_of_any_axis_gives_back_its_moduli_and_its_
         let expected = r * Vec3::z();
         assert!(s.axis.cross(&expected).norm() < 1e-10 && s.axis.z >= 0.0);
         let (a, b) = (s.moduli, moduli);
-        for (x, y) in [(a.c11, b.c11), (a.c12, b.c12), (a.c13, b.c13), (a.c33, b.c33), (a.g12, b.g12), (a.g13, b.g13)] {
+        for (x, y) in
+            [(a.c11, b.c11), (a.c12, b.c12), (a.c13, b.c13), (a.c33, b.c33), (a.g12, b.g12), (a.g13, b.g13)]
+        {
             assert!((x - y).abs() < 1e-8, "{x} {y}");
         }
     }

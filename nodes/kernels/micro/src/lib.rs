@@ -5,6 +5,14 @@
 //! - [`mod@analyse`]: everything that is measured on one packing
 //! - [`rattlers`]: who carries force
 //! - [`fabric`]: coordination, fabric tensors, ε
+//! - [`mod@structure`]: the rest of the structure, put together from
+//!   - [`axis`]: how far the principal axis of the fabric can be trusted
+//!   - [`orientation`]: contacts and overlaps by orientation, A(d) fitted
+//!   - [`mod@fourth_order`]: ⟨nnnn⟩
+//!   - [`mod@stress_parts`]: stress by kind of force and by network
+//!   - [`mod@stress_force_fabric`]: anisotropies of contacts and forces, and the stress they make
+//!   - [`mod@forces`]: distribution of forces, mobilised friction
+//!   - [`deviator`]: traceless tensors as five numbers
 //! - [`anisotropy`]: the three ratios γ/Δ
 //! - [`balance`]: how far the packing is from equilibrium
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
@@ -16,17 +24,25 @@
 
 pub mod analyse;
 pub mod anisotropy;
+pub mod axis;
 pub mod balance;
 pub mod column;
+pub mod deviator;
 pub mod error;
 pub mod fabric;
+pub mod forces;
+pub mod fourth_order;
 pub mod network;
+pub mod orientation;
 pub mod preconditioner;
 pub mod probe;
 pub mod rattlers;
 pub mod relax;
 pub mod solve;
 pub mod stiffness;
+pub mod stress_force_fabric;
+pub mod stress_parts;
+pub mod structure;
 
 pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};

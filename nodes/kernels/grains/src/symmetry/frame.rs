@@ -61,9 +61,8 @@ fn candidates(c: &Matrix6<f64>, search: Search) -> Vec<Rotation3<f64>> {
         let orders = if search == Search::Axes { 3 } else { 1 };
         for last in 0..orders {
             let (a, b) = (axes.column((last + 1) % 3).into_owned(), axes.column((last + 2) % 3).into_owned());
-            frames.push(Rotation3::from_matrix_unchecked(
-                Mat3::from_columns(&[a, b, a.cross(&b)]).transpose(),
-            ));
+            frames
+                .push(Rotation3::from_matrix_unchecked(Mat3::from_columns(&[a, b, a.cross(&b)]).transpose()));
         }
     }
     for k in 0..SPREAD {
@@ -71,7 +70,8 @@ fn candidates(c: &Matrix6<f64>, search: Search) -> Vec<Rotation3<f64>> {
         let at = |irrational: f64| ((k as f64 + 0.5) * irrational).fract();
         frames.push(match search {
             Search::Frames => {
-                let (u, v, w) = (at(0.819_172_513_396_164_4), at(0.671_043_606_703_789_2), at(0.549_700_477_901_970_6));
+                let (u, v, w) =
+                    (at(0.819_172_513_396_164_4), at(0.671_043_606_703_789_2), at(0.549_700_477_901_970_6));
                 let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
                 let (v, w) = (TAU * v, TAU * w);
                 let q = Quaternion::new(b * w.cos(), a * v.sin(), a * v.cos(), b * w.sin());

@@ -1,6 +1,8 @@
 //! What this kernel claims, each claim a test.
 
 mod dense;
+mod directions;
+mod forces;
 mod golden;
 mod invariance;
 mod lattices;
