@@ -43,6 +43,7 @@ pub mod stiffness;
 pub mod stress_force_fabric;
 pub mod stress_parts;
 pub mod structure;
+pub mod symmetry;
 
 pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};
