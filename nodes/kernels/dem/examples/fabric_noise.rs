@@ -59,7 +59,10 @@ fn report(found: &[Analysis]) {
     let fit = |a: &Analysis| a.fabric.structure.orientation.contact_fit.unwrap_or_default();
     println!("{} packings, {:.0} contacts", found.len(), mean(&|a| f64::from(a.fabric.contacts)));
     println!("eps mean {:.4}", mean(&|a| a.fabric.eps));
-    println!("  scatter of the five components, as eps: {:.4?}", five.iter().map(|s| s * factor).collect::<Vec<_>>());
+    println!(
+        "  scatter of the five components, as eps: {:.4?}",
+        five.iter().map(|s| s * factor).collect::<Vec<_>>()
+    );
     println!(
         "  claimed {claimed:.4} over found {pooled:.4}: {:.2} ± {:.2}; a claim is good to {:.0} %; independent contacts {:.2}",
         claimed / pooled,
@@ -86,10 +89,8 @@ fn report(found: &[Analysis]) {
         mean(&|a| overlaps(a).g_stddev.unwrap_or(f64::NAN)),
     );
     let root = |a: &Analysis| f64::from(a.fabric.grains).sqrt();
-    let stiffness: Vec<(&Analysis, grains::Symmetry)> = found
-        .iter()
-        .filter_map(|a| Some((a, symmetry(&a.moduli.as_ref().ok()?.stiffness, 0.0)?)))
-        .collect();
+    let stiffness: Vec<(&Analysis, grains::Symmetry)> =
+        found.iter().filter_map(|a| Some((a, symmetry(&a.moduli.as_ref().ok()?.stiffness, 0.0)?))).collect();
     println!("residuals of the stiffness times the root of the grains, quartiles and largest");
     for (name, of) in [
         ("isotropic", (|s| s.isotropic) as fn(&grains::Symmetry) -> f64),

@@ -181,3 +181,34 @@ fn action(map: impl Fn(Mat3) -> Mat3) -> Matrix6<f64> {
     }
     matrix
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stiffness::Stiffness;
+
+    #[test]
+    fn contracted_tensors_are_those_of_all_81_components() {
+        let a = Matrix6::from_fn(|i, j| ((5 * i + 3 * j + i * i * j) as f64).cos());
+        let c = Stiffness(a + a.transpose());
+        let voigt_index = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
+        let full = |i: usize, j: usize, k: usize, l: usize| c.0[(voigt_index[i][j], voigt_index[k][l])];
+        let sum = |of: &dyn Fn(usize) -> f64| (0..3).map(of).sum::<f64>();
+        let expected = Mat3::from_fn(|i, j| sum(&|k| full(i, j, k, k)));
+        assert!((dilatational(&c.mandel()) - expected).amax() < 1e-14);
+        let expected = Mat3::from_fn(|i, j| sum(&|k| full(i, k, j, k)));
+        assert!((voigt(&c.mandel()) - expected).amax() < 1e-14);
+    }
+
+    #[test]
+    fn a_turned_matrix_is_the_turned_stiffness_and_a_spin_its_derivative() {
+        let a = Matrix6::from_fn(|i, j| ((5 * i + 3 * j + i * i * j) as f64).cos());
+        let c = Stiffness(a + a.transpose());
+        let r = Rotation3::from_euler_angles(0.4, -1.2, 0.7);
+        assert!((turned(&c.mandel(), &r) - c.rotated(r.matrix()).mandel()).amax() < 1e-13);
+        let (h, m) = (1e-6, c.mandel());
+        let step = |h: f64| turned(&m, &Rotation3::new(Vec3::y() * h));
+        let g = spin(&Vec3::y());
+        assert!(((step(h) - step(-h)) / (2.0 * h) - (g * m - m * g)).amax() < 1e-8);
+    }
+}

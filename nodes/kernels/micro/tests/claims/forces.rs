@@ -186,11 +186,12 @@ fn mobilised_friction_is_shared_out_in_tenths_and_has_no_meaning_without_a_limit
         tangential_force: Vec3::x() * t,
         ..Pair::along(Vec3::z())
     };
-    // μ = 0.5: 0, 0.44, 1, more than 1, and a contact without a normal force.
-    let mut p = pairs(&[of(2.0, 0.0), of(2.0, 0.44), of(2.0, 1.0), of(2.0, 1.5), of(0.0, 0.1)], 1);
+    // μ = 0.5: 0, 0.44, 1, more than 1, and contacts without a normal force or with one that pulls.
+    let forces = [(2.0, 0.0), (2.0, 0.44), (2.0, 1.0), (2.0, 1.5), (0.0, 0.1), (-4.0, 0.1)];
+    let mut p = pairs(&forces.map(|(n, t)| of(n, t)), 1);
     let m = structure(&p).mobilisation.unwrap();
-    assert_eq!(m.contacts, [1, 0, 0, 0, 1, 0, 0, 0, 0, 3]);
-    assert!((m.mean - 3.44 / 5.0).abs() < 1e-15);
+    assert_eq!(m.contacts, [1, 0, 0, 0, 1, 0, 0, 0, 0, 4]);
+    assert!((m.mean - 4.44 / 6.0).abs() < 1e-15);
     for friction in [0.0, f64::INFINITY] {
         p.friction = friction;
         assert_eq!((structure(&p).mobilisation, fabric(&p, &Vec3::z()).mobilised), (None, 0.0));
