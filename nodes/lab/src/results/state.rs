@@ -1,6 +1,7 @@
 //! One measured packing, with the stable keys of `grainlab analyze`.
 
 use super::structure::StructureView;
+use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
 use super::symmetry::SymmetryView;
 use crate::output::{Table, exact};
 use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor};
@@ -154,100 +155,77 @@ pub(crate) fn csv(states: &[State]) -> String {
     t.csv()
 }
 
-const STRUCTURE: [&str; 29] = [
-    "axis_eps",
-    "axis_eps_stddev",
-    "axis_angle_stddev_rad",
-    "axis_determined",
-    "fourth_order_magnitude",
-    "p4",
-    "orientation_eps",
-    "orientation_eps_stddev",
-    "orientation_chi2_per_dof",
-    "g_contact_stddev",
-    "a_contacts",
-    "a_normal_forces",
-    "a_branches",
-    "a_tangential_forces",
-    "q_over_p",
-    "predicted_q_over_p",
-    "strong_contacts",
-    "strong_eps",
-    "weak_eps",
-    "strong_share_of_pressure",
-    "strong_share_of_deviator",
-    "mean_normal_force_n",
-    "mean_tangential_force_n",
-    "force_moment_2",
-    "force_moment_3",
-    "force_moment_4",
-    "participation",
-    "mobilised_mean",
-    "mobilised_share_at_limit",
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grains::{Cell, Contact, Mat3, Material, Vec3};
 
-fn structure_cells(s: &StructureView) -> [String; 29] {
-    let (o, a, forces) = (&s.orientation, s.stress_force_fabric.as_ref(), s.forces.as_ref());
-    let along = a.map(|a| a.along_axis);
-    let number = |v: f64| exact(Some(v));
-    [
-        number(s.axis.eps),
-        exact(s.axis.eps_stddev),
-        exact(s.axis.angle_stddev_rad),
-        s.axis.determined.to_string(),
-        number(s.fabrics.fourth_order_magnitude),
-        number(s.fabrics.p4),
-        exact(o.eps),
-        exact(o.eps_stddev),
-        exact(o.chi2_per_dof),
-        exact(o.g_stddev),
-        exact(along.map(|a| a.contacts)),
-        exact(along.map(|a| a.normal_forces)),
-        exact(along.map(|a| a.branches)),
-        exact(along.map(|a| a.tangential_forces)),
-        exact(a.and_then(|a| a.q_over_p)),
-        exact(a.map(|a| a.predicted_q_over_p)),
-        s.strong.contacts.to_string(),
-        number(s.strong.eps),
-        number(s.weak.eps),
-        exact(s.strong.share_of_pressure),
-        exact(s.strong.share_of_deviator),
-        exact(forces.map(|f| f.mean_normal_n)),
-        exact(forces.map(|f| f.mean_tangential_n)),
-        exact(forces.map(|f| f.moments[0])),
-        exact(forces.map(|f| f.moments[1])),
-        exact(forces.map(|f| f.moments[2])),
-        exact(forces.map(|f| f.participation)),
-        exact(s.friction.as_ref().map(|f| f.mean)),
-        exact(s.friction.as_ref().map(|f| f.share_at_limit)),
-    ]
-}
+    /// One grain touching its own images along the three edges, or none.
+    fn lattice(touching: bool) -> Packing {
+        let contact = |axis: usize| {
+            let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+            (image[axis], normal[axis]) = (1, 1.0);
+            let tangential_force = Vec3::zeros();
+            Contact { i: 0, j: 0, image, overlap: 1e-8, normal, normal_force: 1e-3, tangential_force }
+        };
+        Packing {
+            step: 12,
+            time: 0.5,
+            cell: Cell::cube(2e-4 - 1e-8).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![0],
+            radii: vec![1e-4],
+            positions: vec![Vec3::zeros()],
+            velocities: vec![Vec3::zeros()],
+            spins: vec![Vec3::zeros()],
+            contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
+            material: Material::GLASS,
+            friction: 0.3,
+            time_step: 0.0,
+        }
+    }
 
-const SYMMETRY: [&str; 9] = [
-    "symmetry",
-    "symmetry_tolerance",
-    "symmetry_axis_x",
-    "symmetry_axis_y",
-    "symmetry_axis_z",
-    "residual_isotropic",
-    "residual_cubic",
-    "residual_transversely_isotropic",
-    "residual_orthotropic",
-];
+    fn state(packing: &Packing) -> State {
+        let a = micro::analyse(packing, &micro::Settings::default()).unwrap();
+        State::new("lattice".into(), packing, &a.fabric, a.moduli.as_ref().ok())
+    }
 
-fn symmetry_cells(s: Option<&SymmetryView>) -> [String; 9] {
-    let Some(s) = s else { return std::array::from_fn(|_| String::new()) };
-    let (number, r) = (|v: f64| exact(Some(v)), &s.residuals);
-    let [x, y, z] = s.axis.map(number);
-    [
-        s.class.to_owned(),
-        number(s.tolerance),
-        x,
-        y,
-        z,
-        number(r.isotropic),
-        number(r.cubic),
-        number(r.transversely_isotropic),
-        number(r.orthotropic),
-    ]
+    #[test]
+    fn a_lattice_says_its_structure_and_its_symmetry() {
+        let s = serde_json::to_value(state(&lattice(true))).unwrap();
+        assert_eq!(s["symmetry"]["class"], "cubic");
+        assert_eq!(
+            s["structure"]["orientation"]["contacts"],
+            serde_json::json!([2, 0, 0, 0, 0, 0, 0, 0, 0, 1])
+        );
+        assert_eq!(s["structure"]["orientation"]["overlap_m"][9], 1e-8);
+        assert!(s["structure"]["orientation"]["overlap_m"][4].is_null());
+        assert_eq!(s["structure"]["weak"]["share_of_pressure"], 1.0);
+        assert!(s["structure"]["weak"]["share_of_deviator"].is_null());
+        assert_eq!(s["structure"]["friction"]["contacts"][0], 3);
+        assert!(s["structure"]["axis"]["eps_stddev"].is_null());
+    }
+
+    #[test]
+    fn what_a_gas_has_not_is_null() {
+        let s = serde_json::to_value(state(&lattice(false))).unwrap();
+        assert!(s["symmetry"].is_null() && s["stiffness_pa"].is_null());
+        for key in ["stress_force_fabric", "forces", "friction"] {
+            assert!(s["structure"][key].is_null(), "{key}");
+        }
+        assert!(s["structure"]["orientation"]["eps"].is_null());
+    }
+
+    /// The columns that were there first stay first, and every row is as long as the header.
+    #[test]
+    fn new_columns_are_appended() {
+        let table = csv(&[state(&lattice(true)), state(&lattice(false))]);
+        let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+        assert_eq!(rows[0][..5], ["source", "step", "grains", "phi", "pressure_pa"]);
+        assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");
+        let at = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
+        assert!(at("axis_eps") > at("affine_c66_pa") && at("symmetry") > at("axis_eps"));
+        assert_eq!((rows[1][at("symmetry")], rows[2][at("symmetry")]), ("cubic", ""));
+        assert!(!table.contains("NaN"));
+    }
 }

@@ -58,7 +58,7 @@ fn structure(s: &StructureView) -> String {
         );
     } else if s.axis.eps_stddev.is_some() {
         text += &format!(
-            "  axis undetermined: eps {:.4}{noise} about the most likely, {}\n",
+            "  axis undetermined; eps {:.4}{noise} about the likeliest, {}\n",
             s.axis.eps,
             direction(&s.axis.found)
         );
@@ -89,15 +89,15 @@ fn structure(s: &StructureView) -> String {
     text
 }
 
+/// The class, and how far the stiffness is from the two that matter most.
 fn stiffness(s: &SymmetryView) -> String {
-    let r = &s.residuals;
     let percent = |v: f64| 100.0 * v;
     format!(
-        "  stiffness {} within {:.1} %; isotropic but for {:.1} %, transversely but for {:.1} % about {}\n",
+        "  stiffness {} within its noise of {:.1} %: residual {:.1} % if isotropic, {:.1} % if transversely about {}\n",
         s.class,
         percent(s.tolerance),
-        percent(r.isotropic),
-        percent(r.transversely_isotropic),
+        percent(s.residuals.isotropic),
+        percent(s.residuals.transversely_isotropic),
         direction(&s.axis)
     )
 }
