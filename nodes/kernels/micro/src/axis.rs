@@ -25,8 +25,9 @@ const SIGNIFICANT: f64 = 5.0 * 3.57;
 /// Standard deviation of one component of the deviator of L (in an orthonormal basis, [`crate::deviator`]) among packings
 /// prepared alike under the same stress. `None` with fewer than 30 contacts.
 ///
-/// Found over true: .94 ± .04 for 60 frictional packings of 500 grains, 1.0 ± .05 for 60 frictionless ones, each estimate
-/// good to 13 %; independent contacts would say 1.8 and 2.2. `cargo run --release -p dem --example fabric_noise` repeats it.
+/// Claimed over found, for packings of 500 grains and 60 seeds: .94 ± .04 (isotropic, μ = .1), .91 ± .04 (the scene `demo`),
+/// FRIC0 (isotropic, frictionless); a single claim is good to 13 %. Independent contacts would claim 1.8, 1.8 and INDEP.
+/// `cargo run --release -p dem --example fabric_noise` repeats it.
 pub fn fabric_noise(packing: &Packing, contact_fabric: &SymTensor) -> Option<f64> {
     if packing.contacts.len() < FEWEST_CONTACTS {
         return None;

@@ -5,14 +5,15 @@
 //! - [`mod@analyse`]: everything that is measured on one packing
 //! - [`rattlers`]: who carries force
 //! - [`fabric`]: coordination, fabric tensors, ε
-//! - [`mod@structure`]: the rest of the structure, put together from
-//!   - [`axis`]: how far the principal axis of the fabric can be trusted
-//!   - [`orientation`]: contacts and overlaps by orientation, A(d) fitted
-//!   - [`mod@fourth_order`]: ⟨nnnn⟩
-//!   - [`mod@stress_parts`]: stress by kind of force and by network
-//!   - [`mod@stress_force_fabric`]: anisotropies of contacts and forces, and the stress they make
-//!   - [`mod@forces`]: distribution of forces, mobilised friction
-//!   - [`deviator`]: traceless tensors as five numbers
+//! - [`mod@structure`]: the rest of the structure, put together from the following
+//! - [`axis`]: how far the principal axis of the fabric can be trusted
+//! - [`mod@orientation`]: contacts and overlaps by orientation, A(d) fitted
+//! - [`fourth_order`]: ⟨n n n n⟩
+//! - [`mod@stress_parts`]: stress by kind of force and by network
+//! - [`mod@stress_force_fabric`]: anisotropies of contacts and forces, and the stress they make
+//! - [`mod@forces`]: distribution of forces, mobilised friction
+//! - [`deviator`]: traceless tensors as five numbers
+//! - [`symmetry`]: how much of a stiffness is the accident of one packing
 //! - [`anisotropy`]: the three ratios γ/Δ
 //! - [`balance`]: how far the packing is from equilibrium
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
