@@ -2,7 +2,7 @@
 //!
 //! A stiffness is compared with the nearest one of each class, in the frame in which that is nearest: the residual of a
 //! class is |C − P C|/|C| with P the projection on the class and |·| the norm of the tensor (Mandel norm). Frames are
-//! sought, not assumed: [`frame`] does that.
+//! sought, not assumed.
 
 mod frame;
 mod projection;
