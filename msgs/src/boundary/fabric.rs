@@ -2,11 +2,12 @@
 
 use super::BoundaryError;
 use super::check::{Check, ratios, tensor_message, vector_message};
+use super::structure::{structure, structure_message};
 use crate::msg;
 use crate::std_msgs::Header;
 use grains::{Anisotropy, Fabric, Vec3};
 
-const CHECK: Check = Check("Fabric");
+pub(super) const CHECK: Check = Check("Fabric");
 
 /// The message of a fabric; `header` and `source_step` are those of the packing measured.
 pub fn fabric_message(header: Header, source_step: u64, f: &Fabric) -> Result<msg::Fabric, BoundaryError> {
@@ -32,6 +33,7 @@ pub fn fabric_message(header: Header, source_step: u64, f: &Fabric) -> Result<ms
         gamma_over_delta_contact_known: contact.0,
         gamma_over_delta_contact: contact.1,
         mobilised: f.mobilised,
+        ..structure_message(&f.structure)
     };
     Fabric::try_from(&message)?;
     Ok(message)
@@ -75,6 +77,7 @@ impl TryFrom<&msg::Fabric> for Fabric {
                 )?,
             },
             mobilised: CHECK.share("mobilised", m.mobilised)?,
+            structure: structure(m)?,
         })
     }
 }

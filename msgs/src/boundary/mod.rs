@@ -10,6 +10,7 @@ mod packing;
 mod run_state;
 mod strain_rate;
 mod stress;
+mod structure;
 
 pub use fabric::fabric_message;
 pub use microstructure::{EstimateReading, EstimateStatus, Inferred, Interval, MicrostructureReading};

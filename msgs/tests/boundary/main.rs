@@ -3,6 +3,7 @@
 mod lockstep;
 mod packing;
 mod results;
+mod structure;
 
 use grainlab_msgs::boundary::BoundaryError;
 

@@ -1,4 +1,5 @@
 use super::refuses;
+use super::structure::structure;
 use grainlab_msgs::boundary::{
     EstimateStatus, MicrostructureReading, ModuliMethod, ModuliReading, RunStateReading, RunStatus,
     fabric_message, moduli_message,
@@ -11,11 +12,11 @@ use grains::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, SymTensor,
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
 
-fn header() -> Header {
+pub(crate) fn header() -> Header {
     Header { stamp: stamp(0.25), frame_id: "cell".into() }
 }
 
-fn fabric() -> Fabric {
+pub(crate) fn fabric() -> Fabric {
     Fabric {
         grains: 500,
         contacts: 1300,
@@ -30,6 +31,7 @@ fn fabric() -> Fabric {
         fourth_order: -0.01,
         anisotropy: Anisotropy { total: Some(-0.3), elastic: Some(0.02), contact: None },
         mobilised: 0.125,
+        structure: structure(),
     }
 }
 

@@ -10,7 +10,9 @@
 //! - [`packing`]: grains, cell and contact network at one instant
 //! - [`stress`]: the one definition of stress
 //! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
+//! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
 //! - [`control`]: what a loading path asks of each strain component, and the law that answers
+//! - [`structure`]: what is measured on a contact network beyond coordination and fabric
 //! - [`results`]: what the kernels report
 
 pub mod cell;
@@ -20,6 +22,8 @@ pub mod packing;
 pub mod results;
 pub mod stiffness;
 pub mod stress;
+pub mod structure;
+pub mod symmetry;
 pub mod tensor;
 
 pub use cell::Cell;
@@ -28,4 +32,6 @@ pub use material::Material;
 pub use packing::{Contact, Packing, PackingError};
 pub use results::{Anisotropy, Fabric, Method, Moduli};
 pub use stiffness::{Stiffness, TransverseIsotropy};
+pub use structure::Structure;
+pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};

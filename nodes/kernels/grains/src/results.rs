@@ -1,6 +1,7 @@
 //! What the kernels report.
 
 use crate::stiffness::Stiffness;
+use crate::structure::Structure;
 use crate::tensor::{SymTensor, Vec3};
 
 /// The three ratios γ/Δ of deviatoric to volumetric strain about e3 (γ = (E33 − (E11 + E22)/2)/2, Δ = −tr E).
@@ -46,6 +47,8 @@ pub struct Fabric {
     pub anisotropy: Anisotropy,
     /// Share of contacts at the Coulomb limit, |F_t| ≥ 0.999 μ F_n.
     pub mobilised: f64,
+    /// Everything beyond: forces, networks, distributions, the noise of the axis.
+    pub structure: Structure,
 }
 
 /// How a stiffness was found.

@@ -1,7 +1,9 @@
 //! The 6×6 elastic stiffness and its transversely isotropic projection.
+//!
+//! [`mod@crate::symmetry`] finds which symmetry it has.
 
-use crate::tensor::{Mat3, SymTensor};
-use nalgebra::{Matrix6, Vector6};
+use crate::tensor::{Mat3, SymTensor, Vec3};
+use nalgebra::{Matrix6, Rotation3, Vector6};
 
 /// Stiffness C of dσ = −C : dE (σ positive in compression, E in extension), Pa, 6×6, Voigt order xx, yy, zz, yz, xz, xy
 /// with engineering shear strain.
@@ -82,6 +84,20 @@ impl Stiffness {
         t
     }
 
+    /// Projection on the stiffnesses that are isotropic about the unit vector `axis`; the moduli are those of a frame with
+    /// that axis as e3.
+    pub fn transverse_isotropy_about(&self, axis: &Vec3) -> TransverseIsotropy {
+        // Half a turn about x takes −z to z.
+        let opposite = || Rotation3::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI);
+        let turn = Rotation3::rotation_between(axis, &Vec3::z()).unwrap_or_else(opposite);
+        self.rotated(turn.matrix()).transverse_isotropy()
+    }
+
+    /// In Mandel form, where rows and columns of shear are multiplied by √2 and the matrix norm is the tensor's, Pa.
+    pub fn mandel(&self) -> Matrix6<f64> {
+        mandel(&self.0)
+    }
+
     /// The stiffness in a frame turned by `rotation` (columns: the old axes in the new frame; v' = R v).
     pub fn rotated(&self, rotation: &Mat3) -> Self {
         let full = self.full();
@@ -135,7 +151,7 @@ fn mandel(c: &Matrix6<f64>) -> Matrix6<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Rotation3, Vector3};
+    use nalgebra::Vector3;
 
     fn sample() -> Stiffness {
         let t = TransverseIsotropy {

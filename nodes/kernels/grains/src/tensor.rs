@@ -78,6 +78,23 @@ impl SymTensor {
         (1.5 * (x * x + y * y + z * z + 2.0 * off)).sqrt()
     }
 
+    /// Component along the unit vector `axis`: axis·T·axis.
+    pub fn along(&self, axis: &Vec3) -> f64 {
+        axis.dot(&(self.matrix() * axis))
+    }
+
+    /// The deviator: this less its mean on the diagonal.
+    pub fn deviator(&self) -> Self {
+        let m = self.mean();
+        Self { xx: self.xx - m, yy: self.yy - m, zz: self.zz - m, ..*self }
+    }
+
+    /// Full contraction T:U with another.
+    pub fn contract(&self, other: &Self) -> f64 {
+        let off = self.yz * other.yz + self.xz * other.xz + self.xy * other.xy;
+        self.xx * other.xx + self.yy * other.yy + self.zz * other.zz + 2.0 * off
+    }
+
     /// Whether every component is finite.
     pub fn is_finite(&self) -> bool {
         self.voigt().iter().all(|v| v.is_finite())

@@ -1,5 +1,6 @@
 //! The three ratios γ/Δ of deviatoric to volumetric strain.
 
+use grains::structure::OverlapFit;
 use grains::{Mat3, Packing, SymTensor, Vec3};
 
 /// γ/Δ of a strain about the unit vector `axis`: γ = (E_aa − (tr E − E_aa)/2)/2, Δ = −tr E. `None` if the volume does
@@ -39,9 +40,17 @@ pub fn total(packing: &Packing, axis: &Vec3) -> Option<f64> {
     ratio(&logarithmic_strain(&packing.deformation), axis)
 }
 
-/// g of the contacts' overlaps: least squares of √overlap to A(1 + g − 3 g x²), x = n·`axis` (Eq. 10). `None` if
-/// the contacts do not determine it (fewer than two, or all at one inclination).
+/// g of the contacts' overlaps: [`contact_fit`] without its error.
 pub fn contact(packing: &Packing, axis: &Vec3) -> Option<f64> {
+    contact_fit(packing, axis).map(|fit| fit.g)
+}
+
+/// Least squares of √overlap to A(1 + g − 3 g x²), x = n·`axis` (Eq. 10), with the standard error of g for independent
+/// contacts of equal scatter. `None` if the contacts do not determine it (fewer than two, or all at one inclination).
+///
+/// With s = 1 − 3x² this is a straight line, A + (A g) s; the variance of the quotient g is taken to first order in the
+/// covariance of intercept and slope.
+pub fn contact_fit(packing: &Packing, axis: &Vec3) -> Option<OverlapFit> {
     let count = packing.contacts.len() as f64;
     let sample = || {
         packing.contacts.iter().map(|c| {
@@ -51,17 +60,26 @@ pub fn contact(packing: &Packing, axis: &Vec3) -> Option<f64> {
     };
     let (s_sum, y_sum) = sample().fold((0.0, 0.0), |(s, y), (a, b)| (s + a, y + b));
     let (s_mean, y_mean) = (s_sum / count, y_sum / count);
-    let (mut covariance, mut variance) = (0.0, 0.0);
+    let (mut covariance, mut variance, mut spread) = (0.0, 0.0, 0.0);
     for (s, y) in sample() {
         covariance += (s - s_mean) * (y - y_mean);
         variance += (s - s_mean) * (s - s_mean);
+        spread += (y - y_mean) * (y - y_mean);
     }
     if packing.contacts.is_empty() || variance <= 1e-12 * count {
         return None;
     }
     let slope = covariance / variance;
-    let g = slope / (y_mean - slope * s_mean);
-    g.is_finite().then_some(g)
+    let level = y_mean - slope * s_mean;
+    let g = slope / level;
+    // Of the residuals, √overlap in m^½.
+    let scatter = (spread - slope * covariance).max(0.0) / (count - 2.0);
+    let of_slope = scatter / variance;
+    let of_level = scatter / count + s_mean * s_mean * of_slope;
+    let of_both = -s_mean * of_slope;
+    let of_g = (of_slope + g * g * of_level - 2.0 * g * of_both) / (level * level);
+    let g_stddev = (packing.contacts.len() > 2).then(|| of_g.max(0.0).sqrt()).filter(|v| v.is_finite());
+    g.is_finite().then_some(OverlapFit { g, g_stddev })
 }
 
 #[cfg(test)]

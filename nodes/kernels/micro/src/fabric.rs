@@ -2,6 +2,7 @@
 
 use crate::anisotropy;
 use crate::rattlers::participating;
+use crate::structure::structure;
 use grains::{Anisotropy, Fabric, Mat3, Packing, SymTensor, Vec3};
 
 /// Structure of `packing`, with ε, the P4 coefficient and the ratios γ/Δ taken about the unit vector `axis`.
@@ -15,6 +16,7 @@ pub fn fabric(packing: &Packing, axis: &Vec3) -> Fabric {
     let carrying = present.iter().filter(|&&p| p).count();
     let inner = packing.contacts.iter().filter(|c| present[c.i as usize] && present[c.j as usize]).count();
     let contact_fabric = weighted(packing, |_| 1.0);
+    let found = axis_found(&contact_fabric, axis);
     Fabric {
         grains: grains as u32,
         contacts: packing.contacts.len() as u32,
@@ -25,7 +27,7 @@ pub fn fabric(packing: &Packing, axis: &Vec3) -> Fabric {
         force_fabric: weighted(packing, |c| packing.contacts[c].normal_force),
         stiffness_fabric: weighted(packing, |c| packing.contact_stiffness(&packing.contacts[c]).0),
         eps: eps(&contact_fabric, axis),
-        axis: axis_found(&contact_fabric, axis),
+        axis: found,
         fourth_order: fourth_order(packing, axis),
         anisotropy: Anisotropy {
             total: anisotropy::total(packing, axis),
@@ -33,12 +35,13 @@ pub fn fabric(packing: &Packing, axis: &Vec3) -> Fabric {
             contact: anisotropy::contact(packing, axis),
         },
         mobilised: mobilised(packing),
+        structure: structure(packing, axis, &contact_fabric, &found),
     }
 }
 
 /// ε = 5/2 (L_aa − (tr L − L_aa)/2) about the unit vector `axis` (Eq. 20).
 pub fn eps(contact_fabric: &SymTensor, axis: &Vec3) -> f64 {
-    let along = axis.dot(&(contact_fabric.matrix() * axis));
+    let along = contact_fabric.along(axis);
     2.5 * (along - 0.5 * (contact_fabric.trace() - along))
 }
 

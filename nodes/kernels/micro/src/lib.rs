@@ -5,6 +5,15 @@
 //! - [`mod@analyse`]: everything that is measured on one packing
 //! - [`rattlers`]: who carries force
 //! - [`fabric`]: coordination, fabric tensors, ε
+//! - [`mod@structure`]: the rest of the structure, put together from the following
+//! - [`axis`]: how far the principal axis of the fabric can be trusted
+//! - [`mod@orientation`]: contacts and overlaps by orientation, A(d) fitted
+//! - [`fourth_order`]: ⟨n n n n⟩
+//! - [`mod@stress_parts`]: stress by kind of force and by network
+//! - [`mod@stress_force_fabric`]: anisotropies of contacts and forces, and the stress they make
+//! - [`mod@forces`]: distribution of forces, mobilised friction
+//! - [`deviator`]: traceless tensors as five numbers
+//! - [`symmetry`]: how much of a stiffness is the accident of one packing
 //! - [`anisotropy`]: the three ratios γ/Δ
 //! - [`balance`]: how far the packing is from equilibrium
 //! - [`bounds`]: the stiffness with a mean spin, and a lower bound of the bulk modulus
@@ -18,14 +27,19 @@
 
 pub mod analyse;
 pub mod anisotropy;
+pub mod axis;
 pub mod balance;
 pub mod bounds;
 pub mod column;
 mod descent;
+pub mod deviator;
 pub mod error;
 pub mod fabric;
+pub mod forces;
+pub mod fourth_order;
 mod lanes;
 pub mod network;
+pub mod orientation;
 pub mod preconditioner;
 pub mod probe;
 pub mod rattlers;
@@ -33,7 +47,11 @@ pub mod relax;
 pub mod scan;
 pub mod solve;
 pub mod stiffness;
+pub mod stress_force_fabric;
+pub mod stress_parts;
+pub mod structure;
 mod sweep;
+pub mod symmetry;
 
 pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};

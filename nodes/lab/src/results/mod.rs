@@ -4,5 +4,8 @@ pub(crate) mod inference;
 pub(crate) mod read_back;
 pub(crate) mod state;
 pub(crate) mod state_text;
+pub(crate) mod structure;
+pub(crate) mod structure_csv;
 pub(crate) mod summary;
 pub(crate) mod summary_text;
+pub(crate) mod symmetry;

@@ -1,5 +1,8 @@
 //! One measured packing, with the stable keys of `grainlab analyze`.
 
+use super::structure::StructureView;
+use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
+use super::symmetry::SymmetryView;
 use crate::output::{Table, exact};
 use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor};
 use serde::Serialize;
@@ -33,6 +36,9 @@ pub(crate) struct State {
     /// Wall time of the measurement; null where it was read from a recording.
     pub(crate) seconds: Option<f64>,
     pub(crate) warnings: Vec<String>,
+    pub(crate) structure: StructureView,
+    /// Null without a stiffness.
+    pub(crate) symmetry: Option<SymmetryView>,
 }
 
 /// The three ratios gamma/Delta.
@@ -85,6 +91,11 @@ impl State {
             residual: moduli.map(|m| m.residual),
             seconds: None,
             warnings: Vec::new(),
+            structure: StructureView::from(fabric),
+            symmetry: moduli.and_then(|m| {
+                let axis = Some(&fabric.axis).filter(|_| fabric.structure.axis.determined);
+                SymmetryView::new(&m.stiffness, fabric.grains, axis)
+            }),
         }
     }
 
@@ -120,6 +131,8 @@ pub(crate) fn csv(states: &[State]) -> String {
     header.extend(["theta_pa", "theta_reuss_pa", "residual", "seconds"].map(String::from));
     header.extend(entries("c"));
     header.extend(entries("affine_c"));
+    header.extend(STRUCTURE.map(String::from));
+    header.extend(SYMMETRY.map(String::from));
     let mut t = Table::new(header);
     for s in states {
         let number = |v: f64| exact(Some(v));
@@ -135,7 +148,84 @@ pub(crate) fn csv(states: &[State]) -> String {
         for matrix in [&s.stiffness_pa, &s.stiffness_affine_pa] {
             cells.extend((0..36).map(|n| exact(matrix.as_ref().map(|m| m[n / 6][n % 6]))));
         }
+        cells.extend(structure_cells(&s.structure));
+        cells.extend(symmetry_cells(s.symmetry.as_ref()));
         t.row(cells);
     }
     t.csv()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grains::{Cell, Contact, Mat3, Material, Vec3};
+
+    /// One grain touching its own images along the three edges, or none.
+    fn lattice(touching: bool) -> Packing {
+        let contact = |axis: usize| {
+            let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+            (image[axis], normal[axis]) = (1, 1.0);
+            let tangential_force = Vec3::zeros();
+            Contact { i: 0, j: 0, image, overlap: 1e-8, normal, normal_force: 1e-3, tangential_force }
+        };
+        Packing {
+            step: 12,
+            time: 0.5,
+            cell: Cell::cube(2e-4 - 1e-8).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![0],
+            radii: vec![1e-4],
+            positions: vec![Vec3::zeros()],
+            velocities: vec![Vec3::zeros()],
+            spins: vec![Vec3::zeros()],
+            contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
+            material: Material::GLASS,
+            friction: 0.3,
+            time_step: 0.0,
+        }
+    }
+
+    fn state(packing: &Packing) -> State {
+        let a = micro::analyse(packing, &micro::Settings::default()).unwrap();
+        State::new("lattice".into(), packing, &a.fabric, a.moduli.as_ref().ok())
+    }
+
+    #[test]
+    fn a_lattice_says_its_structure_and_its_symmetry() {
+        let s = serde_json::to_value(state(&lattice(true))).unwrap();
+        assert_eq!(s["symmetry"]["class"], "cubic");
+        assert_eq!(
+            s["structure"]["orientation"]["contacts"],
+            serde_json::json!([2, 0, 0, 0, 0, 0, 0, 0, 0, 1])
+        );
+        assert_eq!(s["structure"]["orientation"]["overlap_m"][9], 1e-8);
+        assert!(s["structure"]["orientation"]["overlap_m"][4].is_null());
+        assert_eq!(s["structure"]["weak"]["share_of_pressure"], 1.0);
+        assert!(s["structure"]["weak"]["share_of_deviator"].is_null());
+        assert_eq!(s["structure"]["friction"]["contacts"][0], 3);
+        assert!(s["structure"]["axis"]["eps_stddev"].is_null());
+    }
+
+    #[test]
+    fn what_a_gas_has_not_is_null() {
+        let s = serde_json::to_value(state(&lattice(false))).unwrap();
+        assert!(s["symmetry"].is_null() && s["stiffness_pa"].is_null());
+        for key in ["stress_force_fabric", "forces", "friction"] {
+            assert!(s["structure"][key].is_null(), "{key}");
+        }
+        assert!(s["structure"]["orientation"]["eps"].is_null());
+    }
+
+    /// The columns that were there first stay first, and every row is as long as the header.
+    #[test]
+    fn new_columns_are_appended() {
+        let table = csv(&[state(&lattice(true)), state(&lattice(false))]);
+        let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+        assert_eq!(rows[0][..5], ["source", "step", "grains", "phi", "pressure_pa"]);
+        assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");
+        let at = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
+        assert!(at("axis_eps") > at("affine_c66_pa") && at("symmetry") > at("axis_eps"));
+        assert_eq!((rows[1][at("symmetry")], rows[2][at("symmetry")]), ("cubic", ""));
+        assert!(!table.contains("NaN"));
+    }
 }

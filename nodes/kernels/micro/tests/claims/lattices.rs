@@ -1,9 +1,9 @@
 //! Lattices with closed forms, and contacts with own images.
 
-use crate::samples::packing;
-use grains::{Cell, Mat3, Packing, Vec3};
+use crate::samples::{packing, turned};
+use grains::{Cell, Mat3, Packing, SymmetryClass, Vec3, symmetry};
 use micro::{Settings, analyse};
-use nalgebra::Matrix6;
+use nalgebra::{Matrix6, Rotation3};
 
 const D: f64 = 2.0e-4;
 const OVERLAP: f64 = 3.0e-8;
@@ -98,6 +98,19 @@ fn bcc_is_exact_with_two_grains() {
     );
     let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
     assert_equal(&m.stiffness.0, &expected, "relaxed");
+}
+
+/// A lattice of cubic symmetry is cubic, seen from any side; a stiffness along ⟨110⟩ and one along the edges alike.
+#[test]
+fn cubic_lattices_are_found_cubic_and_their_edges_found() {
+    let r = Rotation3::from_euler_angles(0.4, 1.0, -0.6);
+    for p in [simple_cubic(), fcc()] {
+        let c = analyse(&turned(&p, r.matrix()), &Settings::default()).unwrap().moduli.unwrap().stiffness;
+        let s = symmetry(&c, 1e-6).unwrap();
+        assert_eq!(s.class, SymmetryClass::Cubic, "{s:?}");
+        let overlap = r.matrix().transpose() * s.cubic_axes;
+        assert!(overlap.iter().all(|v| v.abs() < 1e-6 || (v.abs() - 1.0).abs() < 1e-9), "{overlap}");
+    }
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 mod bounds;
 mod dense;
+mod directions;
+mod forces;
 mod golden;
 mod hard;
 mod invariance;

@@ -161,3 +161,93 @@ pub(crate) fn turned(p: &Packing, rotation: &Mat3) -> Packing {
     }
     out.validated().expect("a turned packing is a packing")
 }
+
+/// Normally distributed, mean 0, variance 1.
+pub(crate) fn normal(dice: &mut Dice) -> f64 {
+    (-2.0 * (1.0 - dice.next()).ln()).sqrt() * (std::f64::consts::TAU * dice.next()).cos()
+}
+
+/// A contact to be put between two grains of its own.
+pub(crate) struct Pair {
+    pub(crate) normal: Vec3,
+    /// Distance of the centres, m.
+    pub(crate) branch: f64,
+    pub(crate) overlap: f64,
+    pub(crate) normal_force: f64,
+    /// On the second grain.
+    pub(crate) tangential_force: Vec3,
+}
+
+impl Pair {
+    /// Along `normal`, with a force of 1 N.
+    pub(crate) fn along(normal: Vec3) -> Self {
+        Self { normal, branch: 2e-4, overlap: 1e-8, normal_force: 1.0, tangential_force: Vec3::zeros() }
+    }
+}
+
+/// Contacts of any directions and forces, each between two grains of its own that touch nobody else, thrown into a cube
+/// of 1 cm³: what structure is measured on, and nothing that could stand.
+pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
+    let mut dice = Dice(seed);
+    let mut p = packing(Cell::cube(0.01).unwrap(), Vec::new(), 1e-4, 0.5, None);
+    for (k, pair) in contacts.iter().enumerate() {
+        let place = Vec3::from_fn(|_, _| 0.01 * dice.next());
+        for (half, offset) in [0.0, pair.branch].into_iter().enumerate() {
+            p.ids.push((2 * k + half + 1) as u32);
+            p.radii.push(0.5 * (pair.branch + pair.overlap));
+            p.positions.push(place + pair.normal * offset);
+            p.velocities.push(Vec3::zeros());
+            p.spins.push(Vec3::zeros());
+        }
+        p.contacts.push(Contact {
+            i: 2 * k as u32,
+            j: 2 * k as u32 + 1,
+            image: [0; 3],
+            overlap: pair.overlap,
+            normal: pair.normal,
+            normal_force: pair.normal_force,
+            tangential_force: -pair.tangential_force,
+        });
+    }
+    p.validated().expect("pairs are a packing")
+}
+
+/// Directions about z whose cosine x has the cumulative distribution `cumulative` on [0, 1], drawn from `dice`.
+pub(crate) fn drawn(dice: &mut Dice, count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
+    (0..count)
+        .map(|_| {
+            let side = if dice.next() < 0.5 { -1.0 } else { 1.0 };
+            direction(inverse(&cumulative, dice.next()) * side, dice.next())
+        })
+        .collect()
+}
+
+/// The same without scatter: evenly spread in x and about z.
+pub(crate) fn spread(count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
+    (0..count)
+        .map(|k| {
+            let x = inverse(&cumulative, (k as f64 + 0.5) / count as f64);
+            direction(x, (k as f64 * 0.618_033_988_749_895).fract())
+        })
+        .collect()
+}
+
+/// Cumulative distribution of x = |n·z| for A(d) of Eq. 6.
+pub(crate) fn eq6(eps: f64) -> impl Fn(f64) -> f64 {
+    move |x| (1.0 - eps) * x + eps * x.powi(3)
+}
+
+fn inverse(cumulative: &impl Fn(f64) -> f64, share: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > 1e-15 {
+        let x = 0.5 * (low + high);
+        if cumulative(x) < share { low = x } else { high = x }
+    }
+    0.5 * (low + high)
+}
+
+fn direction(x: f64, turn: f64) -> Vec3 {
+    let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+    let flat = (1.0 - x * x).max(0.0).sqrt();
+    Vec3::new(flat * cos, flat * sin, x).normalize()
+}

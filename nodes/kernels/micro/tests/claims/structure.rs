@@ -20,6 +20,28 @@ fn assert_finite(a: &Analysis) {
     let f = &a.fabric;
     let tensors = [f.contact_fabric, f.force_fabric, f.stiffness_fabric, a.stress.tensor];
     assert!(tensors.iter().all(|t| t.is_finite()));
+    let s = &f.structure;
+    let parts = [
+        s.stress.normal,
+        s.stress.tangential,
+        s.strong.stress,
+        s.weak.stress,
+        s.strong.fabric,
+        s.weak.fabric,
+    ];
+    assert!(parts.iter().chain([&s.tangential_fabric]).all(|t| t.is_finite()));
+    let means =
+        s.orientation.overlap.iter().chain(&s.orientation.sqrt_overlap).chain(&s.fourth_order.components);
+    assert!(
+        means
+            .chain([&s.axis.eps, &s.strong.eps, &s.weak.eps, &s.fourth_order.magnitude])
+            .all(|v| v.is_finite())
+    );
+    assert_eq!(s.orientation.contacts.iter().sum::<u32>(), f.contacts);
+    if f.contacts == 0 {
+        assert!(s.forces.is_none() && s.mobilisation.is_none() && s.stress_force_fabric.is_none());
+        assert!(s.orientation.contact_fit.is_none() && s.axis.eps_stddev.is_none() && !s.axis.determined);
+    }
     let numbers = [f.k, f.z, f.eps, f.fourth_order, f.mobilised, a.pressure, a.deviatoric, a.solid_fraction];
     assert!(numbers.iter().all(|v| v.is_finite()), "{numbers:?}");
     assert!((f.axis.norm() - 1.0).abs() < 1e-12);
