@@ -62,8 +62,8 @@ fn malformed_rows_are_named_by_line() {
         ("c,1,2", "10 fields, not 2"),
         ("p,-3,0,0,0,1,1,0,0,0,0,0,0", "id is -3"),
         ("p,3,0,zero,0,1,1,0,0,0,0,0,0", "position is \"zero\""),
-        ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "position[2] is not finite"),
-        ("p,2,0.5,0.5,0,0.1,1,0,0,0,0,0,0", "grain 2 occurs twice"),
+        ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "line 3: position is not finite"),
+        ("p,2,0.5,0.5,0,0.1,1,0,0,0,0,0,0", "line 3: grain 2 occurs twice"),
         ("p,3,0.1,0,0,0.1,1,0,0,0,0,0,0", "grains 1 and 3 have the same centre"),
     ] {
         let error = pair(row).unwrap_err().to_string();
