@@ -202,7 +202,7 @@ fn too_few_digits(digits: u32, packing: &Packing) -> Option<String> {
     ((5..=12).contains(&digits) && rounding > 1e-3 * mean).then(|| {
         format!(
             "positions have {digits} digits, so they are rounded by up to {rounding:.1e} m, {:.1} % of the mean overlap: \
-             contacts, forces and stiffness are uncertain by more than that; export them with 17 digits",
+             contacts, forces and stiffness are uncertain accordingly; export them with 17 digits",
             100.0 * rounding / mean
         )
     })

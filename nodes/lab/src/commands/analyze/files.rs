@@ -134,6 +134,7 @@ impl Shop<'_> {
     }
 
     fn read(&self, file: usize) {
+        let mut reading = Reading { shop: self, to_end: false };
         let mut packings = 0;
         let (complaints, exit) = read(&self.files[file], self.options, &mut |imported| {
             let job = Job { place: (file, packings), imported };
@@ -149,16 +150,11 @@ impl Shop<'_> {
             }
             if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        let cut = self.stopped();
-        if !cut {
+        if !self.stopped() {
+            reading.to_end = true;
             let end = lock(&self.sink).end(file, Ending { packings, complaints, exit });
             self.check(end);
         }
-        let mut desk = self.desk();
-        desk.reading -= 1;
-        desk.read_to_end += usize::from(!cut);
-        drop(desk);
-        self.news.notify_all();
     }
 
     /// Nobody goes on when results cannot be printed or recorded.
@@ -176,6 +172,22 @@ impl Shop<'_> {
 
     fn desk(&self) -> MutexGuard<'_, Desk> {
         lock(&self.desk)
+    }
+}
+
+/// A file that is being read: those who wait for its packings learn when no more will come, whatever happens.
+struct Reading<'a, 'b> {
+    shop: &'a Shop<'b>,
+    to_end: bool,
+}
+
+impl Drop for Reading<'_, '_> {
+    fn drop(&mut self) {
+        let mut desk = self.shop.desk();
+        desk.reading -= 1;
+        desk.read_to_end += usize::from(self.to_end);
+        drop(desk);
+        self.shop.news.notify_all();
     }
 }
 
