@@ -183,6 +183,7 @@ pub(super) fn packing(
             let contacts =
                 listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<Vec<_>, _>>()?;
             compare(&packing, &contacts, &found, &mut notes);
+            notes.extend(other_law(&packing, &contacts));
             contacts
         }
     };
@@ -276,6 +277,20 @@ fn listed_contact(
     }
     let (i, j) = (i as u32, j as u32);
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
+}
+
+/// Says where listed forces are not those of Hertz: the stiffness that is measured would be of other contacts.
+fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
+    let hertz = |c: &Contact| packing.material.normal_force(packing.effective_radius(c), c.overlap.max(0.0));
+    let expected: f64 = listed.iter().map(hertz).sum();
+    let difference: f64 = listed.iter().map(|c| (c.normal_force - hertz(c)).abs()).sum();
+    (difference > 0.01 * expected).then(|| {
+        format!(
+            "normal forces differ from Hertz's law by {:.1} % on average: of another contact law, another material, or in \
+             motion; the stiffness is that of Hertz-Mindlin contacts of this material",
+            100.0 * difference / expected
+        )
+    })
 }
 
 /// Notes contacts that only one of list and positions has.

@@ -77,7 +77,7 @@ struct Desk {
 }
 
 enum Task {
-    Measure(Job),
+    Measure(Box<Job>),
     Read(usize),
 }
 
@@ -112,7 +112,7 @@ impl Shop<'_> {
                 return None;
             }
             if let Some(job) = desk.packings.pop_front() {
-                return Some(Task::Measure(job));
+                return Some(Task::Measure(Box::new(job)));
             }
             if desk.next < self.files.len() {
                 desk.next += 1;
