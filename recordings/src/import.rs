@@ -1,10 +1,12 @@
-//! Packings from elsewhere: CSV with a JSON sidecar, LAMMPS dump and data files, and recordings of ours.
+//! Packings from elsewhere: CSV with a JSON sidecar, LAMMPS dump and data files, text exports of YADE, and
+//! recordings of ours.
 //!
-//! The parsers take text; [`load`] takes a path, decompresses `.gz` and picks the parser. Whatever the
+//! The parsers take text; [`load`] and [`each`] take a path, decompress `.gz` and pick the parser by content. Whatever the
 //! source, the result is a validated [`grains::Packing`] in its conventions: contacts `i < j` by index,
 //! normal from `i` to the image of `j`, tangential force on `i`. Where a source does not list contacts they
 //! are found from positions, with Hertz normal forces and no tangential force.
 
+use grainlab_msgs::std_msgs::Header;
 use grains::{Mat3, Packing};
 
 mod assemble;
@@ -18,9 +20,10 @@ mod load;
 pub mod recording;
 mod settings;
 mod text;
+pub mod yade;
 
 pub use error::ImportError;
-pub use load::{Loaded, load};
+pub use load::{Loaded, each, load};
 pub use settings::{ImportOptions, Setting};
 
 /// A packing and where it comes from.
@@ -28,6 +31,8 @@ pub use settings::{ImportOptions, Setting};
 pub struct Imported {
     /// The packing.
     pub packing: Packing,
+    /// The header of its message: as recorded, or as a message of it would have.
+    pub header: Header,
     /// Solver step at which it was taken; 0 if the source does not say.
     pub step: u64,
     /// What it was read from, for people.

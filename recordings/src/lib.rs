@@ -5,7 +5,7 @@
 //! - [`ledger`]: what was recorded, lost and repeated, per topic and per writer
 //! - [`reader`]: recordings by topic and time, tolerant of truncation and damage, which it names
 //! - [`player`]: when to send which message, without a clock or a socket
-//! - [`import`]: packings from CSV, LAMMPS dump and data files, and our own recordings
+//! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and our own recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
 //!
 //! Nothing here knows DDS: a thin shell hands samples to the writer and takes them from the player.

@@ -1,6 +1,7 @@
 //! A recording played into fresh nodes, and read without any, says the same as the live run.
 
 use serde_json::Value;
+use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::bodies::distinct;
 use system_tests::lab::{LIMIT, Lab, golden};
@@ -39,6 +40,81 @@ fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
     for topic in ["/packing", "/fabric", "/moduli", "/microstructure"] {
         assert_eq!(distinct(&live, topic), distinct(&out, topic), "{topic}");
         assert_eq!(distinct(&live, topic).len(), 2, "{topic}");
+    }
+}
+
+/// The bodies of the analyzer node and those that `analyze` records are compared whole.
+fn assert_same_results(one: &Path, other: &Path) {
+    for topic in ["/fabric", "/moduli"] {
+        let (a, b) = (distinct(one, topic), distinct(other, topic));
+        assert_eq!((a.len(), b.len()), (2, 2), "{topic}");
+        assert_eq!(a, b, "{topic} of {} and {}", one.display(), other.display());
+    }
+}
+
+#[test]
+fn analyze_records_the_bytes_that_the_live_analyzer_published() {
+    let lab = Lab::new();
+    let live = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let (out, twice) = (lab.folder().join("offline"), lab.folder().join("twice"));
+    for out in [&out, &twice] {
+        let ended = lab.run(&["analyze", &live.to_string_lossy(), "--record", &out.to_string_lossy()]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert_same_results(&live, out);
+    }
+    let bytes = |run: &Path| {
+        let name = format!("{}_0.mcap", run.file_name().unwrap().to_string_lossy());
+        std::fs::read(run.join(name)).unwrap()
+    };
+    assert_eq!(bytes(&out), bytes(&twice), "nor does the file depend on the time of the day");
+}
+
+#[test]
+fn analyze_of_a_live_topic_gives_the_bytes_and_numbers_of_the_recording() {
+    let lab = Lab::new();
+    let live = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let offline = lab.run(&["analyze", &live.to_string_lossy(), "--format", "json"]);
+
+    let other = Lab::new();
+    let out = other.folder().join("measured");
+    let analyze = other.start(&[
+        "analyze",
+        "--live",
+        "--count",
+        "2",
+        "--format",
+        "json",
+        "--record",
+        &out.to_string_lossy(),
+    ]);
+    let played = other.run(&["bag", "play", &live.to_string_lossy(), "--topics", "packing"]);
+    assert_eq!(played.code, Some(0), "{}", played.stderr);
+    let ended = analyze.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    assert_same_results(&live, &out);
+
+    let [mut played, mut read] =
+        [&ended, &offline].map(|e| serde_json::from_str::<Value>(&e.stdout).unwrap());
+    for state in played.as_array_mut().unwrap().iter_mut().chain(read.as_array_mut().unwrap()) {
+        assert_eq!(state["method"], "frozen_network");
+        for differs in ["source", "seconds"] {
+            state.as_object_mut().unwrap().remove(differs);
+        }
+    }
+    assert_eq!(played, read);
+}
+
+#[test]
+fn a_live_analysis_ends_with_a_signal_and_what_it_measured() {
+    let lab = Lab::new();
+    for (arguments, code) in [(&["analyze", "--live"][..], 0), (&["analyze", "--live", "--count", "1"], 130)]
+    {
+        let analyze = lab.start(&[arguments, &["--format", "json"]].concat());
+        // Until the handlers are there, a signal ends the process in the system's way.
+        std::thread::sleep(Duration::from_secs(2));
+        analyze.signal(libc::SIGINT);
+        let ended = analyze.ended(LIMIT);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(code), "[]\n"), "{}", ended.stderr);
     }
 }
 

@@ -15,7 +15,7 @@ mod structure;
 pub use fabric::fabric_message;
 pub use microstructure::{EstimateReading, EstimateStatus, Inferred, Interval, MicrostructureReading};
 pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
-pub use packing::packing_message;
+pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;

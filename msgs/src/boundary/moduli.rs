@@ -24,6 +24,28 @@ pub enum ModuliMethod {
     PrestressedNetwork,
 }
 
+impl ModuliMethod {
+    /// One word for it, as tables and files have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::FrozenNetwork => "frozen_network",
+            Self::Affine => "affine",
+            Self::Probe => "probe",
+            Self::Acoustic => "acoustic",
+        }
+    }
+
+    /// As messages have it.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::FrozenNetwork => msg::Moduli::METHOD_FROZEN_NETWORK,
+            Self::Affine => msg::Moduli::METHOD_AFFINE,
+            Self::Probe => msg::Moduli::METHOD_PROBE,
+            Self::Acoustic => msg::Moduli::METHOD_ACOUSTIC,
+        }
+    }
+}
+
 /// Moduli as an inversion takes them: checked, and with `None` for what the sender did not know.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModuliReading {

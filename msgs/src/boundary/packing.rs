@@ -2,6 +2,7 @@
 
 use super::BoundaryError;
 use super::check::{Check, header};
+use crate::std_msgs::Header;
 use crate::{msg, stamp};
 use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
@@ -12,7 +13,7 @@ const CHECK: Check = Check("Packing");
 pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> msg::Packing {
     let contacts = &packing.contacts;
     msg::Packing {
-        header: header(stamp(packing.time)),
+        header: packing_header(packing),
         step: packing.step,
         time: packing.time,
         cell: row_major(packing.cell.matrix()),
@@ -36,6 +37,11 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
         run_state,
         scene: scene.to_owned(),
     }
+}
+
+/// The header of that message, and so of all that is measured on it.
+pub fn packing_header(packing: &Packing) -> Header {
+    header(stamp(packing.time))
 }
 
 impl TryFrom<&msg::Packing> for Packing {

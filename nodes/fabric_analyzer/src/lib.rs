@@ -1,13 +1,13 @@
 //! The analyzer node: turns packings into fabric and moduli.
 //!
 //! - [`parameters`]: what can be set; [`Settings`]: the same, typed
-//! - [`measure`]: the whole work, a pure function of one message
+//! - [`measure()`]: the whole work, a pure function of one message; [`messages`]: its second half
 //! - [`FabricAnalyzer`]: the node
 
 mod measure;
 mod node;
 mod settings;
 
-pub use measure::{MeasureError, Measured, measure};
+pub use measure::{MeasureError, Measured, measure, messages, method};
 pub use node::FabricAnalyzer;
 pub use settings::{Settings, SettingsError, parameters};

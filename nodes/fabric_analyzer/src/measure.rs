@@ -1,10 +1,11 @@
 //! From one `Packing` to one `Fabric` and one `Moduli`.
 
 use crate::Settings;
-use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
+use grainlab_msgs::boundary::{BoundaryError, ModuliMethod, fabric_message, moduli_message};
 use grainlab_msgs::msg;
+use grainlab_msgs::std_msgs::Header;
 use grains::Packing;
-use micro::{MicroError, NoNetwork};
+use micro::{Analysis, MicroError, NoNetwork};
 
 /// What is published about one packing.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,21 +46,35 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     let step = packing.step;
     let found =
         micro::analyse(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    messages(&message.header, &packing, found)
+}
+
+/// The messages about a packing that has been measured; `header` is that of the packing's own message.
+pub fn messages(header: &Header, packing: &Packing, found: Analysis) -> Result<Measured, MeasureError> {
+    let step = packing.step;
     let unfit = |reason| MeasureError::Result { step, reason };
-    let header = || message.header.clone();
-    let fabric = fabric_message(header(), step, &found.fabric).map_err(unfit)?;
+    let fabric = fabric_message(header.clone(), step, &found.fabric).map_err(unfit)?;
     let moduli = match found.moduli {
         Err(none) => Err(none),
-        Ok(moduli) => Ok(moduli_message(
-            header(),
-            step,
-            &found.fabric,
-            &moduli,
-            found.pressure,
-            found.solid_fraction,
-            &packing.material,
-        )
-        .map_err(unfit)?),
+        Ok(moduli) => {
+            let mut message = moduli_message(
+                header.clone(),
+                step,
+                &found.fabric,
+                &moduli,
+                found.pressure,
+                found.solid_fraction,
+                &packing.material,
+            )
+            .map_err(unfit)?;
+            message.method = method(found.probe.is_some()).code();
+            Ok(message)
+        }
     };
     Ok(Measured { fabric, moduli })
+}
+
+/// How a stiffness is found, with or without a probe.
+pub fn method(probed: bool) -> ModuliMethod {
+    if probed { ModuliMethod::Probe } else { ModuliMethod::FrozenNetwork }
 }

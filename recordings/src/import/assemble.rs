@@ -2,12 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use grainlab_msgs::boundary::packing_header;
 use grains::{Cell, Contact, Mat3, Packing, Vec3};
 
 use super::Imported;
 use super::contacts::{self, SearchError};
 use super::error::ImportError;
 use super::settings::Settings;
+use super::text::{Line, digits};
 
 /// Grains as a file lists them.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +23,10 @@ pub(super) struct GrainTable {
     pub(super) velocities: Vec<Vec3>,
     /// rad/s.
     pub(super) spins: Vec<Vec3>,
+    /// Where each was read, counted from 1.
+    pub(super) lines: Vec<usize>,
+    /// Most significant digits of any coordinate as printed.
+    pub(super) digits: u32,
 }
 
 /// A contact as a file lists it.
@@ -65,12 +71,29 @@ impl State {
 }
 
 impl GrainTable {
-    pub(super) fn push(&mut self, id: u32, radius: f64, [x, v, w]: [Vec3; 3]) {
+    /// Adds a grain read from `line`; vectors are position, velocity and spin.
+    pub(super) fn push(
+        &mut self,
+        line: &Line<'_>,
+        id: u32,
+        radius: f64,
+        [x, v, w]: [Vec3; 3],
+    ) -> Result<(), ImportError> {
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(line.error(format!("the radius of grain {id} is {radius}: it must be more than 0")));
+        }
         self.ids.push(id);
         self.radii.push(radius);
         self.positions.push(x);
         self.velocities.push(v);
         self.spins.push(w);
+        self.lines.push(line.number);
+        Ok(())
+    }
+
+    /// Takes note of how many digits the file prints coordinates with.
+    pub(super) fn printed(&mut self, coordinates: [&str; 3]) {
+        self.digits = coordinates.into_iter().map(digits).fold(self.digits, u32::max);
     }
 
     /// In order of id: other programs list grains in whatever order they hold them.
@@ -84,6 +107,8 @@ impl GrainTable {
             positions: vectors(&self.positions),
             velocities: vectors(&self.velocities),
             spins: vectors(&self.spins),
+            lines: order.iter().map(|&k| self.lines[k]).collect(),
+            digits: self.digits,
         }
     }
 
@@ -111,6 +136,18 @@ pub(super) fn packing(
     if grains.ids.is_empty() {
         return Err(ImportError::Empty);
     }
+    let mut index = BTreeMap::new();
+    for (k, id) in grains.ids.iter().enumerate() {
+        if let Some(first) = index.insert(*id, k) {
+            let [before, line] = [first, k].map(|k| grains.lines[k]);
+            return Err(ImportError::DuplicateId {
+                id: *id,
+                line: line.max(before),
+                before: line.min(before),
+            });
+        }
+    }
+    let printed = grains.digits;
     let mut packing = Packing {
         step: state.step,
         time: state.time,
@@ -127,17 +164,14 @@ pub(super) fn packing(
         time_step: state.time_step,
     }
     .validated()?;
-    let mut index = BTreeMap::new();
-    for (k, id) in packing.ids.iter().enumerate() {
-        if index.insert(*id, k).is_some() {
-            return Err(ImportError::DuplicateId(*id));
-        }
-    }
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material);
     let id = |k: usize| packing.ids[k];
     let found = found.map_err(|e| match e {
         SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
         SearchError::FarImage(i, j) => ImportError::FarImage(id(i), id(j)),
+        SearchError::Crowded { solid_fraction, diameter, width } => {
+            ImportError::Crowded { solid_fraction, diameter, width }
+        }
     })?;
     packing.contacts = match listed {
         None => {
@@ -149,12 +183,30 @@ pub(super) fn packing(
             let contacts =
                 listed.iter().map(|c| listed_contact(&packing, &index, c)).collect::<Result<Vec<_>, _>>()?;
             compare(&packing, &contacts, &found, &mut notes);
+            notes.extend(other_law(&packing, &contacts));
             contacts
         }
     };
+    notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let packing = packing.validated()?;
-    Ok(Imported { packing, step: state.step, source, notes })
+    Ok(Imported { header: packing_header(&packing), packing, step: state.step, source, notes })
+}
+
+/// What rounding of printed positions does to overlaps, if it is not negligible. Programs print six digits at
+/// least; fewer were typed, and are meant.
+fn too_few_digits(digits: u32, packing: &Packing) -> Option<String> {
+    let overlaps = packing.contacts.iter().map(|c| c.overlap);
+    let mean = overlaps.sum::<f64>() / packing.contacts.len() as f64;
+    let largest = packing.positions.iter().map(|x| x.amax()).fold(0.0, f64::max);
+    let rounding = 0.5 * 10f64.powi(largest.log10().floor() as i32 + 1 - digits as i32);
+    ((5..=12).contains(&digits) && rounding > 1e-3 * mean).then(|| {
+        format!(
+            "positions have {digits} digits, so they are rounded by up to {rounding:.1e} m, {:.1} % of the mean overlap: \
+             contacts, forces and stiffness are uncertain accordingly; export them with 17 digits",
+            100.0 * rounding / mean
+        )
+    })
 }
 
 /// The contact in our convention, checked against the positions.
@@ -225,6 +277,20 @@ fn listed_contact(
     }
     let (i, j) = (i as u32, j as u32);
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
+}
+
+/// Says where listed forces are not those of Hertz: the stiffness that is measured would be of other contacts.
+fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
+    let hertz = |c: &Contact| packing.material.normal_force(packing.effective_radius(c), c.overlap.max(0.0));
+    let expected: f64 = listed.iter().map(hertz).sum();
+    let difference: f64 = listed.iter().map(|c| (c.normal_force - hertz(c)).abs()).sum();
+    (difference > 0.01 * expected).then(|| {
+        format!(
+            "normal forces differ from Hertz's law by {:.1} % on average: of another contact law, another material, or in \
+             motion; the stiffness is that of Hertz-Mindlin contacts of this material",
+            100.0 * difference / expected
+        )
+    })
 }
 
 /// Notes contacts that only one of list and positions has.

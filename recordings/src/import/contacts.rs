@@ -4,7 +4,7 @@ use grains::material::effective_radius;
 use grains::{Cell, Contact, Material, Vec3};
 
 /// Why contacts cannot be found. Grains are named by index.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SearchError {
     /// Two grains have the same centre.
     #[error("grains {0} and {1} have the same centre")]
@@ -12,7 +12,28 @@ pub enum SearchError {
     /// The image index does not fit its 8 bits.
     #[error("grains {0} and {1} touch across more than 127 cells")]
     FarImage(usize, usize),
+    /// The cell is so small, or the grains so large, that a search would not end.
+    #[error(
+        "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, or one is many times as wide"
+    )]
+    Crowded {
+        /// Volume of the spheres over volume of the cell.
+        solid_fraction: f64,
+        /// Largest diameter, m.
+        diameter: f64,
+        /// Narrowest width of the cell, m.
+        width: f64,
+    },
 }
+
+/// Spheres of a packing fill less than the cell; overlapping ones that fill it this often are in the wrong units.
+const MOST_FULL: f64 = 20.0;
+
+/// Cells that a grain may span.
+const MOST_CELLS: f64 = 16.0;
+
+/// Pairs that may have to be looked at: about a minute.
+const MOST_PAIRS: f64 = 2e10;
 
 /// Every contact (positive overlap) of spheres of `radii` (m) at `positions` (m, folded or not) in `cell`,
 /// sorted by `(i, j, image)`: Hertz normal force from the overlap, no tangential force. Contacts across
@@ -20,7 +41,7 @@ pub enum SearchError {
 /// several images of another. Positions and radii must be finite and radii positive.
 ///
 /// # Errors
-/// If two centres coincide, or an image is too far away to be named.
+/// If two centres coincide, an image is too far away to be named, or grains fill the cell many times over.
 ///
 /// ```
 /// use grains::{Cell, Material, Vec3};
@@ -36,7 +57,7 @@ pub fn find(
     radii: &[f64],
     material: &Material,
 ) -> Result<Vec<Contact>, SearchError> {
-    let grid = Grid::new(cell, positions, radii);
+    let grid = Grid::new(cell, positions, radii)?;
     let mut contacts = Vec::new();
     for i in 0..positions.len() {
         grid.visit(i, |j, lattice| {
@@ -95,13 +116,24 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(cell: &Cell, positions: &[Vec3], radii: &[f64]) -> Self {
+    fn new(cell: &Cell, positions: &[Vec3], radii: &[f64]) -> Result<Self, SearchError> {
         // A little more than two radii, so that rounding cannot put touching grains out of reach.
         let cutoff = 2.0 * radii.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
         // No more than about four boxes a grain, however large the cell.
         let edge = cutoff.max((cell.volume() / (4.0 * positions.len().max(1) as f64)).cbrt());
         let boxes: [i64; 3] = std::array::from_fn(|k| ((cell.width(k) / edge).floor() as i64).max(1));
-        let reach = std::array::from_fn(|k| (cutoff * boxes[k] as f64 / cell.width(k)).ceil() as i64);
+        let reach: [i64; 3] =
+            std::array::from_fn(|k| (cutoff * boxes[k] as f64 / cell.width(k)).ceil() as i64);
+        let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+        let solid_fraction = volume / cell.volume();
+        let width = (0..3).map(|k| cell.width(k)).fold(f64::INFINITY, f64::min);
+        let product = |n: [i64; 3]| n.iter().map(|n| *n as f64).product::<f64>();
+        let grains = positions.len() as f64;
+        let pairs =
+            grains * grains * product(reach.map(|r| r.saturating_mul(2).saturating_add(1))) / product(boxes);
+        if !(solid_fraction <= MOST_FULL && cutoff <= MOST_CELLS * width && pairs <= MOST_PAIRS) {
+            return Err(SearchError::Crowded { solid_fraction, diameter: cutoff, width });
+        }
         let mut cells = Vec::with_capacity(positions.len());
         let mut homes = Vec::with_capacity(positions.len());
         for x in positions {
@@ -130,7 +162,7 @@ impl Grid {
             next[b] += 1;
         }
         grid.starts = starts;
-        grid
+        Ok(grid)
     }
 
     fn number(&self, home: &[i64; 3]) -> usize {

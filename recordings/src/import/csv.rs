@@ -18,7 +18,7 @@ use super::Imported;
 use super::assemble::{self, GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
 use super::settings::ImportOptions;
-use super::text::{Line, lines};
+use super::text::{Line, lines, shown};
 
 mod sidecar;
 
@@ -32,12 +32,12 @@ pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Res
     let sidecar = Sidecar::parse(sidecar)?;
     let settings = sidecar.known()?.complete(options)?;
     let (mut grains, mut contacts, mut masses) = (GrainTable::default(), Vec::new(), Vec::new());
-    for line in lines(csv).filter(|l| !l.text.trim().is_empty() && !l.text.starts_with('#')) {
+    for line in lines(csv).filter(|l| !l.text.trim().is_empty() && !l.text.trim_start().starts_with('#')) {
         let fields: Vec<&str> = line.text.trim().split(',').collect();
         match fields.as_slice() {
             ["p", rest @ ..] => masses.push(grain(&line, rest, &mut grains)?),
             ["c", rest @ ..] => contacts.push(contact(&line, rest)?),
-            other => return Err(line.error(format!("a row starts with p or c, not {:?}", other[0]))),
+            other => return Err(line.error(format!("a row starts with p or c, not {}", shown(other[0])))),
         }
     }
     let mut notes = Vec::new();
@@ -65,7 +65,8 @@ fn grain(line: &Line<'_>, fields: &[&str], grains: &mut GrainTable) -> Result<f6
     let position = line.vector("position", [x, y, z])?;
     let velocity = line.vector("velocity", [vx, vy, vz])?;
     let spin = line.vector("angular velocity", [wx, wy, wz])?;
-    grains.push(line.id("id", id)?, line.number("radius", radius)?, [position, velocity, spin]);
+    grains.printed([x, y, z]);
+    grains.push(line, line.id("id", id)?, line.number("radius", radius)?, [position, velocity, spin])?;
     line.number("mass", mass)
 }
 
@@ -81,7 +82,7 @@ fn contact(line: &Line<'_>, fields: &[&str]) -> Result<ListedContact, ImportErro
         line: line.number,
         ids: (line.id("i", i)?, line.id("j", j)?),
         normal: Some(line.vector("n", [nx, ny, nz])?),
-        overlap: Some(line.number("delta", delta)?),
-        force: ListedForce::Split { normal: line.number("fn", normal)?, tangential },
+        overlap: Some(line.finite("delta", delta)?),
+        force: ListedForce::Split { normal: line.finite("fn", normal)?, tangential },
     })
 }

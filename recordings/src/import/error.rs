@@ -32,9 +32,14 @@ pub enum ImportError {
     },
     /// No parser knows this file.
     #[error(
-        "not a packing that can be read: neither CSV (.csv), nor a LAMMPS dump (.dump, .lammpstrj) or data file (.data), nor a recording (.mcap or its directory), each also as .gz"
+        "line {line}, {first}, begins nothing that can be read: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
     )]
-    UnknownFormat,
+    UnknownFormat {
+        /// Its first line that is not empty, counted from 1.
+        line: usize,
+        /// How that line begins, quoted.
+        first: String,
+    },
     /// A line is not what the format says.
     #[error("line {line}: {problem}")]
     Syntax {
@@ -63,8 +68,15 @@ pub enum ImportError {
         reason: &'static str,
     },
     /// An id occurs twice.
-    #[error("grain {0} occurs twice")]
-    DuplicateId(u32),
+    #[error("line {line}: grain {id} occurs twice, before in line {before}")]
+    DuplicateId {
+        /// The id.
+        id: u32,
+        /// Line, counted from 1.
+        line: usize,
+        /// Line in which it was before.
+        before: usize,
+    },
     /// A contact names a grain that does not exist.
     #[error("line {line}: a contact names grain {id}, which does not exist")]
     UnknownId {
@@ -99,6 +111,18 @@ pub enum ImportError {
         "grains {0} and {1} touch across more than 127 cells: fold positions into the cell, or check its size"
     )]
     FarImage(u32, u32),
+    /// The cell is so small, or the grains so large, that they would fill it many times over.
+    #[error(
+        "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m: check the units of the cell and of the radii"
+    )]
+    Crowded {
+        /// Volume of the spheres over volume of the cell.
+        solid_fraction: f64,
+        /// m.
+        diameter: f64,
+        /// m.
+        width: f64,
+    },
     /// The numbers are no packing.
     #[error(transparent)]
     Packing(#[from] PackingError),

@@ -123,8 +123,8 @@ impl DataFile {
         let radius = 0.5 * line.number::<f64>("diameter", diameter)?;
         self.densities.push(line.number("density", density)?);
         let position = line.vector("position", [x, y, z])?;
-        self.grains.push(line.id("id", id)?, radius, [position, Vec3::zeros(), Vec3::zeros()]);
-        Ok(())
+        self.grains.printed([x, y, z]);
+        self.grains.push(line, line.id("id", id)?, radius, [position, Vec3::zeros(), Vec3::zeros()])
     }
 
     fn velocity(&mut self, line: &Line<'_>, words: &[&str]) -> Result<(), ImportError> {

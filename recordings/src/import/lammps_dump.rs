@@ -7,13 +7,14 @@
 
 use std::collections::BTreeMap;
 use std::iter::Peekable;
+use std::ops::ControlFlow;
 
 use grains::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
 use super::settings::{ImportOptions, Known, Setting};
-use super::text::{Line, lines};
+use super::text::{Line, cut, lines, shown};
 use super::{Imported, lammps_cell, lammps_local};
 
 /// The packings of a dump, in order.
@@ -21,10 +22,26 @@ use super::{Imported, lammps_cell, lammps_local};
 /// # Errors
 /// If the text is malformed, not periodic or not in SI units, or settings are missing.
 pub fn packings(text: &str, options: &ImportOptions) -> Result<Vec<Imported>, ImportError> {
-    let frames = frames(text)?;
-    let several = frames.len() > 1;
-    if let (Some(_), true) = (&options.contact_forces, several) {
-        let (line, what) = (1, format!("a dump of {} frames with contact forces", frames.len()));
+    let mut all = Vec::new();
+    each(text, options, &mut |imported| {
+        all.push(imported);
+        ControlFlow::Continue(())
+    })?;
+    Ok(all)
+}
+
+/// Gives `take` the packings of a dump one by one, in order, until it has enough.
+///
+/// # Errors
+/// As [`packings`], once `take` has been given the packings before the fault.
+pub fn each(
+    text: &str,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> Result<(), ImportError> {
+    let count = text.matches("ITEM: ATOMS").count();
+    if let (Some(_), true) = (&options.contact_forces, count > 1) {
+        let (line, what) = (1, format!("a dump of {count} frames with contact forces"));
         return Err(ImportError::Unsupported {
             line,
             what,
@@ -32,24 +49,30 @@ pub fn packings(text: &str, options: &ImportOptions) -> Result<Vec<Imported>, Im
         });
     }
     let local = options.contact_forces.as_deref().map(lammps_local::contacts).transpose()?;
-    let count = frames.len();
-    let packing = |(k, frame): (usize, Frame)| {
+    let mut frames = Frames::new(text);
+    let mut number = 0;
+    while let Some(frame) = frames.next()? {
+        number += 1;
         let source =
-            if several { format!("LAMMPS dump, frame {} of {count}", k + 1) } else { "LAMMPS dump".into() };
-        frame.packing(options, local.as_deref(), source)
-    };
-    frames.into_iter().enumerate().map(packing).collect()
+            if count > 1 { format!("LAMMPS dump, frame {number} of {count}") } else { "LAMMPS dump".into() };
+        if take(frame.packing(options, local.as_deref(), source)?).is_break() {
+            break;
+        }
+    }
+    if number == 0 { Err(ImportError::Empty) } else { Ok(()) }
 }
 
-struct Frame {
+struct Frame<'a> {
     step: u64,
     origin: Vec3,
     cell: Mat3,
-    rows: Vec<Row>,
+    rows: Vec<Row<'a>>,
 }
 
 /// An atom before options complete it.
-struct Row {
+struct Row<'a> {
+    line: Line<'a>,
+    coordinates: [&'a str; 3],
     id: u32,
     radius: Option<f64>,
     mass: Option<f64>,
@@ -59,52 +82,65 @@ struct Row {
     spin: Vec3,
 }
 
-fn frames(text: &str) -> Result<Vec<Frame>, ImportError> {
-    let mut frames = Vec::new();
-    let mut lines = lines(text).filter(|l| !l.text.trim().is_empty()).peekable();
-    let (mut step, mut count, mut cell) = (0, None, None);
-    while let Some(line) = lines.next() {
-        let Some(item) = line.text.trim().strip_prefix("ITEM:").map(str::trim) else {
-            return Err(line.error(format!("ITEM: … expected, found {:?}", line.text)));
-        };
-        let mut follow =
-            || lines.next().ok_or_else(|| line.error(format!("the file ends within ITEM: {item}")));
-        if item == "TIMESTEP" {
-            let value = follow()?;
-            step = value.number("the time step", value.text)?;
-        } else if item == "NUMBER OF ATOMS" {
-            let value = follow()?;
-            count = Some(value.number::<usize>("the number of atoms", value.text)?);
-        } else if let Some(words) = item.strip_prefix("BOX BOUNDS") {
-            cell = Some(bounds(&line, words, [follow()?, follow()?, follow()?])?);
-        } else if item == "UNITS" {
-            let value = follow()?;
-            if value.text.trim() != "si" {
-                let (line, what) = (value.number, format!("units {}", value.text.trim()));
-                return Err(ImportError::Unsupported { line, what, reason: "only SI units are (units si)" });
-            }
-        } else if item == "TIME" {
-            follow()?;
-        } else if let Some(names) = item.strip_prefix("ATOMS") {
-            let (origin, cell) = cell.take().ok_or_else(|| line.error("ATOMS come before BOX BOUNDS"))?;
-            let columns = Columns::new(&line, names)?;
-            let mut rows = Vec::new();
-            while let Some(row) = lines.next_if(|l| !l.text.starts_with("ITEM:")) {
-                rows.push(columns.row(&row, rows.len())?);
-            }
-            if let Some(expected) = count.take().filter(|n| *n != rows.len()) {
-                return Err(line.error(format!("{} atoms follow, {expected} were announced", rows.len())));
-            }
-            frames.push(Frame { step, origin, cell, rows });
-        } else {
-            skip(&mut lines);
-        }
-    }
-    if frames.is_empty() { Err(ImportError::Empty) } else { Ok(frames) }
+/// The frames of a text, one at a time: a dump may hold thousands.
+struct Frames<'a, L: Iterator<Item = Line<'a>>> {
+    lines: Peekable<L>,
 }
 
-fn skip<'a>(lines: &mut Peekable<impl Iterator<Item = Line<'a>>>) {
-    while lines.next_if(|l| !l.text.starts_with("ITEM:")).is_some() {}
+impl<'a> Frames<'a, std::iter::Empty<Line<'a>>> {
+    fn new(text: &'a str) -> Frames<'a, impl Iterator<Item = Line<'a>>> {
+        Frames { lines: lines(text).filter(|l| !l.text.trim().is_empty()).peekable() }
+    }
+}
+
+impl<'a, L: Iterator<Item = Line<'a>>> Frames<'a, L> {
+    /// The next frame; `None` at the end of the text.
+    fn next(&mut self) -> Result<Option<Frame<'a>>, ImportError> {
+        let lines = &mut self.lines;
+        let (mut step, mut count, mut cell) = (0, None, None);
+        while let Some(line) = lines.next() {
+            let Some(item) = line.text.trim().strip_prefix("ITEM:").map(str::trim) else {
+                return Err(line.error(format!("ITEM: … expected, found {}", shown(line.text))));
+            };
+            let mut follow =
+                || lines.next().ok_or_else(|| line.error(format!("the file ends within ITEM: {item}")));
+            if item == "TIMESTEP" {
+                let value = follow()?;
+                step = value.number("the time step", value.text)?;
+            } else if item == "NUMBER OF ATOMS" {
+                let value = follow()?;
+                count = Some(value.number::<usize>("the number of atoms", value.text)?);
+            } else if let Some(words) = item.strip_prefix("BOX BOUNDS") {
+                cell = Some(bounds(&line, words, [follow()?, follow()?, follow()?])?);
+            } else if item == "UNITS" {
+                let value = follow()?;
+                if value.text.trim() != "si" {
+                    let (line, what) = (value.number, format!("units {}", cut(value.text.trim())));
+                    return Err(ImportError::Unsupported {
+                        line,
+                        what,
+                        reason: "only SI units are (units si)",
+                    });
+                }
+            } else if item == "TIME" {
+                follow()?;
+            } else if let Some(names) = item.strip_prefix("ATOMS") {
+                let (origin, cell) = cell.take().ok_or_else(|| line.error("ATOMS come before BOX BOUNDS"))?;
+                let columns = Columns::new(&line, names)?;
+                let mut rows = Vec::new();
+                while let Some(row) = lines.next_if(|l| !l.text.starts_with("ITEM:")) {
+                    rows.push(columns.row(&row, rows.len())?);
+                }
+                if let Some(expected) = count.filter(|n| *n != rows.len()) {
+                    return Err(line.error(format!("{} atoms follow, {expected} were announced", rows.len())));
+                }
+                return Ok(Some(Frame { step, origin, cell, rows }));
+            } else {
+                while lines.next_if(|l| !l.text.starts_with("ITEM:")).is_some() {}
+            }
+        }
+        Ok(None)
+    }
 }
 
 /// Origin and edge vectors. LAMMPS writes the bounding box of a tilted cell, not its edges.
@@ -175,19 +211,20 @@ impl Columns {
         Ok(Self { id: names.get("id").copied(), names, position, scaled })
     }
 
-    fn row(&self, line: &Line<'_>, before: usize) -> Result<Row, ImportError> {
+    fn row<'a>(&self, line: &Line<'a>, before: usize) -> Result<Row<'a>, ImportError> {
         let words = line.words();
         if words.len() != self.names.len() {
             return Err(line.error(format!("{} columns, {} were announced", words.len(), self.names.len())));
         }
-        let number =
-            |name: &str| self.names.get(name).map(|&k| line.number::<f64>(name, words[k])).transpose();
+        let number = |name: &str| self.names.get(name).map(|&k| line.finite(name, words[k])).transpose();
         let vector = |name: &str| match ["x", "y", "z"].map(|axis| self.names.get(&format!("{name}{axis}"))) {
             [Some(&x), Some(&y), Some(&z)] => line.vector(name, [words[x], words[y], words[z]]),
             _ => Ok(Vec3::zeros()),
         };
         let radius = number("radius")?.or(number("diameter")?.map(|d| 0.5 * d));
         Ok(Row {
+            line: *line,
+            coordinates: self.position.map(|k| words[k]),
             // Without an id column the order of the rows stands for it.
             id: self.id.map_or(Ok(before as u32 + 1), |k| line.id("id", words[k]))?,
             radius,
@@ -200,7 +237,7 @@ impl Columns {
     }
 }
 
-impl Frame {
+impl Frame<'_> {
     fn packing(
         &self,
         options: &ImportOptions,
@@ -213,7 +250,10 @@ impl Frame {
             let radius =
                 row.radius.or(options.radius).ok_or_else(|| ImportError::Missing(vec![Setting::Radius]))?;
             let position = if row.scaled { self.origin + self.cell * row.position } else { row.position };
-            grains.push(row.id, radius, [position, row.velocity, row.spin]);
+            if !row.scaled {
+                grains.printed(row.coordinates);
+            }
+            grains.push(&row.line, row.id, radius, [position, row.velocity, row.spin])?;
             densities.extend(row.mass.map(|m| m / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))));
         }
         // Masses give the density if they agree on one to what 6 printed digits allow.

@@ -1,12 +1,14 @@
 //! A path to packings.
 
-use std::fs;
-use std::io::Read;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-use super::{ImportError, ImportOptions, Imported, csv, lammps_data, lammps_dump, recording};
+use super::text::{lines, shown};
+use super::{ImportError, ImportOptions, Imported, csv, lammps_data, lammps_dump, recording, yade};
 use crate::reader::{Recording, Warning};
 
 /// What a path gave.
@@ -18,42 +20,64 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Csv,
     Dump,
     Data,
+    Yade,
 }
 
-/// The packings of a file or run directory: a recording, a CSV (with the sidecar `<stem>.json` if there is
-/// one), a LAMMPS dump or data file; `.gz` is decompressed. The name decides, and where it does not, the
-/// first line.
+/// All packings of a file or run directory at once: see [`each`].
 ///
 /// # Errors
-/// With the path in front of the reason: see [`ImportError`].
+/// As [`each`].
 pub fn load(path: &Path, options: &ImportOptions) -> Result<Loaded, ImportError> {
+    let mut packings = Vec::new();
+    let warnings = each(path, options, &mut |imported| {
+        packings.push(imported);
+        ControlFlow::Continue(())
+    })?;
+    Ok(Loaded { packings, warnings })
+}
+
+/// Gives `take` the packings of a file or run directory one by one, in order, until it has enough: of a
+/// recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump or data file, a YADE export;
+/// `.gz` is decompressed. The content decides, and where it does not, the name. Returned are the warnings of a
+/// recording: data was lost if there are any.
+///
+/// # Errors
+/// With the path in front of the reason: see [`ImportError`]. `take` has then been given the packings before the
+/// fault.
+pub fn each(
+    path: &Path,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> Result<Vec<Warning>, ImportError> {
     let inside = |source| ImportError::In { path: path.to_owned(), source: Box::new(source) };
-    let io = |source| ImportError::Io { path: path.to_owned(), source };
-    let metadata = fs::metadata(path).map_err(io)?;
+    let metadata = fs::metadata(path).map_err(|source| ImportError::Io { path: path.to_owned(), source })?;
     let (stem, extension) = stem_and_extension(path);
-    if metadata.is_dir() || extension == "mcap" {
+    if metadata.is_dir() || extension == "mcap" || starts_with(path, MCAP) {
         let recording = Recording::open(path)?;
-        let packings = recording::packings(&recording, options).map_err(|e| match e {
+        recording::each(&recording, options, take).map_err(|e| match e {
             ImportError::Recording(_) => e,
             other => inside(other),
         })?;
-        return Ok(Loaded { packings, warnings: recording.warnings() });
+        return Ok(recording.warnings());
     }
     let text = text(path)?;
-    let packings = match format(&extension, &stem, &text).ok_or(ImportError::UnknownFormat).map_err(inside)? {
+    match format(&extension, &stem, &text).map_err(inside)? {
         Format::Csv => {
             let sidecar = path.with_file_name(format!("{stem}.json"));
             let sidecar = if sidecar.exists() { Some(self::text(&sidecar)?) } else { None };
-            csv::packing(&text, sidecar.as_deref(), options).map(|p| vec![p])
+            csv::packing(&text, sidecar.as_deref(), options).map(|p| _ = take(p))
         }
-        Format::Dump => lammps_dump::packings(&text, options),
-        Format::Data => lammps_data::packing(&text, options).map(|p| vec![p]),
-    };
-    Ok(Loaded { packings: packings.map_err(inside)?, warnings: Vec::new() })
+        Format::Dump => lammps_dump::each(&text, options, take),
+        Format::Data => lammps_data::packing(&text, options).map(|p| _ = take(p)),
+        Format::Yade => yade::packing(&text, options).map(|p| _ = take(p)),
+    }
+    .map_err(inside)?;
+    Ok(Vec::new())
 }
 
 /// Stem and extension of the name without `.gz`.
@@ -64,38 +88,98 @@ fn stem_and_extension(path: &Path) -> (String, String) {
     (part(name.file_stem()), part(name.extension()).to_lowercase())
 }
 
-fn format(extension: &str, stem: &str, text: &str) -> Option<Format> {
-    match extension {
-        "csv" => return Some(Format::Csv),
-        "dump" | "lammpstrj" => return Some(Format::Dump),
-        "data" => return Some(Format::Data),
-        _ => {}
+/// What a text is: its first lines tell, or else its name does.
+fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError> {
+    let mut full = lines(text).filter(|l| !l.text.trim().is_empty());
+    let first = full.next().ok_or(ImportError::Empty)?;
+    let begins = |prefix: &str| first.text.trim_start().starts_with(prefix);
+    let unsupported = |what: &str, reason| {
+        Err(ImportError::Unsupported { line: first.number, what: what.to_owned(), reason })
+    };
+    if begins("# vtk DataFile") {
+        return unsupported("a VTK file", FROM_YADE);
     }
-    // LAMMPS users name files dump.x and data.x as often as x.dump and x.data.
-    match stem {
-        "dump" => return Some(Format::Dump),
-        "data" => return Some(Format::Data),
-        _ => {}
+    if begins("<?xml") || begins("<boost_serialization") {
+        return unsupported("XML (a simulation that YADE saved?)", FROM_YADE);
     }
-    let first = text.lines().find(|l| !l.trim().is_empty())?;
-    if first.starts_with("ITEM:") {
-        Some(Format::Dump)
-    } else if first.starts_with("LAMMPS") {
-        Some(Format::Data)
-    } else if ["p,", "c,", "# particles"].iter().any(|s| first.starts_with(s)) {
-        Some(Format::Csv)
+    if begins("LIGGGHTS Description") {
+        let reason = "it has radii for diameters and no periodic cell: export with format id_x_y_z_r_matId";
+        return unsupported("YADE's format liggghts_in", reason);
+    }
+    let row = full.find(|l| !l.text.trim_start().starts_with('#')).unwrap_or(first);
+    let row = if begins("#") { row } else { first };
+    let is_row = |text: &str| text.starts_with("p,") || text.starts_with("c,");
+    let atoms = |text: &str| matches!(text.split_whitespace().collect::<Vec<_>>()[..], [n, "atoms"] if n.parse::<u64>().is_ok());
+    if begins("ITEM:") {
+        Ok(Format::Dump)
+    } else if begins("#format") {
+        Ok(Format::Yade)
+    } else if is_row(row.text.trim_start()) || begins("# particles") {
+        Ok(Format::Csv)
+    } else if begins("LAMMPS") || text.lines().take(HEADER).any(atoms) {
+        Ok(Format::Data)
     } else {
-        None
+        by_name(extension, stem)
+            .ok_or_else(|| ImportError::UnknownFormat { line: first.number, first: shown(first.text.trim()) })
     }
+}
+
+const FROM_YADE: &str =
+    "from YADE, export with textExt, or with the script of `grainlab analyze --yade-script`";
+
+/// Lines among which a LAMMPS data file says how many atoms it has; its first line may be anything.
+const HEADER: usize = 20;
+
+const MCAP: &[u8] = b"\x89MCAP0\r\n";
+
+fn by_name(extension: &str, stem: &str) -> Option<Format> {
+    // LAMMPS users name files dump.x and data.x as often as x.dump and x.data.
+    match (extension, stem) {
+        ("csv", _) => Some(Format::Csv),
+        ("dump" | "lammpstrj", _) | (_, "dump") => Some(Format::Dump),
+        ("data", _) | (_, "data") => Some(Format::Data),
+        _ => None,
+    }
+}
+
+fn starts_with(path: &Path, magic: &[u8]) -> bool {
+    let mut bytes = vec![0; magic.len()];
+    File::open(path).and_then(|mut f| f.read_exact(&mut bytes)).is_ok() && bytes == magic
 }
 
 fn text(path: &Path) -> Result<String, ImportError> {
     let io = |source| ImportError::Io { path: path.to_owned(), source };
-    let bytes = fs::read(path).map_err(io)?;
-    let mut text = String::new();
+    let mut bytes = fs::read(path).map_err(io)?;
+    let refuse = |kind, problem: String| ImportError::Io {
+        path: path.to_owned(),
+        source: io::Error::new(kind, problem),
+    };
     if bytes.starts_with(&[0x1f, 0x8b]) {
-        MultiGzDecoder::new(bytes.as_slice()).read_to_string(&mut text).map_err(io)?;
-        return Ok(text);
+        let mut unpacked = Vec::new();
+        MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut unpacked).map_err(|e| match e.kind() {
+            io::ErrorKind::UnexpectedEof => refuse(
+                e.kind(),
+                format!(
+                    "the compressed file is cut off after {} bytes of text: copy it again",
+                    unpacked.len()
+                ),
+            ),
+            kind => refuse(kind, format!("the compressed file is damaged: {e}")),
+        })?;
+        bytes = unpacked;
     }
-    String::from_utf8(bytes).map_err(|e| io(std::io::Error::new(std::io::ErrorKind::InvalidData, e)))
+    if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {
+        let problem = "it is compressed otherwise than by gzip: unpack it first";
+        return Err(refuse(io::ErrorKind::InvalidData, problem.to_owned()));
+    }
+    let mut text = String::from_utf8(bytes).map_err(|e| {
+        let (good, e) = (e.utf8_error().valid_up_to(), e);
+        let line = e.as_bytes()[..good].iter().filter(|b| **b == b'\n').count() + 1;
+        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is no UTF-8)"))
+    })?;
+    // Windows programs put a byte order mark in front.
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
 }

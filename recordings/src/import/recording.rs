@@ -1,5 +1,7 @@
 //! Packings of recordings of ours.
 
+use std::ops::ControlFlow;
+
 use grainlab_msgs::{Message as _, from_cdr, msg, topics};
 use grains::Packing;
 
@@ -7,12 +9,17 @@ use super::error::ImportError;
 use super::{ImportOptions, Imported};
 use crate::reader::{Message, ReadError, Recording, Selection};
 
-/// The packings of a recording, in order of log time. A message that is not a packing is an error; a damaged
-/// or truncated recording gives what is left of it, and says so in its warnings.
+/// Gives `take` the packings of a recording one by one, in order of log time, until it has enough. A message
+/// that is not a packing is an error; a damaged or truncated recording gives what is left of it, and says so in
+/// its warnings.
 ///
 /// # Errors
 /// If the topic does not exist, carries another type, or a message on it is not a packing.
-pub fn packings(recording: &Recording, options: &ImportOptions) -> Result<Vec<Imported>, ImportError> {
+pub fn each(
+    recording: &Recording,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> Result<(), ImportError> {
     let topic = options.topic.as_deref().unwrap_or(topics::PACKING.name);
     let channel = recording.channel(topic)?;
     if channel.ros_type != msg::Packing::TYPE {
@@ -22,9 +29,14 @@ pub fn packings(recording: &Recording, options: &ImportOptions) -> Result<Vec<Im
         let (path, topic) = (recording.path().to_owned(), format!("{topic} of type {}", msg::Packing::TYPE));
         return Err(ReadError::NoSuchTopic { path, topic, known }.into());
     }
-    let packings: Result<Vec<_>, _> =
-        recording.messages(&Selection::topics([topic]))?.map(|m| packing(&m)).collect();
-    packings.and_then(|p| if p.is_empty() { Err(ImportError::Empty) } else { Ok(p) })
+    let mut any = false;
+    for message in recording.messages(&Selection::topics([topic]))? {
+        any = true;
+        if take(packing(&message)?).is_break() {
+            break;
+        }
+    }
+    if any { Ok(()) } else { Err(ImportError::Empty) }
 }
 
 /// The packing of one recorded message.
@@ -41,5 +53,5 @@ pub fn packing(message: &Message) -> Result<Imported, ImportError> {
     let packing = Packing::try_from(&decoded).map_err(|e| fail(e.to_string()))?;
     let scene = if decoded.scene.is_empty() { "a scene without name" } else { &decoded.scene };
     let source = format!("recording, {scene}, step {}", packing.step);
-    Ok(Imported { step: packing.step, packing, source, notes: Vec::new() })
+    Ok(Imported { step: packing.step, packing, header: decoded.header, source, notes: Vec::new() })
 }

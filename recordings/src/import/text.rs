@@ -22,7 +22,14 @@ impl<'a> Line<'a> {
 
     /// `field`, which is called `name`, as a number.
     pub(super) fn number<T: std::str::FromStr>(&self, name: &str, field: &str) -> Result<T, ImportError> {
-        field.trim().parse().map_err(|_| self.error(format!("{name} is {field:?}, not a number of its kind")))
+        let problem = || format!("{name} is {}, not a number of its kind", shown(field));
+        field.trim().parse().map_err(|_| self.error(problem()))
+    }
+
+    /// The same where only a finite number makes sense.
+    pub(super) fn finite(&self, name: &str, field: &str) -> Result<f64, ImportError> {
+        let value: f64 = self.number(name, field)?;
+        if value.is_finite() { Ok(value) } else { Err(self.error(format!("{name} is not finite ({value})"))) }
     }
 
     /// An id or a count that other programs may write as `3` or `3.0`.
@@ -31,13 +38,13 @@ impl<'a> Line<'a> {
         if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
             Ok(value as u32)
         } else {
-            Err(self.error(format!("{name} is {field}, not a whole number from 0 to {}", u32::MAX)))
+            Err(self.error(format!("{name} is {}, not a whole number from 0 to {}", cut(field), u32::MAX)))
         }
     }
 
-    /// Three fields as a vector.
+    /// Three fields as a vector of finite numbers.
     pub(super) fn vector(&self, name: &str, fields: [&str; 3]) -> Result<Vec3, ImportError> {
-        let [x, y, z] = fields.map(|f| self.number::<f64>(name, f));
+        let [x, y, z] = fields.map(|f| self.finite(name, f));
         Ok(Vec3::new(x?, y?, z?))
     }
 }
@@ -45,4 +52,24 @@ impl<'a> Line<'a> {
 /// The lines of a text.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     text.lines().enumerate().map(|(k, text)| Line { number: k + 1, text })
+}
+
+/// Characters of a field that an error shows: a line of a file that is no table may be megabytes long.
+const SHOWN: usize = 40;
+
+/// `text` in quotation marks, cut to what a person reads.
+pub(super) fn shown(text: &str) -> String {
+    format!("{:?}", cut(text))
+}
+
+pub(super) fn cut(text: &str) -> String {
+    let head: String = text.chars().take(SHOWN).collect();
+    if head.len() < text.len() { head + "…" } else { head }
+}
+
+/// Significant digits of a number as printed: those from the first that is not zero.
+pub(super) fn digits(field: &str) -> u32 {
+    let mantissa = field.trim().split(['e', 'E']).next().unwrap_or_default();
+    let count = mantissa.trim_start_matches(['-', '+', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
+    count as u32
 }

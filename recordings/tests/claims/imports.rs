@@ -41,6 +41,15 @@ fn a_listed_contact_is_turned_to_our_convention() {
 }
 
 #[test]
+fn forces_of_another_contact_law_are_noted() {
+    let notes = |force: f64| pair(&format!("c,1,2,1,0,0,0.05,{force},0,0,0")).unwrap().notes.concat();
+    let found = csv::packing(PAIR, None, &in_cube(1.0)).unwrap().packing.contacts[0].normal_force;
+    assert!(!notes(found).contains("Hertz"));
+    // A linear spring, a forgotten unit.
+    assert!(notes(1.1 * found).contains("differ from Hertz's law by 10.0 %"), "{}", notes(1.1 * found));
+}
+
+#[test]
 fn contacts_that_contradict_positions_are_refused() {
     for (row, quantity) in [
         ("c,2,1,-1,0,0,0.0500001,3,0,0.5,0", "overlap"),
@@ -62,8 +71,8 @@ fn malformed_rows_are_named_by_line() {
         ("c,1,2", "10 fields, not 2"),
         ("p,-3,0,0,0,1,1,0,0,0,0,0,0", "id is -3"),
         ("p,3,0,zero,0,1,1,0,0,0,0,0,0", "position is \"zero\""),
-        ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "position[2] is not finite"),
-        ("p,2,0.5,0.5,0,0.1,1,0,0,0,0,0,0", "grain 2 occurs twice"),
+        ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "line 3: position is not finite"),
+        ("p,2,0.5,0.5,0,0.1,1,0,0,0,0,0,0", "line 3: grain 2 occurs twice"),
         ("p,3,0.1,0,0,0.1,1,0,0,0,0,0,0", "grains 1 and 3 have the same centre"),
     ] {
         let error = pair(row).unwrap_err().to_string();

@@ -3,8 +3,10 @@
 mod contact_search;
 mod damage;
 mod imports;
+mod malformed;
 mod playback;
 mod reference_packing;
 mod round_trips;
 mod support;
 mod write_and_read;
+mod yade;

@@ -1,37 +1,67 @@
-//! `grainlab analyze`: measures packings from files, without DDS.
+//! `grainlab analyze`: measures packings from files, without DDS, or from a live topic.
+//!
+//! - [`files`]: many files at once; [`live`]: a topic
+//! - [`measure`]: one packing
+//! - [`sink`]: results in order, to stdout and into a recording
 
-use crate::failure::{Failure, worse};
-use crate::output::{Format, json, print};
-use crate::results::state::{self, State};
-use crate::results::state_text;
+mod bar;
+mod files;
+mod live;
+mod measure;
+mod record;
+mod sink;
+
+use crate::failure::Failure;
+use crate::output::{Format, print};
 use grains::{Mat3, Vec3};
+use measure::Measure;
 use node_kit::Exit;
-use rayon::prelude::*;
-use recordings::Recording;
-use recordings::import::{ImportError, ImportOptions, Imported, load};
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use recordings::import::{ImportOptions, yade};
+use sink::Sink;
+use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  Every packing of a recorded run:
+  Every packing of a recorded run, or of all runs:
     grainlab analyze recordings/runs/demo-1-1
+    grainlab analyze recordings/runs/* --format csv > all.csv
   A LAMMPS dump (id type x y z radius ...), with what the file does not say:
     grainlab analyze settle.dump --shear-modulus 29e9 --poisson 0.2 --density 2500 --friction 0.3 --format json
+  A packing in YADE, contact forces included (run the script within YADE, it says how):
+    grainlab analyze --yade-script > grainlab_export.py
+    grainlab analyze packing.csv
+  What a running simulator publishes, until Ctrl-C, and the messages of the analyzer node about it:
+    grainlab analyze --live --record measured
   The same stiffness by straining the packing itself, to see what the linear response leaves out:
-    grainlab analyze recordings/runs/demo-1-1 --method probe";
+    grainlab analyze recordings/runs/demo-1-1 --method probe
 
-/// Forward and backward stiffness of a probe may differ by this share without a warning: half of it is the error of either,
-/// and the difference of both is of a smaller order.
-const ONE_SIDED: f64 = 0.01;
+A file that cannot be read is named and the others are measured; the exit code is that of the worst file. Ctrl-C prints what
+is finished and ends with 130. Formats are told by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
+c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
+(atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
+comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
+from positions, with Hertz normal forces and no tangential ones.";
 
 /// Files to measure, and what they do not say. A flag goes before what a file or its sidecar says.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(crate) struct Args {
-    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files; each also as .gz
-    #[arg(required = true, value_name = "FILE")]
+    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
+    /// as .gz
+    #[arg(required_unless_present_any = ["live", "yade_script"], value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Measure what is published on the topic instead of files, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["files", "contact_forces"])]
+    live: bool,
+    /// Packings after which --live ends; with it, an earlier Ctrl-C ends with 130
+    #[arg(long, value_name = "N", requires = "live", value_parser = clap::value_parser!(u64).range(1..))]
+    count: Option<u64>,
+    /// Also record the Fabric and Moduli messages that the node fabric_analyzer would publish, into this new directory
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Print a script for YADE that exports a packing with its contacts and forces
+    #[arg(long, exclusive = true)]
+    yade_script: bool,
     /// Shear modulus of the grains, Pa
     #[arg(long, value_name = "PA")]
     shear_modulus: Option<f64>,
@@ -48,23 +78,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "M")]
     radius: Option<f64>,
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
-    #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
     cell: Vec<f64>,
-    /// Topic of recordings to read
+    /// Topic of recordings to read, or with --live to subscribe to
     #[arg(long, value_name = "NAME", default_value = "packing")]
     topic: String,
     /// LAMMPS `dump local` with the contact forces of a single-frame dump
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
     /// Axis of eps and of the ratios gamma/Delta; stiffnesses stay in the frame of the cell
-    #[arg(
-        long,
-        value_name = "X,Y,Z",
-        value_delimiter = ',',
-        num_args = 1,
-        default_value = "0,0,1",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
     /// Relative residual at which the stiffness solve stops
     #[arg(long, value_name = "REL", default_value_t = micro::Settings::default().tolerance)]
@@ -91,40 +114,18 @@ enum Method {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let (options, settings) = (options(args)?, settings(args)?);
-    // Files in parallel, then all packings in parallel; results stay in the order given.
-    let loaded: Vec<Loading> = args.files.par_iter().map(|path| read(path, &options)).collect();
-    let mut exit = Exit::Done;
-    let mut packings = Vec::new();
-    for file in &loaded {
-        file.complaints.iter().for_each(|line| crate::output::say!("grainlab: {line}"));
-        exit = worse(exit, file.exit);
-        packings.extend(file.packings.iter().map(|p| (file.path, p)));
+    if args.yade_script {
+        print(yade::EXPORTER)?;
+        return Ok(Exit::Done);
     }
-    let measured: Vec<Result<State, String>> =
-        packings.par_iter().map(|(path, imported)| measure(path, imported, &settings)).collect();
-    let mut states = Vec::new();
-    for result in measured {
-        match result {
-            Ok(state) => states.push(state),
-            Err(message) => {
-                crate::output::say!("grainlab: {message}");
-                exit = worse(exit, Exit::PhysicsInvalid);
-            }
-        }
+    let (options, measure) = (options(args)?, Measure { settings: settings(args)? });
+    let recorder = args.record.as_deref().map(record::Recorder::create).transpose()?;
+    let sink = Sink::new(args.format, recorder);
+    if args.live {
+        live::run(&args.topic, args.count, &measure, sink)
+    } else {
+        files::run(&args.files, &options, &measure, sink)
     }
-    if !states.is_empty() && states.iter().all(|s| s.stiffness_pa.is_none()) {
-        exit = worse(exit, Exit::PhysicsInvalid);
-    }
-    let text = match args.format {
-        Format::Json => json(&states)?,
-        Format::Csv => state::csv(&states),
-        Format::Table => {
-            states.iter().map(|s| format!("{}, step {}\n{}", s.source, s.step, state_text::text(s))).collect()
-        }
-    };
-    print(&text)?;
-    Ok(exit)
 }
 
 /// Refuses a flag whose value is out of range, by its name.
@@ -185,71 +186,4 @@ fn settings(args: &Args) -> Result<micro::Settings, Failure> {
     })?;
     let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..micro::Probe::default() });
     Ok(micro::Settings { axis, tolerance: args.tolerance, probe, ..micro::Settings::default() })
-}
-
-/// What reading one file came to.
-struct Loading<'a> {
-    path: &'a Path,
-    packings: Vec<Imported>,
-    complaints: Vec<String>,
-    exit: Exit,
-}
-
-fn read<'a>(path: &'a Path, options: &ImportOptions) -> Loading<'a> {
-    let lines = |warnings: &[recordings::Warning]| warnings.iter().map(ToString::to_string).collect();
-    match load(path, options) {
-        Ok(loaded) => {
-            let exit = if loaded.warnings.is_empty() { Exit::Done } else { Exit::DataLoss };
-            Loading { path, packings: loaded.packings, complaints: lines(&loaded.warnings), exit }
-        }
-        Err(error) => {
-            let mut exit = match without_path(&error) {
-                ImportError::Missing(_) | ImportError::Cell(_) => Exit::Usage,
-                _ => Exit::Failure,
-            };
-            let mut complaints = Vec::new();
-            // A recording that is cut off before its first packing has lost data; that is why there is none.
-            if let Ok(recording) = Recording::open(path) {
-                complaints = lines(&recording.warnings());
-                exit = if complaints.is_empty() { exit } else { Exit::DataLoss };
-            }
-            complaints.push(error.to_string());
-            Loading { path, packings: Vec::new(), complaints, exit }
-        }
-    }
-}
-
-fn without_path(error: &ImportError) -> &ImportError {
-    match error {
-        ImportError::In { source, .. } => without_path(source),
-        other => other,
-    }
-}
-
-fn measure(path: &Path, imported: &Imported, settings: &micro::Settings) -> Result<State, String> {
-    let began = Instant::now();
-    let packing = &imported.packing;
-    let found = micro::analyse(packing, settings)
-        .map_err(|e| format!("{}, step {}: {e}", path.display(), packing.step))?;
-    let moduli = found.moduli.as_ref();
-    let mut state = State::new(path.display().to_string(), packing, &found.fabric, moduli.ok());
-    state.step = imported.step;
-    state.seconds = Some(began.elapsed().as_secs_f64());
-    state.warnings.clone_from(&imported.notes);
-    state.warnings.extend(moduli.err().map(ToString::to_string));
-    state.warnings.extend(found.probe.as_ref().and_then(one_sided));
-    Ok(state)
-}
-
-/// What a probe says about a response that depends on the direction of the strain.
-fn one_sided(probe: &micro::ProbeResult) -> Option<String> {
-    let changed: u32 = probe.columns.iter().map(|c| c.opened + c.closed).sum();
-    let worst = probe.columns.iter().filter_map(|c| c.forward_backward).fold(0.0, f64::max);
-    (worst > ONE_SIDED).then(|| {
-        format!(
-            "the probe's forward and backward strain give stiffnesses that differ by {:.1} %, {changed} contacts opened \
-             or closed: lower --amplitude",
-            100.0 * worst
-        )
-    })
 }

@@ -21,7 +21,7 @@ Examples:
 
 /// What to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Shear modulus in the plane of isotropy, Pa
     #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
@@ -36,7 +36,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
     pressure: Option<f64>,
     /// Ratio of deviatoric to volumetric strain about the axis [default: unknown, taken as 0]
-    #[arg(long, value_name = "G", allow_negative_numbers = true, conflicts_with = "table")]
+    #[arg(long, value_name = "G", conflicts_with = "table")]
     gamma_over_delta: Option<f64>,
     /// Longitudinal modulus across the axis, Pa: checks the others, with --c33
     #[arg(long, value_name = "PA", requires = "c33", conflicts_with = "table")]

@@ -26,6 +26,8 @@ pub(crate) struct State {
     pub(crate) eps: f64,
     pub(crate) axis: [f64; 3],
     pub(crate) g: Ratios,
+    /// How the stiffness was found: frozen_network, probe, affine or acoustic.
+    pub(crate) method: Option<&'static str>,
     pub(crate) stiffness_pa: Option<[[f64; 6]; 6]>,
     pub(crate) stiffness_affine_pa: Option<[[f64; 6]; 6]>,
     pub(crate) g12_pa: Option<f64>,
@@ -82,6 +84,7 @@ impl State {
             eps: fabric.eps,
             axis: fabric.axis.into(),
             g: Ratios::from(&fabric.anisotropy),
+            method: None,
             stiffness_pa: moduli.map(|m| rows(&m.stiffness)),
             stiffness_affine_pa: moduli.map(|m| rows(&m.affine)),
             g12_pa: three.map(|m| m[0]),
@@ -128,7 +131,7 @@ pub(crate) fn csv(states: &[State]) -> String {
     header.extend(of("fabric"));
     let rest = ["eps", "axis_x", "axis_y", "axis_z", "g_total", "g_elastic", "g_contact", "g12_pa", "g13_pa"];
     header.extend(rest.map(String::from));
-    header.extend(["theta_pa", "theta_reuss_pa", "residual", "seconds"].map(String::from));
+    header.extend(["theta_pa", "theta_reuss_pa", "residual", "seconds", "method"].map(String::from));
     header.extend(entries("c"));
     header.extend(entries("affine_c"));
     header.extend(STRUCTURE.map(String::from));
@@ -145,6 +148,7 @@ pub(crate) fn csv(states: &[State]) -> String {
         cells.extend(s.axis.map(number));
         cells.extend([s.g.total, s.g.elastic, s.g.contact].map(exact));
         cells.extend([s.g12_pa, s.g13_pa, s.theta_pa, s.theta_reuss_pa, s.residual, s.seconds].map(exact));
+        cells.push(s.method.unwrap_or_default().to_owned());
         for matrix in [&s.stiffness_pa, &s.stiffness_affine_pa] {
             cells.extend((0..36).map(|n| exact(matrix.as_ref().map(|m| m[n / 6][n % 6]))));
         }

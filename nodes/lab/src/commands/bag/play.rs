@@ -29,7 +29,7 @@ const GRACE: Duration = Duration::from_millis(300);
 
 /// What to play, and how fast.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Run directory or MCAP file
     #[arg(value_name = "PATH")]

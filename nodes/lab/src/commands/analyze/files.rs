@@ -1,0 +1,233 @@
+//! Many files at once, a few packings of them in memory.
+
+use super::bar::Bar;
+use super::measure::Measure;
+use super::sink::{Ending, Place, Sink};
+use crate::failure::{Failure, worse};
+use node_kit::Exit;
+use node_kit::signals::Signals;
+use recordings::Recording;
+use recordings::import::{ImportError, ImportOptions, Imported, each};
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Measures every packing of every file, on every core. Whoever has nothing to measure reads the next file; a reader
+/// measures what it reads itself once two packings a core wait: more are never in memory.
+pub(super) fn run(
+    files: &[PathBuf],
+    options: &ImportOptions,
+    measure: &Measure,
+    mut sink: Sink,
+) -> Result<Exit, Failure> {
+    let signals = Signals::install().map_err(Failure::failed)?;
+    let stop = signals.flag();
+    sink.bar = Bar::of(files.len());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    let shop = Shop {
+        files,
+        options,
+        measure,
+        stop: &stop,
+        room: 2 * workers,
+        desk: Mutex::new(Desk::default()),
+        news: Condvar::new(),
+        sink: Mutex::new(sink),
+        failure: Mutex::new(None),
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| shop.work());
+        }
+    });
+    let Shop { desk, sink, failure, .. } = shop;
+    if let Some(failure) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        return Err(failure);
+    }
+    let desk = desk.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let sink = sink.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let measured = sink.measured();
+    let exit = sink.finish()?;
+    // A signal that came when all was done changes nothing.
+    if desk.read_to_end == files.len() && desk.packings.is_empty() {
+        return Ok(exit);
+    }
+    let left = files.len() - desk.read_to_end;
+    crate::output::say!(
+        "grainlab: interrupted: {measured} packings measured, {left} files not read to their end"
+    );
+    Ok(worse(exit, Exit::Interrupted))
+}
+
+struct Job {
+    place: Place,
+    imported: Imported,
+}
+
+/// What there is to do.
+#[derive(Default)]
+struct Desk {
+    /// The next file that nobody reads yet.
+    next: usize,
+    reading: usize,
+    read_to_end: usize,
+    packings: VecDeque<Job>,
+}
+
+enum Task {
+    Measure(Box<Job>),
+    Read(usize),
+}
+
+struct Shop<'a> {
+    files: &'a [PathBuf],
+    options: &'a ImportOptions,
+    measure: &'a Measure,
+    /// A signal came, or results go nowhere.
+    stop: &'a AtomicBool,
+    /// Packings that may wait.
+    room: usize,
+    desk: Mutex<Desk>,
+    news: Condvar,
+    sink: Mutex<Sink>,
+    failure: Mutex<Option<Failure>>,
+}
+
+impl Shop<'_> {
+    fn work(&self) {
+        while let Some(task) = self.task() {
+            match task {
+                Task::Measure(job) => self.measure(&job),
+                Task::Read(file) => self.read(file),
+            }
+        }
+    }
+
+    fn task(&self) -> Option<Task> {
+        let mut desk = self.desk();
+        loop {
+            if self.stopped() {
+                return None;
+            }
+            if let Some(job) = desk.packings.pop_front() {
+                return Some(Task::Measure(Box::new(job)));
+            }
+            if desk.next < self.files.len() {
+                desk.next += 1;
+                desk.reading += 1;
+                return Some(Task::Read(desk.next - 1));
+            }
+            if desk.reading == 0 {
+                return None;
+            }
+            desk = self.news.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn measure(&self, job: &Job) {
+        let source = self.files[job.place.0].display().to_string();
+        let found = self.measure.measure(&source, &job.imported);
+        let put = lock(&self.sink).put(job.place, found);
+        self.check(put);
+    }
+
+    fn read(&self, file: usize) {
+        let mut reading = Reading { shop: self, to_end: false };
+        let mut packings = 0;
+        let (complaints, exit) = read(&self.files[file], self.options, &mut |imported| {
+            let job = Job { place: (file, packings), imported };
+            packings += 1;
+            let mut desk = self.desk();
+            if desk.packings.len() < self.room {
+                desk.packings.push_back(job);
+                drop(desk);
+                self.news.notify_one();
+            } else {
+                drop(desk);
+                self.measure(&job);
+            }
+            if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        if !self.stopped() {
+            reading.to_end = true;
+            let end = lock(&self.sink).end(file, Ending { packings, complaints, exit });
+            self.check(end);
+        }
+    }
+
+    /// Nobody goes on when results cannot be printed or recorded.
+    fn check(&self, result: Result<(), Failure>) {
+        if let Err(failure) = result {
+            lock(&self.failure).get_or_insert(failure);
+            self.stop.store(true, Ordering::Relaxed);
+            self.news.notify_all();
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    fn desk(&self) -> MutexGuard<'_, Desk> {
+        lock(&self.desk)
+    }
+}
+
+/// A file that is being read: those who wait for its packings learn when no more will come, whatever happens.
+struct Reading<'a, 'b> {
+    shop: &'a Shop<'b>,
+    to_end: bool,
+}
+
+impl Drop for Reading<'_, '_> {
+    fn drop(&mut self) {
+        let mut desk = self.shop.desk();
+        desk.reading -= 1;
+        desk.read_to_end += usize::from(self.to_end);
+        drop(desk);
+        self.shop.news.notify_all();
+    }
+}
+
+/// A worker that panicked ends the process when the scope ends; until then the others go on.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Reads one file; returns what there is to complain of, and how bad it is.
+fn read(
+    path: &Path,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> (Vec<String>, Exit) {
+    let lines = |warnings: &[recordings::Warning]| warnings.iter().map(ToString::to_string).collect();
+    match each(path, options, take) {
+        Ok(warnings) => {
+            let exit = if warnings.is_empty() { Exit::Done } else { Exit::DataLoss };
+            (lines(&warnings), exit)
+        }
+        Err(error) => {
+            let mut exit = match without_path(&error) {
+                ImportError::Missing(_) | ImportError::Cell(_) => Exit::Usage,
+                _ => Exit::Failure,
+            };
+            let mut complaints = Vec::new();
+            // A recording that is cut off before its first packing has lost data; that is why there is none.
+            if let Ok(recording) = Recording::open(path) {
+                complaints = lines(&recording.warnings());
+                exit = if complaints.is_empty() { exit } else { Exit::DataLoss };
+            }
+            complaints.push(error.to_string());
+            (complaints, exit)
+        }
+    }
+}
+
+fn without_path(error: &ImportError) -> &ImportError {
+    match error {
+        ImportError::In { source, .. } => without_path(source),
+        other => other,
+    }
+}

@@ -1,0 +1,98 @@
+//! Packings as they are published.
+
+use super::measure::Measure;
+use super::sink::{Ending, Sink};
+use crate::failure::{Failure, worse};
+use crate::network::tool_bus;
+use grainlab_msgs::{Topic, msg, topics};
+use grains::Packing;
+use node_kit::{Bus, Demand, Exit, Subscription, Wake};
+use recordings::import::Imported;
+use std::time::Duration;
+
+/// Packings that may wait while one is measured; megabytes each.
+const BACKLOG: u32 = 64;
+
+/// Nothing but a packing or a signal ends the wait.
+const IDLE: Duration = Duration::from_secs(3600);
+
+/// Measures packings of `topic` until `count` are measured or a signal comes. Without a count that is the only end there is,
+/// and a good one.
+pub(super) fn run(
+    topic: &str,
+    count: Option<u64>,
+    measure: &Measure,
+    mut sink: Sink,
+) -> Result<Exit, Failure> {
+    let mut source = Source::subscribe(topic)?;
+    let (mut taken, mut exit) = (0, Exit::Done);
+    while count.is_none_or(|count| (taken as u64) < count) {
+        match source.next()? {
+            Next::Packing(imported) => {
+                sink.put((0, taken), measure.measure(&source.name, &imported))?;
+                taken += 1;
+            }
+            Next::Refused(reason) => {
+                exit = worse(exit, Exit::Failure);
+                crate::output::say!("grainlab: {}: {reason}", source.name);
+            }
+            Next::Signal => {
+                exit = worse(exit, if count.is_some() { Exit::Interrupted } else { Exit::Done });
+                break;
+            }
+        }
+    }
+    sink.end(0, Ending { packings: taken, complaints: Vec::new(), exit })?;
+    sink.finish()
+}
+
+/// What came.
+enum Next {
+    Packing(Box<Imported>),
+    /// A message that is no packing, and why.
+    Refused(String),
+    Signal,
+}
+
+/// The subscription: all that knows how a packing comes over the bus.
+struct Source {
+    bus: node_kit::DdsBus,
+    packings: Subscription<msg::Packing>,
+    name: String,
+}
+
+impl Source {
+    fn subscribe(name: &str) -> Result<Self, Failure> {
+        let mut bus = tool_bus("analyze")?;
+        // A topic of the contract lives as long as the program; this one name does, too.
+        let topic = Topic { name: Box::leak(name.to_owned().into_boxed_str()), ..topics::PACKING };
+        let packings =
+            Subscription::subscribe(&mut bus, &topic, Demand::reliable(BACKLOG)).map_err(Failure::usage)?;
+        let name = bus.received().last().map_or_else(|| name.to_owned(), |r| r.topic.clone());
+        Ok(Self { bus, packings, name })
+    }
+
+    /// Waits for what comes next.
+    fn next(&mut self) -> Result<Next, Failure> {
+        loop {
+            if let Some((message, _)) = self.packings.take_valid(&mut self.bus).map_err(Failure::failed)? {
+                return Ok(match Packing::try_from(&message) {
+                    Ok(packing) => Next::Packing(Box::new(Imported {
+                        step: packing.step,
+                        packing,
+                        header: message.header,
+                        source: self.name.clone(),
+                        notes: Vec::new(),
+                    })),
+                    Err(reason) => {
+                        self.bus.count_refused(self.packings.id());
+                        Next::Refused(reason.to_string())
+                    }
+                });
+            }
+            if self.bus.wait(IDLE) == Wake::Shutdown {
+                return Ok(Next::Signal);
+            }
+        }
+    }
+}

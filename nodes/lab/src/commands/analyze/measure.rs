@@ -1,0 +1,57 @@
+//! One packing measured: its state, and the messages that a node would publish.
+
+use crate::results::state::State;
+use fabric_analyzer::{Measured, messages, method};
+use recordings::import::Imported;
+use std::time::Instant;
+
+/// Forward and backward stiffness of a probe may differ by this share without a warning: half of it is the error of either,
+/// and the difference of both is of a smaller order.
+const ONE_SIDED: f64 = 0.01;
+
+/// How packings are measured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measure {
+    pub(super) settings: micro::Settings,
+}
+
+/// What was found of one packing.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) state: State,
+    /// As the node `fabric_analyzer` would publish it, or why it could not.
+    pub(super) messages: Result<Measured, String>,
+}
+
+impl Measure {
+    /// Measures one packing of `source`.
+    pub(super) fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
+        let began = Instant::now();
+        let packing = &imported.packing;
+        let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
+        let found = micro::analyse(packing, &self.settings).map_err(|e| named(&e))?;
+        let moduli = found.moduli.as_ref();
+        let mut state = State::new(source.to_owned(), packing, &found.fabric, moduli.ok());
+        state.step = imported.step;
+        state.method = moduli.ok().map(|_| method(found.probe.is_some()).word());
+        state.seconds = Some(began.elapsed().as_secs_f64());
+        state.warnings.clone_from(&imported.notes);
+        state.warnings.extend(moduli.err().map(ToString::to_string));
+        state.warnings.extend(found.probe.as_ref().and_then(one_sided));
+        let messages = messages(&imported.header, packing, found).map_err(|e| named(&e));
+        Ok(Found { state, messages })
+    }
+}
+
+/// What a probe says about a response that depends on the direction of the strain.
+fn one_sided(probe: &micro::ProbeResult) -> Option<String> {
+    let changed: u32 = probe.columns.iter().map(|c| c.opened + c.closed).sum();
+    let worst = probe.columns.iter().filter_map(|c| c.forward_backward).fold(0.0, f64::max);
+    (worst > ONE_SIDED).then(|| {
+        format!(
+            "the probe's forward and backward strain give stiffnesses that differ by {:.1} %, {changed} contacts opened \
+             or closed: lower --amplitude",
+            100.0 * worst
+        )
+    })
+}

@@ -1,0 +1,124 @@
+//! Exports of YADE, in its own formats and by our script: all of one packing that YADE made and measured
+//! (`tests/golden/yade/make.py`).
+
+use std::path::{Path, PathBuf};
+
+use grains::stress::stress;
+use recordings::import::{ImportError, ImportOptions, Imported, load, yade};
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/yade").join(name)
+}
+
+fn glass() -> ImportOptions {
+    ImportOptions {
+        shear_modulus: Some(29e9),
+        poisson_ratio: Some(0.2),
+        density: Some(2500.0),
+        friction: Some(0.1),
+        ..ImportOptions::default()
+    }
+}
+
+fn one(name: &str, options: &ImportOptions) -> Imported {
+    let loaded = load(&golden(name), options).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(loaded.packings.len(), 1);
+    loaded.packings.into_iter().next().unwrap()
+}
+
+#[test]
+fn the_script_for_yade_writes_contacts_and_forces_that_give_yades_own_stress() {
+    let imported = one("packing.csv", &ImportOptions::default());
+    let p = &imported.packing;
+    assert_eq!((p.grains(), imported.notes.len()), (80, 0), "{:?}", imported.notes);
+    assert!((p.material.shear_modulus / 29e9 - 1.0).abs() < 1e-14);
+    let known: [[f64; 3]; 3] =
+        serde_json::from_slice(&std::fs::read(golden("stress.json")).unwrap()).unwrap();
+    let found = stress(p).tensor;
+    for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
+        // At rest; positive in tension, as YADE has it.
+        let expected = -0.5 * (known[r][c] + known[c][r]);
+        assert!((found.matrix()[(r, c)] - expected).abs() < 1e-6 * found.mean(), "({r}, {c})");
+    }
+    let tangential =
+        p.contacts.iter().map(|c| c.tangential_force.norm() / c.normal_force).fold(0.0, f64::max);
+    assert!(tangential > 0.01 && tangential < p.friction * 1.001, "{tangential}");
+}
+
+#[test]
+fn every_text_format_of_yade_gives_the_grains_of_the_same_packing() {
+    let exact = one("packing.csv", &ImportOptions::default()).packing;
+    let cell = ImportOptions { cell: Some(*exact.cell.matrix()), ..glass() };
+    for (name, options) in
+        [("id_x_y_z_r_matId.txt", &glass()), ("x_y_z_r_attrs.txt", &glass()), ("x_y_z_r.txt", &cell)]
+    {
+        let imported = one(name, options);
+        let p = &imported.packing;
+        assert_eq!(p.cell, exact.cell, "{name}: a comment has all digits");
+        assert_eq!(p.ids, exact.ids, "{name}");
+        for (k, x) in p.positions.iter().enumerate() {
+            // Six digits of coordinates up to a few millimetres.
+            assert!((x - exact.positions[k]).amax() < 5.1e-9, "{name}: grain {k}");
+        }
+        assert!(imported.notes.iter().any(|n| n.contains("6 digits")), "{name}: {:?}", imported.notes);
+        assert!(imported.source.contains("YADE"), "{}", imported.source);
+    }
+    let moving = one("x_y_z_r_attrs.txt", &glass()).packing;
+    for (a, b) in moving.velocities.iter().zip(&exact.velocities) {
+        assert!((a - b).norm() <= 1e-5 * b.norm());
+    }
+}
+
+const EXPORT: &str = "#format x_y_z_r_matId\n# cell Matrix3(1,0.1,0, 0,1,0, 0,0,1.5)\n0.3\t0.3\t0.3\t0.1\t0\n0.45\t0.3\t0.3\t0.1\t1\n";
+
+#[test]
+fn a_comment_gives_the_cell_and_the_flag_goes_before_it() {
+    let imported = yade::packing(EXPORT, &glass()).unwrap();
+    let p = &imported.packing;
+    assert_eq!(p.cell.matrix(), &grains::Mat3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5));
+    assert_eq!((p.ids.as_slice(), p.contacts.len()), (&[0, 1][..], 1));
+    assert!(imported.notes.iter().any(|n| n.contains("2 materials")), "{:?}", imported.notes);
+    let cube = ImportOptions { cell: Some(grains::Mat3::identity() * 2.0), ..glass() };
+    assert_eq!(yade::packing(EXPORT, &cube).unwrap().packing.cell.volume(), 8.0);
+    let three = EXPORT.replace("Matrix3(1,0.1,0, 0,1,0, 0,0,1.5)", "1 2 3");
+    assert!((yade::packing(&three, &glass()).unwrap().packing.cell.volume() - 6.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_an_export_must_not_be_is_refused_by_line() {
+    for (from, to, expected) in [
+        ("0.3\t0.1\t0\n", "0.3\t0.1\n", "line 3: 4 columns, 5 were announced"),
+        ("0.45", "abc", "line 4: position is \"abc\""),
+        ("0.45", "nan", "line 4: position is not finite"),
+        ("0.1\t1\n", "-0.1\t1\n", "line 4: the radius of grain 1 is -0.1"),
+        ("0, 0,0,1.5)", "0)", "line 2: a cell has 3 or 9 numbers, not 6"),
+        ("x_y_z_r_matId", "x_y_z_r_clumpId", "line 1: #format x_y_z_r_clumpId is not supported"),
+        ("x_y_z_r_matId", "jointedPM", "textExt"),
+        ("# cell Matrix3(1,0.1,0, 0,1,0, 0,0,1.5)\n", "", "--cell"),
+        ("1,0.1,0, 0,1,0, 0,0,1.5", "1,0,0, 0,0,0, 0,0,1", "no positive volume"),
+    ] {
+        assert!(EXPORT.contains(from), "{from}");
+        let error = yade::packing(&EXPORT.replacen(from, to, 1), &glass()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    assert!(matches!(yade::packing("#format x_y_z_r\n", &in_cube()), Err(ImportError::Empty)));
+}
+
+fn in_cube() -> ImportOptions {
+    ImportOptions { cell: Some(grains::Mat3::identity()), ..glass() }
+}
+
+#[test]
+fn other_files_of_yade_are_refused_with_what_to_do() {
+    let root = tempfile::tempdir().unwrap();
+    for (name, text, expected) in [
+        ("a-spheres-0.vtk", "# vtk DataFile Version 3.0.\ncomment\nASCII\n", "--yade-script"),
+        ("state.xml", "<?xml version=\"1.0\"?>\n<boost_serialization>", "--yade-script"),
+        ("in.data", "LIGGGHTS Description\n\n2 atoms\n", "id_x_y_z_r_matId"),
+    ] {
+        let path = root.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let error = load(&path, &glass()).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains("line 1") && error.contains(expected), "{error}");
+    }
+}
