@@ -2,7 +2,7 @@
 
 use crate::Settings;
 use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
-use grainlab_msgs::msg;
+use grainlab_msgs::{DecodeError, msg};
 use grains::Packing;
 use micro::{MicroError, NoNetwork};
 
@@ -16,8 +16,11 @@ pub struct Measured {
 }
 
 /// Why a packing is not measured.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
+    /// The bytes are no message.
+    #[error("a packing cannot be decoded: {0}")]
+    Undecodable(#[from] DecodeError),
     /// The message is not a packing.
     #[error(transparent)]
     Refused(BoundaryError),
