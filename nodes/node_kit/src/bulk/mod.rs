@@ -26,7 +26,7 @@ pub use part::PartError;
 pub use publisher::BulkPublisher;
 pub use subscription::BulkSubscription;
 
-use grainlab_msgs::Topic;
+use grainlab_msgs::{Topic, topics};
 use std::time::Duration;
 
 /// Longest body that travels as one sample, bytes: measured to arrive reliably at 10 Hz.
@@ -63,8 +63,8 @@ const LOOK: Duration = Duration::from_millis(20);
 /// The topic of parts or credits that belongs to a plain topic, by the name that this resolved to.
 ///
 /// The contract's `packing` has `packing_chunk` and `packing_credit` beside it, whatever it was remapped to.
-fn beside(plain: &Topic, resolved: &str, transport: &Topic) -> Topic {
-    let suffix = transport.name.strip_prefix(plain.name).unwrap_or(transport.name);
+fn beside(resolved: &str, transport: &Topic) -> Topic {
+    let suffix = transport.name.strip_prefix(topics::PACKING.name).unwrap_or(transport.name);
     // A topic of the contract lives as long as the program; these few names do, too.
     Topic { name: Box::leak(format!("{resolved}{suffix}").into_boxed_str()), ..*transport }
 }

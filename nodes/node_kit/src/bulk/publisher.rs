@@ -37,9 +37,9 @@ impl BulkPublisher {
         let last = |bus: &dyn Bus| bus.published().pop().map(|p| (p.topic, p.writer)).unwrap_or_default();
         let plain = bus.advertise(topic)?;
         let (resolved, _) = last(bus);
-        let parts = Publisher::advertise(bus, &beside(topic, &resolved, &topics::PACKING_CHUNK))?;
+        let parts = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CHUNK))?;
         let (_, own) = last(bus);
-        let credit_topic = beside(topic, &resolved, &topics::PACKING_CREDIT);
+        let credit_topic = beside(&resolved, &topics::PACKING_CREDIT);
         let credits = Subscription::subscribe(bus, &credit_topic, Demand::best_effort(CREDITS))?;
         Ok(Self {
             topic: *topic,

@@ -41,9 +41,9 @@ impl BulkSubscription {
     pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
         let plain = bus.subscribe(topic, demand)?;
         let resolved = bus.received().pop().map(|r| r.topic).unwrap_or_default();
-        let part_topic = beside(topic, &resolved, &topics::PACKING_CHUNK);
+        let part_topic = beside(&resolved, &topics::PACKING_CHUNK);
         let parts = Subscription::subscribe(bus, &part_topic, Demand::best_effort(PARTS))?;
-        let credits = Publisher::advertise(bus, &beside(topic, &resolved, &topics::PACKING_CREDIT))?;
+        let credits = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CREDIT))?;
         let receiver = Receiver::new(bus.now());
         Ok(Self {
             resolved,
@@ -110,6 +110,11 @@ impl BulkSubscription {
     /// How long a node may wait at `now` before it looks here again; what arrives ends its wait by itself.
     pub fn patience(&self, now: Duration) -> Duration {
         self.receiver.due().saturating_sub(now)
+    }
+
+    /// The resolved name of the plain topic, which is what messages are of.
+    pub fn topic(&self) -> &str {
+        &self.resolved
     }
 
     /// Messages that wait to be taken.
