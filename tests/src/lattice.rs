@@ -40,7 +40,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
     let packing = grains::Packing {
         step,
         time: step as f64 * 1e-6,
-        cell: Cell::cube(spacing * edge as f64).unwrap_or_else(|e| panic!("a cell: {e}")),
+        cell: Cell::cube(spacing * edge as f64).unwrap_or_else(|| panic!("a cell of {edge} grains")),
         deformation: Mat3::identity(),
         ids: (0..grains as u32).collect(),
         radii: vec![DIAMETER / 2.0; grains],

@@ -212,6 +212,9 @@ pub enum BusError {
 ///
 /// Names are resolved with the node's namespace and remaps; QoS comes from the contract table and nowhere else.
 pub trait Bus {
+    /// The name that a topic has here, namespace and remaps applied.
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError>;
+
     /// Offers a topic with the QoS of the contract table. Each call makes a writer of its own.
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError>;
 

@@ -1,6 +1,6 @@
 //! Work that takes longer than a node may be away from its bus.
 
-use crate::bus::Bus;
+use crate::bus::{Bus, Caller};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -33,13 +33,20 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
     ///
     /// # Errors
     /// If the system has no thread left.
-    pub fn new<F>(bus: &dyn Bus, name: &str, mut work: F) -> std::io::Result<Self>
+    pub fn new<F>(bus: &dyn Bus, name: &str, work: F) -> std::io::Result<Self>
     where
         F: FnMut(J) -> R + Send + 'static,
     {
-        let Some(caller) = bus.caller() else {
-            return Ok(Self { kind: Kind::Here { work: Box::new(work), done: None }, busy: false });
-        };
+        match bus.caller() {
+            Some(caller) => Self::threaded(caller, name, work),
+            None => Ok(Self { kind: Kind::Here { work: Box::new(work), done: None }, busy: false }),
+        }
+    }
+
+    fn threaded<F>(caller: Caller, name: &str, mut work: F) -> std::io::Result<Self>
+    where
+        F: FnMut(J) -> R + Send + 'static,
+    {
         let (jobs, its_jobs) = channel::<J>();
         let (its_results, results) = channel();
         std::thread::Builder::new().name(name.into()).spawn(move || {
@@ -85,5 +92,30 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
         };
         self.busy &= outcome.is_none();
         outcome.map(|outcome| outcome.unwrap_or_else(|panic| resume_unwind(panic)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_panic_of_a_job_is_the_nodes() {
+        let (called, calls) = channel();
+        let caller = Caller(Arc::new(move || called.send(()).unwrap()));
+        let mut worker = Worker::threaded(caller, "worker", |job: i32| {
+            assert_ne!(job, 2, "a bug in the job");
+            job * 10
+        })
+        .unwrap();
+        worker.give(1);
+        calls.recv().unwrap();
+        assert_eq!((worker.result(), worker.is_busy()), (Some(10), false));
+        worker.give(2);
+        calls.recv().unwrap();
+        let panic = catch_unwind(AssertUnwindSafe(|| worker.result())).unwrap_err();
+        let text = panic.downcast_ref::<String>().expect("a text");
+        assert!(text.contains("a bug in the job"), "{text}");
     }
 }

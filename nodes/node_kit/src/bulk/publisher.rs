@@ -34,11 +34,10 @@ pub struct BulkPublisher {
 impl BulkPublisher {
     /// Offers `topic` and the topic of its parts, and listens to the credits.
     pub fn advertise(bus: &mut dyn Bus, topic: &Topic) -> Result<Self, BusError> {
-        let last = |bus: &dyn Bus| bus.published().pop().map(|p| (p.topic, p.writer)).unwrap_or_default();
+        let resolved = bus.resolve(topic)?;
         let plain = bus.advertise(topic)?;
-        let (resolved, _) = last(bus);
         let parts = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CHUNK))?;
-        let (_, own) = last(bus);
+        let own = bus.published().last().map(|p| p.writer).unwrap_or_default();
         let credit_topic = beside(&resolved, &topics::PACKING_CREDIT);
         let credits = Subscription::subscribe(bus, &credit_topic, Demand::best_effort(CREDITS))?;
         Ok(Self {
@@ -114,7 +113,8 @@ impl BulkPublisher {
                 Err(error) => return Err(error),
             }
         }
-        Ok(!self.sender.is_busy(now, &self.present))
+        let matched = bus.readers(self.parts.id());
+        Ok(!self.sender.is_busy(now, &self.present, matched))
     }
 
     /// How long a node may wait before it calls [`BulkPublisher::advance`] again while something is under way; a credit

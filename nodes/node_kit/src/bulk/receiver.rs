@@ -89,9 +89,14 @@ impl Receiver {
     pub(super) fn set_ready(&mut self, now: Duration, ready: bool) {
         if self.ready != ready {
             self.ready = ready;
-            self.sources.values_mut().for_each(|source| source.credit = Repetition::new(now));
-            self.greeting = Repetition::new(now);
+            self.greet(now);
         }
+    }
+
+    /// Says at once to everybody how things stand.
+    pub(super) fn greet(&mut self, now: Duration) {
+        self.sources.values_mut().for_each(|source| source.credit = Repetition::new(now));
+        self.greeting = Repetition::new(now);
     }
 
     /// Takes in one part.

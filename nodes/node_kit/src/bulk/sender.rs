@@ -189,11 +189,13 @@ impl Sender {
         left
     }
 
-    /// Whether a reader that lives, or may, does not have the latest body yet.
-    pub(super) fn is_busy(&self, now: Duration, present: &[WriterId]) -> bool {
+    /// Whether a reader that lives, or may, does not have the latest body yet. Some are in the graph before they are heard:
+    /// `present`, and the count of readers that are `matched`.
+    pub(super) fn is_busy(&self, now: Duration, present: &[WriterId], matched: usize) -> bool {
         let Some(shape) = self.shape else { return false };
         let lacking = self.readers.values().any(|r| r.live && r.next < shape.count);
-        let unheard = || present.iter().any(|id| !self.readers.contains_key(id));
+        let unheard =
+            || matched > self.readers.len() || present.iter().any(|id| !self.readers.contains_key(id));
         lacking || (now.saturating_sub(self.offered) < FIRST_WORD && unheard())
     }
 

@@ -32,6 +32,8 @@ pub struct BulkSubscription {
     depth: usize,
     /// Times of the body under way of each writer: when its first part was written.
     written: BTreeMap<crate::bus::WriterId, Option<u64>>,
+    /// Writers of parts that are matched.
+    writers: usize,
     next_look: Duration,
     overrun: u64,
 }
@@ -39,11 +41,12 @@ pub struct BulkSubscription {
 impl BulkSubscription {
     /// Subscribes to `topic` with `demand`, and to its parts; at most the demand's depth of messages wait to be taken.
     pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
-        let plain = bus.subscribe(topic, demand)?;
-        let resolved = bus.received().pop().map(|r| r.topic).unwrap_or_default();
+        let resolved = bus.resolve(topic)?;
+        // A writer that sees the plain subscription sees this one, too: endpoints become known in their order.
         let part_topic = beside(&resolved, &topics::PACKING_CHUNK);
         let parts = Subscription::subscribe(bus, &part_topic, Demand::best_effort(PARTS))?;
         let credits = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CREDIT))?;
+        let plain = bus.subscribe(topic, demand)?;
         let receiver = Receiver::new(bus.now());
         Ok(Self {
             resolved,
@@ -55,6 +58,7 @@ impl BulkSubscription {
             queue: VecDeque::new(),
             depth: demand.depth.max(1) as usize,
             written: BTreeMap::new(),
+            writers: 0,
             next_look: Duration::ZERO,
             overrun: 0,
         })
@@ -90,6 +94,10 @@ impl BulkSubscription {
                 let info = crate::bus::SampleInfo { sequence: whole.number, source_time, ..info };
                 self.push(Sample { body: whole.body, info });
             }
+        }
+        let writers = bus.writers(self.parts.id());
+        if std::mem::replace(&mut self.writers, writers) != writers {
+            self.receiver.greet(now);
         }
         let waiting: usize = self.queue.iter().map(|sample| sample.body.len()).sum();
         self.receiver.set_ready(now, waiting <= ENOUGH);

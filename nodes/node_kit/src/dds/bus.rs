@@ -247,6 +247,10 @@ fn wire_name(resolved: &str) -> String {
 }
 
 impl Bus for DdsBus {
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError> {
+        Ok(self.names.resolve(topic.name)?)
+    }
+
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let dds_topic = self.dds_topic(&resolved, topic)?;

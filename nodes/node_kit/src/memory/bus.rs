@@ -49,6 +49,10 @@ impl MemoryBus {
 }
 
 impl Bus for MemoryBus {
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError> {
+        Ok(self.names.resolve(topic.name)?)
+    }
+
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         self.writers.push(self.hub.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
