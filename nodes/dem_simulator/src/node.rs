@@ -25,7 +25,7 @@ const CLOCK_PERIOD: Duration = Duration::from_millis(10);
 pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
 /// How long an outbox that a slow reader holds up rests.
 pub(crate) const HOLD: Duration = Duration::from_millis(5);
-/// How long the delivery of a state that is saved may take.
+/// How long the delivery of a state that is saved may take: less than the launcher's patience.
 const SAVING: Duration = Duration::from_secs(4);
 /// How long the last messages may take to be acknowledged.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -197,14 +197,20 @@ impl DemSimulator {
             log::error!("the state cannot be saved: {error}");
         }
         self.post_run_state(RunState::FAILED, reason);
-        let until = bus.now() + SAVING;
-        self.outbox.deliver(bus)?;
-        while !self.outbox.is_empty() && bus.now() < until {
-            bus.wait(HOLD);
+        // Whoever lives has a packing before this one after half the time.
+        for hurry in [false, true] {
+            if hurry && !self.outbox.is_empty() {
+                self.outbox.hurry(bus)?;
+            }
+            let until = bus.now() + SAVING / 2;
             self.outbox.deliver(bus)?;
+            while !self.outbox.is_empty() && bus.now() < until {
+                bus.wait(HOLD);
+                self.outbox.deliver(bus)?;
+            }
         }
         if !self.outbox.is_empty() {
-            let lacking = self.outbox.hurry(bus)?;
+            let lacking = self.outbox.packings().waited_for();
             log::warn!("{lacking} readers do not have the whole last packing after {} s", SAVING.as_secs());
         }
         self.farewell(bus);

@@ -70,6 +70,12 @@ impl BulkPublisher {
         if !self.advance(bus)? {
             return Err(BusError::Full { topic: self.resolved.clone(), window: WINDOW });
         }
+        self.supersede(bus, body)
+    }
+
+    /// The same, without regard to readers that do not have the message before it: they do not get that any more. For
+    /// last words.
+    pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
         if body.len() <= LIMIT {
             bus.publish(self.plain, body)?;
             self.sender.retire();
