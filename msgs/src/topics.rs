@@ -38,6 +38,9 @@ impl Qos {
     pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
     /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it all the same.
     pub const CLOCK: Self = Self { reliable: true, depth: 10, transient_local: false };
+    /// For parts of what is too large for one sample: nothing is repeated by the bus, because the readers ask for what is
+    /// missing, and a dead reader then holds nothing up. The depth is what a writer may be asked for at once.
+    pub const PARTS: Self = Self { reliable: false, depth: 32, transient_local: false };
     /// ROS 2's for `/rosout`.
     pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
 
@@ -74,6 +77,11 @@ impl Topic {
         })
     }
 
+    /// Whether it only carries another topic's messages in parts: it is never recorded, what it carries is.
+    pub fn is_transport(&self) -> bool {
+        self.info == PACKING_CHUNK.info || self.info == PACKING_CREDIT.info
+    }
+
     /// The name a recording shows without namespace: `/stress`.
     pub fn absolute_name(&self) -> String {
         format!("/{}", self.name.trim_start_matches('/'))
@@ -108,6 +116,26 @@ pub const PACKING: Topic = Topic {
     writer: "dem_simulator",
     reproducible: true,
     summary: "the complete mechanical state: grains, contacts, loading path",
+};
+
+/// Parts of packings that are too large for one sample of [`PACKING`]. Transport: recorders write the whole.
+pub const PACKING_CHUNK: Topic = Topic {
+    name: "packing_chunk",
+    info: TypeInfo::of::<msg::PackingChunk>(),
+    qos: Qos::PARTS,
+    writer: "dem_simulator",
+    reproducible: false,
+    summary: "parts of a packing over 2 MB; never recorded, the whole packing is",
+};
+
+/// What each reader of packings has of the parts.
+pub const PACKING_CREDIT: Topic = Topic {
+    name: "packing_credit",
+    info: TypeInfo::of::<msg::PackingCredit>(),
+    qos: Qos::PARTS,
+    writer: "every reader of packings",
+    reproducible: false,
+    summary: "which parts a reader has, and whether it takes more; never recorded",
 };
 
 /// Structure of a packing.
@@ -215,6 +243,8 @@ pub const TOPICS: &[Topic] = &[
     STRESS,
     STRAIN_RATE,
     PACKING,
+    PACKING_CHUNK,
+    PACKING_CREDIT,
     FABRIC,
     MODULI,
     WAVE_SPEEDS,

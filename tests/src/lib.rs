@@ -3,9 +3,11 @@
 //! - [`lab`]: the `grainlab` binary under test, in a folder and a DDS domain of its own
 //! - [`process`]: one process, never left behind
 //! - [`bodies`]: what a recording holds, topic by topic, repeats removed
+//! - [`lattice`]: packings that need no simulation
 //! - [`python`]: the independent tools, where they are installed
 
 pub mod bodies;
 pub mod lab;
+pub mod lattice;
 pub mod process;
 pub mod python;

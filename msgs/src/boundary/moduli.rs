@@ -32,6 +32,7 @@ impl ModuliMethod {
             Self::Affine => "affine",
             Self::Probe => "probe",
             Self::Acoustic => "acoustic",
+            Self::PrestressedNetwork => "prestressed_network",
         }
     }
 
@@ -42,6 +43,17 @@ impl ModuliMethod {
             Self::Affine => msg::Moduli::METHOD_AFFINE,
             Self::Probe => msg::Moduli::METHOD_PROBE,
             Self::Acoustic => msg::Moduli::METHOD_ACOUSTIC,
+            Self::PrestressedNetwork => msg::Moduli::METHOD_PRESTRESSED_NETWORK,
+        }
+    }
+}
+
+impl From<Method> for ModuliMethod {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::FrozenNetwork => Self::FrozenNetwork,
+            Method::PrestressedNetwork => Self::PrestressedNetwork,
+            Method::Probe => Self::Probe,
         }
     }
 }
@@ -117,11 +129,7 @@ pub fn moduli_message(
     let message = msg::Moduli {
         header,
         source_step,
-        method: match moduli.method {
-            Method::FrozenNetwork => msg::Moduli::METHOD_FROZEN_NETWORK,
-            Method::PrestressedNetwork => msg::Moduli::METHOD_PRESTRESSED_NETWORK,
-            Method::Probe => msg::Moduli::METHOD_PROBE,
-        },
+        method: ModuliMethod::from(moduli.method).code(),
         grains: fabric.grains,
         stiffness: moduli.stiffness.row_major(),
         stiffness_stddev: moduli.stddev.row_major(),

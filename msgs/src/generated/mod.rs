@@ -28,6 +28,8 @@ pub(crate) const TYPES: &[TypeInfo] = &[
     TypeInfo::of::<grainlab_msgs::Microstructure>(),
     TypeInfo::of::<grainlab_msgs::Moduli>(),
     TypeInfo::of::<grainlab_msgs::Packing>(),
+    TypeInfo::of::<grainlab_msgs::PackingChunk>(),
+    TypeInfo::of::<grainlab_msgs::PackingCredit>(),
     TypeInfo::of::<grainlab_msgs::RunState>(),
     TypeInfo::of::<grainlab_msgs::StrainRate>(),
     TypeInfo::of::<grainlab_msgs::Stress>(),

@@ -18,6 +18,8 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::msg::Microstructure);
         $check!(grainlab_msgs::msg::Moduli);
         $check!(grainlab_msgs::msg::Packing);
+        $check!(grainlab_msgs::msg::PackingChunk);
+        $check!(grainlab_msgs::msg::PackingCredit);
         $check!(grainlab_msgs::msg::RunState);
         $check!(grainlab_msgs::msg::StrainRate);
         $check!(grainlab_msgs::msg::Stress);

@@ -66,7 +66,7 @@ impl DemSimulator {
         }
         self.stage = Stage::Running;
         let body = to_cdr(&message);
-        self.outbox.post(self.stress.id(), body.clone());
+        self.outbox.post_request(self.stress.id(), body.clone());
         self.barrier.ask(request.sequence, message.header.stamp, body, now);
         let delivered = self.outbox.deliver(bus)?;
         // Free run needs no answer to go on.
@@ -155,7 +155,8 @@ impl DemSimulator {
     }
 
     pub(crate) fn rest(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        if !self.outbox.deliver(bus)? {
+        self.outbox.deliver(bus)?;
+        if !self.outbox.is_empty() {
             return Ok(Next::Wait(HOLD));
         }
         if self.settings.exit_when_finished {

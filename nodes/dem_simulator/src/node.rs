@@ -7,11 +7,13 @@ use crate::outbox::Outbox;
 use crate::rivals::Rivals;
 use crate::settings::{Mode, Settings};
 use dem::{ComputeError, DemError, Simulation};
-use grainlab_msgs::msg::{Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
-use grainlab_msgs::{Message, to_cdr, topics};
-use node_kit::{Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_msgs::{to_cdr, topics};
+use node_kit::{
+    BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
+};
 use scene::Scene;
 use std::time::Duration;
 
@@ -23,6 +25,8 @@ const CLOCK_PERIOD: Duration = Duration::from_millis(10);
 pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
 /// How long an outbox that a slow reader holds up rests.
 pub(crate) const HOLD: Duration = Duration::from_millis(5);
+/// How long the delivery of a state that is saved may take: less than the launcher's patience.
+const SAVING: Duration = Duration::from_secs(4);
 /// How long the last messages may take to be acknowledged.
 const FAREWELL: Duration = Duration::from_secs(2);
 
@@ -55,7 +59,6 @@ pub struct DemSimulator {
     pub(crate) run: Simulation,
     pub(crate) settings: Settings,
     pub(crate) stress: Publisher<Stress>,
-    pub(crate) packing: Publisher<Packing>,
     pub(crate) run_state: Publisher<RunState>,
     pub(crate) clock: Publisher<Clock>,
     pub(crate) strain_rate: Subscription<StrainRate>,
@@ -102,7 +105,7 @@ impl DemSimulator {
         };
         run.set_compute(settings.compute(run.scene().grains as usize)?);
         let stress = Publisher::advertise(bus, &topics::STRESS)?;
-        let packing = Publisher::advertise(bus, &topics::PACKING)?;
+        let packing = BulkPublisher::advertise(bus, &topics::PACKING)?;
         let run_state = Publisher::advertise(bus, &topics::RUN_STATE)?;
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
@@ -114,7 +117,6 @@ impl DemSimulator {
         let now = bus.now();
         Ok(Self {
             stress,
-            packing,
             run_state,
             clock,
             strain_rate,
@@ -127,7 +129,7 @@ impl DemSimulator {
                 && settings.mode == Mode::Lockstep
                 && run.scene().grains <= ahead::GRAINS,
             foreseen: 0,
-            outbox: Outbox::default(),
+            outbox: Outbox::new(packing),
             packings,
             resumed: resume.is_some(),
             born: now,
@@ -143,20 +145,16 @@ impl DemSimulator {
         })
     }
 
-    pub(crate) fn post<T: Message>(&mut self, publisher: node_kit::PublisherId, message: &T) {
-        self.outbox.post(publisher, to_cdr(message));
-    }
-
     pub(crate) fn post_run_state(&mut self, state: u8, text: &str) {
         let message = messages::run_state(&self.run, state, self.packings, text);
-        self.post(self.run_state.id(), &message);
+        self.outbox.post_state(self.run_state.id(), to_cdr(&message));
     }
 
     /// The packing as it is now, once.
     pub(crate) fn post_packing(&mut self) -> Result<(), grains::PackingError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };
-        self.post(self.packing.id(), &message);
+        self.outbox.post_packing(to_cdr(&message));
         Ok(())
     }
 
@@ -199,9 +197,21 @@ impl DemSimulator {
             log::error!("the state cannot be saved: {error}");
         }
         self.post_run_state(RunState::FAILED, reason);
-        let until = bus.now() + FAREWELL;
-        while !self.outbox.deliver(bus)? && bus.now() < until {
-            bus.wait(HOLD);
+        // Whoever lives has a packing before this one after half the time.
+        for hurry in [false, true] {
+            if hurry && !self.outbox.is_empty() {
+                self.outbox.hurry(bus)?;
+            }
+            let until = bus.now() + SAVING / 2;
+            self.outbox.deliver(bus)?;
+            while !self.outbox.is_empty() && bus.now() < until {
+                bus.wait(HOLD);
+                self.outbox.deliver(bus)?;
+            }
+        }
+        if !self.outbox.is_empty() {
+            let lacking = self.outbox.packings().waited_for();
+            log::warn!("{lacking} readers do not have the whole last packing after {} s", SAVING.as_secs());
         }
         self.farewell(bus);
         Ok(())
@@ -225,11 +235,16 @@ impl Node for DemSimulator {
         if !self.outbox.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
         }
-        match self.stage {
+        let next = match self.stage {
             Stage::Starting => self.start(bus, now),
             Stage::Running => self.exchange(bus, now),
             Stage::Finished => self.rest(bus),
-        }
+        }?;
+        Ok(match next {
+            // What a reader says ends a wait by itself; what it does not say has to be noticed.
+            Next::Wait(time) if self.outbox.is_under_way() => Next::Wait(time.min(BulkPublisher::patience())),
+            next => next,
+        })
     }
 
     fn health(&self) -> Health {
@@ -254,6 +269,7 @@ impl Node for DemSimulator {
             .with("stale", counts.stale)
             .with("held_up", self.outbox.held_up())
             .with("packings", self.packings.count)
+            .with("readers_left_behind", self.outbox.packings().left_behind())
             .with("waiting_s", counts.waiting.as_secs_f64())
             .with("computing_s", computing)
             .with("wall_s", self.wall.as_secs_f64())

@@ -4,7 +4,7 @@ use crate::DemSimulator;
 use crate::messages;
 use crate::node::Stage;
 use crate::rivals::Verdict;
-use grainlab_msgs::topics;
+use grainlab_msgs::{to_cdr, topics};
 use node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ impl DemSimulator {
         if std::mem::take(&mut self.resumed) {
             let message = messages::packing(&self.run)
                 .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
-            self.post(self.packing.id(), &message);
+            self.outbox.post_packing(to_cdr(&message));
         }
         self.go_on(bus, now)
     }
@@ -67,7 +67,9 @@ impl DemSimulator {
         for topic in &self.settings.wait_for {
             let (publisher, needed) = match topic.name {
                 name if name == topics::STRESS.name => (self.stress.id(), self.settings.min_readers),
-                name if name == topics::PACKING.name => (self.packing.id(), self.settings.min_readers),
+                name if name == topics::PACKING.name => {
+                    (self.outbox.packings().id(), self.settings.min_readers)
+                }
                 name if name == topics::CLOCK.name => (self.clock.id(), 1),
                 _ => (self.run_state.id(), self.settings.min_readers),
             };

@@ -8,6 +8,6 @@ mod measure;
 mod node;
 mod settings;
 
-pub use measure::{MeasureError, Measured, measure, messages, method};
+pub use measure::{MeasureError, Measured, measure, messages};
 pub use node::FabricAnalyzer;
 pub use settings::{Settings, SettingsError, parameters};

@@ -1,9 +1,9 @@
 //! From one `Packing` to one `Fabric` and one `Moduli`.
 
 use crate::Settings;
-use grainlab_msgs::boundary::{BoundaryError, ModuliMethod, fabric_message, moduli_message};
-use grainlab_msgs::msg;
+use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
 use grainlab_msgs::std_msgs::Header;
+use grainlab_msgs::{DecodeError, msg};
 use grains::Packing;
 use micro::{Analysis, MicroError, NoNetwork};
 
@@ -17,8 +17,11 @@ pub struct Measured {
 }
 
 /// Why a packing is not measured.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
+    /// The bytes are no message.
+    #[error("a packing cannot be decoded: {0}")]
+    Undecodable(#[from] DecodeError),
     /// The message is not a packing.
     #[error(transparent)]
     Refused(BoundaryError),
@@ -57,7 +60,7 @@ pub fn messages(header: &Header, packing: &Packing, found: Analysis) -> Result<M
     let moduli = match found.moduli {
         Err(none) => Err(none),
         Ok(moduli) => {
-            let mut message = moduli_message(
+            let message = moduli_message(
                 header.clone(),
                 step,
                 &found.fabric,
@@ -67,14 +70,8 @@ pub fn messages(header: &Header, packing: &Packing, found: Analysis) -> Result<M
                 &packing.material,
             )
             .map_err(unfit)?;
-            message.method = method(found.probe.is_some()).code();
             Ok(message)
         }
     };
     Ok(Measured { fabric, moduli })
-}
-
-/// How a stiffness is found, with or without a probe.
-pub fn method(probed: bool) -> ModuliMethod {
-    if probed { ModuliMethod::Probe } else { ModuliMethod::FrozenNetwork }
 }

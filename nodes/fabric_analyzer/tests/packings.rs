@@ -3,7 +3,7 @@
 use fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{Fabric, Moduli, Packing};
-use grainlab_msgs::topics;
+use grainlab_msgs::{to_cdr, topics};
 use grains::{Cell, Contact, Mat3, Material, Vec3};
 use node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
 
@@ -40,6 +40,11 @@ fn lattice(overlap: f64) -> grains::Packing {
 
 fn message(overlap: f64) -> Packing {
     packing_message(&lattice(overlap), "lattice", vec![1, 2, 3])
+}
+
+/// Packings that the node refused.
+fn refused(bus: &dyn Bus) -> u64 {
+    bus.received().iter().filter(|r| r.topic == "/packing").map(|r| r.refused).sum()
 }
 
 #[test]
@@ -100,7 +105,36 @@ fn without_a_network_there_is_a_fabric_and_a_warning_and_no_moduli() {
     source.publish(&mut bus, &message(OVERLAP)).unwrap();
     node.step(&mut node_bus).unwrap();
     assert!(moduli.take_valid(&mut bus).unwrap().is_some());
-    assert_eq!((node.health().level, node_bus.received()[0].refused), (Level::Ok, 0));
+    assert_eq!((node.health().level, refused(&node_bus)), (Level::Ok, 0));
+}
+
+#[test]
+fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_analysed() {
+    let hub = Hub::new(2);
+    let mut bus = hub.bus(Names::new("source").unwrap());
+    let source: Publisher<Packing> = Publisher::advertise(&mut bus, &topics::PACKING).unwrap();
+    let moduli: Subscription<Moduli> =
+        Subscription::subscribe(&mut bus, &topics::MODULI, Demand::reliable(8)).unwrap();
+    let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
+    let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
+    let short = Packing { radius: Vec::new(), ..message(OVERLAP) };
+    let not_finite = Packing { time: f64::NAN, ..message(OVERLAP) };
+    let cut = to_cdr(&message(OVERLAP))[..200].to_vec();
+    for (count, (body, word)) in (1..).zip([
+        (to_cdr(&short), "Packing.position"),
+        (to_cdr(&not_finite), "time[0]"),
+        (cut, "truncated"),
+    ]) {
+        bus.publish(source.id(), &body).unwrap();
+        node.step(&mut node_bus).unwrap();
+        let health = node.health();
+        assert!(health.level == Level::Warn && health.message.contains(word), "{word}: {health:?}");
+        assert_eq!(refused(&node_bus), count);
+        source.publish(&mut bus, &message(OVERLAP)).unwrap();
+        node.step(&mut node_bus).unwrap();
+        assert_eq!(node.health().level, Level::Ok);
+        assert!(moduli.take_valid(&mut bus).unwrap().is_some());
+    }
 }
 
 #[test]

@@ -11,7 +11,10 @@ use crate::output::Table;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{from_cdr, topics};
 use node_kit::bus::Published;
-use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, SubscriptionId, WriterId};
+use node_kit::{
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample,
+    SubscriptionId, WriterId,
+};
 use recordings::ledger::Guid;
 use recordings::writer::Finished;
 use recordings::{Incoming, RunWriter, TopicSpec, TopicTally, WriterOptions};
@@ -39,8 +42,24 @@ pub(crate) type Result = Rc<RefCell<Option<Finished>>>;
 
 type Participant = [u8; 12];
 
+/// How a topic's messages come.
+enum Source {
+    Samples(SubscriptionId),
+    /// Large ones in parts: what is recorded is the whole, as if it were one sample.
+    Bulk(Box<BulkSubscription>),
+}
+
+impl Source {
+    fn take(&mut self, bus: &mut dyn Bus) -> std::result::Result<Option<Sample>, BusError> {
+        match self {
+            Self::Samples(subscription) => bus.take(*subscription),
+            Self::Bulk(bulk) => bulk.take(bus),
+        }
+    }
+}
+
 struct Channel {
-    subscription: SubscriptionId,
+    source: Source,
     name: String,
     reports: bool,
     /// A result: handed to the system at once.
@@ -52,6 +71,8 @@ pub(crate) struct Recorder {
     /// `None` after the end.
     writer: Option<RunWriter>,
     channels: Vec<Channel>,
+    /// Resolved names of the channels.
+    names: BTreeSet<String>,
     result: Result,
     whole_run: bool,
     recorded: u64,
@@ -89,12 +110,22 @@ impl Recorder {
         let mut channels = Vec::new();
         let mut specs = Vec::new();
         for topic in &settings.topics {
-            let subscription = bus.subscribe(topic, Demand::reliable(BACKLOG))?;
-            let name = bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone());
+            let demand = Demand::reliable(BACKLOG);
+            let source = if topic.info == topics::PACKING.info {
+                Source::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
+            } else {
+                Source::Samples(bus.subscribe(topic, demand)?)
+            };
+            let name = match &source {
+                Source::Bulk(bulk) => bulk.topic().to_owned(),
+                Source::Samples(_) => {
+                    bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone())
+                }
+            };
             specs.push(TopicSpec::of_contract(topic, &name));
             let reports = topic.name == topics::DIAGNOSTICS.name;
             let precious = topic.qos.transient_local && topic.reproducible;
-            channels.push(Channel { subscription, name, reports, precious });
+            channels.push(Channel { source, name, reports, precious });
         }
         let directory = settings.directory().map_err(|e| failed(&e))?;
         let name =
@@ -111,6 +142,7 @@ impl Recorder {
         let company = Company::default();
         Ok(Self {
             writer: Some(writer),
+            names: channels.iter().map(|c| c.name.clone()).collect(),
             channels,
             result,
             whole_run: settings.whole_run,
@@ -123,11 +155,11 @@ impl Recorder {
     fn take_all(&mut self, bus: &mut dyn Bus) -> std::result::Result<bool, NodeError> {
         let Some(writer) = self.writer.as_mut() else { return Ok(false) };
         let mut any = false;
-        for channel in &self.channels {
-            while let Some(sample) = bus.take(channel.subscription)? {
+        for channel in &mut self.channels {
+            while let Some(sample) = channel.source.take(bus)? {
                 any = true;
                 self.company.hear(sample.info.writer);
-                if channel.reports && enter_reports(writer, &self.channels, &sample) {
+                if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
                 let incoming = Incoming {
@@ -178,7 +210,7 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
 }
 
 /// What each process says it published so far, and which node it is; true if it is the last that the writer will say.
-fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) -> bool {
+fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
     let mut goodbye = false;
     for report in Report::from_message(&message) {
@@ -189,7 +221,7 @@ fn enter_reports(writer: &mut RunWriter, channels: &[Channel], sample: &Sample) 
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
             // Topics that are not recorded owe nothing.
-            if channels.iter().any(|c| c.name == published.topic) {
+            if recorded.contains(&published.topic) {
                 writer.ledger_mut().report(&published.topic, guid, published.count);
             }
         }

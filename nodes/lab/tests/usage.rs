@@ -56,6 +56,7 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
             "must be positive",
         ),
         (&["bag", "record", "--topics", "stres"], "stres"),
+        (&["bag", "record", "--topics", "packing_chunk"], "record packing"),
         (&["analyze", "x.csv", "--cell", "1,2"], "3 or 9"),
     ] {
         let output = grainlab(arguments);

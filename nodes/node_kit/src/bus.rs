@@ -4,10 +4,11 @@ use crate::names::NameError;
 use grainlab_msgs::Topic;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The 16-byte GUID of one writer, as RTPS has it: 12 bytes of participant, 4 of entity. Unique among all processes.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WriterId(pub [u8; 16]);
 
 impl WriterId {
@@ -123,8 +124,27 @@ pub enum Wake {
     Graph,
     /// SIGINT or SIGTERM, once for each.
     Shutdown,
+    /// Another thread called: see [`Bus::caller`].
+    Called,
     /// Nothing, for the whole time.
     Timeout,
+}
+
+/// Ends the wait of a bus from another thread; see [`Bus::caller`].
+#[derive(Clone)]
+pub struct Caller(pub(crate) Arc<dyn Fn() + Send + Sync>);
+
+impl Caller {
+    /// The wait under way, or the next one, ends with [`Wake::Called`].
+    pub fn call(&self) {
+        (self.0)();
+    }
+}
+
+impl fmt::Debug for Caller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Caller")
+    }
 }
 
 /// What one writer of ours published.
@@ -192,6 +212,9 @@ pub enum BusError {
 ///
 /// Names are resolved with the node's namespace and remaps; QoS comes from the contract table and nowhere else.
 pub trait Bus {
+    /// The name that a topic has here, namespace and remaps applied.
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError>;
+
     /// Offers a topic with the QoS of the contract table. Each call makes a writer of its own.
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError>;
 
@@ -207,9 +230,14 @@ pub trait Bus {
     /// The next sample, if there is one. Never waits.
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError>;
 
-    /// Blocks (never spins) until a subscription holds a sample, the graph changes, a signal comes, or `timeout` is over.
+    /// Blocks (never spins) until a subscription holds a sample, the graph changes, a signal comes, another thread calls, or
+    /// `timeout` is over.
     /// Returns [`Wake::Data`] at once while a sample is left untaken.
     fn wait(&mut self, timeout: Duration) -> Wake;
+
+    /// What another thread ends [`Bus::wait`] with. `None` on a bus whose time is virtual: nothing may happen there that
+    /// depends on how fast a thread is.
+    fn caller(&self) -> Option<Caller>;
 
     /// Readers matched with this publisher, as known at the last [`Bus::wait`]. A crashed peer counts until its lease
     /// ends, up to a minute: see [`crate::Peers`].
@@ -221,7 +249,11 @@ pub trait Bus {
     /// Writers on the resolved topic that are not ours, sorted, as known at the last [`Bus::wait`].
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
-    /// What our writers published, in the order of [`Bus::advertise`].
+    /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`] tells of
+    /// it as if that writer were one of `topic`.
+    fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError>;
+
+    /// What our writers published, in the order of [`Bus::advertise`]; what one of them published in parts stands before it.
     fn published(&self) -> Vec<Published>;
 
     /// What our subscriptions received, in the order of [`Bus::subscribe`].

@@ -1,6 +1,7 @@
 //! What every process of the laboratory shares. This is the only crate that knows DDS.
 //!
 //! - [`bus`]: the [`Bus`] a node sees: serialized samples, one place to wait; [`typed`]: typed handles over it
+//! - [`bulk`]: messages too large for one sample; [`worker`]: work that takes longer than a node may be away
 //! - [`dds`]: the bus over DDS; [`memory`]: the bus in memory, with virtual time and faults, for tests
 //! - [`node`]: a node as a state machine; [`run`]: running it as a process
 //! - [`diagnostics`]: what a process reports of itself; [`peers`]: who lives; [`watchdog`]: whether DDS lives
@@ -9,6 +10,7 @@
 //! - [`exit`]: exit codes; [`signals`]: SIGINT and SIGTERM; [`logging`]: stderr and `/rosout`
 
 pub mod args;
+pub mod bulk;
 pub mod bus;
 pub mod dds;
 pub mod diagnostics;
@@ -24,8 +26,10 @@ pub mod run;
 pub mod signals;
 pub mod typed;
 pub mod watchdog;
+pub mod worker;
 
 pub use args::RosArgs;
+pub use bulk::{BulkPublisher, BulkSubscription};
 pub use bus::{Bus, BusError, Demand, PublisherId, Sample, SampleInfo, SubscriptionId, Wake, WriterId};
 pub use dds::{DdsBus, Network};
 pub use diagnostics::Report;
@@ -37,3 +41,4 @@ pub use parameters::{ParameterSpec, ParameterValue, Parameters, Range};
 pub use peers::{Life, PeerWatch, Peers};
 pub use run::{NodeSpec, drive, run_node};
 pub use typed::{Publisher, Subscription, TakeError};
+pub use worker::Worker;

@@ -66,17 +66,19 @@ impl Settings {
     }
 }
 
-/// Rows of the contract by name; all of them for no name.
+/// Rows of the contract by name; all of them for no name, except those that only carry parts of another topic's messages.
 pub(crate) fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
+    let recorded = || TOPICS.iter().filter(|t| !t.is_transport());
     if names.is_empty() {
-        return Ok(TOPICS.to_vec());
+        return Ok(recorded().copied().collect());
     }
-    let known = || TOPICS.iter().map(|t| t.name).collect::<Vec<_>>().join(", ");
-    let row = |name: &String| {
-        let row = Topic::by_name(name).copied();
-        row.ok_or_else(|| {
-            Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))
-        })
+    let known = || recorded().map(|t| t.name).collect::<Vec<_>>().join(", ");
+    let row = |name: &String| match Topic::by_name(name) {
+        Some(row) if row.is_transport() => Err(Failure::usage(format!(
+            "topic {name:?} only carries parts of large packings: record packing, which holds them whole"
+        ))),
+        Some(row) => Ok(*row),
+        None => Err(Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))),
     };
     names.iter().map(row).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::inference::Inference;
 use super::state::State;
-use grainlab_msgs::boundary::{MicrostructureReading, ModuliReading};
+use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grains::{Fabric, Moduli, Packing};
@@ -36,7 +36,6 @@ struct About {
     packing: Option<Packing>,
     fabric: Option<Fabric>,
     moduli: Option<Moduli>,
-    method: Option<&'static str>,
     results: Vec<Inference>,
 }
 
@@ -73,7 +72,6 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         match (about.packing, about.fabric) {
             (Some(packing), Some(fabric)) => {
                 let mut state = State::new(source.clone(), &packing, &fabric, about.moduli.as_ref());
-                state.method = about.method;
                 if about.moduli.is_none() {
                     state.warnings.push("no moduli were published for this packing".to_owned());
                 }
@@ -107,7 +105,6 @@ fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Res
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = decoded(payload)?;
             let about = about.entry(message.source_step).or_default();
-            about.method = Some(ModuliReading::try_from(&message).map_err(text)?.method.word());
             about.moduli = Some(Moduli::try_from(&message).map_err(text)?);
         }
         _ => {

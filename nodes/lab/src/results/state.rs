@@ -4,6 +4,7 @@ use super::structure::StructureView;
 use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
 use super::symmetry::SymmetryView;
 use crate::output::{Table, exact};
+use grainlab_msgs::boundary::ModuliMethod;
 use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor};
 use serde::Serialize;
 
@@ -26,14 +27,20 @@ pub(crate) struct State {
     pub(crate) eps: f64,
     pub(crate) axis: [f64; 3],
     pub(crate) g: Ratios,
-    /// How the stiffness was found: frozen_network, probe, affine or acoustic.
+    /// How the stiffness was found: frozen_network, prestressed_network, probe, affine or acoustic.
     pub(crate) method: Option<&'static str>,
     pub(crate) stiffness_pa: Option<[[f64; 6]; 6]>,
+    /// Standard error of each entry, as a measurement of this packing.
+    pub(crate) stiffness_stddev_pa: Option<[[f64; 6]; 6]>,
     pub(crate) stiffness_affine_pa: Option<[[f64; 6]; 6]>,
+    /// Affine motion with one spin of all grains.
+    pub(crate) stiffness_mean_spin_pa: Option<[[f64; 6]; 6]>,
     pub(crate) g12_pa: Option<f64>,
     pub(crate) g13_pa: Option<f64>,
     pub(crate) theta_pa: Option<f64>,
     pub(crate) theta_reuss_pa: Option<f64>,
+    /// Lower bound of theta_reuss_pa by the forces present.
+    pub(crate) theta_bound_pa: Option<f64>,
     pub(crate) residual: Option<f64>,
     /// Wall time of the measurement; null where it was read from a recording.
     pub(crate) seconds: Option<f64>,
@@ -84,13 +91,16 @@ impl State {
             eps: fabric.eps,
             axis: fabric.axis.into(),
             g: Ratios::from(&fabric.anisotropy),
-            method: None,
+            method: moduli.map(|m| ModuliMethod::from(m.method).word()),
             stiffness_pa: moduli.map(|m| rows(&m.stiffness)),
+            stiffness_stddev_pa: moduli.map(|m| rows(&m.stddev)),
             stiffness_affine_pa: moduli.map(|m| rows(&m.affine)),
+            stiffness_mean_spin_pa: moduli.map(|m| rows(&m.mean_spin)),
             g12_pa: three.map(|m| m[0]),
             g13_pa: three.map(|m| m[1]),
             theta_pa: three.map(|m| m[2]),
             theta_reuss_pa: moduli.and_then(|m| m.stiffness.bulk_reuss()),
+            theta_bound_pa: moduli.and_then(|m| m.reuss_bound),
             residual: moduli.map(|m| m.residual),
             seconds: None,
             warnings: Vec::new(),
@@ -136,6 +146,9 @@ pub(crate) fn csv(states: &[State]) -> String {
     header.extend(entries("affine_c"));
     header.extend(STRUCTURE.map(String::from));
     header.extend(SYMMETRY.map(String::from));
+    header.push("theta_bound_pa".to_owned());
+    header.extend(entries("stddev_c"));
+    header.extend(entries("mean_spin_c"));
     let mut t = Table::new(header);
     for s in states {
         let number = |v: f64| exact(Some(v));
@@ -154,6 +167,10 @@ pub(crate) fn csv(states: &[State]) -> String {
         }
         cells.extend(structure_cells(&s.structure));
         cells.extend(symmetry_cells(s.symmetry.as_ref()));
+        cells.push(exact(s.theta_bound_pa));
+        for matrix in [&s.stiffness_stddev_pa, &s.stiffness_mean_spin_pa] {
+            cells.extend((0..36).map(|n| exact(matrix.as_ref().map(|m| m[n / 6][n % 6]))));
+        }
         t.row(cells);
     }
     t.csv()

@@ -7,8 +7,8 @@ use super::presence::Presence;
 use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
 use super::{Network, create_error, qos};
 use crate::bus::{
-    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SampleInfo, SubscriptionId, Wake,
-    WriterId,
+    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleInfo, SubscriptionId,
+    Wake, WriterId,
 };
 use crate::names::Names;
 use crate::signals::Signals;
@@ -22,6 +22,7 @@ use rustdds::{
     Timestamp, TopicKind, WriteOptionsBuilder,
 };
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -38,6 +39,8 @@ struct Writer {
     window: u32,
     count: u64,
     full: u64,
+    /// Messages of other topics that were sent in parts.
+    wholes: BTreeMap<String, u64>,
 }
 
 /// One reader of ours, as the waiting thread knows it.
@@ -68,6 +71,9 @@ pub struct DdsBus {
     subscribers: Vec<Subscriber>,
     readers: Vec<Reader>,
     inboxes: Inboxes,
+    waker: Arc<Waker>,
+    /// Another thread called, and no wait has said so yet.
+    called: Arc<AtomicBool>,
     presence: Presence,
     signals: Option<Signals>,
     poll: Poll,
@@ -97,8 +103,8 @@ impl DdsBus {
         let mut status = participant.status_listener();
         poll.registry().register(status.as_status_source_mio1(), STATUS, Interest::READABLE).map_err(io)?;
         let inboxes = Inboxes::default();
-        let waker = Waker::new(poll.registry(), WAKER).map_err(io)?;
-        let caretaker = Caretaker::spawn(Arc::clone(&inboxes), waker).map_err(io)?;
+        let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
+        let caretaker = Caretaker::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
         let graph = Graph::new(participant.guid());
         Ok(Self {
             caretaker,
@@ -106,6 +112,8 @@ impl DdsBus {
             subscribers: Vec::new(),
             readers: Vec::new(),
             inboxes,
+            waker,
+            called: Arc::default(),
             presence,
             signals: None,
             poll,
@@ -226,7 +234,10 @@ impl DdsBus {
         if self.has_data() {
             return Some(Wake::Data);
         }
-        changed.then_some(Wake::Graph)
+        if changed {
+            return Some(Wake::Graph);
+        }
+        self.called.swap(false, Ordering::AcqRel).then_some(Wake::Called)
     }
 }
 
@@ -236,6 +247,10 @@ fn wire_name(resolved: &str) -> String {
 }
 
 impl Bus for DdsBus {
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError> {
+        Ok(self.names.resolve(topic.name)?)
+    }
+
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let dds_topic = self.dds_topic(&resolved, topic)?;
@@ -252,6 +267,7 @@ impl Bus for DdsBus {
             window: qos::window(topic),
             count: 0,
             full: 0,
+            wholes: BTreeMap::new(),
         });
         Ok(PublisherId(self.writers.len() - 1))
     }
@@ -319,7 +335,8 @@ impl Bus for DdsBus {
         // A caller may mean for ever; a day is as good and cannot overflow.
         let timeout = timeout.min(Duration::from_secs(86_400));
         let deadline = Instant::now() + timeout;
-        let first = if self.has_data() { Duration::ZERO } else { timeout };
+        let at_once = self.has_data() || self.called.load(Ordering::Acquire);
+        let first = if at_once { Duration::ZERO } else { timeout };
         let mut wake = self.poll_once(first);
         while wake.is_none() {
             let now = Instant::now();
@@ -333,6 +350,16 @@ impl Bus for DdsBus {
         }
         self.caretaker.seen();
         wake.unwrap_or(Wake::Timeout)
+    }
+
+    fn caller(&self) -> Option<Caller> {
+        let (called, waker) = (Arc::clone(&self.called), Arc::clone(&self.waker));
+        Some(Caller(Arc::new(move || {
+            called.store(true, Ordering::Release);
+            if let Err(error) = waker.wake() {
+                log::error!("cannot wake the node: {error}");
+            }
+        })))
     }
 
     fn readers(&self, publisher: PublisherId) -> usize {
@@ -351,14 +378,26 @@ impl Bus for DdsBus {
             .unwrap_or_default()
     }
 
+    fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;
+        *writer.wholes.entry(resolved).or_default() += 1;
+        Ok(())
+    }
+
     fn published(&self) -> Vec<Published> {
-        let of = |w: &Writer| Published {
-            topic: w.topic.clone(),
-            writer: WriterId(w.guid.to_bytes()),
-            count: w.count,
-            full: w.full,
+        let of = |w: &Writer| {
+            let writer = WriterId(w.guid.to_bytes());
+            let whole = move |(topic, count): (&String, &u64)| Published {
+                topic: topic.clone(),
+                writer,
+                count: *count,
+                full: 0,
+            };
+            let own = Published { topic: w.topic.clone(), writer, count: w.count, full: w.full };
+            w.wholes.iter().map(whole).chain([own]).collect::<Vec<_>>()
         };
-        self.writers.iter().map(of).collect()
+        self.writers.iter().flat_map(of).collect()
     }
 
     fn received(&self) -> Vec<Received> {

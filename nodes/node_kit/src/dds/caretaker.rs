@@ -37,7 +37,7 @@ pub(super) struct Caretaker {
 }
 
 impl Caretaker {
-    pub(super) fn spawn(inboxes: Inboxes, waker: Waker) -> std::io::Result<Self> {
+    pub(super) fn spawn(inboxes: Inboxes, waker: Arc<Waker>) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             start: Instant::now(),
             last_seen: AtomicU64::new(0),

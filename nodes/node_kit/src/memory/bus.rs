@@ -2,10 +2,11 @@
 
 use super::hub::{Hub, State, writer_id};
 use crate::bus::{
-    Bus, BusError, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
+    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
 };
 use crate::names::Names;
 use grainlab_msgs::Topic;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// A bus over a [`Hub`]. Waiting lets virtual time pass.
@@ -17,12 +18,15 @@ pub struct MemoryBus {
     /// Places in the hub.
     writers: Vec<usize>,
     readers: Vec<usize>,
+    /// Messages that a writer, by its place in the hub, sent in parts.
+    wholes: BTreeMap<(usize, String), u64>,
     interrupted: bool,
 }
 
 impl MemoryBus {
     pub(super) fn new(hub: Hub, participant: u32, names: Names) -> Self {
-        Self { hub, participant, names, writers: Vec::new(), readers: Vec::new(), interrupted: false }
+        let (writers, readers, wholes) = (Vec::new(), Vec::new(), BTreeMap::new());
+        Self { hub, participant, names, writers, readers, wholes, interrupted: false }
     }
 
     /// What a signal does on the real bus: the next wait says [`Wake::Shutdown`], once.
@@ -45,6 +49,10 @@ impl MemoryBus {
 }
 
 impl Bus for MemoryBus {
+    fn resolve(&self, topic: &Topic) -> Result<String, BusError> {
+        Ok(self.names.resolve(topic.name)?)
+    }
+
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         self.writers.push(self.hub.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
@@ -95,6 +103,10 @@ impl Bus for MemoryBus {
         }
     }
 
+    fn caller(&self) -> Option<Caller> {
+        None
+    }
+
     fn readers(&self, publisher: PublisherId) -> usize {
         let Some(writer) = self.writers.get(publisher.0) else { return 0 };
         let topic = self.hub.state.borrow().writers[*writer].topic.clone();
@@ -122,13 +134,23 @@ impl Bus for MemoryBus {
         ids
     }
 
+    fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
+        let resolved = self.names.resolve(topic.name)?;
+        let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("count_published"))?;
+        *self.wholes.entry((writer, resolved)).or_default() += 1;
+        Ok(())
+    }
+
     fn published(&self) -> Vec<Published> {
         let state = self.hub.state.borrow();
-        let of = |w: &usize| {
-            let w = &state.writers[*w];
-            Published { topic: w.topic.clone(), writer: w.id, count: w.count, full: 0 }
+        let of = |place: &usize| {
+            let w = &state.writers[*place];
+            let one = |topic: &str, count| Published { topic: topic.into(), writer: w.id, count, full: 0 };
+            let wholes = self.wholes.iter().filter(|((writer, _), _)| writer == place);
+            let wholes = wholes.map(|((_, topic), count)| one(topic, *count));
+            wholes.chain([one(&w.topic, w.count)]).collect::<Vec<_>>()
         };
-        self.writers.iter().map(of).collect()
+        self.writers.iter().flat_map(of).collect()
     }
 
     fn received(&self) -> Vec<Received> {

@@ -1,7 +1,7 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::results::state::State;
-use fabric_analyzer::{Measured, messages, method};
+use fabric_analyzer::{Measured, messages};
 use recordings::import::Imported;
 use std::time::Instant;
 
@@ -33,7 +33,6 @@ impl Measure {
         let moduli = found.moduli.as_ref();
         let mut state = State::new(source.to_owned(), packing, &found.fabric, moduli.ok());
         state.step = imported.step;
-        state.method = moduli.ok().map(|_| method(found.probe.is_some()).word());
         state.seconds = Some(began.elapsed().as_secs_f64());
         state.warnings.clone_from(&imported.notes);
         state.warnings.extend(moduli.err().map(ToString::to_string));

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::network::tool_bus;
-use grainlab_msgs::Topic;
-use node_kit::{Bus, BusError, DdsBus, Exit, PublisherId, Wake};
+use grainlab_msgs::{Topic, topics};
+use node_kit::{BulkPublisher, Bus, BusError, DdsBus, Exit, PublisherId, Wake};
 use recordings::{Play, PlayOptions, Player, Recording};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,6 +26,39 @@ const HOLD: Duration = Duration::from_millis(5);
 /// their writer goes.
 const FAREWELL: Duration = Duration::from_secs(5);
 const GRACE: Duration = Duration::from_millis(300);
+
+/// Where one topic's messages go.
+enum Outlet {
+    Plain(PublisherId),
+    /// Packings of any length: large ones in parts.
+    Bulk(Box<BulkPublisher>),
+}
+
+impl Outlet {
+    fn id(&self) -> PublisherId {
+        match self {
+            Self::Plain(id) => *id,
+            Self::Bulk(bulk) => bulk.id(),
+        }
+    }
+
+    fn publish(&mut self, bus: &mut DdsBus, body: &[u8]) -> Result<(), BusError> {
+        match self {
+            Self::Plain(id) => bus.publish(*id, body).map(|_| ()),
+            Self::Bulk(bulk) => bulk.publish(bus, body),
+        }
+    }
+
+    /// Moves a large message on; true if none is under way.
+    fn advance(&mut self, bus: &mut DdsBus) -> Result<bool, Failure> {
+        match self {
+            Self::Plain(_) => Ok(true),
+            Self::Bulk(bulk) => bulk.advance(bus).map_err(Failure::failed),
+        }
+    }
+}
+
+type Outlets = BTreeMap<String, Outlet>;
 
 /// What to play, and how fast.
 #[derive(Debug, clap::Args)]
@@ -97,7 +130,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let mut player = Player::new(&recording, &options).map_err(play_failure)?;
-    let sent = send(&mut bus, &mut player, &publishers)?;
+    let sent = send(&mut bus, &mut player, &mut publishers)?;
     let acknowledged = bus.flush(FAREWELL);
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
@@ -126,7 +159,7 @@ fn play_failure(error: recordings::PlayError) -> Failure {
 }
 
 /// Offers one recorded topic under its recorded name, or says why not.
-fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<PublisherId, String>, Failure> {
+fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<Outlet, String>, Failure> {
     let Some(row) = Topic::by_name(name) else {
         return Ok(Err("its type is not one of the laboratory".to_owned()));
     };
@@ -136,7 +169,12 @@ fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<PublisherId, String>, Fa
     if let Some(writer) = writers.first() {
         return Ok(Err(format!("a live node publishes it (writer {writer})")));
     }
-    Ok(Ok(bus.advertise(&topic).map_err(Failure::failed)?))
+    let outlet = if topic.info == topics::PACKING.info {
+        BulkPublisher::advertise(bus, &topic).map(|bulk| Outlet::Bulk(Box::new(bulk)))
+    } else {
+        bus.advertise(&topic).map(Outlet::Plain)
+    };
+    Ok(Ok(outlet.map_err(Failure::failed)?))
 }
 
 /// Lets the graph be followed for `time`.
@@ -148,14 +186,9 @@ fn pause(bus: &mut DdsBus, time: Duration) {
 }
 
 /// Waits until every topic has the readers it needs and no more appear for a moment; false if a signal came.
-fn wait_for_readers(
-    bus: &mut DdsBus,
-    publishers: &BTreeMap<String, PublisherId>,
-    needed: usize,
-    patience: Duration,
-) -> bool {
+fn wait_for_readers(bus: &mut DdsBus, publishers: &Outlets, needed: usize, patience: Duration) -> bool {
     let end = bus.now() + patience;
-    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(*p)).collect::<Vec<_>>();
+    let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(p.id())).collect::<Vec<_>>();
     let (mut known, mut since) = (count(bus), bus.now());
     loop {
         let now = bus.now();
@@ -178,22 +211,25 @@ fn wait_for_readers(
     }
 }
 
-/// Sends all that is due, when it is due; the count of messages, or `None` if a signal came.
-fn send(
-    bus: &mut DdsBus,
-    player: &mut Player<'_>,
-    publishers: &BTreeMap<String, PublisherId>,
-) -> Result<Option<u64>, Failure> {
+/// Sends all that is due, when it is due; the count of messages, or `None` if a signal came. Returns when every message
+/// that went in parts is whole at every reader that lives.
+fn send(bus: &mut DdsBus, player: &mut Player<'_>, publishers: &mut Outlets) -> Result<Option<u64>, Failure> {
     let mut sent = 0;
     loop {
+        let mut idle = true;
+        for outlet in publishers.values_mut() {
+            idle &= outlet.advance(bus)?;
+        }
         let wait = match player.poll(bus.now()) {
-            Play::Done | Play::Paused => return Ok(Some(sent)),
-            Play::Wait(time) => time,
+            Play::Done | Play::Paused if idle => return Ok(Some(sent)),
+            Play::Done | Play::Paused => BulkPublisher::patience(),
+            Play::Wait(time) if idle => time,
+            Play::Wait(time) => time.min(BulkPublisher::patience()),
             Play::Send(message) => {
-                let Some(publisher) = publishers.get(&message.channel.topic) else { continue };
+                let Some(outlet) = publishers.get_mut(&message.channel.topic) else { continue };
                 loop {
-                    match bus.publish(*publisher, &message.payload) {
-                        Ok(_) => break,
+                    match outlet.publish(bus, &message.payload) {
+                        Ok(()) => break,
                         Err(BusError::Full { .. }) => {}
                         Err(error) => return Err(Failure::failed(error)),
                     }

@@ -1,0 +1,146 @@
+//! The analyzer over DDS, while it analyses. One test: the watchdog counts the DDS threads of the whole process.
+
+use fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::msg::{Fabric, Packing};
+use grainlab_msgs::topics;
+use micro::NoNetwork;
+use node_kit::dds::ClaimedDomain;
+use node_kit::{
+    BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, Names, NodeError, Report, Subscription, drive,
+};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A fabric with the packing's step, and no moduli: what this costs is up to the gate.
+fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
+    let fabric = Fabric { source_step: packing.step, ..Fabric::default() };
+    Ok(Measured { fabric, moduli: Err(NoNetwork::NoContacts { grains: 0 }) })
+}
+
+/// An analyzer whose every measurement waits for a word from its gate, and what is heard of it.
+struct Scene {
+    bus: DdsBus,
+    packings: BulkPublisher,
+    fabrics: Subscription<Fabric>,
+    reports: Subscription<DiagnosticArray>,
+    gate: Sender<()>,
+    stop: Arc<AtomicBool>,
+    node: std::thread::JoinHandle<Exit>,
+    begun: Instant,
+    _domain: ClaimedDomain,
+}
+
+fn node(network: node_kit::Network, gate: Receiver<()>, stop: &AtomicBool) -> Result<Exit, NodeError> {
+    let mut bus = DdsBus::open(network, Names::new("fabric_analyzer").unwrap())?;
+    let mut node = FabricAnalyzer::measuring(&mut bus, move |packing| {
+        let _ = gate.recv();
+        measured(packing)
+    })?;
+    let stop = || stop.load(Ordering::Relaxed);
+    Ok(drive(&mut node, &mut bus, "/fabric_analyzer", None, &stop).expect("a bus that works"))
+}
+
+impl Scene {
+    fn new() -> Self {
+        let domain = ClaimedDomain::claim().expect("a free DDS domain");
+        let network = domain.network();
+        let mut bus = DdsBus::open(network, Names::new("source").unwrap()).unwrap();
+        let packings = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();
+        let fabrics = Subscription::subscribe(&mut bus, &topics::FABRIC, Demand::reliable(64)).unwrap();
+        let reports = Subscription::subscribe(&mut bus, &topics::DIAGNOSTICS, Demand::reliable(64)).unwrap();
+        let (gate, waits) = channel();
+        let stop = Arc::new(AtomicBool::new(false));
+        let asked = Arc::clone(&stop);
+        let node = std::thread::spawn(move || node(network, waits, &asked).expect("an analyzer"));
+        let mut scene = Self {
+            bus,
+            packings,
+            fabrics,
+            reports,
+            gate,
+            stop,
+            node,
+            begun: Instant::now(),
+            _domain: domain,
+        };
+        while scene.bus.readers(scene.packings.id()) == 0 {
+            scene.pass("an analyzer");
+        }
+        scene
+    }
+
+    fn pass(&mut self, what: &str) {
+        assert!(self.begun.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+        self.packings.advance(&mut self.bus).unwrap();
+        self.bus.wait(Duration::from_millis(20));
+    }
+
+    fn publish(&mut self, packing: &Packing) {
+        let body = grainlab_msgs::to_cdr(packing);
+        loop {
+            match self.packings.publish(&mut self.bus, &body) {
+                Ok(()) => return,
+                Err(BusError::Full { .. }) => self.pass("the packing before is delivered"),
+                Err(error) => panic!("{error}"),
+            }
+        }
+    }
+
+    /// What the analyzer says of itself next.
+    fn report(&mut self) -> Report {
+        loop {
+            if let Some((message, _)) = self.reports.take_valid(&mut self.bus).unwrap() {
+                return Report::from_message(&message).pop().expect("a report");
+            }
+            self.pass("a heartbeat");
+        }
+    }
+
+    fn fabric(&mut self) -> u64 {
+        loop {
+            if let Some((fabric, _)) = self.fabrics.take_valid(&mut self.bus).unwrap() {
+                return fabric.source_step;
+            }
+            self.pass("a fabric");
+        }
+    }
+}
+
+fn value<'a>(report: &'a Report, key: &str) -> &'a str {
+    report.health.values.iter().find(|(name, _)| name == key).map_or("", |(_, value)| value)
+}
+
+#[test]
+fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
+    let mut scene = Scene::new();
+    let large = Packing { step: 1, position: vec![0.5; 700_000], ..Packing::default() };
+    scene.publish(&large);
+    let mut beats = 0;
+    while beats < 3 {
+        let report = scene.report();
+        if report.health.message == "analysing the packing of step 1" {
+            assert_eq!(value(&report, "analysing"), "1");
+            beats += 1;
+        }
+    }
+    // A second large one and a small one come while the first is analysed.
+    scene.publish(&Packing { step: 2, ..large });
+    scene.publish(&Packing { step: 3, ..Packing::default() });
+    while value(&scene.report(), "waiting") != "2" {}
+    assert!(scene.fabrics.take_valid(&mut scene.bus).unwrap().is_none(), "the gate is closed");
+    for step in 1..=3 {
+        scene.gate.send(()).unwrap();
+        assert_eq!(scene.fabric(), step);
+    }
+    // Asked to stop in the middle of the next one, it leaves without a result.
+    scene.publish(&Packing { step: 4, ..Packing::default() });
+    while value(&scene.report(), "analysing") != "4" {}
+    scene.stop.store(true, Ordering::Relaxed);
+    assert_eq!(scene.node.join().unwrap(), Exit::Interrupted);
+    assert!(scene.fabrics.take_valid(&mut scene.bus).unwrap().is_none());
+}

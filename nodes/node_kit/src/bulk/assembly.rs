@@ -1,0 +1,75 @@
+//! The parts of one body, put together as they come.
+
+use super::part::{PartError, Shape};
+use grainlab_msgs::msg::PackingChunk;
+
+/// Parts kept beyond the first missing one: as many as a credit can name.
+const AHEAD: u32 = u64::BITS;
+
+/// A body that is not complete yet. Memory is taken only for what came, and for gaps of a few parts.
+#[derive(Debug)]
+pub(super) struct Assembly {
+    pub(super) shape: Shape,
+    bytes: Vec<u8>,
+    /// First part that is missing.
+    next: u32,
+    /// Bit i: part `next + 1 + i` is held.
+    held: u64,
+}
+
+impl Assembly {
+    pub(super) fn new(shape: Shape) -> Self {
+        Self { shape, bytes: Vec::new(), next: 0, held: 0 }
+    }
+
+    /// First part that is missing, and which of the 64 after that are held.
+    pub(super) fn credit(&self) -> (u32, u64) {
+        (self.next, self.held)
+    }
+
+    /// Parts that came.
+    pub(super) fn parts(&self) -> u64 {
+        u64::from(self.next) + u64::from(self.held.count_ones())
+    }
+
+    /// Takes a part of this body in, which was checked on its own; true if it is new.
+    pub(super) fn add(&mut self, part: &PackingChunk, shape: &Shape) -> Result<bool, PartError> {
+        let (body, index) = (part.body, part.index);
+        if *shape != self.shape {
+            return Err(PartError::Contradiction { body, index });
+        }
+        // What is too far ahead is asked for when its turn comes.
+        let Some(ahead) = index.checked_sub(self.next).filter(|ahead| *ahead <= AHEAD) else {
+            return Ok(false);
+        };
+        if ahead > 0 && self.held >> (ahead - 1) & 1 == 1 {
+            return Ok(false);
+        }
+        let start = self.shape.start_of(index);
+        let end = start + part.data.len();
+        if self.bytes.len() < end {
+            self.bytes.resize(end, 0);
+        }
+        self.bytes[start..end].copy_from_slice(&part.data);
+        if ahead > 0 {
+            self.held |= 1 << (ahead - 1);
+        } else {
+            // The gap is closed: past this part, and past those that waited behind it.
+            let waited = self.held.trailing_ones();
+            self.next += 1 + waited;
+            self.held = self.held.checked_shr(waited + 1).unwrap_or(0);
+        }
+        Ok(true)
+    }
+
+    /// Whether every part is there.
+    pub(super) fn is_complete(&self) -> bool {
+        self.next == self.shape.count
+    }
+
+    /// The body, complete; or what its crc is, if it is not what was sent.
+    pub(super) fn into_body(self) -> Result<Vec<u8>, u32> {
+        let found = crc32fast::hash(&self.bytes);
+        if found == self.shape.body_crc { Ok(self.bytes) } else { Err(found) }
+    }
+}

@@ -1,0 +1,141 @@
+//! The writing end on a bus.
+
+use super::sender::Sender;
+use super::{LIMIT, LOOK, WINDOW, beside};
+use crate::bus::{Bus, BusError, Demand, PublisherId, WriterId};
+use crate::typed::{Publisher, Subscription};
+use grainlab_msgs::msg::{PackingChunk, PackingCredit};
+use grainlab_msgs::{Topic, topics};
+use std::time::Duration;
+
+/// Credits that may wait while a node computes: what the latest ones say is all that counts.
+const CREDITS: u32 = 256;
+
+/// Parts handed to the bus at a time: more would hold the caller up.
+const AT_ONCE: u32 = WINDOW;
+
+/// Publishes messages of any length on one topic, in order: small ones as they are, large ones in parts.
+///
+/// [`BulkPublisher::advance`] moves the parts on; a node calls it in each step while it says that something is under way.
+#[derive(Debug)]
+pub struct BulkPublisher {
+    topic: Topic,
+    resolved: String,
+    plain: PublisherId,
+    parts: Publisher<PackingChunk>,
+    credits: Subscription<PackingCredit>,
+    credit_topic: Topic,
+    sender: Sender,
+    present: Vec<WriterId>,
+    next_look: Duration,
+    left_behind: u64,
+}
+
+impl BulkPublisher {
+    /// Offers `topic` and the topic of its parts, and listens to the credits.
+    pub fn advertise(bus: &mut dyn Bus, topic: &Topic) -> Result<Self, BusError> {
+        let resolved = bus.resolve(topic)?;
+        let plain = bus.advertise(topic)?;
+        let parts = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CHUNK))?;
+        let own = bus.published().last().map(|p| p.writer).unwrap_or_default();
+        let credit_topic = beside(&resolved, &topics::PACKING_CREDIT);
+        let credits = Subscription::subscribe(bus, &credit_topic, Demand::best_effort(CREDITS))?;
+        Ok(Self {
+            topic: *topic,
+            resolved,
+            plain,
+            parts,
+            credits,
+            credit_topic,
+            sender: Sender::new(own),
+            present: Vec::new(),
+            next_look: Duration::ZERO,
+            left_behind: 0,
+        })
+    }
+
+    /// The plain topic's handle, for [`Bus::readers`].
+    pub fn id(&self) -> PublisherId {
+        self.plain
+    }
+
+    /// Readers that were left behind so far.
+    pub fn left_behind(&self) -> u64 {
+        self.left_behind
+    }
+
+    /// Publishes one serialized message, encapsulation included. [`BusError::Full`] while the one before is under way:
+    /// the caller keeps the message and comes again.
+    pub fn publish(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
+        if !self.advance(bus)? {
+            return Err(BusError::Full { topic: self.resolved.clone(), window: WINDOW });
+        }
+        self.supersede(bus, body)
+    }
+
+    /// The same, without regard to readers that do not have the message before it: they do not get that any more. For
+    /// last words.
+    pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
+        if body.len() <= LIMIT {
+            bus.publish(self.plain, body)?;
+            self.sender.retire();
+            return Ok(());
+        }
+        bus.count_published(self.parts.id(), &self.topic)?;
+        self.sender.offer(bus.now(), body.to_vec());
+        self.next_look = Duration::ZERO;
+        self.advance(bus).map(|_| ())
+    }
+
+    /// Hears the readers and sends what they may get; true if nothing is under way to any of them. Never waits.
+    pub fn advance(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
+        let (now, wall) = (bus.now(), bus.wall_nanos());
+        while let Some((credit, info)) = self.credits.take_valid(bus)? {
+            // It may have waited here while the node computed.
+            let age = Duration::from_nanos(wall.saturating_sub(info.received));
+            self.sender.hear(now.saturating_sub(age), info.writer, info.sequence, &credit);
+        }
+        if now >= self.next_look {
+            self.next_look = now + LOOK;
+            self.present = bus.foreign_writers(&self.credit_topic);
+            for left in self.sender.tend(now, &self.present) {
+                self.left_behind += 1;
+                log::warn!(
+                    "{}: the reader with credits of writer {} is not waited for any more: {}",
+                    self.resolved,
+                    left.reader,
+                    left.reason
+                );
+            }
+        }
+        for _ in 0..AT_ONCE {
+            let Some(part) = self.sender.next_part(now) else { break };
+            match self.parts.publish(bus, &part) {
+                Ok(_) => {}
+                Err(BusError::Full { .. }) => {
+                    self.sender.put_back(part.index);
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        let matched = bus.readers(self.parts.id());
+        Ok(!self.sender.is_busy(now, &self.present, matched))
+    }
+
+    /// How long a node may wait before it calls [`BulkPublisher::advance`] again while something is under way; a credit
+    /// ends its wait by itself.
+    pub const fn patience() -> Duration {
+        LOOK
+    }
+
+    /// Readers that lack parts of the latest message and are waited for.
+    pub fn waited_for(&self) -> usize {
+        self.sender.waited_for()
+    }
+
+    /// Parts that were sent more than once: for late readers, and where some were lost.
+    pub fn repeated_parts(&self) -> u64 {
+        self.sender.repeated()
+    }
+}

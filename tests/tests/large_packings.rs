@@ -1,0 +1,114 @@
+//! Packings that are too large for one sample, between real processes: played, analysed and recorded again.
+
+use grainlab_msgs::msg::Fabric;
+use grainlab_msgs::{from_cdr, to_cdr, topics};
+use recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
+use std::path::Path;
+use std::time::{Duration, Instant};
+use system_tests::lab::{LIMIT, Lab};
+use system_tests::lattice::lattice;
+
+const PACKINGS: u64 = 30;
+const WRITER: Guid = Guid([7; 16]);
+
+/// A recording of [`PACKINGS`] packings, each of this body but for its step.
+fn record(directory: &Path, edge: usize) -> Vec<Vec<u8>> {
+    let topic = topics::PACKING;
+    let spec = TopicSpec::of_contract(&topic, &topic.absolute_name());
+    let mut run = RunWriter::create(directory, "large", &[spec], WriterOptions::default()).unwrap();
+    let mut packing = lattice(edge, 1);
+    let mut bodies = Vec::new();
+    for step in 1..=PACKINGS {
+        packing.step = step;
+        let body = to_cdr(&packing);
+        let receive_time = 1_700_000_000_000_000_000 + step * 100_000_000;
+        let (guid, sequence) = (WRITER, step as i64);
+        let sample = Incoming { guid, sequence, source_time: None, receive_time, payload: &body };
+        run.write("/packing", &sample).unwrap();
+        bodies.push(body);
+    }
+    run.finish().unwrap();
+    bodies
+}
+
+fn recorded(run: &Path, topic: &str) -> Vec<Vec<u8>> {
+    let Ok(recording) = Recording::open(run) else { return Vec::new() };
+    recording
+        .messages(&Selection::topics([topic]))
+        .map(|m| m.map(|m| m.payload.to_vec()).collect())
+        .unwrap_or_default()
+}
+
+#[test]
+fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorded_whole() {
+    let lab = Lab::new();
+    let (source, out) = (lab.folder().join("large"), lab.folder().join("again"));
+    let bodies = record(&source, 26);
+    assert!(bodies.iter().all(|body| body.len() > 5_000_000));
+    let recorder = lab.start(&["bag", "record", "-a", "-o", &out.to_string_lossy()]);
+    let analyzer = lab.start(&["run", "fabric_analyzer"]);
+    let played =
+        lab.run(&["bag", "play", &source.to_string_lossy(), "--rate", "inf", "--min-subscribers", "2"]);
+    assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
+    assert!(played.stderr.contains("30 messages sent"), "{}", played.stderr);
+    let begin = Instant::now();
+    while recorded(&out, "/moduli").len() < PACKINGS as usize {
+        assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    for node in [analyzer, recorder] {
+        node.signal(libc::SIGINT);
+        let ended = node.ended(LIMIT);
+        assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+        assert!(!ended.stdout.contains("packing_chunk") && !ended.stdout.contains("packing_credit"));
+    }
+    assert!(recorded(&out, "/packing") == bodies, "the same bytes, each once, in order");
+    let fabrics: Vec<Fabric> =
+        recorded(&out, "/fabric").iter().map(|body| from_cdr(body).expect("a fabric")).collect();
+    let steps: Vec<u64> = fabrics.iter().map(|fabric| fabric.source_step).collect();
+    assert_eq!(steps, (1..=PACKINGS).collect::<Vec<_>>());
+    let info = Recording::open(&out).unwrap().info();
+    let packing = info.topics.iter().find(|topic| topic.name == "/packing").unwrap();
+    assert_eq!((packing.messages, packing.published, packing.lost), (30, Some(30), Some(0)));
+}
+
+#[test]
+fn an_analyzer_that_is_killed_and_started_again_gets_the_latest_large_packing_and_makes_the_same_bytes() {
+    let lab = Lab::new();
+    let (source, out) = (lab.folder().join("large"), lab.folder().join("again"));
+    record(&source, 26);
+    let recorder = lab.start(&["bag", "record", "-a", "-o", &out.to_string_lossy()]);
+    let killed = lab.start(&["run", "fabric_analyzer"]);
+    // One packing a tenth of a second; the second analyzer comes while the player is still there.
+    let player = lab.start(&["bag", "play", &source.to_string_lossy(), "--min-subscribers", "2"]);
+    let until = |count: usize| {
+        let begin = Instant::now();
+        while recorded(&out, "/moduli").len() < count {
+            assert!(begin.elapsed() < LIMIT, "{count} packings analysed");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    until(3);
+    killed.signal(libc::SIGKILL);
+    let analyzer = lab.start(&["run", "fabric_analyzer"]);
+    let played = player.ended(LIMIT);
+    assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
+    let last =
+        || recorded(&out, "/moduli").last().map(|body| from_cdr::<grainlab_msgs::msg::Moduli>(body).unwrap());
+    let begin = Instant::now();
+    while last().is_none_or(|moduli| moduli.source_step < PACKINGS) {
+        assert!(begin.elapsed() < LIMIT, "the last packing was not analysed");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    for node in [analyzer, recorder] {
+        node.signal(libc::SIGINT);
+        let ended = node.ended(LIMIT);
+        assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    }
+    // Every packing is the same lattice: two analyzers differ in nothing but the step.
+    let fabrics = recorded(&out, "/fabric").into_iter().map(|body| from_cdr::<Fabric>(&body).unwrap());
+    let distinct: std::collections::BTreeSet<Vec<u8>> =
+        fabrics.map(|fabric| to_cdr(&Fabric { source_step: 0, ..fabric })).collect();
+    assert_eq!(distinct.len(), 1);
+    assert_eq!(recorded(&out, "/packing").len(), PACKINGS as usize);
+}
