@@ -20,6 +20,15 @@ pub fn parameters() -> Vec<ParameterSpec> {
             "axis of eps and of the ratios gamma/Delta: x, y, z, of any length but zero; stiffnesses stay in the cell's frame",
         )
         .within(Range::Double { min: -1e9, max: 1e9 }),
+        ParameterSpec::new(
+            "method",
+            "network",
+            "how the stiffness is found: network (frozen), prestressed (the same of smooth grains, with the prestress \
+             term), probe (small strains of the packing itself, a hundred times slower)",
+        )
+        .within(Range::Choice(&["network", "prestressed", "probe"])),
+        ParameterSpec::new("amplitude", micro::Probe::default().amplitude, "strain of the probe, 1")
+            .within(Range::Double { min: 1e-12, max: 1e-2 }),
     ]
 }
 
@@ -39,9 +48,15 @@ impl TryFrom<&Parameters> for Settings {
         let axis: Vec<f64> = parameters.get("axis");
         let direction = <[f64; 3]>::try_from(axis.as_slice()).ok().map(Vec3::from).filter(|v| v.norm() > 0.0);
         let axis = direction.ok_or(SettingsError(axis))?;
+        let method: String = parameters.get("method");
+        let amplitude = parameters.get("amplitude");
+        let probe = micro::Probe { amplitude, ..micro::Probe::default() };
         Ok(Self(micro::Settings {
             tolerance: parameters.get("tolerance"),
             axis,
+            tangential: method != "prestressed",
+            prestress: method == "prestressed",
+            probe: (method == "probe").then_some(probe),
             ..micro::Settings::default()
         }))
     }

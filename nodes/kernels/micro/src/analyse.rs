@@ -25,7 +25,9 @@ pub struct Settings {
     pub axis: Vec3,
     /// Whether contacts keep their tangential stiffness ("friction set very high"), or have none (frictionless).
     pub tangential: bool,
-    /// Whether the frozen network has the prestress term: see [`Network::with_prestress`].
+    /// Whether the frozen network has the prestress term: see [`Network::with_prestress`]. For networks without tangential
+    /// springs alone: the normal forces' term by itself would make grains on two contacts, which tangential forces hold,
+    /// give way, and next to tangential springs it is a ten thousandth.
     pub prestress: bool,
     /// With a probe the stiffness is measured by straining the packing, instead of that of the frozen network.
     pub probe: Option<Probe>,
@@ -134,6 +136,10 @@ fn checked_axis(settings: &Settings) -> Result<Vec3, MicroError> {
     if !(1e-13..=1e-2).contains(&tolerance) {
         let requirement = "between 1e-13 and 1e-2";
         return Err(MicroError::Setting { name: "tolerance", value: tolerance, requirement });
+    }
+    if settings.prestress && settings.tangential {
+        let requirement = "0, without tangential springs, for a network with prestress";
+        return Err(MicroError::Setting { name: "tangential", value: 1.0, requirement });
     }
     let length = settings.axis.norm();
     if !(length > 0.0 && length.is_finite()) {

@@ -7,6 +7,7 @@
 
 use crate::error::MicroError;
 use crate::preconditioner::Block;
+use crate::rattlers::participating;
 use grains::Packing;
 use nalgebra::Matrix6;
 
@@ -90,7 +91,8 @@ impl Network {
 
     /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force turns with
     /// its branch. It is of the order of (2/3) overlap/diameter next to a tangential spring, and decides whether a network
-    /// without such springs is stiff at all near isostaticity. `packing` is the one the network was made of. Terms of the
+    /// without such springs is stiff at all near isostaticity. Contacts of rattlers are dropped: a grain on one contact rolls
+    /// off under its force, where without that it just follows. `packing` is the one the network was made of. Terms of the
     /// order of the pressure that depend on the choice of strain and stress measures are left out.
     #[must_use]
     pub fn with_prestress(mut self, packing: &Packing) -> Self {
@@ -98,6 +100,8 @@ impl Network {
         for (s, c) in self.springs.iter_mut().zip(&packing.contacts) {
             s.geometric = c.normal_force / (2.0 * s.half_branch);
         }
+        let carrying = participating(packing);
+        self.springs.retain(|s| carrying[s.i as usize] && carrying[s.j as usize]);
         self.prestressed = true;
         self
     }

@@ -128,7 +128,8 @@ impl<'a, const L: usize> Refinement<'a, L> {
             let double = Sweeps::<f64, G>::new(network);
             let mut descent = Descent::new(&double);
             self.rounds(network, &mut descent, DOUBLE, u32::MAX);
-            if descent.unstable && !(self.residual <= self.tolerance) {
+            let solved = self.residual <= self.tolerance;
+            if descent.unstable && !solved {
                 return Err(MicroError::Unstable { residual: self.residual });
             }
         }

@@ -95,9 +95,15 @@ pub(crate) struct Args {
     /// How the stiffness is found
     #[arg(long, value_enum, default_value_t)]
     method: Method,
+    /// Take tangential springs away: the response of smooth grains, where others stick
+    #[arg(long)]
+    smooth: bool,
     /// Strain of the probe, forward and backward; far below overlap/diameter
     #[arg(long, value_name = "STRAIN", default_value_t = micro::Probe::default().amplitude)]
     amplitude: f64,
+    /// Probe with each of these strains, too, and find over which the response is linear
+    #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
+    scan: Vec<f64>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -108,6 +114,8 @@ enum Method {
     /// Linear response of the frozen contact network
     #[default]
     Network,
+    /// The same of smooth grains, with the prestress term: normal forces turn with their branches
+    Prestressed,
     /// Explicit: strain the packing a little, relax, read the stress
     Probe,
 }
@@ -118,7 +126,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         print(yade::EXPORTER)?;
         return Ok(Exit::Done);
     }
-    let (options, measure) = (options(args)?, Measure { settings: settings(args)? });
+    let (options, measure) = (options(args)?, Measure { settings: settings(args)?, scan: scan(args)? });
     let recorder = args.record.as_deref().map(record::Recorder::create).transpose()?;
     let sink = Sink::new(args.format, recorder);
     if args.live {
@@ -184,6 +192,24 @@ fn settings(args: &Args) -> Result<micro::Settings, Failure> {
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01
     })?;
-    let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..micro::Probe::default() });
-    Ok(micro::Settings { axis, tolerance: args.tolerance, probe, ..micro::Settings::default() })
+    let prestress = args.method == Method::Prestressed;
+    let tangential = !(args.smooth || prestress);
+    let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..explicit(tangential) });
+    let settings = micro::Settings::default();
+    Ok(micro::Settings { axis, tolerance: args.tolerance, tangential, prestress, probe, ..settings })
+}
+
+/// A probe in which contacts stick, or slide freely.
+fn explicit(tangential: bool) -> micro::Probe {
+    let probe = micro::Probe::default();
+    micro::Probe { friction: if tangential { probe.friction } else { 0.0 }, ..probe }
+}
+
+fn scan(args: &Args) -> Result<Vec<f64>, Failure> {
+    for amplitude in &args.scan {
+        in_range("scan", Some(*amplitude), "strains, each more than 0 and at most 0.01", |a| {
+            a > 0.0 && a <= 0.01
+        })?;
+    }
+    Ok(args.scan.clone())
 }

@@ -1,5 +1,6 @@
 //! One measured packing, with the stable keys of `grainlab analyze`.
 
+use super::probe::{ProbeView, ScanView};
 use super::structure::StructureView;
 use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
 use super::symmetry::SymmetryView;
@@ -48,6 +49,10 @@ pub(crate) struct State {
     pub(crate) structure: StructureView,
     /// Null without a stiffness.
     pub(crate) symmetry: Option<SymmetryView>,
+    /// How the probe went, where the stiffness is a probe's.
+    pub(crate) probe: Option<ProbeView>,
+    /// Probes of several amplitudes, where these were asked for.
+    pub(crate) scan: Option<ScanView>,
 }
 
 /// The three ratios gamma/Delta.
@@ -109,6 +114,8 @@ impl State {
                 let axis = Some(&fabric.axis).filter(|_| fabric.structure.axis.determined);
                 SymmetryView::new(&m.stiffness, fabric.grains, axis)
             }),
+            probe: None,
+            scan: None,
         }
     }
 

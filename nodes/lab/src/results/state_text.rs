@@ -39,6 +39,9 @@ pub(crate) fn text(s: &State) -> String {
     if let Some(symmetry) = &s.symmetry {
         text += &stiffness(symmetry);
     }
+    if let Some(scan) = &s.scan {
+        text += &indented(&scan.text());
+    }
     for warning in &s.warnings {
         text += &format!("  note: {warning}\n");
     }

@@ -74,7 +74,8 @@ fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
     let edge = D * (1.0 - 1e-2);
     let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
     let (k_n, k_t) = p.contact_stiffness(&p.contacts[0]);
-    let m = moduli(&p, &Settings { prestress: true, ..Settings::default() });
+    let network = Network::new(&p, true).unwrap().with_prestress(&p);
+    let m = micro::stiffness::moduli(&network, 1e-9, 100).unwrap().unwrap();
     assert_eq!(m.method, grains::Method::PrestressedNetwork);
     let expected = (k_t - p.contacts[0].normal_force / edge) / (2.0 * edge);
     assert!((m.stiffness.0[(3, 3)] / expected - 1.0).abs() < 1e-12);

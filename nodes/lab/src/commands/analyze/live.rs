@@ -4,9 +4,9 @@ use super::measure::Measure;
 use super::sink::{Ending, Sink};
 use crate::failure::{Failure, worse};
 use crate::network::tool_bus;
-use grainlab_msgs::{Topic, msg, topics};
+use grainlab_msgs::{Topic, from_cdr, msg, topics};
 use grains::Packing;
-use node_kit::{Bus, Demand, Exit, Subscription, Wake};
+use node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
 use recordings::import::Imported;
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ enum Next {
 /// The subscription: all that knows how a packing comes over the bus.
 struct Source {
     bus: node_kit::DdsBus,
-    packings: Subscription<msg::Packing>,
+    packings: BulkSubscription,
     name: String,
 }
 
@@ -66,33 +66,37 @@ impl Source {
         let mut bus = tool_bus("analyze")?;
         // A topic of the contract lives as long as the program; this one name does, too.
         let topic = Topic { name: Box::leak(name.to_owned().into_boxed_str()), ..topics::PACKING };
-        let packings =
-            Subscription::subscribe(&mut bus, &topic, Demand::reliable(BACKLOG)).map_err(Failure::usage)?;
-        let name = bus.received().last().map_or_else(|| name.to_owned(), |r| r.topic.clone());
+        let packings = BulkSubscription::subscribe(&mut bus, &topic, Demand::reliable(BACKLOG))
+            .map_err(Failure::usage)?;
+        let name = packings.topic().to_owned();
         Ok(Self { bus, packings, name })
     }
 
     /// Waits for what comes next.
     fn next(&mut self) -> Result<Next, Failure> {
         loop {
-            if let Some((message, _)) = self.packings.take_valid(&mut self.bus).map_err(Failure::failed)? {
-                return Ok(match Packing::try_from(&message) {
-                    Ok(packing) => Next::Packing(Box::new(Imported {
-                        step: packing.step,
-                        packing,
-                        header: message.header,
-                        source: self.name.clone(),
-                        notes: Vec::new(),
-                    })),
-                    Err(reason) => {
-                        self.bus.count_refused(self.packings.id());
-                        Next::Refused(reason.to_string())
-                    }
-                });
+            if let Some(sample) = self.packings.take(&mut self.bus).map_err(Failure::failed)? {
+                return Ok(self.read(&sample.body).unwrap_or_else(|reason| {
+                    self.bus.count_refused(self.packings.id());
+                    Next::Refused(reason)
+                }));
             }
-            if self.bus.wait(IDLE) == Wake::Shutdown {
+            let patience = self.packings.patience(self.bus.now()).min(IDLE);
+            if self.bus.wait(patience) == Wake::Shutdown {
                 return Ok(Next::Signal);
             }
         }
+    }
+
+    fn read(&self, body: &[u8]) -> Result<Next, String> {
+        let message: msg::Packing = from_cdr(body).map_err(|e| e.to_string())?;
+        let packing = Packing::try_from(&message).map_err(|e| e.to_string())?;
+        Ok(Next::Packing(Box::new(Imported {
+            step: packing.step,
+            packing,
+            header: message.header,
+            source: self.name.clone(),
+            notes: Vec::new(),
+        })))
     }
 }

@@ -1,7 +1,12 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
+use crate::results::probe::{ProbeView, ScanView};
 use crate::results::state::State;
 use fabric_analyzer::{Measured, messages};
+use grains::Packing;
+use micro::scan::scan;
+use micro::stiffness::moduli;
+use micro::{MicroError, Network};
 use recordings::import::Imported;
 use std::time::Instant;
 
@@ -10,10 +15,16 @@ use std::time::Instant;
 const ONE_SIDED: f64 = 0.01;
 
 /// How packings are measured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Measure {
     pub(super) settings: micro::Settings,
+    /// Amplitudes to probe with, beside the measurement proper.
+    pub(super) scan: Vec<f64>,
 }
+
+/// Stiffnesses of a scan agree if no entry differs by more than this share of the largest: the precision that probes are
+/// compared with others to.
+const AGREEMENT: f64 = 1e-3;
 
 /// What was found of one packing.
 #[derive(Debug)]
@@ -34,11 +45,30 @@ impl Measure {
         let mut state = State::new(source.to_owned(), packing, &found.fabric, moduli.ok());
         state.step = imported.step;
         state.seconds = Some(began.elapsed().as_secs_f64());
+        state.probe =
+            found.probe.as_ref().zip(self.settings.probe).map(|(p, set)| ProbeView::new(set.amplitude, p));
+        if !self.scan.is_empty() && moduli.is_ok() {
+            state.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
+        }
         state.warnings.clone_from(&imported.notes);
         state.warnings.extend(moduli.err().map(ToString::to_string));
         state.warnings.extend(found.probe.as_ref().and_then(one_sided));
         let messages = messages(&imported.header, packing, found).map_err(|e| named(&e));
         Ok(Found { state, messages })
+    }
+}
+
+impl Measure {
+    /// Probes of all amplitudes beside the frozen network.
+    fn scanned(&self, packing: &Packing) -> Result<ScanView, MicroError> {
+        let probe = super::explicit(self.settings.tangential);
+        let scan = scan(packing, &probe, &self.scan, AGREEMENT)?;
+        let mut network = Network::new(packing, self.settings.tangential)?;
+        if self.settings.prestress {
+            network = network.with_prestress(packing);
+        }
+        let found = moduli(&network, self.settings.tolerance, self.settings.max_iterations)?;
+        Ok(ScanView::new(&scan, found.ok().map(|m| m.stiffness).as_ref()))
     }
 }
 

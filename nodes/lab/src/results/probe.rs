@@ -1,0 +1,117 @@
+//! How an explicit probe went, for the results of `grainlab analyze`.
+
+use crate::output::Table;
+use micro::ProbeResult;
+use micro::scan::Scan;
+use serde::Serialize;
+
+/// One probe: all six columns.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ProbeView {
+    pub(crate) amplitude: f64,
+    /// Largest |C_ab - C_ba| over the largest entry of C.
+    pub(crate) asymmetry: f64,
+    /// Solver steps in all.
+    pub(crate) steps: u32,
+    /// Contacts that either strain opened, made, or had at the Coulomb limit, over all columns.
+    pub(crate) opened: u32,
+    pub(crate) closed: u32,
+    pub(crate) sliding: u32,
+    /// Largest difference between the forward and the backward column, relative to the largest entry.
+    pub(crate) forward_backward: Option<f64>,
+    /// Largest standard error over the largest entry of C.
+    pub(crate) error: f64,
+}
+
+impl ProbeView {
+    pub(crate) fn new(amplitude: f64, probe: &ProbeResult) -> Self {
+        let sum = |part: fn(&micro::column::Column) -> u32| probe.columns.iter().map(part).sum::<u32>();
+        Self {
+            amplitude,
+            asymmetry: probe.asymmetry,
+            steps: probe.rest_steps + sum(|c| c.steps),
+            opened: sum(|c| c.opened),
+            closed: sum(|c| c.closed),
+            sliding: sum(|c| c.sliding),
+            forward_backward: probe.columns.iter().filter_map(|c| c.forward_backward).reduce(f64::max),
+            error: probe.stddev().0.amax() / probe.stiffness.0.amax(),
+        }
+    }
+}
+
+/// Probes of several amplitudes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ScanView {
+    pub(crate) probes: Vec<ScannedView>,
+    /// Least and largest amplitude of the linear regime; null if no two neighbours agree.
+    pub(crate) linear: Option<[f64; 2]>,
+}
+
+/// One of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ScannedView {
+    pub(crate) amplitude: f64,
+    /// Null if it failed, and why.
+    pub(crate) probe: Option<ProbeView>,
+    pub(crate) failure: Option<String>,
+    /// Largest difference from the frozen network over its C11; null without a stiffness.
+    pub(crate) off_network: Option<f64>,
+}
+
+impl ScanView {
+    /// With the stiffness of the frozen network, where there is one.
+    pub(crate) fn new(scan: &Scan, network: Option<&grains::Stiffness>) -> Self {
+        let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
+            amplitude: *amplitude,
+            probe: found.as_ref().ok().map(|p| ProbeView::new(*amplitude, p)),
+            failure: found.as_ref().err().map(ToString::to_string),
+            off_network: found
+                .as_ref()
+                .ok()
+                .zip(network)
+                .map(|(p, c)| (p.stiffness.0 - c.0).amax() / c.0[(0, 0)].abs()),
+        });
+        let linear = scan.linear.as_ref().map(|run| [scan.probes[*run.start()].0, scan.probes[*run.end()].0]);
+        Self { probes: probes.collect(), linear }
+    }
+
+    /// A line an amplitude, and the linear regime.
+    pub(crate) fn text(&self) -> String {
+        let mut t = Table::new([
+            "amplitude",
+            "off network",
+            "error",
+            "+/- differ",
+            "opened",
+            "closed",
+            "sliding",
+            "steps",
+        ]);
+        for s in &self.probes {
+            let share = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.1e}"));
+            let count = |v: Option<u32>| v.map_or_else(|| "-".to_owned(), |v| v.to_string());
+            let p = s.probe.as_ref();
+            t.row([
+                format!("{:e}", s.amplitude),
+                share(s.off_network),
+                share(p.map(|p| p.error)),
+                share(p.and_then(|p| p.forward_backward)),
+                count(p.map(|p| p.opened)),
+                count(p.map(|p| p.closed)),
+                count(p.map(|p| p.sliding)),
+                count(p.map(|p| p.steps)),
+            ]);
+        }
+        let mut text = t.text();
+        text += &match self.linear {
+            Some([least, largest]) => format!("linear from {least:e} to {largest:e}\n"),
+            None => "no two neighbouring amplitudes agree: no linear regime seen\n".to_owned(),
+        };
+        for s in &self.probes {
+            if let Some(failure) = &s.failure {
+                text += &format!("{:e}: {failure}\n", s.amplitude);
+            }
+        }
+        text
+    }
+}
