@@ -7,6 +7,7 @@ use crate::fabric::fabric;
 use crate::network::Network;
 use crate::probe::{Probe, ProbeResult, probe};
 use crate::rattlers::{contacts_needed, participating};
+use crate::solve::Solver;
 use crate::stiffness;
 use grains::stress::{Stress, stress};
 use grains::{Fabric, Moduli, Packing, Vec3};
@@ -17,6 +18,8 @@ pub struct Settings {
     /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of about 1e-14
     /// in C at z = 5.3; a loose one overestimates C, the more so the closer the network is to isostaticity (z = 4).
     pub tolerance: f64,
+    /// How the stiffness solve is done; the result is the same.
+    pub solver: Solver,
     /// Iterations after which the solve gives up.
     pub max_iterations: u32,
     /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken. Any length but zero. Stiffnesses stay in
@@ -30,7 +33,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, max_iterations: 20_000, axis: Vec3::z(), tangential: true, probe: None }
+        Self {
+            tolerance: 1e-9,
+            solver: Solver::Iterative,
+            max_iterations: 20_000,
+            axis: Vec3::z(),
+            tangential: true,
+            probe: None,
+        }
     }
 }
 
@@ -107,7 +117,7 @@ fn measured_moduli(
         return Ok(Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(packing.friction) }));
     }
     let network = Network::new(packing, settings.tangential)?;
-    stiffness::moduli(&network, settings.tolerance, settings.max_iterations)
+    stiffness::moduli(&network, settings.solver, settings.tolerance, settings.max_iterations)
 }
 
 fn checked_axis(settings: &Settings) -> Result<Vec3, MicroError> {

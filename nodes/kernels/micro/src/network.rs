@@ -14,6 +14,19 @@ use nalgebra::Matrix6;
 /// once; or the forces and scaled torques (N) conjugate to them.
 pub type Motion<const L: usize> = [[f64; L]; 6];
 
+const ZERO: Motion<6> = [[0.0; 6]; 6];
+
+/// Each direction of a grain in a column of its own.
+const UNIT: Motion<6> = {
+    let mut unit = ZERO;
+    let mut k = 0;
+    while k < 6 {
+        unit[k][k] = 1.0;
+        k += 1;
+    }
+    unit
+};
+
 /// One contact of the network, in what the operator needs: 64 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring {
@@ -121,25 +134,22 @@ impl Network {
     /// Diagonal blocks of K, one per grain, N/m.
     pub fn diagonal_blocks(&self) -> Vec<Block> {
         let mut blocks = vec![[[0.0; 6]; 6]; self.grains];
-        let unit: Motion<6> =
-            std::array::from_fn(|r| std::array::from_fn(|l| if r == l { 1.0 } else { 0.0 }));
-        let zero = [[0.0; 6]; 6];
         for s in &self.springs {
             let mut add = |grain: u32, a: &Motion<6>, b: &Motion<6>| {
                 let w = s.relative(a, b);
-                let f = s.force(&w);
+                let block = s.energies(&w, &w);
                 for (row, entries) in blocks[grain as usize].iter_mut().enumerate() {
                     for (column, entry) in entries.iter_mut().enumerate() {
-                        *entry += (0..3).map(|k| w[k][row] * f[k][column]).sum::<f64>();
+                        *entry += block[row][column];
                     }
                 }
             };
             if s.i == s.j {
                 // An own image moves with the grain.
-                add(s.i, &unit, &unit);
+                add(s.i, &UNIT, &UNIT);
             } else {
-                add(s.i, &unit, &zero);
-                add(s.j, &zero, &unit);
+                add(s.i, &UNIT, &ZERO);
+                add(s.j, &ZERO, &UNIT);
             }
         }
         blocks
@@ -190,6 +200,19 @@ impl Network {
 }
 
 impl Spring {
+    /// The 6×6 block of K between grains i (rows) and j (columns), N/m; for different ones.
+    pub(crate) fn coupling(&self) -> Block {
+        self.energies(&self.relative(&UNIT, &ZERO), &self.relative(&ZERO, &UNIT))
+    }
+
+    /// aᵀ k_c b of every column of `a` with every column of `b`.
+    fn energies(&self, a: &[[f64; 6]; 3], b: &[[f64; 6]; 3]) -> Block {
+        let f = self.force(b);
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| (0..3).map(|k| a[k][row] * f[k][column]).sum())
+        })
+    }
+
     /// u_j − u_i − lever (φ_i + φ_j)×n: what the contact feels of the motions `a` of i and `b` of j.
     #[inline(always)]
     fn relative<const L: usize>(&self, a: &Motion<L>, b: &Motion<L>) -> [[f64; L]; 3] {

@@ -1,6 +1,7 @@
 //! What this kernel claims, each claim a test.
 
 mod dense;
+mod direct;
 mod golden;
 mod invariance;
 mod lattices;
