@@ -8,7 +8,8 @@
 //! - [`anisotropy`]: the three ratios γ/Δ
 //! - [`balance`]: how far the packing is from equilibrium
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
-//! - [`preconditioner`], [`solve`]: block-Jacobi conjugate gradients on the singular operator
+//! - [`preconditioner`], [`mod@solve`]: conjugate gradients on the singular operator
+//! - [`direct`]: the same by a sparse Cholesky factorisation
 //! - [`stiffness`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
 //! - [`mod@probe`]: the same stiffness by straining the packing with the whole contact law; [`mod@column`] and [`relax`]
 //!   serve it
