@@ -5,7 +5,7 @@
 //! springs and five hundred without, where rotations drop out; it grows with N² and a little more, the iterations of one
 //! tolerance with N^1.4 (`grainlab bench stiffness`). So it loses by an order of magnitude and more wherever networks are
 //! solid, and more the larger they are; it wins near isostaticity, where iterations are that many: with a friction of 1
-//! and z = 4.1 the two are even, without friction it is three times as fast at z = 6.02 and ten times at z = 6.00.
+//! and z = 4.1 the two are even, without friction it is several times as fast at z = 6.02, and more than ten times at z = 6.00.
 //!
 //! K is singular; factorised is K + s diag(K) with a share s that is far above rounding, so that no pivot vanishes, and far
 //! below the stiffness of almost every mode, so that one solve leaves a share s of most of the residual. Conjugate

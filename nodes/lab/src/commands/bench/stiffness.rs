@@ -20,12 +20,12 @@ Without --packing it is one of 2,000 grains made by LAMMPS. Copies of a packing 
 that size; their rows say so, and exponents never mix the two. A solve that fails has a row that says why.
 
 Examples:
-  Every method on 2,000 grains, with its picture (about a minute):
+  Every method on 2,000 grains, with its picture (some seconds):
     grainlab bench stiffness --all --out stiffness
-  How the cost grows, over packings of one's own and over copies of the first:
+  How the cost grows, over packings of one's own and over copies of the first (minutes):
     grainlab bench stiffness --packing a --packing b --packing c --grains 16000,54000,128000 --out stiffness
   A frictionless packing near isostaticity, where iterations become many:
-    grainlab bench stiffness --packing recordings/runs/press-1-1 --frictionless";
+    grainlab bench stiffness --packing recordings/runs/frictionless-1-1 --frictionless";
 
 /// Residual of the solve that others are measured by: the smallest that a solve is asked for.
 const CONVERGED: f64 = 1e-13;

@@ -18,7 +18,7 @@ const NOTES: [&str; 3] = [
      probes once",
     "error: largest difference of an entry over C11, against the frozen network solved to 1e-13, by cg or, where that \
      fails, directly. The probe's contacts neither slide nor scale their tangential force: the network is its linear limit, \
-     but for terms of the order of the pressure",
+     but for terms of the order of the pressure and for what moves while the packing first comes to rest",
     "exponent: of N in the CPU time, least squares over the logarithms; packings prepared at their size and copies of one \
      are never mixed: copies converge more easily",
 ];
