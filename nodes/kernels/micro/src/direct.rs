@@ -1,11 +1,12 @@
 //! The same systems by a sparse Cholesky factorisation: a second path to every stiffness, which shares nothing with the
-//! iterations but the operator, and serves as a check of them.
+//! iterations but the operator and the way residuals are judged, and serves as a check of them.
 //!
 //! At 2,000 grains a factorisation costs as much as about a thousand iterations of [`crate::solve`] with tangential
 //! springs and five hundred without, where rotations drop out; it grows with N² and a little more, the iterations of one
 //! tolerance with N^1.4 (`grainlab bench stiffness`). So it loses by an order of magnitude and more wherever networks are
 //! solid, and more the larger they are; it wins near isostaticity, where iterations are that many: with a friction of 1
-//! and z = 4.1 the two are even, without friction it is several times as fast at z = 6.02, and more than ten times at z = 6.00.
+//! and z = 4.1 the two are even; without friction it is several times as fast at z = 6.02, and more than ten times at
+//! z = 6.00.
 //!
 //! K is singular; factorised is K + s diag(K) with a share s that is far above rounding, so that no pivot vanishes, and far
 //! below the stiffness of almost every mode, so that one solve leaves a share s of most of the residual. Conjugate
