@@ -14,10 +14,18 @@ fn reference() -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path).display().to_string()
 }
 
-fn rows(arguments: &[&str]) -> Vec<Value> {
+fn report(arguments: &[&str]) -> Value {
     let output = stiffness(&[arguments, &["--repetitions", "1", "--format", "json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice::<Value>(&output.stdout).unwrap().as_array().unwrap().clone()
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn rows(arguments: &[&str]) -> Vec<Value> {
+    report(arguments)["rows"].as_array().unwrap().clone()
+}
+
+fn error(row: &Value) -> f64 {
+    row["error"]["stiffness"].as_f64().unwrap()
 }
 
 #[test]
@@ -25,11 +33,14 @@ fn a_tighter_solve_takes_more_iterations_and_errs_less_and_affine_motion_errs_mo
     let rows = rows(&["--packing", &reference(), "--tolerances", "1e-2,1e-4,1e-8"]);
     let of = |key: &str| rows.iter().map(|r| r[key].as_f64()).collect::<Vec<_>>();
     let methods: Vec<&str> = rows.iter().filter_map(|r| r["method"].as_str()).collect();
-    assert_eq!(methods, ["affine", "network", "network", "network"]);
-    assert!(of("error").is_sorted_by(|a, b| a > b), "{rows:?}");
-    assert!(of("iterations")[1..].is_sorted_by(|a, b| a < b), "{rows:?}");
+    assert_eq!(methods, ["affine", "cg", "cg", "cg", "direct"]);
+    let errors: Vec<f64> = rows.iter().map(error).collect();
+    assert!(errors[..4].is_sorted_by(|a, b| a > b), "{rows:?}");
+    assert!(of("iterations")[1..4].is_sorted_by(|a, b| a < b), "{rows:?}");
     // Affine motion overestimates the shear moduli of such a packing by more than half.
-    assert!(of("error")[0].unwrap() > 0.3 && of("error")[3].unwrap() < 1e-12, "{rows:?}");
+    assert!(errors[0] > 0.3 && errors[3] < 1e-12 && errors[4] < 1e-12, "{rows:?}");
+    // A factorisation leaves little to refine.
+    assert!(of("iterations")[4].unwrap() <= 3.0, "{rows:?}");
     assert!(of("seconds").iter().all(|s| s.unwrap() > 0.0));
 }
 
@@ -37,17 +48,40 @@ fn a_tighter_solve_takes_more_iterations_and_errs_less_and_affine_motion_errs_mo
 fn a_probe_of_a_small_strain_agrees_with_the_network_as_far_as_contacts_hold() {
     let rows = rows(&["--packing", &reference(), "--tolerances", "1e-8", "--amplitudes", "1e-7"]);
     let probe = rows.iter().find(|r| r["method"] == "probe").unwrap();
-    assert!(probe["error"].as_f64().unwrap() < 1e-3, "{probe}");
+    assert!(error(probe) < 1e-3, "{probe}");
+    assert!(probe["error"]["against"].as_str().unwrap().contains("network"), "{probe}");
 }
 
 #[test]
 fn copies_of_a_packing_are_said_to_be_copies_and_as_stiff_as_the_packing() {
-    let rows = rows(&["--packing", &reference(), "--grains", "500,4000", "--tolerances", "1e-6"]);
+    let rows =
+        rows(&["--packing", &reference(), "--grains", "4000", "--tolerances", "1e-6", "--direct-up-to", "0"]);
     let told: Vec<_> = rows.iter().map(|r| (r["grains"].as_u64(), r["replicated"].as_bool())).collect();
-    assert_eq!(told[0], (Some(500), Some(false)));
-    assert_eq!(told[2], (Some(4000), Some(true)));
-    let [one, eight] = [&rows[0], &rows[2]].map(|r| r["error"].as_f64().unwrap());
+    let [one, eight] = [(Some(500), Some(false)), (Some(4000), Some(true))];
+    assert_eq!(told, [one, one, eight, eight]);
+    let [one, eight] = [&rows[0], &rows[2]].map(error);
     assert!((one - eight).abs() < 1e-8, "affine over relaxed: {one} {eight}");
+}
+
+#[test]
+fn packings_of_two_sizes_have_an_exponent_a_method_and_a_folder_gets_report_and_picture() {
+    let out = std::env::temp_dir().join(format!("grainlab-stiffness-{}", std::process::id()));
+    let built_in = "../../tests/golden/packings/packing_2000.data.gz";
+    let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).join(built_in).display().to_string();
+    let arguments = ["--packing", &reference(), "--packing", &built_in, "--tolerances", "1e-4", "--out"];
+    let report = report(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    let exponents = report["exponents"].as_array().unwrap();
+    let methods: Vec<_> = exponents.iter().filter_map(|e| e["method"].as_str()).collect();
+    assert_eq!(methods, ["affine", "cg", "direct"]);
+    for exponent in exponents {
+        assert_eq!(exponent["sizes"], serde_json::json!([500, 2000]), "{exponent}");
+        assert!(exponent["exponent"].as_f64().unwrap() > 0.0, "{exponent}");
+    }
+    let written = std::fs::read(out.join("stiffness.json")).unwrap();
+    assert_eq!(serde_json::from_slice::<Value>(&written).unwrap(), report);
+    let picture = std::fs::read_to_string(out.join("stiffness.svg")).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
+    assert!(picture.contains("500 grains") && picture.contains("direct") && picture.ends_with("</svg>\n"));
 }
 
 #[test]

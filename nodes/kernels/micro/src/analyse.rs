@@ -8,6 +8,7 @@ use crate::fabric::fabric;
 use crate::network::Network;
 use crate::probe::{Probe, ProbeResult, probe};
 use crate::rattlers::{contacts_needed, participating};
+use crate::solve::Solver;
 use crate::stiffness;
 use grains::stress::{Stress, stress};
 use grains::{Fabric, Method, Moduli, Packing, Vec3};
@@ -18,6 +19,8 @@ pub struct Settings {
     /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of about 1e-14
     /// in C at z = 5.3; a loose one overestimates C, the more so the closer the network is to isostaticity (z = 4).
     pub tolerance: f64,
+    /// How the stiffness solve is done; the result is the same.
+    pub solver: Solver,
     /// Iterations after which the solve gives up.
     pub max_iterations: u32,
     /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken. Any length but zero. Stiffnesses stay in
@@ -37,6 +40,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             tolerance: 1e-9,
+            solver: Solver::Iterative,
             max_iterations: 20_000,
             axis: Vec3::z(),
             tangential: true,
@@ -124,7 +128,8 @@ fn measured_moduli(
     if settings.prestress {
         network = network.with_prestress(packing);
     }
-    let mut moduli = stiffness::moduli(&network, settings.tolerance, settings.max_iterations)?;
+    let mut moduli =
+        stiffness::moduli(&network, settings.solver, settings.tolerance, settings.max_iterations)?;
     if let Ok(moduli) = &mut moduli {
         moduli.reuss_bound = reuss_bulk(packing, settings.tangential);
     }

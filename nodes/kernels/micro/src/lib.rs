@@ -18,8 +18,9 @@
 //! - [`balance`]: how far the packing is from equilibrium
 //! - [`bounds`]: the stiffness with a mean spin, and a lower bound of the bulk modulus
 //! - [`network`]: the frozen contact network as a linear operator, for any number of right-hand sides at once
-//! - [`solve`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
+//! - [`mod@solve`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
 //!   own blocks ([`preconditioner`])
+//! - [`direct`]: the same by a sparse Cholesky factorisation
 //! - [`stiffness`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
 //! - [`mod@probe`]: the same stiffness by straining the packing with the whole contact law; [`mod@column`] and [`relax`]
 //!   serve it; [`mod@scan`]: over which strains it is linear
@@ -33,6 +34,7 @@ pub mod bounds;
 pub mod column;
 mod descent;
 pub mod deviator;
+pub mod direct;
 pub mod error;
 pub mod fabric;
 pub mod forces;
@@ -57,3 +59,4 @@ pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};
 pub use network::{Motion, Network};
 pub use probe::{Probe, ProbeResult, Sides, probe};
+pub use solve::Solver;

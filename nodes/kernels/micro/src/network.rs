@@ -15,6 +15,19 @@ use nalgebra::Matrix6;
 /// once; or the forces and scaled torques (N) conjugate to them.
 pub type Motion<const L: usize> = [[f64; L]; 6];
 
+const ZERO: Motion<6> = [[0.0; 6]; 6];
+
+/// Each direction of a grain in a column of its own.
+const UNIT: Motion<6> = {
+    let mut unit = ZERO;
+    let mut k = 0;
+    while k < 6 {
+        unit[k][k] = 1.0;
+        k += 1;
+    }
+    unit
+};
+
 /// One contact of the network, in what the operator needs: 64 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring {
@@ -163,26 +176,21 @@ impl Network {
     /// Diagonal blocks of K, one per grain, N/m.
     pub fn diagonal_blocks(&self) -> Vec<Block> {
         let mut blocks = vec![[[0.0; 6]; 6]; self.grains];
-        let unit: Motion<6> =
-            std::array::from_fn(|r| std::array::from_fn(|l| if r == l { 1.0 } else { 0.0 }));
-        let zero = [[0.0; 6]; 6];
         for s in &self.springs {
             let mut add = |grain: u32, a: &Motion<6>, b: &Motion<6>| {
-                let (w, d) = (s.relative(a, b), s.apart(a, b));
-                let (f, h) = (s.force(&w), s.turned(&d));
+                let block = s.energies([a, b], [a, b]);
                 for (row, entries) in blocks[grain as usize].iter_mut().enumerate() {
                     for (column, entry) in entries.iter_mut().enumerate() {
-                        *entry +=
-                            (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum::<f64>();
+                        *entry += block[row][column];
                     }
                 }
             };
             if s.i == s.j {
                 // An own image moves with the grain.
-                add(s.i, &unit, &unit);
+                add(s.i, &UNIT, &UNIT);
             } else {
-                add(s.i, &unit, &zero);
-                add(s.j, &zero, &unit);
+                add(s.i, &UNIT, &ZERO);
+                add(s.j, &ZERO, &UNIT);
             }
         }
         blocks
@@ -238,6 +246,21 @@ impl Network {
 }
 
 impl Spring {
+    /// The 6×6 block of K between grains i (rows) and j (columns), N/m; for different ones.
+    pub(crate) fn coupling(&self) -> Block {
+        self.energies([&UNIT, &ZERO], [&ZERO, &UNIT])
+    }
+
+    /// What the motions `a` of both grains do against the forces that the motions `b` make, every column with every column.
+    fn energies(&self, a: [&Motion<6>; 2], b: [&Motion<6>; 2]) -> Block {
+        let (w, d) = (self.relative(a[0], a[1]), self.apart(a[0], a[1]));
+        let (f, h) = (self.force(&self.relative(b[0], b[1])), self.turned(&self.apart(b[0], b[1])));
+        let sum = |row: usize, column: usize| {
+            (0..3).map(|k| w[k][row] * f[k][column] + d[k][row] * h[k][column]).sum()
+        };
+        std::array::from_fn(|row| std::array::from_fn(|column| sum(row, column)))
+    }
+
     /// u_j − u_i − lever (φ_i + φ_j)×n: what the contact feels of the motions `a` of i and `b` of j.
     #[inline(always)]
     fn relative<const L: usize>(&self, a: &Motion<L>, b: &Motion<L>) -> [[f64; L]; 3] {

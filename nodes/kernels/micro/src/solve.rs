@@ -31,6 +31,15 @@ const SINGLE_ROUND: u32 = 500;
 
 /// Negative eigenvalues of a block up to this share of its largest are rounding.
 const ROUNDING: f64 = 1e-12;
+/// How the loads are balanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Solver {
+    /// By [`solve()`].
+    #[default]
+    Iterative,
+    /// By [`direct::solve`](crate::direct::solve()).
+    Direct,
+}
 
 /// Motions that balance the loads.
 #[derive(Clone, Debug)]
@@ -59,16 +68,22 @@ pub fn solve<const L: usize>(
     } else {
         refinement.solve::<false>(network)?;
     }
-    let Refinement { motion, residual, iterations, .. } = refinement;
-    if residual <= tolerance {
-        Ok(Solution { motion, residual, iterations })
-    } else {
-        Err(MicroError::NotConverged { residual, tolerance, iterations })
+    refinement.solution()
+}
+
+/// Adds `share` of `x`, column by column, to `sum`.
+pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[Motion<L>], sum: &mut [Motion<L>]) {
+    for (x, sum) in x.iter().zip(sum) {
+        for k in 0..6 {
+            for l in 0..L {
+                sum[k][l] += share[l] * x[k][l];
+            }
+        }
     }
 }
 
 /// What is found so far and what is left, in double precision.
-struct Refinement<'a, const L: usize> {
+pub(crate) struct Refinement<'a, const L: usize> {
     load: &'a [Motion<L>],
     scale: &'a [f64; L],
     tolerance: f64,
@@ -84,7 +99,12 @@ struct Refinement<'a, const L: usize> {
 }
 
 impl<'a, const L: usize> Refinement<'a, L> {
-    fn new(load: &'a [Motion<L>], scale: &'a [f64; L], tolerance: f64, max_iterations: u32) -> Self {
+    pub(crate) fn new(
+        load: &'a [Motion<L>],
+        scale: &'a [f64; L],
+        tolerance: f64,
+        max_iterations: u32,
+    ) -> Self {
         let zero = vec![[[0.0; L]; 6]; load.len()];
         let (squares, residual) = ([0.0; L], f64::INFINITY);
         let mut new = Self {
@@ -136,6 +156,43 @@ impl<'a, const L: usize> Refinement<'a, L> {
         Ok(())
     }
 
+    /// What is left of the loads; nothing in columns that stay at zero.
+    pub(crate) fn left(&self) -> Vec<Motion<L>> {
+        let left = |load: &f64, image: &f64, l: usize| if self.scale[l] > 0.0 { load - image } else { 0.0 };
+        let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(&load[l], &image[l], l));
+        let grain =
+            |(load, image): (&Motion<L>, &Motion<L>)| std::array::from_fn(|k| row(&load[k], &image[k]));
+        self.load.iter().zip(&self.image).map(grain).collect()
+    }
+
+    /// One iteration: moves by `length` times `step`, column by column, and looks at what is left.
+    pub(crate) fn advance(&mut self, network: &Network, step: &[Motion<L>], length: &[f64; L]) {
+        add(length, step, &mut self.motion);
+        self.iterations += 1;
+        self.renew(network);
+    }
+
+    /// Recomputes what is left from the motion.
+    fn renew(&mut self, network: &Network) {
+        network.apply(&self.motion, &mut self.image);
+        self.look();
+    }
+
+    /// Whether more is to be done, and may be.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.residual > self.tolerance && self.iterations < self.max_iterations
+    }
+
+    /// What was found, if it is good enough.
+    pub(crate) fn solution(self) -> Result<Solution<L>, MicroError> {
+        let Self { motion, residual, tolerance, iterations, .. } = self;
+        if residual <= tolerance {
+            Ok(Solution { motion, residual, iterations })
+        } else {
+            Err(MicroError::NotConverged { residual, tolerance, iterations })
+        }
+    }
+
     /// Rounds of conjugate gradients, each reducing the residual by `reach` at most in at most `most` iterations, as long
     /// as they help. True if nothing more is to be done.
     fn rounds<T: Precision, const G: bool>(
@@ -145,11 +202,10 @@ impl<'a, const L: usize> Refinement<'a, L> {
         reach: f64,
         most: u32,
     ) -> bool {
-        while self.residual > self.tolerance && self.iterations < self.max_iterations {
+        while self.goes_on() {
             let before = self.residual;
             self.round(descent, reach, most);
-            network.apply(&self.motion, &mut self.image);
-            self.look();
+            self.renew(network);
             // A NaN does not help either.
             if !(self.residual < HELPED * before || self.residual <= self.tolerance) {
                 return false;

@@ -1,9 +1,10 @@
 //! C = A − ΞᵀK⁺Ξ/V, and the checks that every result must pass.
 
 use crate::bounds::mean_spin;
+use crate::direct;
 use crate::error::{MicroError, NoNetwork};
 use crate::network::Network;
-use crate::solve::solve;
+use crate::solve::{Solver, solve};
 use grains::{Method, Moduli, Stiffness};
 
 /// Eigenvalues of C and of A − C may be this far below zero, as a share of the largest entry of A: rounding of a sum
@@ -25,13 +26,17 @@ const FLOPPY: f64 = 1e-9;
 /// eigenvalues, with the stiffness B of affine motion and a mean spin between the two. The inner result is `Err` where the network resists no strain at all.
 pub fn moduli(
     network: &Network,
+    solver: Solver,
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Result<Moduli, NoNetwork>, MicroError> {
     let (affine, _) = network.stiffness(None);
     let scale = affine.amax();
     let (loads, norms) = network.strain_loads();
-    let solution = solve(network, &loads, &norms, tolerance, max_iterations)?;
+    let solution = match solver {
+        Solver::Iterative => solve(network, &loads, &norms, tolerance, max_iterations)?,
+        Solver::Direct => direct::solve(network, &loads, &norms, tolerance, max_iterations)?,
+    };
     let (relaxed, by_stress) = network.stiffness(Some(&solution.motion));
     if relaxed.amax() <= FLOPPY.max(tolerance) * scale {
         return Ok(Err(NoNetwork::Floppy { contacts: network.contacts() }));

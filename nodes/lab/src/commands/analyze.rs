@@ -95,6 +95,9 @@ pub(crate) struct Args {
     /// How the stiffness is found
     #[arg(long, value_enum, default_value_t)]
     method: Method,
+    /// How the network's equations are solved
+    #[arg(long, value_enum, default_value_t)]
+    solver: Solver,
     /// Take tangential springs away: the response of smooth grains, where others stick
     #[arg(long)]
     smooth: bool,
@@ -118,6 +121,15 @@ enum Method {
     Prestressed,
     /// Explicit: strain the packing a little, relax, read the stress
     Probe,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+enum Solver {
+    /// Conjugate gradients
+    #[default]
+    Iterative,
+    /// Sparse Cholesky: for smooth packings near isostaticity; memory and time grow fast with size
+    Direct,
 }
 
 /// Runs the command.
@@ -195,8 +207,12 @@ fn settings(args: &Args) -> Result<micro::Settings, Failure> {
     let prestress = args.method == Method::Prestressed;
     let tangential = !(args.smooth || prestress);
     let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..explicit(tangential) });
+    let solver = match args.solver {
+        Solver::Iterative => micro::Solver::Iterative,
+        Solver::Direct => micro::Solver::Direct,
+    };
     let settings = micro::Settings::default();
-    Ok(micro::Settings { axis, tolerance: args.tolerance, tangential, prestress, probe, ..settings })
+    Ok(micro::Settings { axis, tolerance: args.tolerance, solver, tangential, prestress, probe, ..settings })
 }
 
 /// A probe in which contacts stick, or slide freely.

@@ -3,9 +3,11 @@
 mod accuracy;
 mod cpu_time;
 mod dem;
+mod folder;
 mod lockstep;
 mod numbers;
 mod packing;
+mod plot;
 mod stiffness;
 
 use crate::failure::Failure;

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod dense;
+mod direct;
 mod directions;
 mod forces;
 mod golden;

@@ -67,7 +67,8 @@ impl Measure {
         if self.settings.prestress {
             network = network.with_prestress(packing);
         }
-        let found = moduli(&network, self.settings.tolerance, self.settings.max_iterations)?;
+        let set = &self.settings;
+        let found = moduli(&network, set.solver, set.tolerance, set.max_iterations)?;
         Ok(ScanView::new(&scan, found.ok().map(|m| m.stiffness).as_ref()))
     }
 }

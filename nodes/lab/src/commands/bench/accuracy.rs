@@ -10,6 +10,7 @@ mod statistics;
 mod table;
 mod verdict;
 
+use super::folder;
 use crate::failure::Failure;
 use crate::output::{Format, json, print, say};
 use clap::ValueEnum;
@@ -18,7 +19,7 @@ use node_kit::Exit;
 use report::Sample;
 use runs::Job;
 use scene::Scene;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const EXAMPLES: &str = "\
@@ -69,10 +70,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let scene = scene(args)?;
     let count = args.seeds.unwrap_or(if args.quick { 2 } else { 8 });
     let seeds: Vec<u64> = (0..u64::from(count)).map(|n| scene.seed.wrapping_add(n)).collect();
-    // Before hours of computing, not after.
-    if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).map_err(|e| Failure::failed(format!("{}: {e}", folder.display())))?;
-    }
+    folder::ready(args.out.as_deref())?;
     let knobs = if args.knobs.is_empty() { Knob::value_variants() } else { &args.knobs };
     let threads = args.threads as usize;
     let unlimited = vec![u64::MAX; seeds.len()];
@@ -96,8 +94,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         return Err(no_reference(&reference, &default));
     };
     if let Some(folder) = &args.out {
-        write(folder, "accuracy.json", &json(&report)?)?;
-        write(folder, "accuracy.svg", &plot::svg(&report))?;
+        folder::write(folder, "accuracy.json", &json(&report)?)?;
+        folder::write(folder, "accuracy.svg", &plot::svg(&report))?;
     }
     print(&match args.format {
         Format::Json => json(&report)?,
@@ -165,11 +163,4 @@ fn no_reference(reference: &Sample, default: &Sample) -> Failure {
         Exit::PhysicsInvalid,
         format!("fewer than two seeds ended, nothing to compare with: {reason}"),
     )
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let path = folder.join(name);
-    std::fs::write(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
-    say!("grainlab: {} written", path.display());
-    Ok(())
 }

@@ -1,27 +1,31 @@
 //! `grainlab bench stiffness`: what all 21 elastic constants of a packing cost, and how wrong they are.
 
-use super::cpu_time::thread_seconds;
-use super::numbers::{median, rounded};
+mod measure;
+mod plot;
+mod report;
+
+use super::folder;
 use super::packing::{copies, load, repeated};
 use crate::failure::Failure;
-use crate::output::{Format, Table, exact, json, print, say};
+use crate::output::{Format, json, print};
+use clap::ValueEnum;
 use dem::{Engine, Setting, TimeStep};
-use grains::{Mat3, Packing, Stiffness};
-use micro::{Network, Probe, stiffness};
+use grains::{Mat3, Packing};
 use node_kit::Exit;
 use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-All times are CPU seconds of one thread, network included, medians over the repetitions; errors are the largest of the 36
-entries over C11, against the frozen network solved to 1e-13. Without --packing it is one of 2,000 grains made by LAMMPS.
-Copies of a packing converge more easily than a packing of that size; their rows say so.
+Without --packing it is one of 2,000 grains made by LAMMPS. Copies of a packing converge more easily than a packing of
+that size; their rows say so, and exponents never mix the two. A solve that fails has a row that says why.
 
 Examples:
-  A packing of one's own, and the probe beside the network:
-    grainlab bench stiffness --packing recordings/runs/s2-1-1 --amplitudes 1e-6,1e-7
-  How the cost grows:
-    grainlab bench stiffness --grains 2000,16000 --tolerances 1e-8 --format json";
+  Every method on 2,000 grains, with its picture (some seconds):
+    grainlab bench stiffness --all --out stiffness
+  How the cost grows, over packings of one's own and over copies of the first (minutes):
+    grainlab bench stiffness --packing a --packing b --packing c --grains 16000,54000,128000 --out stiffness
+  A frictionless packing near isostaticity, where iterations become many:
+    grainlab bench stiffness --packing recordings/runs/frictionless-1-1 --frictionless";
 
 /// Residual of the solve that others are measured by: the smallest that a solve is asked for.
 const CONVERGED: f64 = 1e-13;
@@ -30,24 +34,85 @@ const CONVERGED: f64 = 1e-13;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz
+    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz. As often as there are
+    /// packings
     #[arg(long, value_name = "FILE")]
-    packing: Option<PathBuf>,
-    /// Sizes: cubes of the packing's own number of grains
+    packing: Vec<PathBuf>,
+    /// Sizes of copies of the first packing: cubes of its own number of grains
     #[arg(long, value_name = "N", value_delimiter = ',')]
     grains: Vec<u64>,
-    /// Relative residuals at which the solve of the frozen network stops
+    /// Relative residuals at which the iterations stop
     #[arg(long, value_name = "REL", value_delimiter = ',', default_value = "1e-2,1e-4,1e-6,1e-8,1e-10,1e-12", value_parser = tolerance)]
     tolerances: Vec<f64>,
-    /// Strains of explicit probes, which take far longer; their stiffness is that of the forces, sliding included
+    /// Strains of explicit probes, which take far longer
     #[arg(long, value_name = "STRAIN", value_delimiter = ',', value_parser = amplitude)]
     amplitudes: Vec<f64>,
+    /// Every method: probes of 1e-4 to 1e-8 too
+    #[arg(long, conflicts_with = "amplitudes")]
+    all: bool,
+    /// Contacts without tangential springs, as of a packing made without friction
+    #[arg(long)]
+    frictionless: bool,
+    /// Grains up to which packings are solved directly: time grows with the square of their number
+    #[arg(long, value_name = "N", default_value_t = 4000)]
+    direct_up_to: u64,
+    /// Grains up to which packings are probed
+    #[arg(long, value_name = "N", default_value_t = 4000)]
+    probe_up_to: u64,
     /// Repetitions of every case but the probes
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repetitions: u32,
+    /// Folder for stiffness.json and stiffness.svg
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+}
+
+impl Args {
+    fn amplitudes(&self) -> Vec<f64> {
+        if self.all { vec![1e-4, 1e-5, 1e-6, 1e-7, 1e-8] } else { self.amplitudes.clone() }
+    }
+}
+
+/// How a stiffness is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+enum Method {
+    /// Every grain moves with the strain.
+    Affine,
+    /// The same, and all grains spin alike.
+    MeanSpin,
+    /// Conjugate gradients on the frozen network.
+    Cg,
+    /// A factorisation of the frozen network.
+    Direct,
+    /// The packing is strained with the whole contact law.
+    Probe,
+}
+
+impl Method {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Affine => "affine",
+            Self::MeanSpin => "mean_spin",
+            Self::Cg => "cg",
+            Self::Direct => "direct",
+            Self::Probe => "probe",
+        }
+    }
+
+    /// In a legend.
+    fn explained(self) -> &'static str {
+        match self {
+            Self::Affine => "affine motion",
+            Self::MeanSpin => "and a mean spin",
+            Self::Cg => "cg, at its residual",
+            Self::Direct => "direct",
+            Self::Probe => "probe, at its strain",
+        }
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -63,93 +128,32 @@ fn between(text: &str, least: f64, most: f64) -> Result<f64, String> {
     value.ok_or_else(|| format!("a number from {least:e} to {most:e}"))
 }
 
-/// One method on one packing.
-#[derive(Debug, Serialize)]
-struct Row {
-    grains: usize,
-    /// Whether the packing was repeated to come to this size.
-    replicated: bool,
-    coordination: f64,
-    method: &'static str,
-    /// Relative residual of a solve, strain of a probe.
-    setting: Option<f64>,
-    /// CPU time.
-    seconds: f64,
-    /// Of the solve, or solver steps of the probe.
-    iterations: Option<u32>,
-    /// Largest entry of the difference over C11.
-    error: f64,
-}
-
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let packing = load(args.packing.as_deref())?;
-    let sizes = if args.grains.is_empty() { vec![1] } else { copies(packing.grains(), &args.grains)? };
+    let paths = args.packing.iter().map(|path| load(Some(path)));
+    let mut packings = paths.collect::<Result<Vec<_>, _>>()?;
+    if packings.is_empty() {
+        packings.push(load(None)?);
+    }
+    let sizes = if args.grains.is_empty() { Vec::new() } else { copies(packings[0].grains(), &args.grains)? };
+    folder::ready(args.out.as_deref())?;
     let mut rows = Vec::new();
-    for copies in sizes {
-        let packing = if copies == 1 { packing.clone() } else { replicated(&packing, copies)? };
-        say!("grainlab: {} grains, {} contacts", packing.grains(), packing.contacts.len());
-        rows.extend(measured(&packing, copies > 1, args)?);
+    for packing in &packings {
+        rows.extend(measure::rows(packing, false, args)?);
+    }
+    for copies in sizes.into_iter().filter(|copies| *copies > 1) {
+        rows.extend(measure::rows(&replicated(&packings[0], copies)?, true, args)?);
+    }
+    let report = report::report(rows);
+    if let Some(folder) = &args.out {
+        folder::write(folder, "stiffness.json", &json(&report)?)?;
+        folder::write(folder, "stiffness.svg", &plot::svg(&report))?;
     }
     print(&match args.format {
-        Format::Json => json(&rows)?,
-        Format::Csv => table(&rows, exact).csv(),
-        Format::Table => table(&rows, rounded).text(),
+        Format::Json => json(&report)?,
+        Format::Csv => report::csv(&report),
+        Format::Table => report::text(&report),
     })?;
     Ok(Exit::Done)
-}
-
-fn measured(packing: &Packing, replicated: bool, args: &Args) -> Result<Vec<Row>, Failure> {
-    let converged = solved(packing, CONVERGED)?.0;
-    let coordination = 2.0 * packing.contacts.len() as f64 / packing.grains() as f64;
-    let row = |method, setting, seconds, iterations, found: &Stiffness| Row {
-        grains: packing.grains(),
-        replicated,
-        coordination,
-        method,
-        setting,
-        seconds,
-        iterations,
-        error: (found.0 - converged.0).amax() / converged.0[(0, 0)],
-    };
-    let (seconds, affine) = timed(args.repetitions, || Ok(Stiffness(network(packing)?.stiffness(None).0)))?;
-    let mut rows = vec![row("affine", None, seconds, None, &affine)];
-    for tolerance in &args.tolerances {
-        let (seconds, (found, iterations)) = timed(args.repetitions, || solved(packing, *tolerance))?;
-        rows.push(row("network", Some(*tolerance), seconds, Some(iterations), &found));
-    }
-    for amplitude in &args.amplitudes {
-        let settings = Probe { amplitude: *amplitude, ..Probe::default() };
-        let probe = || micro::probe(packing, &settings).map_err(invalid);
-        let (seconds, found) = timed(1, probe)?;
-        let steps = found.rest_steps + found.columns.iter().map(|c| c.steps).sum::<u32>();
-        rows.push(row("probe", Some(*amplitude), seconds, Some(steps), &found.stiffness));
-    }
-    Ok(rows)
-}
-
-/// Median CPU time of doing it so often, s, and what came of it.
-fn timed<T>(repetitions: u32, work: impl Fn() -> Result<T, Failure>) -> Result<(f64, T), Failure> {
-    let mut times = Vec::new();
-    loop {
-        let begin = thread_seconds()?;
-        let result = work()?;
-        times.push(thread_seconds()? - begin);
-        if times.len() as u32 >= repetitions {
-            return Ok((median(times), result));
-        }
-    }
-}
-
-fn network(packing: &Packing) -> Result<Network, Failure> {
-    Network::new(packing, true).map_err(invalid)
-}
-
-/// The relaxed stiffness, Pa, and iterations.
-fn solved(packing: &Packing, tolerance: f64) -> Result<(Stiffness, u32), Failure> {
-    let most = micro::Settings::default().max_iterations;
-    let found = stiffness::moduli(&network(packing)?, tolerance, most).map_err(invalid)?;
-    let moduli = found.map_err(|none| Failure::new(Exit::PhysicsInvalid, none))?;
-    Ok((moduli.stiffness, moduli.iterations))
 }
 
 /// Copies of the packing along each axis. Contacts are those of the overlaps.
@@ -170,36 +174,6 @@ fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
     let radii = packing.radii.repeat((copies as usize).pow(3));
     let mut engine = Engine::new(cell, packing.material, radii, &centres, setting);
     engine.sort();
-    engine.prepare().map_err(invalid)?;
+    engine.prepare().map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
     Ok(engine.packing(Mat3::identity()))
-}
-
-fn invalid(error: impl std::error::Error + Send + Sync + 'static) -> Failure {
-    Failure::new(Exit::PhysicsInvalid, error)
-}
-
-fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
-    let mut t = Table::new([
-        "grains",
-        "replicated",
-        "coordination",
-        "method",
-        "setting",
-        "seconds",
-        "iterations",
-        "error",
-    ]);
-    for r in rows {
-        t.row(vec![
-            r.grains.to_string(),
-            if r.replicated { "yes" } else { "no" }.to_owned(),
-            number(Some(r.coordination)),
-            r.method.to_owned(),
-            r.setting.map_or_else(|| "-".to_owned(), |s| format!("{s:e}")),
-            number(Some(r.seconds)),
-            r.iterations.map_or_else(|| "-".to_owned(), |n| n.to_string()),
-            format!("{:.1e}", r.error),
-        ]);
-    }
-    t
 }
