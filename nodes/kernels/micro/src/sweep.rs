@@ -31,13 +31,23 @@ pub(crate) struct Sweeps<T, const G: bool> {
     /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
     first: Vec<u32>,
     /// D.
-    blocks: Vec<[[T; 6]; 6]>,
+    blocks: Vec<Packed<T>>,
     /// D⁻¹.
-    inverse: Vec<[[T; 6]; 6]>,
+    inverse: Vec<Packed<T>>,
     /// Grain of the packing at each place.
     pub(crate) order: Vec<u32>,
     /// Mean stiffness of a block's displacements, N/m.
     pub(crate) unit: f64,
+}
+
+/// A symmetric block, row by row up to the diagonal.
+type Packed<T> = [T; 21];
+
+/// Place of an entry in a packed block.
+#[inline(always)]
+const fn place(row: usize, column: usize) -> usize {
+    let (low, high) = if row < column { (row, column) } else { (column, row) };
+    high * (high + 1) / 2 + low
 }
 
 /// One contact as the earlier of its grains sees it.
@@ -46,9 +56,7 @@ struct Half<T> {
     later: u32,
     /// Towards the later grain.
     normal: [T; 3],
-    /// Lever times normal, and its opposite.
-    arm: [T; 3],
-    against: [T; 3],
+    lever: T,
     tangential: T,
     excess: T,
     geometric: T,
@@ -57,23 +65,31 @@ struct Half<T> {
 impl<T: Real, const G: bool> Sweeps<T, G> {
     pub(crate) fn new(network: &Network) -> Self {
         let order = network.order().to_vec();
-        let mut place = vec![0u32; order.len()];
+        let mut places = vec![0u32; order.len()];
         for (at, grain) in order.iter().enumerate() {
-            place[*grain as usize] = at as u32;
+            places[*grain as usize] = at as u32;
         }
         let blocks = network.diagonal_blocks();
         let traces: f64 = blocks.iter().map(|b| b[0][0] + b[1][1] + b[2][2]).sum();
         let unit = if traces > 0.0 { traces / (3 * blocks.len()) as f64 } else { 1.0 };
         let between = |s: &&Spring| s.i != s.j;
         let mut springs: Vec<(u32, Half<T>)> =
-            network.springs().iter().filter(between).map(|s| Half::of(s, &place, unit)).collect();
+            network.springs().iter().filter(between).map(|s| Half::of(s, &places, unit)).collect();
         springs.sort_by_key(|(earlier, half)| (*earlier, half.later));
         let mut first = vec![0u32; order.len() + 1];
         springs.iter().for_each(|(earlier, _)| first[*earlier as usize + 1] += 1);
         for g in 0..order.len() {
             first[g + 1] += first[g];
         }
-        let rounded = |block: &Block, unit: f64| block.map(|row| row.map(|v| T::of(v * unit)));
+        let rounded = |block: &Block, unit: f64| {
+            let mut packed = [T::ZERO; 21];
+            for (k, row) in block.iter().enumerate() {
+                for (c, value) in row.iter().enumerate().take(k + 1) {
+                    packed[place(k, c)] = T::of(value * unit);
+                }
+            }
+            packed
+        };
         Self {
             springs: springs.into_iter().map(|(_, half)| half).collect(),
             first,
@@ -195,14 +211,13 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
 
 impl<T: Real> Half<T> {
     /// With the place of the earlier grain.
-    fn of(s: &Spring, place: &[u32], unit: f64) -> (u32, Self) {
-        let (i, j) = (place[s.i as usize], place[s.j as usize]);
+    fn of(s: &Spring, places: &[u32], unit: f64) -> (u32, Self) {
+        let (i, j) = (places[s.i as usize], places[s.j as usize]);
         let side = if i < j { 1.0 } else { -1.0 };
         let half = Self {
             later: i.max(j),
             normal: s.normal.map(|n| T::of(side * n)),
-            arm: s.normal.map(|n| T::of(side * n * s.lever)),
-            against: s.normal.map(|n| T::of(-side * n * s.lever)),
+            lever: T::of(s.lever),
             tangential: T::of(s.tangential / unit),
             excess: T::of(s.excess / unit),
             geometric: T::of(s.geometric / unit),
@@ -213,14 +228,14 @@ impl<T: Real> Half<T> {
     /// `rest` of the later grain less what the motion `a` of the earlier one does to it.
     #[inline(always)]
     fn push<V: Lanes<T = T>, const G: bool>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off::<V, G>(v, a, &self.arm, &self.against, rest)
+        self.taken_off::<V, G>(v, a, self.lever, rest)
     }
 
     /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arm on the
     /// other side.
     #[inline(always)]
     fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off::<V, G>(v, b, &self.against, &self.arm, rest)
+        self.taken_off::<V, G>(v, b, T::of(-1.0).times(self.lever), rest)
     }
 
     #[inline(always)]
@@ -228,13 +243,13 @@ impl<T: Real> Half<T> {
         &self,
         v: V,
         a: &Six<V>,
-        arm: &[T; 3],
-        against: &[T; 3],
+        lever: T,
         mut rest: Six<V>,
     ) -> Six<V> {
         let [nx, ny, nz] = splats(v, &self.normal);
-        let [mx, my, mz] = splats(v, arm);
-        let [ox, oy, oz] = splats(v, against);
+        let (ahead, back) = (v.splat(lever), v.splat(T::of(-1.0).times(lever)));
+        let [mx, my, mz] = [v.mul(ahead, nx), v.mul(ahead, ny), v.mul(ahead, nz)];
+        let [ox, oy, oz] = [v.mul(back, nx), v.mul(back, ny), v.mul(back, nz)];
         let (tangential, excess) = (v.splat(self.tangential), v.splat(self.excess));
         // u + φ×m, of this grain alone.
         let wx = v.mul_add(a[4], mz, v.mul_add(a[5], oy, a[0]));
@@ -282,16 +297,25 @@ pub(crate) fn store<V: Lanes>(v: V, x: &Six<V>, to: &mut Rows<V::T>) {
 
 /// m x.
 #[inline(always)]
-fn product<V: Lanes>(v: V, m: &[[V::T; 6]; 6], x: &Six<V>) -> Six<V> {
-    let mut y = *x;
-    for k in 0..6 {
-        let mut sum = v.mul(v.splat(m[k][0]), x[0]);
-        for c in 1..6 {
-            sum = v.mul_add(v.splat(m[k][c]), x[c], sum);
-        }
-        y[k] = sum;
-    }
-    y
+fn product<V: Lanes>(v: V, m: &Packed<V::T>, x: &Six<V>) -> Six<V> {
+    [
+        row::<V, 0>(v, m, x),
+        row::<V, 1>(v, m, x),
+        row::<V, 2>(v, m, x),
+        row::<V, 3>(v, m, x),
+        row::<V, 4>(v, m, x),
+        row::<V, 5>(v, m, x),
+    ]
+}
+
+#[inline(always)]
+fn row<V: Lanes, const K: usize>(v: V, m: &Packed<V::T>, x: &Six<V>) -> V::Row {
+    let sum = v.mul(v.splat(m[const { place(K, 0) }]), x[0]);
+    let sum = v.mul_add(v.splat(m[const { place(K, 1) }]), x[1], sum);
+    let sum = v.mul_add(v.splat(m[const { place(K, 2) }]), x[2], sum);
+    let sum = v.mul_add(v.splat(m[const { place(K, 3) }]), x[3], sum);
+    let sum = v.mul_add(v.splat(m[const { place(K, 4) }]), x[4], sum);
+    v.mul_add(v.splat(m[const { place(K, 5) }]), x[5], sum)
 }
 
 /// Adds xᵀ y of each column to `sum`. Six products are added up in T before they are widened.
