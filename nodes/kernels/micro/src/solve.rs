@@ -203,11 +203,16 @@ impl<'a, const L: usize> Refinement<'a, L> {
         most: u32,
     ) -> bool {
         while self.goes_on() {
-            let before = self.residual;
+            let (before, kept) = (self.residual, self.motion.clone());
             self.round(descent, reach, most);
             self.renew(network);
             // A NaN does not help either.
-            if !(self.residual < HELPED * before || self.residual <= self.tolerance) {
+            let worse = self.residual.is_nan() || self.residual > before;
+            if worse {
+                self.motion = kept;
+                self.renew(network);
+            }
+            if worse || (self.residual > HELPED * before && self.residual > self.tolerance) {
                 return false;
             }
         }
