@@ -138,6 +138,25 @@ fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_analysed() {
 }
 
 #[test]
+fn the_method_asked_for_is_used_and_said() {
+    let with = |method: &str| {
+        let args = ["--ros-args", "-p", &format!("method:={method}")].map(String::from);
+        let (ros, _) = RosArgs::parse(&args).unwrap();
+        let names = Names::from_args("fabric_analyzer", &ros).unwrap();
+        let parameters = Parameters::resolve(&parameters(), "fabric_analyzer", &names, &ros).unwrap();
+        measure(&message(OVERLAP), &Settings::try_from(&parameters).unwrap())
+    };
+    let [network, probe] = ["network", "probe"].map(|method| with(method).unwrap().moduli.unwrap());
+    assert_eq!([network.method, probe.method], [Moduli::METHOD_FROZEN_NETWORK, Moduli::METHOD_PROBE]);
+    // C44 of the lattice, k_t/(2 D), up to terms of the pressure.
+    let c44 = [&network, &probe].map(|m| m.stiffness[21]);
+    assert!(c44[0] > 0.0 && (c44[1] / c44[0] - 1.0).abs() < 1e-2, "{c44:?}");
+    assert!(network.stiffness_stddev.iter().all(|s| *s > 0.0));
+    // Smooth grains on such a lattice slip past each other under the least pressure.
+    assert!(matches!(with("prestressed"), Err(MeasureError::Analysis { step: 12, .. })));
+}
+
+#[test]
 fn the_declared_defaults_are_the_typed_ones() {
     let settings = Settings::try_from(&Parameters::defaults(&parameters())).unwrap();
     assert_eq!(settings, Settings::default());

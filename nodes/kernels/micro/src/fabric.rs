@@ -93,11 +93,9 @@ fn fourth_order(packing: &Packing, axis: &Vec3) -> f64 {
 
 /// Share of contacts with |F_t| ≥ 0.999 μ F_n; 0 where there is no such limit (μ = 0 or infinite).
 fn mobilised(packing: &Packing) -> f64 {
-    let mu = packing.friction;
-    if packing.contacts.is_empty() || mu == 0.0 || mu.is_infinite() {
+    if packing.contacts.is_empty() {
         return 0.0;
     }
-    let at_limit =
-        packing.contacts.iter().filter(|c| c.tangential_force.norm() >= 0.999 * mu * c.normal_force);
+    let at_limit = packing.contacts.iter().filter(|c| c.slides(packing.friction));
     at_limit.count() as f64 / packing.contacts.len() as f64
 }

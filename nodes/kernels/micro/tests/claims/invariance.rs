@@ -100,3 +100,26 @@ fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
         assert!(error < 10.0 * tolerance * tolerance.sqrt(), "{tolerance:e}: {error:e}");
     }
 }
+
+/// Of a solve by its two evaluations: whatever the tolerance, no entry is further off than twice what is stated, and nothing
+/// is stated to be exact.
+#[test]
+fn the_standard_error_of_a_stiffness_covers_its_error() {
+    let p = random(60, 1.2, 17);
+    let with =
+        |tolerance| analyse(&p, &Settings { tolerance, ..Settings::default() }).unwrap().moduli.unwrap();
+    let exact = with(1e-13).stiffness.0;
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+        let m = with(tolerance);
+        assert!(m.stddev.0.min() > 0.0);
+        let off = (m.stiffness.0 - exact).abs();
+        // Entries that cancel in one evaluation are covered by the largest of their row.
+        for (a, row) in off.row_iter().enumerate() {
+            assert!(row.amax() <= 2.0 * m.stddev.0.row(a).amax(), "{tolerance:e}, row {a}: {row}");
+        }
+    }
+    assert!(
+        with(1e-2).stddev.0.amax() > 1e3 * with(1e-6).stddev.0.amax(),
+        "it says nothing of the tolerance"
+    );
+}
