@@ -1,7 +1,7 @@
 //! From one `Moduli` to one `Microstructure`.
 
 use crate::Settings;
-use emt::{CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, Observation, Status, infer_all};
+use emt::{CREDIBLE_LEVEL, Calibration, EmtError, Estimate, Gamma, Observation, Quantity, Status, models};
 use grainlab_msgs::boundary::{BoundaryError, ModuliReading};
 use grainlab_msgs::{msg, topics};
 use grains::Mat3;
@@ -15,11 +15,11 @@ pub fn microstructure_message(
     let reading = ModuliReading::try_from(moduli)?;
     let observation = observation(&reading, settings);
     let calibration = Calibration::PAPER;
-    let estimates = infer_all(&observation, &calibration)
-        .into_iter()
-        .map(|(model, inferred)| match inferred {
+    let estimates = models()
+        .iter()
+        .map(|model| match model.infer(&observation, &calibration) {
             Ok(estimate) => estimate_message(&estimate),
-            Err(error) => failure(model, &calibration, &observation.gamma, &error),
+            Err(error) => failure(model.name(), &calibration, &observation.conditions.gamma, &error),
         })
         .collect();
     Ok(msg::Microstructure {
@@ -33,17 +33,18 @@ pub fn microstructure_message(
 
 fn observation(reading: &ModuliReading, settings: &Settings) -> Observation {
     let gamma = Gamma::of(&reading.gamma_over_delta, settings.gamma);
-    let observed = Observation::new(reading.g12, reading.g13, reading.theta, reading.pressure, gamma);
+    let observed = Observation::paper(reading.g12, reading.g13, reading.theta, reading.pressure, gamma);
     match &reading.covariance {
-        Some(covariance) => observed.with_covariance(Mat3::from_row_slice(covariance)),
+        Some(covariance) => observed.with_paper_covariance(&Mat3::from_row_slice(covariance)),
         None if settings.modulus_error > 0.0 => observed.with_relative_error(settings.modulus_error),
         None => observed,
     }
 }
 
 fn estimate_message(estimate: &Estimate) -> msg::Estimate {
-    let interval = estimate.interval();
-    let covariance = estimate.covariance.as_ref();
+    const PAPER: [Quantity; 3] = [Quantity::K, Quantity::KHat, Quantity::Eps];
+    let covariance = estimate.covariance();
+    let [k, k_hat, eps] = PAPER.map(|q| estimate.structure.get(q).unwrap_or_default());
     msg::Estimate {
         model: estimate.model.to_owned(),
         calibration: estimate.calibration.clone(),
@@ -51,29 +52,24 @@ fn estimate_message(estimate: &Estimate) -> msg::Estimate {
             Status::Ok => msg::Estimate::STATUS_OK,
             Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
         },
-        gamma_over_delta: estimate.gamma.value,
-        gamma_over_delta_source: estimate.gamma.source.name().to_owned(),
-        k: estimate.structure.k,
-        k_hat: estimate.structure.k_hat,
-        eps: estimate.structure.eps,
-        covariance: covariance.map_or([0.0; 9], |c| std::array::from_fn(|i| c[(i / 3, i % 3)])),
-        interval: interval.map_or([0.0; 6], |bounds| std::array::from_fn(|i| bounds[i / 2][i % 2])),
-        credible_level: if interval.is_some() { CREDIBLE_LEVEL } else { 0.0 },
+        gamma_over_delta: estimate.gamma.map_or(0.0, |g| g.value),
+        gamma_over_delta_source: estimate.gamma.map_or("none", |g| g.source.name()).to_owned(),
+        k,
+        k_hat,
+        eps,
+        covariance: covariance
+            .map_or([0.0; 9], |c| std::array::from_fn(|i| c[(PAPER[i / 3] as usize, PAPER[i % 3] as usize)])),
+        interval: std::array::from_fn(|i| {
+            estimate.interval(PAPER[i / 2]).map_or(0.0, |bounds| bounds[i % 2])
+        }),
+        credible_level: if covariance.is_some() { CREDIBLE_LEVEL } else { 0.0 },
         warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
     }
 }
 
 fn failure(model: &str, calibration: &Calibration, gamma: &Gamma, error: &EmtError) -> msg::Estimate {
-    let status = match error {
-        EmtError::NotFinite { .. }
-        | EmtError::NotPositive { .. }
-        | EmtError::NegativeStddev { .. }
-        | EmtError::Covariance { .. } => msg::Estimate::STATUS_UNDETERMINED,
-        EmtError::GammaOutOfRange { .. }
-        | EmtError::RatioOutOfRange { .. }
-        | EmtError::NoAnisotropy { .. }
-        | EmtError::ShearTooStiff { .. } => msg::Estimate::STATUS_FAILED,
-    };
+    let status =
+        if error.is_of_input() { msg::Estimate::STATUS_UNDETERMINED } else { msg::Estimate::STATUS_FAILED };
     msg::Estimate {
         model: model.to_owned(),
         calibration: calibration.name().to_owned(),

@@ -1,6 +1,8 @@
 //! What makes an inversion impossible.
 
-/// Why a model has no estimate for an observation.
+use crate::moduli::Modulus;
+
+/// Why a model has no estimate for an observation, or no prediction for a structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EmtError {
     /// An input, or what follows from it, is not finite.
@@ -29,7 +31,7 @@ pub enum EmtError {
     },
     /// Not a covariance.
     #[error(
-        "the covariance of (G12, G13, Theta) is not one: {fault} ({value:e} Pa2); leave it out if it is not known"
+        "the covariance of the moduli is not one: {fault} ({value:e} Pa2); leave it out if it is not known"
     )]
     Covariance {
         /// What is wrong with it.
@@ -37,14 +39,70 @@ pub enum EmtError {
         /// The offending value, Pa².
         value: f64,
     },
+    /// Not a solid fraction.
+    #[error("the solid fraction {phi} is outside (0, 1)")]
+    SolidFraction {
+        /// The value found.
+        phi: f64,
+    },
+    /// Not a Poisson ratio of a grain.
+    #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
+    PoissonRatio {
+        /// The value found.
+        nu: f64,
+    },
+    /// The moduli given leave a value to another that no stable medium has.
+    #[error(
+        "the moduli given leave {modulus} = {value:e} Pa: they are not of one medium, or not of one state"
+    )]
+    Unstable {
+        /// The modulus that follows from the others.
+        modulus: &'static str,
+        /// Its value, Pa.
+        value: f64,
+    },
+    /// Something that the model cannot do without is not known.
+    #[error("model {model} needs {missing}, which is not given")]
+    Missing {
+        /// Name of the model.
+        model: &'static str,
+        /// What is missing.
+        missing: &'static str,
+    },
+    /// A structure or a state outside the model's domain.
+    #[error("{quantity} = {value} is outside [{low}, {high}], where model {model} lives")]
+    OutsideDomain {
+        /// Name of the model.
+        model: &'static str,
+        /// Which quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+        /// Lowest value of the domain.
+        low: f64,
+        /// Highest value of the domain.
+        high: f64,
+    },
+    /// The calibration does not hold what the model needs.
+    #[error("calibration `{calibration}` does not hold the constants of model {model}: take another")]
+    NotCalibrated {
+        /// Name of the model.
+        model: &'static str,
+        /// Name of the calibration.
+        calibration: String,
+    },
     /// The strain ratio makes contacts of negative stiffness.
     #[error(
-        "gamma/Delta = {g} is outside (-1, 1/2), where Eq. 10 gives some contacts a negative stiffness: \
+        "gamma/Delta = {g} is outside {range}, where {law} gives some contacts a negative stiffness: \
          give the elastic or the contact-fitted ratio, or 0"
     )]
     GammaOutOfRange {
         /// g = γ/Δ.
         g: f64,
+        /// The range it must be in.
+        range: &'static str,
+        /// The overlap law that says so.
+        law: &'static str,
     },
     /// The shear ratio is one that no distribution of contacts has.
     #[error(
@@ -78,4 +136,59 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
+    /// No coordination of the calibration has such moduli.
+    #[error(
+        "no coordination number in [{low}, {high}], where calibration `{calibration}` lives, fits the moduli ({nearest} \
+         comes nearest): check units, pressure and material"
+    )]
+    NoCoordination {
+        /// Coordination that comes nearest.
+        nearest: f64,
+        /// Lowest of the domain.
+        low: f64,
+        /// Highest of the domain.
+        high: f64,
+        /// Name of the calibration.
+        calibration: String,
+    },
+    /// Two microstructures explain the observation almost equally well.
+    #[error(
+        "coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more moduli, or more \
+         exact ones"
+    )]
+    Ambiguous {
+        /// One of them.
+        first: f64,
+        /// The other.
+        second: f64,
+    },
+}
+
+impl EmtError {
+    /// Whether the data are too few, or are no data, rather than at odds with the theory.
+    pub fn is_of_input(&self) -> bool {
+        match self {
+            EmtError::NotFinite { .. }
+            | EmtError::NotPositive { .. }
+            | EmtError::NegativeStddev { .. }
+            | EmtError::Covariance { .. }
+            | EmtError::SolidFraction { .. }
+            | EmtError::PoissonRatio { .. }
+            | EmtError::Missing { .. }
+            | EmtError::NotCalibrated { .. } => true,
+            EmtError::Unstable { .. }
+            | EmtError::OutsideDomain { .. }
+            | EmtError::GammaOutOfRange { .. }
+            | EmtError::RatioOutOfRange { .. }
+            | EmtError::NoAnisotropy { .. }
+            | EmtError::ShearTooStiff { .. }
+            | EmtError::NoCoordination { .. }
+            | EmtError::Ambiguous { .. } => false,
+        }
+    }
+
+    /// Of `model`, which works with `modulus`.
+    pub(crate) fn missing(model: &'static str, modulus: Modulus) -> Self {
+        EmtError::Missing { model, missing: modulus.name() }
+    }
 }

@@ -1,29 +1,20 @@
-//! What a model infers.
+//! What a model infers, and how sure it is.
 
 use crate::calibration::Calibration;
-use crate::observation::{Gamma, GammaSource};
-use grains::Mat3;
-use std::fmt;
+use crate::conditions::Gamma;
+use crate::domain::Domain;
+use crate::error::EmtError;
+use crate::model::{Misfit, Slopes, Solution};
+use crate::observation::{INPUTS, InputCovariance, Observation};
+use crate::structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
+use crate::warning::{self, Warning};
+use nalgebra::SMatrix;
 
 /// Level of the intervals of an [`Estimate`].
 pub const CREDIBLE_LEVEL: f64 = 0.95;
 
 /// Half width, in standard deviations, of the central interval of a normal distribution at [`CREDIBLE_LEVEL`].
-const HALF_WIDTH: f64 = 1.959_963_984_540_054;
-
-/// Coordination number of a close packing of equal spheres: more contacts than that find no room.
-const CLOSE_PACKING: f64 = 12.0;
-
-/// Microstructure, as the models see it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Structure {
-    /// Coordination number k, in the sense of the calibration.
-    pub k: f64,
-    /// Coordination number k̂ of the equivalent isotropic packing.
-    pub k_hat: f64,
-    /// Contact anisotropy ε about e3.
-    pub eps: f64,
-}
+pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
 /// Whether an estimate stays inside what its model and calibration were made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,93 +25,6 @@ pub enum Status {
     Extrapolated,
 }
 
-/// What to keep in mind about an estimate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Warning {
-    /// k̂ lies below the packings of the calibration.
-    CoordinationBelowFit {
-        /// k̂ inferred.
-        k_hat: f64,
-        /// Lowest k̂ of the calibration.
-        limit: f64,
-    },
-    /// k or k̂ is more than equal spheres find room for.
-    CoordinationImpossible {
-        /// The larger of k and k̂.
-        coordination: f64,
-    },
-    /// G13/G12 is outside [2/3, 3/2], the range that contact anisotropy alone can give.
-    RatioUnusual {
-        /// r = G13/G12.
-        ratio: f64,
-    },
-    /// ε is outside [−1/2, 1]: Eq. 6 then gives some directions a negative contact density.
-    EpsOutOfRange {
-        /// ε inferred.
-        eps: f64,
-    },
-    /// γ/Δ is outside [−0.3, 0.1], where the linear overlap law of Eq. 10 costs more than 0.005 in ε.
-    GammaLarge {
-        /// g = γ/Δ.
-        g: f64,
-    },
-    /// γ/Δ is outside [−1/2, 1/4]: contacts in some directions would be open.
-    ContactsOpen {
-        /// g = γ/Δ.
-        g: f64,
-    },
-    /// γ/Δ is not known and was taken as zero.
-    GammaAssumedZero,
-}
-
-impl Warning {
-    /// Whether the model or the calibration is used outside its range.
-    pub fn is_extrapolation(&self) -> bool {
-        !matches!(self, Warning::GammaAssumedZero)
-    }
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Warning::CoordinationBelowFit { k_hat, limit } => {
-                write!(
-                    f,
-                    "k_hat = {k_hat:.3} is below {limit}, the lowest that the calibration was fitted to"
-                )
-            }
-            Warning::CoordinationImpossible { coordination } => {
-                write!(
-                    f,
-                    "a coordination number of {coordination:.3} is more than equal spheres find room for (12)"
-                )
-            }
-            Warning::RatioUnusual { ratio } => {
-                write!(
-                    f,
-                    "G13/G12 = {ratio:.4} is outside [2/3, 3/2], what contact anisotropy alone can give"
-                )
-            }
-            Warning::EpsOutOfRange { eps } => {
-                write!(
-                    f,
-                    "eps = {eps:.4} is outside [-1/2, 1]: some directions would have fewer than no contacts"
-                )
-            }
-            Warning::GammaLarge { g } => {
-                write!(f, "gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is good to 0.005 in eps")
-            }
-            Warning::ContactsOpen { g } => {
-                write!(
-                    f,
-                    "gamma/Delta = {g:.4} is outside [-1/2, 1/4]: contacts in some directions would be open"
-                )
-            }
-            Warning::GammaAssumedZero => write!(f, "gamma/Delta is not known and was taken as 0"),
-        }
-    }
-}
-
 /// What one model infers from one observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -128,50 +32,131 @@ pub struct Estimate {
     pub model: &'static str,
     /// Name of the calibration.
     pub calibration: String,
-    /// The γ/Δ it was fed with.
-    pub gamma: Gamma,
-    /// The most probable k, k̂ and ε.
+    /// The γ/Δ it was fed with; `None` if the model does not use it.
+    pub gamma: Option<Gamma>,
+    /// The most probable values; `None` is undetermined, or not part of the model.
     pub structure: Structure,
-    /// Covariance of (k, k̂, ε), first order in the errors of the observation; `None` if those are not known. Errors of
-    /// the model and of the calibration are not in it.
-    pub covariance: Option<Mat3>,
+    /// How they depend on the data, first order.
+    pub slopes: Slopes,
+    /// Covariance from the errors of the observation; `None` if those are not known.
+    pub data_covariance: Option<StructureCovariance>,
+    /// Covariance from what the model leaves out, as learned from the packings of the calibration; `None` if the
+    /// calibration has learned nothing of the model.
+    pub model_covariance: Option<StructureCovariance>,
+    /// Misfit, where there are more data than unknowns.
+    pub misfit: Option<Misfit>,
     /// Whether model and calibration were used inside their range.
     pub status: Status,
     /// What to keep in mind.
     pub warnings: Vec<Warning>,
+    inputs: Option<InputCovariance>,
 }
 
 impl Estimate {
-    /// Standard deviations of (k, k̂, ε); `None` if not known.
-    pub fn stddev(&self) -> Option<[f64; 3]> {
-        let c = self.covariance.as_ref()?;
-        Some(std::array::from_fn(|i| c[(i, i)].max(0.0).sqrt()))
+    /// Covariance of the estimate, from data and model as far as either is known; `None` if neither is.
+    pub fn covariance(&self) -> Option<StructureCovariance> {
+        match (self.data_covariance, self.model_covariance) {
+            (None, None) => None,
+            (data, model) => Some(data.unwrap_or_default() + model.unwrap_or_default()),
+        }
     }
 
-    /// Central intervals of k, k̂ and ε at [`CREDIBLE_LEVEL`], low and high, errors taken as normal; `None` if the
-    /// uncertainty is not known.
-    pub fn interval(&self) -> Option<[[f64; 2]; 3]> {
-        let sigma = self.stddev()?;
-        let Structure { k, k_hat, eps } = self.structure;
-        let middle = [k, k_hat, eps];
-        Some(std::array::from_fn(|i| [middle[i] - HALF_WIDTH * sigma[i], middle[i] + HALF_WIDTH * sigma[i]]))
+    /// Standard deviation of a quantity; `None` if it is undetermined or its uncertainty is not known.
+    pub fn stddev(&self, quantity: Quantity) -> Option<f64> {
+        self.structure.get(quantity)?;
+        let i = quantity as usize;
+        Some(self.covariance()?[(i, i)].max(0.0).sqrt())
+    }
+
+    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, errors taken as normal.
+    pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
+        let middle = self.structure.get(quantity)?;
+        let half = HALF_WIDTH * self.stddev(quantity)?;
+        Some([middle - half, middle + half])
+    }
+
+    /// Ratio of the largest to the smallest singular value of the slopes of what is determined, coordination numbers by
+    /// their relative change: how much more one combination suffers from errors of the data than another.
+    pub fn condition_number(&self) -> Option<f64> {
+        let mut scaled = SMatrix::<f64, QUANTITIES, INPUTS>::zeros();
+        let mut determined = 0;
+        for (i, quantity) in Quantity::ALL.into_iter().enumerate() {
+            let Some(value) = self.structure.get(quantity) else { continue };
+            let scale = if quantity.is_coordination() { 1.0 / value } else { 1.0 };
+            scaled.set_row(determined, &(self.slopes.row(i) * scale));
+            determined += 1;
+        }
+        // Of what follows from one another (k from z) nothing new is learned.
+        let mut singular: Vec<f64> =
+            (scaled * scaled.transpose()).symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
+        singular.sort_by(f64::total_cmp);
+        let largest = *singular.last().filter(|v| **v > 0.0)?;
+        let smallest = singular.into_iter().find(|v| *v > 1e-6 * largest)?;
+        Some(largest / smallest)
+    }
+
+    /// Share of each input in the variance of a quantity that the errors of the data cause, in the order of
+    /// [`crate::INPUT_NAMES`]; correlated errors share what they have in common, and may so have a negative part. Where
+    /// the errors are not known, all inputs are taken to have the same relative one. `None` if undetermined.
+    pub fn information(&self, quantity: Quantity) -> Option<[f64; INPUTS]> {
+        self.structure.get(quantity)?;
+        let slopes = self.slopes.row(quantity as usize);
+        let inputs = self.inputs.filter(|c| c.amax() > 0.0).unwrap_or_else(InputCovariance::identity);
+        let with_all = slopes * inputs;
+        let parts: [f64; INPUTS] = std::array::from_fn(|i| slopes[i] * with_all[i]);
+        let total: f64 = parts.iter().sum();
+        (total > 0.0).then(|| parts.map(|p| p / total))
     }
 }
 
-/// The warnings of an estimate of the paper's models with shear ratio `ratio`.
-pub(crate) fn warnings(s: &Structure, ratio: f64, gamma: &Gamma, calibration: &Calibration) -> Vec<Warning> {
-    let (g, limit) = (gamma.value, calibration.fitted_above());
-    let coordination = s.k.max(s.k_hat);
-    [
-        (s.k_hat < limit, Warning::CoordinationBelowFit { k_hat: s.k_hat, limit }),
-        (coordination > CLOSE_PACKING, Warning::CoordinationImpossible { coordination }),
-        (!(2.0 / 3.0..=1.5).contains(&ratio), Warning::RatioUnusual { ratio }),
-        (!(-0.5..=1.0).contains(&s.eps), Warning::EpsOutOfRange { eps: s.eps }),
-        (!(-0.3..=0.1).contains(&g), Warning::GammaLarge { g }),
-        (!(-0.5..=0.25).contains(&g), Warning::ContactsOpen { g }),
-        (gamma.source == GammaSource::Zero, Warning::GammaAssumedZero),
-    ]
-    .into_iter()
-    .filter_map(|(applies, warning)| applies.then_some(warning))
-    .collect()
+/// Puts an estimate together.
+pub(crate) fn assemble(
+    model: &'static str,
+    uses_gamma: bool,
+    domain: &Domain,
+    observation: &Observation,
+    calibration: &Calibration,
+    solution: Solution,
+    slopes: Slopes,
+) -> Result<Estimate, EmtError> {
+    let Solution { structure, discrepancy, misfit, warnings: own, .. } = solution;
+    let inputs = observation.input_covariance();
+    let data_covariance = inputs.map(|input| slopes * input * slopes.transpose());
+    let gamma = observation.conditions.gamma;
+    let model_covariance =
+        discrepancy.or_else(|| calibration.discrepancy(model, uses_gamma.then_some(gamma.source)));
+    let model_covariance = model_covariance.map(|c| of_determined(c, &structure));
+    // Finite inputs of absurd scale can still overflow.
+    let values = structure.values();
+    for value in values.iter().flatten().chain(data_covariance.iter().flatten()) {
+        if !value.is_finite() {
+            return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
+        }
+    }
+    let mut warnings = own;
+    warnings.extend(warning::common(observation, &structure, calibration, uses_gamma));
+    let extrapolated = warnings.iter().any(Warning::is_extrapolation) || !domain.contains(&structure);
+    Ok(Estimate {
+        model,
+        calibration: calibration.name().to_owned(),
+        gamma: uses_gamma.then_some(gamma),
+        structure,
+        slopes,
+        data_covariance,
+        model_covariance,
+        misfit,
+        status: if extrapolated { Status::Extrapolated } else { Status::Ok },
+        warnings,
+        inputs,
+    })
+}
+
+fn of_determined(mut covariance: StructureCovariance, structure: &Structure) -> StructureCovariance {
+    for (i, value) in structure.values().iter().enumerate() {
+        if value.is_none() {
+            covariance.fill_row(i, 0.0);
+            covariance.fill_column(i, 0.0);
+        }
+    }
+    covariance
 }

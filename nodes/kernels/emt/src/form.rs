@@ -26,43 +26,17 @@ impl Form {
     /// Bracket of Eq. 16: the bulk modulus in units of the isotropic one with as many contacts. Corrected, it is
     /// 3 m1 + m2 = 1 − 4εg/5.
     pub fn bulk_factor(self, eps: f64, g: f64) -> f64 {
-        self.bulk(eps, Moments::new(eps, g).spin(), g).value
+        self.bulk(eps, Moments::new(eps, g).spin(), g)
     }
 
-    /// The same with a as a variable of its own, and its slopes.
-    pub(crate) fn bulk(self, eps: f64, a: f64, g: f64) -> Bulk {
+    /// The same with a as a variable of its own.
+    pub(crate) fn bulk(self, eps: f64, a: f64, g: f64) -> f64 {
         match self {
-            Form::Corrected => {
-                Bulk { value: 1.0 - 0.8 * eps * g, by_eps: -0.8 * g, by_a: 0.0, by_g: -0.8 * eps }
-            }
+            Form::Corrected => 1.0 - 0.8 * eps * g,
             Form::AsPrinted => {
                 let m1 = Moments::new(eps, g).m1;
-                let slope = (14.0 + 8.0 * eps) / 35.0;
-                Bulk {
-                    value: (3.0 + 2.0 * a) * m1 + 0.4 * eps - a * slope * g,
-                    by_eps: (3.0 + 2.0 * a) * m1_by_eps(g) + 0.4 - 8.0 * a * g / 35.0,
-                    by_a: 2.0 * m1 - slope * g,
-                    by_g: (3.0 + 2.0 * a) * m1_by_g(eps) - a * slope,
-                }
+                (3.0 + 2.0 * a) * m1 + 0.4 * eps - a * (14.0 + 8.0 * eps) / 35.0 * g
             }
         }
     }
-}
-
-/// A bulk factor and its slopes by ε, a and g.
-pub(crate) struct Bulk {
-    pub(crate) value: f64,
-    pub(crate) by_eps: f64,
-    pub(crate) by_a: f64,
-    pub(crate) by_g: f64,
-}
-
-/// ∂m1/∂ε.
-pub(crate) fn m1_by_eps(g: f64) -> f64 {
-    -2.0 / 15.0 - 20.0 * g / 105.0
-}
-
-/// ∂m1/∂g.
-pub(crate) fn m1_by_g(eps: f64) -> f64 {
-    (14.0 - 20.0 * eps) / 105.0
 }

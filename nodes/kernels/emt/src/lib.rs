@@ -4,39 +4,51 @@
 //! closed form with first-order error propagation. SI at every interface. The axis of anisotropy is e3; ε and
 //! g = γ/Δ are positive when there is more (of contacts, of extension) along it.
 //!
-//! - [`moments`]: the tensor that every modulus is made of
-//! - [`form`]: the printed equations against the corrected ones
+//! - [`structure`], [`moduli`], [`conditions`]: what is inferred, what it is inferred from, and at what state
+//! - [`observation`], [`estimate`], [`warning`], [`error`]: what goes into an inversion and what comes out
+//! - [`mod@model`], [`domain`]: what a model is, where it lives, and the list of them
+//! - [`mod@calibration`]: what packings have taught the models
+//! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
-//! - [`calibration`]: moduli of isotropic packings
-//! - [`observation`], [`estimate`], [`error`]: what goes into an inversion and what comes out
-//! - [`mod@model`]: what a model is, and the list of them
-//! - [`ratio`]: the paper's model, corrected and as printed
+//! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //!
 //! ```
-//! use emt::{Calibration, Gamma, Observation};
+//! use emt::{Calibration, Gamma, Observation, Quantity};
 //! // The first row of the paper's Table III: k = 5.73, k_hat = 5.63, eps = 0.016.
-//! let s1 = Observation::new(121.71e6, 127.37e6, 144.38e6, 50.0e3, Gamma::given(-0.0623)).with_relative_error(0.01);
+//! let s1 = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50.0e3, Gamma::given(-0.0623)).with_relative_error(0.01);
 //! let estimate = emt::model("ratio").unwrap().infer(&s1, &Calibration::PAPER).unwrap();
-//! assert!((estimate.structure.k - 5.73).abs() < 1e-3 && (estimate.structure.k_hat - 5.63).abs() < 1e-3);
-//! assert!((estimate.structure.eps - 0.016).abs() < 1e-3);
-//! assert!((estimate.stddev().unwrap()[0] - 0.056).abs() < 1e-2);
+//! let near = |found: Option<f64>, value: f64| (found.unwrap() - value).abs() < 1e-3;
+//! assert!(near(estimate.structure.k, 5.73) && near(estimate.structure.k_hat, 5.63));
+//! assert!(near(estimate.structure.eps, 0.016));
+//! assert!((estimate.stddev(Quantity::K).unwrap() - 0.056).abs() < 1e-2);
 //! ```
 
 pub mod calibration;
+pub mod conditions;
+pub mod domain;
 pub mod error;
 pub mod estimate;
 pub mod form;
 pub mod medium;
 pub mod model;
+pub mod moduli;
 pub mod moments;
 pub mod observation;
+mod propagation;
 pub mod ratio;
+pub mod structure;
+pub mod warning;
 
-pub use calibration::{Calibration, CalibrationError};
+pub use calibration::{Calibration, CalibrationError, Isotropic};
+pub use conditions::{Conditions, Gamma, GammaSource, Measured};
+pub use domain::Domain;
 pub use error::EmtError;
-pub use estimate::{CREDIBLE_LEVEL, Estimate, Status, Structure, Warning};
+pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use form::Form;
 pub use medium::{Medium, Psi};
-pub use model::{Model, infer_all, model, models};
+pub use model::{Misfit, Model, Slopes, Solution, model, models};
+pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
-pub use observation::{Gamma, GammaSource, Observation};
+pub use observation::{INPUT_NAMES, INPUTS, Observation};
+pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
+pub use warning::Warning;

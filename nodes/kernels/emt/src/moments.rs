@@ -37,18 +37,12 @@ impl Moments {
     }
 }
 
-/// The ε whose moments have spin `a` at strain ratio `g`, with its slopes ∂ε/∂a and ∂ε/∂g:
-/// ε = [a(35−7g) + 21g] / [(21−12g) − a(7−32g)]. `None` where no ε with M11 > 0 and M33 > 0 has it.
-pub(crate) fn eps_of_spin(a: f64, g: f64) -> Option<(f64, f64, f64)> {
+/// The ε whose moments have spin `a` at strain ratio `g`: ε = [a(35−7g) + 21g] / [(21−12g) − a(7−32g)]. `None` where no ε
+/// with M11 > 0 and M33 > 0 has it.
+pub(crate) fn eps_of_spin(a: f64, g: f64) -> Option<f64> {
     let numerator = a * (35.0 - 7.0 * g) + 21.0 * g;
     let denominator = (21.0 - 12.0 * g) - a * (7.0 - 32.0 * g);
     let eps = numerator / denominator;
     let m = Moments::new(eps, g);
-    if !(denominator > 0.0 && m.m1 > 0.0 && m.m1 + m.m2 > 0.0) {
-        return None;
-    }
-    let square = denominator * denominator;
-    let by_a = ((35.0 - 7.0 * g) * denominator + numerator * (7.0 - 32.0 * g)) / square;
-    let by_g = ((21.0 - 7.0 * a) * denominator + numerator * (12.0 - 32.0 * a)) / square;
-    Some((eps, by_a, by_g))
+    (denominator > 0.0 && m.m1 > 0.0 && m.m1 + m.m2 > 0.0).then_some(eps)
 }

@@ -1,117 +1,133 @@
 //! The paper's models: moduli as ratios over those of an equivalent isotropic packing, Eqs. 16–18 with 21 and 22.
 //!
-//! The inversion is closed and unique in both forms. With r = G13/G12 and a = r − 1, ε follows from a and g alone. With
+//! The inversion is closed and unique in every form. With r = G13/G12 and a = r − 1, ε follows from a and g alone. With
 //! B the bracket of Eq. 16, s = (ρ/α)(G12/Θ) B/(3 m1) = (k̂+β)/(k̂+ζ) gives k̂, and Θ then gives k. In the corrected form
 //! B/(3 m1) = (4−r)/(3(2−r)): k̂ depends on neither g nor ε.
 
 use crate::calibration::Calibration;
+use crate::conditions::Conditions;
+use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::estimate::{Estimate, Status, Structure, Warning, warnings};
-use crate::form::{Form, m1_by_eps, m1_by_g};
-use crate::model::Model;
+use crate::form::Form;
+use crate::model::{Model, Solution};
+use crate::moduli::{Moduli, Modulus};
 use crate::moments::{Moments, eps_of_spin};
-use crate::observation::{Gamma, Observation};
-use nalgebra::{Matrix3x5, RowVector5};
+use crate::observation::Observation;
+use crate::structure::{QUANTITIES, Quantity, Structure};
+use crate::warning::Warning;
 
-/// The ratio model in one reading of Eq. 16.
+/// The ratio model in one reading of Eqs. 16–18.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
     name: &'static str,
     form: Form,
+    /// Power of k/k̂ in Eqs. 16–18.
+    power: f64,
 }
 
 /// Eq. 16 with its missing factor: model `ratio`.
-pub const CORRECTED: Ratio = Ratio { name: "ratio", form: Form::Corrected };
+pub const CORRECTED: Ratio = Ratio { name: "ratio", form: Form::Corrected, power: 1.0 };
 
 /// Eq. 16 as it is printed: model `ratio-as-printed`.
-pub const AS_PRINTED: Ratio = Ratio { name: "ratio-as-printed", form: Form::AsPrinted };
+pub const AS_PRINTED: Ratio = Ratio { name: "ratio-as-printed", form: Form::AsPrinted, power: 1.0 };
+
+/// At the same pressure and volume, as the text has it, Hertz contacts have moduli ∝ k^⅔ and not ∝ k: model
+/// `ratio-volume`.
+pub const VOLUME: Ratio = Ratio { name: "ratio-volume", form: Form::Corrected, power: 2.0 / 3.0 };
+
+/// Highest coordination number of the domain: more than equal spheres find room for.
+const HIGHEST: f64 = 15.0;
 
 impl Model for Ratio {
     fn name(&self) -> &'static str {
         self.name
     }
 
+    fn domain(&self, calibration: &Calibration) -> Domain {
+        domain(self.name, calibration)
+    }
+
     fn predict(
         &self,
         structure: &Structure,
-        gamma: Gamma,
-        pressure: f64,
+        conditions: &Conditions,
         calibration: &Calibration,
-    ) -> Observation {
-        let Structure { k, k_hat, eps } = *structure;
-        let m = Moments::new(eps, gamma.value);
-        let g12 = k / k_hat * 3.0 * m.m1 * calibration.shear_modulus(k_hat, pressure);
+    ) -> Result<Moduli, EmtError> {
+        let found = self.domain(calibration).take(structure, conditions)?;
+        let [k, k_hat, eps] =
+            [calibration.isotropic().abscissa, Quantity::KHat, Quantity::Eps].map(|q| found[q as usize]);
+        let isotropic = calibration.isotropic_for(conditions.material);
+        let (g, pressure) = (conditions.gamma.value, conditions.pressure.value);
+        let m = Moments::new(eps, g);
+        let denser = (k / k_hat).powf(self.power);
+        let g12 = denser * 3.0 * m.m1 * isotropic.shear_modulus(k_hat, pressure);
         let g13 = g12 * (1.0 + m.spin());
-        let bulk = self.form.bulk_factor(eps, gamma.value);
-        let theta = k / k_hat * bulk * calibration.bulk_modulus(k_hat, pressure);
-        Observation::new(g12, g13, theta, pressure, gamma)
+        let theta = denser * self.form.bulk_factor(eps, g) * isotropic.bulk_modulus(k_hat, pressure);
+        Ok(Moduli::paper(g12, g13, theta))
     }
 
-    fn infer(&self, observation: &Observation, calibration: &Calibration) -> Result<Estimate, EmtError> {
-        observation.check()?;
-        let ratio = observation.g13 / observation.g12;
-        let (structure, jacobian) = invert(self.form, observation, calibration)?;
-        let covariance = observation.log_covariance().map(|input| jacobian * input * jacobian.transpose());
-        // Finite inputs of absurd scale can still overflow.
-        for value in [structure.k].iter().chain(covariance.iter().flatten()) {
-            if !value.is_finite() {
-                return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
-            }
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<Solution, EmtError> {
+        let need = |m| observation.moduli.get(m).ok_or(EmtError::missing(self.name, m));
+        let (g12, g13) = (need(Modulus::G12)?, need(Modulus::G13)?);
+        let g = observation.conditions.gamma.value;
+        if !(g > -1.0 && g < 0.5) {
+            return Err(EmtError::GammaOutOfRange { g, range: "(-1, 1/2)", law: "Eq. 10" });
         }
-        let warnings = warnings(&structure, ratio, &observation.gamma, calibration);
-        let extrapolated = warnings.iter().any(Warning::is_extrapolation);
-        Ok(Estimate {
-            model: self.name,
-            calibration: calibration.name().to_owned(),
-            gamma: observation.gamma,
-            structure,
-            covariance,
-            status: if extrapolated { Status::Extrapolated } else { Status::Ok },
-            warnings,
-        })
+        let ratio = g13 / g12;
+        if !(ratio > 0.0 && ratio < 2.0) {
+            return Err(EmtError::RatioOutOfRange { ratio });
+        }
+        let a = ratio - 1.0;
+        let no_anisotropy = EmtError::NoAnisotropy { ratio, g };
+        let eps = eps_of_spin(a, g).ok_or(no_anisotropy.clone())?;
+        let bulk = self.form.bulk(eps, a, g);
+        if bulk <= 0.0 {
+            return Err(no_anisotropy);
+        }
+        let mut structure = Structure::default().with(Quantity::Eps, eps);
+        let mut warnings = ratio_warnings(ratio);
+        if let Some(theta) = observation.moduli.get(Modulus::Theta) {
+            let isotropic = calibration.isotropic_for(observation.conditions.material);
+            let of_isotropic = bulk / (3.0 * Moments::new(eps, g).m1);
+            let s = isotropic.reduced(g12 / theta * of_isotropic);
+            if s >= 1.0 {
+                let limit = 1.0 / isotropic.reduced(of_isotropic);
+                return Err(EmtError::ShearTooStiff {
+                    ratio: g12 / theta,
+                    limit,
+                    calibration: calibration.name().into(),
+                });
+            }
+            let k_hat = isotropic.coordination(s);
+            let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * bulk);
+            let k = k_hat * if self.power == 1.0 { denser } else { denser.powf(1.0 / self.power) };
+            structure = structure.with(calibration.isotropic().abscissa, k).with(Quantity::KHat, k_hat);
+            warnings.extend(outside_fit(k_hat, calibration));
+        }
+        Ok(Solution { warnings, ..Solution::exact(structure) })
     }
 }
 
-/// The structure, and the slopes of (k, k̂, ε) by (ln G12, ln G13, ln Θ, ln p, g).
-fn invert(
-    form: Form,
-    observation: &Observation,
-    calibration: &Calibration,
-) -> Result<(Structure, Matrix3x5<f64>), EmtError> {
-    let Observation { g12, g13, theta, pressure, .. } = *observation;
-    let g = observation.gamma.value;
-    let ratio = g13 / g12;
-    if !(ratio > 0.0 && ratio < 2.0) {
-        return Err(EmtError::RatioOutOfRange { ratio });
-    }
-    let a = ratio - 1.0;
-    let no_anisotropy = EmtError::NoAnisotropy { ratio, g };
-    let (eps, eps_by_a, eps_by_g) = eps_of_spin(a, g).ok_or(no_anisotropy.clone())?;
-    let m1 = Moments::new(eps, g).m1;
-    let bulk = form.bulk(eps, a, g);
-    if bulk.value <= 0.0 {
-        return Err(no_anisotropy);
-    }
-    let isotropic = bulk.value / (3.0 * m1);
-    let s = calibration.reduced(g12 / theta * isotropic);
-    if s >= 1.0 {
-        let limit = 1.0 / calibration.reduced(isotropic);
-        return Err(EmtError::ShearTooStiff {
-            ratio: g12 / theta,
-            limit,
-            calibration: calibration.name().into(),
-        });
-    }
-    let (k_hat, k_hat_by_s) = calibration.coordination(s);
-    let k = k_hat * theta / (calibration.bulk_modulus(k_hat, pressure) * bulk.value);
+/// Of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of shear, and ε.
+pub(crate) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
+    let isotropic = calibration.isotropic();
+    let mut structure = [None; QUANTITIES];
+    structure[isotropic.abscissa as usize] = Some([0.1, HIGHEST]);
+    // At the zero of shear itself nothing can be inverted.
+    structure[Quantity::KHat as usize] = Some([-isotropic.constants()[1] * (1.0 + 1e-3), HIGHEST]);
+    structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
+    Domain { model, structure, gamma: [-0.5, 0.25], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+}
 
-    let ln = |i: usize| RowVector5::from_fn(|_, j| if i == j { 1.0 } else { 0.0 });
-    let (ln_g12, ln_g13, ln_theta, ln_p, d_g) = (ln(0), ln(1), ln(2), ln(3), ln(4));
-    let d_a = (ln_g13 - ln_g12) * ratio;
-    let d_eps = d_a * eps_by_a + d_g * eps_by_g;
-    let ln_bulk = (d_eps * bulk.by_eps + d_a * bulk.by_a + d_g * bulk.by_g) / bulk.value;
-    let ln_m1 = (d_eps * m1_by_eps(g) + d_g * m1_by_g(eps)) / m1;
-    let d_k_hat = (ln_g12 - ln_theta + ln_bulk - ln_m1) * (s * k_hat_by_s);
-    let ln_k = ln_theta - ln_p / 3.0 + d_k_hat * calibration.bulk_sensitivity(k_hat) - ln_bulk;
-    Ok((Structure { k, k_hat, eps }, Matrix3x5::from_rows(&[ln_k * k, d_k_hat, d_eps])))
+/// What to say of a shear ratio that contact anisotropy alone cannot give.
+pub(crate) fn ratio_warnings(ratio: f64) -> Vec<Warning> {
+    let usual = (2.0 / 3.0..=1.5).contains(&ratio);
+    if usual { Vec::new() } else { vec![Warning::RatioUnusual { ratio }] }
+}
+
+/// What to say of a k̂ that no packing of the calibration had.
+pub(crate) fn outside_fit(k_hat: f64, calibration: &Calibration) -> Option<Warning> {
+    let range = calibration.isotropic().fitted;
+    let outside = !(range[0]..=range[1]).contains(&k_hat);
+    outside.then_some(Warning::CoordinationOutsideFit { quantity: Quantity::KHat, value: k_hat, range })
 }

@@ -121,16 +121,7 @@ fn invert(inputs: Inputs, models: &[&'static dyn Model]) -> Inverted {
 
 /// Numbers that are no moduli are wrong usage; moduli that no packing has are invalid physics.
 fn exit_of(error: &EmtError) -> Exit {
-    match error {
-        EmtError::NotFinite { .. }
-        | EmtError::NotPositive { .. }
-        | EmtError::NegativeStddev { .. }
-        | EmtError::Covariance { .. }
-        | EmtError::GammaOutOfRange { .. } => Exit::Usage,
-        EmtError::RatioOutOfRange { .. } | EmtError::NoAnisotropy { .. } | EmtError::ShearTooStiff { .. } => {
-            Exit::PhysicsInvalid
-        }
-    }
+    if error.is_of_input() { Exit::Usage } else { Exit::PhysicsInvalid }
 }
 
 fn csv(inverted: &[Inverted]) -> String {

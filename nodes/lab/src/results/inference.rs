@@ -1,7 +1,7 @@
 //! What the models infer, with the stable keys of `results[]`.
 
 use crate::output::{Table, exact, fixed};
-use emt::{CREDIBLE_LEVEL, EmtError, Estimate};
+use emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use grainlab_msgs::msg;
 use serde::Serialize;
@@ -13,16 +13,11 @@ pub(crate) struct Inference {
     pub(crate) model: String,
     /// Name of the isotropic calibration.
     pub(crate) calibration: String,
-    /// Coordination number, in the calibration's sense.
-    pub(crate) k: Option<f64>,
-    /// Coordination number of the equivalent isotropic packing.
-    pub(crate) k_hat: Option<f64>,
-    /// Coordination number without rattlers; the paper's models do not give it.
-    pub(crate) z: Option<f64>,
-    /// Contact anisotropy.
-    pub(crate) eps: Option<f64>,
+    /// What it infers.
+    #[serde(flatten)]
+    pub(crate) values: Quantities<Option<f64>>,
     /// Standard deviations.
-    pub(crate) sigma: Triple<Option<f64>>,
+    pub(crate) sigma: Quantities<Option<f64>>,
     /// Credible intervals.
     pub(crate) interval: Interval,
     /// `ok`, `extrapolated`, `undetermined` or `failed`.
@@ -34,12 +29,31 @@ pub(crate) struct Inference {
     pub(crate) warnings: Vec<String>,
 }
 
-/// One value for each of k, k̂ and ε.
+/// One value for each quantity of the microstructure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Triple<T> {
+pub(crate) struct Quantities<T> {
+    /// Coordination number, in the calibration's sense.
     pub(crate) k: T,
+    /// Coordination number of the equivalent isotropic packing.
     pub(crate) k_hat: T,
+    /// Coordination number without rattlers; the paper's models do not give it.
+    pub(crate) z: T,
+    /// Contact anisotropy.
     pub(crate) eps: T,
+    /// Contact anisotropy weighted by contact stiffness; the paper's models do not give it.
+    pub(crate) eps_stiffness: T,
+}
+
+impl<T> Quantities<T> {
+    fn of(mut value: impl FnMut(Quantity) -> T) -> Self {
+        Self {
+            k: value(Quantity::K),
+            k_hat: value(Quantity::KHat),
+            z: value(Quantity::Z),
+            eps: value(Quantity::Eps),
+            eps_stiffness: value(Quantity::EpsStiffness),
+        }
+    }
 }
 
 /// Central intervals, low and high.
@@ -48,7 +62,7 @@ pub(crate) struct Interval {
     /// Probability inside each.
     pub(crate) level: Option<f64>,
     #[serde(flatten)]
-    pub(crate) bounds: Triple<Option<[f64; 2]>>,
+    pub(crate) bounds: Quantities<Option<[f64; 2]>>,
 }
 
 impl Inference {
@@ -62,11 +76,8 @@ impl Inference {
         Self {
             model: model.to_owned(),
             calibration: calibration.to_owned(),
-            k: None,
-            k_hat: None,
-            z: None,
-            eps: None,
-            sigma: Triple::default(),
+            values: Quantities::default(),
+            sigma: Quantities::default(),
             interval: Interval::default(),
             status,
             gamma_over_delta: None,
@@ -87,14 +98,16 @@ impl Inference {
         inference.gamma_over_delta = Some(message.gamma_over_delta);
         inference.gamma_over_delta_source = Some(message.gamma_over_delta_source.clone());
         let Some(found) = &e.inferred else { return inference };
-        (inference.k, inference.k_hat, inference.eps) = (Some(found.k), Some(found.k_hat), Some(found.eps));
+        (inference.values.k, inference.values.k_hat, inference.values.eps) =
+            (Some(found.k), Some(found.k_hat), Some(found.eps));
         if let Some(c) = &found.covariance {
             let sigma = |i: usize| Some(c[4 * i].max(0.0).sqrt());
-            inference.sigma = Triple { k: sigma(0), k_hat: sigma(1), eps: sigma(2) };
+            (inference.sigma.k, inference.sigma.k_hat, inference.sigma.eps) = (sigma(0), sigma(1), sigma(2));
         }
         if let Some(i) = &found.interval {
             let pair = |(low, high): (f64, f64)| Some([low, high]);
-            let bounds = Triple { k: pair(i.k), k_hat: pair(i.k_hat), eps: pair(i.eps) };
+            let none = Quantities::default();
+            let bounds = Quantities { k: pair(i.k), k_hat: pair(i.k_hat), eps: pair(i.eps), ..none };
             inference.interval = Interval { level: Some(i.level), bounds };
         }
         inference
@@ -106,31 +119,22 @@ impl Inference {
             Ok(estimate) => estimate,
             Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),
         };
-        let s = &estimate.structure;
-        let sigma = estimate.stddev();
-        let interval = estimate.interval();
+        let known = estimate.covariance().is_some();
         Self {
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),
-            k: Some(s.k),
-            k_hat: Some(s.k_hat),
-            z: None,
-            eps: Some(s.eps),
-            sigma: sigma.map_or_else(Triple::default, |[k, k_hat, eps]| Triple {
-                k: Some(k),
-                k_hat: Some(k_hat),
-                eps: Some(eps),
-            }),
-            interval: interval.map_or_else(Interval::default, |[k, k_hat, eps]| Interval {
-                level: Some(CREDIBLE_LEVEL),
-                bounds: Triple { k: Some(k), k_hat: Some(k_hat), eps: Some(eps) },
-            }),
+            values: Quantities::of(|q| estimate.structure.get(q)),
+            sigma: Quantities::of(|q| estimate.stddev(q)),
+            interval: Interval {
+                level: known.then_some(CREDIBLE_LEVEL),
+                bounds: Quantities::of(|q| estimate.interval(q)),
+            },
             status: match estimate.status {
                 emt::Status::Ok => "ok",
                 emt::Status::Extrapolated => "extrapolated",
             },
-            gamma_over_delta: Some(estimate.gamma.value),
-            gamma_over_delta_source: Some(estimate.gamma.source.name().to_owned()),
+            gamma_over_delta: estimate.gamma.map(|g| g.value),
+            gamma_over_delta_source: estimate.gamma.map(|g| g.source.name().to_owned()),
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
         }
     }
@@ -143,9 +147,9 @@ impl Inference {
     pub(crate) fn cells(&self) -> Vec<String> {
         let pair = |value, sigma, digits| [fixed(value, digits), fixed(sigma, digits)];
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        cells.extend(pair(self.k, self.sigma.k, 3));
-        cells.extend(pair(self.k_hat, self.sigma.k_hat, 3));
-        cells.extend(pair(self.eps, self.sigma.eps, 4));
+        cells.extend(pair(self.values.k, self.sigma.k, 3));
+        cells.extend(pair(self.values.k_hat, self.sigma.k_hat, 3));
+        cells.extend(pair(self.values.eps, self.sigma.eps, 4));
         cells.push(self.status.to_owned());
         cells
     }
@@ -172,9 +176,9 @@ impl Inference {
 
     /// As cells at full precision.
     pub(crate) fn exact_cells(&self) -> Vec<String> {
-        let s = &self.sigma;
+        let (v, s) = (&self.values, &self.sigma);
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        cells.extend([self.k, self.k_hat, self.z, self.eps, s.k, s.k_hat, s.eps].map(exact));
+        cells.extend([v.k, v.k_hat, v.z, v.eps, s.k, s.k_hat, s.eps].map(exact));
         let b = &self.interval.bounds;
         for bound in [b.k, b.k_hat, b.eps] {
             cells.extend([bound.map(|b| b[0]), bound.map(|b| b[1])].map(exact));

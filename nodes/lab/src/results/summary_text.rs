@@ -62,14 +62,14 @@ fn inferred(s: &InvertedState) -> String {
     for r in &s.results {
         t.row([
             r.model.clone(),
-            fixed(r.k, 3),
+            fixed(r.values.k, 3),
             fixed(r.sigma.k, 3),
-            off(r.k, s.state.k, 3),
-            fixed(r.k_hat, 3),
+            off(r.values.k, s.state.k, 3),
+            fixed(r.values.k_hat, 3),
             fixed(r.sigma.k_hat, 3),
-            fixed(r.eps, 4),
+            fixed(r.values.eps, 4),
             fixed(r.sigma.eps, 4),
-            off(r.eps, s.state.eps, 4),
+            off(r.values.eps, s.state.eps, 4),
             r.status.to_owned(),
         ]);
     }

@@ -2,7 +2,7 @@
 
 use super::Args;
 use crate::failure::Failure;
-use emt::{Gamma, Model, Observation};
+use emt::{Gamma, Observation};
 use grains::Material;
 use serde::Serialize;
 
@@ -80,10 +80,10 @@ impl Inputs {
 
     /// As `model` takes it.
     pub(super) fn observation(&self, model: &str) -> Observation {
-        let printed = self.theta_printed_pa.filter(|_| model == emt::ratio::AS_PRINTED.name());
+        let printed = self.theta_printed_pa.filter(|_| model == "ratio-as-printed");
         let theta = printed.unwrap_or(self.theta_pa);
         let gamma = self.gamma_over_delta.map_or(Gamma::ZERO, Gamma::given);
-        let observation = Observation::new(self.g12_pa, self.g13_pa, theta, self.pressure_pa, gamma);
+        let observation = Observation::paper(self.g12_pa, self.g13_pa, theta, self.pressure_pa, gamma);
         match self.relative_error {
             Some(relative) => observation.with_relative_error(relative),
             None => observation,
