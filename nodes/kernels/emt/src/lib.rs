@@ -11,6 +11,7 @@
 //! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
+//! - [`invariants`], [`relaxed`]: our own model, and the parts of a stiffness that it rests on
 //!
 //! ```
 //! use emt::{Calibration, Gamma, Observation, Quantity};
@@ -29,6 +30,7 @@ pub mod domain;
 pub mod error;
 pub mod estimate;
 pub mod form;
+pub mod invariants;
 pub mod medium;
 pub mod model;
 pub mod moduli;
@@ -36,15 +38,17 @@ pub mod moments;
 pub mod observation;
 mod propagation;
 pub mod ratio;
+pub mod relaxed;
 pub mod structure;
 pub mod warning;
 
-pub use calibration::{Calibration, CalibrationError, Isotropic};
+pub use calibration::{Calibration, CalibrationError, Isotropic, Sample, learn};
 pub use conditions::{Conditions, Gamma, GammaSource, Measured};
 pub use domain::Domain;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use form::Form;
+pub use invariants::Invariants;
 pub use medium::{Medium, Psi};
 pub use model::{Misfit, Model, Slopes, Solution, model, models};
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};

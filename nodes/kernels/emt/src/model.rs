@@ -9,6 +9,7 @@ use crate::moduli::Moduli;
 use crate::observation::{INPUTS, Observation};
 use crate::propagation::numerical_slopes;
 use crate::ratio;
+use crate::relaxed::Relaxed;
 use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
 use nalgebra::SMatrix;
@@ -98,7 +99,7 @@ pub trait Model: Sync + Debug {
 
 /// Every model, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {
-    &[&ratio::CORRECTED, &ratio::AS_PRINTED, &ratio::VOLUME]
+    &[&ratio::CORRECTED, &ratio::AS_PRINTED, &ratio::VOLUME, &Relaxed]
 }
 
 /// The model of this name.
