@@ -128,14 +128,16 @@ fn strain_ratios_that_turn_contacts_inside_out_are_refused() {
     }
 }
 
-/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all.
+/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all. `sqrt` has
+/// no such state.
 #[test]
 fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
     let mut o = Observation::paper(100.0e6, 195.0e6, 144.4e6, 50.0e3, Gamma::given(-0.9));
     o.conditions.solid_fraction = Some(Measured::exact(0.636));
     for name in PAPER_MODELS {
         let e = model(name).infer(&o, &Calibration::PAPER).unwrap_err();
-        assert!(matches!(e, EmtError::NoAnisotropy { .. }), "{name}: {e}");
+        let open = matches!(e, EmtError::GammaOutOfRange { .. });
+        assert!(matches!(e, EmtError::NoAnisotropy { .. }) || (open && name == "sqrt"), "{name}: {e}");
     }
 }
 
