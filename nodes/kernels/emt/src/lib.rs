@@ -13,6 +13,7 @@
 //! - [`effective`]: the plain theory, with the pressure closing the strain
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
+//! - [`directional`]: each modulus by a coordination number of its own
 //! - [`invariants`], [`relaxed`]: our own model, and the parts of a stiffness that it rests on
 //!
 //! ```
@@ -28,6 +29,7 @@
 
 pub mod calibration;
 pub mod conditions;
+pub mod directional;
 pub mod domain;
 pub mod effective;
 mod equivalent;

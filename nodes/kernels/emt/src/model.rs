@@ -8,6 +8,7 @@ use crate::estimate::{Estimate, assemble};
 use crate::moduli::Moduli;
 use crate::observation::{INPUTS, Observation};
 use crate::propagation::numerical_slopes;
+use crate::directional::Directional;
 use crate::relaxed::Relaxed;
 use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
@@ -106,6 +107,7 @@ pub fn models() -> &'static [&'static dyn Model] {
         &ratio::VOLUME,
         &full::LINEAR,
         &sqrt::SQRT,
+        &Directional,
         &Relaxed,
     ]
 }
