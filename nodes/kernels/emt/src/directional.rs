@@ -10,12 +10,12 @@ use crate::calibration::{Calibration, Isotropic};
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::model::{Model, Solution};
-use crate::moduli::{Moduli, Modulus};
+use crate::model::{Model, Slopes, Solution};
+use crate::moduli::{MODULI, Moduli, Modulus};
 use crate::observation::Observation;
 use crate::ratio::outside_fit;
 use crate::structure::{QUANTITIES, Quantity, Structure};
-use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
+use nalgebra::{Matrix2x3, Matrix3x2, Vector2, Vector3};
 
 /// Directional coordination numbers: model `directional`.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,13 @@ impl Model for Directional {
         let mut structure = [None; QUANTITIES];
         structure[isotropic.abscissa as usize] = Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
         structure[Quantity::Eps as usize] = Some([-REACH, REACH]);
-        Domain { model: NAME, structure, gamma: [-1.0, 1.0], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+        Domain {
+            model: NAME,
+            structure,
+            gamma: [-1.0, 1.0],
+            poisson_ratio: [0.0, 0.5],
+            needs_solid_fraction: false,
+        }
     }
 
     fn predict(
@@ -66,14 +72,28 @@ impl Model for Directional {
         if given.iter().flatten().count() < 2 {
             return Err(EmtError::Missing { model: NAME, missing: "two of G12, G13 and Theta" });
         }
-        let (k, eps) = least_squares(&isotropic, observation.pressure(), given).ok_or_else(|| {
+        let (found, gain) = least_squares(&isotropic, observation.pressure(), given).ok_or_else(|| {
             let [low, high] = isotropic.fitted;
             let calibration = calibration.name().to_owned();
-            EmtError::NoCoordination { nearest: start(&isotropic, observation.pressure(), given), low, high, calibration }
+            EmtError::NoCoordination {
+                nearest: start(&isotropic, observation.pressure(), given),
+                low,
+                high,
+                calibration,
+            }
         })?;
+        let (k, eps) = (found[0], found[1]);
+        let mut slopes = Slopes::zeros();
+        for (row, quantity) in [isotropic.abscissa, Quantity::Eps].into_iter().enumerate() {
+            for i in 0..3 {
+                slopes[(quantity as usize, i)] = gain[(row, i)];
+                // All moduli go with the cube root of the pressure.
+                slopes[(quantity as usize, MODULI)] -= gain[(row, i)] / 3.0;
+            }
+        }
         let structure = Structure::default().with(isotropic.abscissa, k).with(Quantity::Eps, eps);
         let warnings = outside_fit(isotropic.abscissa, k, calibration).into_iter().collect();
-        Ok(Solution { warnings, ..Solution::exact(structure) })
+        Ok(Solution { slopes: Some(slopes), warnings, ..Solution::exact(structure) })
     }
 }
 
@@ -116,44 +136,42 @@ fn start(isotropic: &Isotropic, pressure: f64, [g12, g13, theta]: [Option<f64>; 
     let unit = 1e6 * (pressure / 1e6).cbrt();
     let [alpha, beta, rho, zeta] = isotropic.constants();
     let of_theta = theta.map(|t| t / (rho * unit) - zeta);
-    let of_shear = [g12, g13].into_iter().flatten().map(|g| g / (alpha * unit) - beta).reduce(|a, b| 0.5 * (a + b));
+    let of_shear =
+        [g12, g13].into_iter().flatten().map(|g| g / (alpha * unit) - beta).reduce(|a, b| 0.5 * (a + b));
     of_theta.or(of_shear).unwrap_or(0.0)
 }
 
-/// Gauss–Newton, halving what does not improve; `None` where it does not settle.
-fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) -> Option<(f64, f64)> {
+/// k, ε, and their changes per relative change of G12, G13 and Θ.
+type Found = (Vector2<f64>, Matrix2x3<f64>);
+
+/// Gauss–Newton, halving what does not improve; `None` where it does not settle on something that a packing can have.
+fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) -> Option<Found> {
     let weight = Vector3::from(given.map(|g| g.map_or(0.0, |g| 1.0 / g)));
     let value = Vector3::from(given.map(|g| g.unwrap_or(0.0)));
-    let at = |k: f64, eps: f64| {
-        let (moduli, slopes) = forward(isotropic, pressure, k, eps);
-        let residual = (value - moduli).component_mul(&weight);
-        let mut weighted = slopes;
-        weighted.column_iter_mut().for_each(|mut c| c.component_mul_assign(&weight));
-        (residual, weighted)
+    let at = |found: Vector2<f64>| {
+        let (moduli, mut slopes) = forward(isotropic, pressure, found[0], found[1]);
+        slopes.column_iter_mut().for_each(|mut c| c.component_mul_assign(&weight));
+        ((value - moduli).component_mul(&weight), slopes)
     };
     let mut found = Vector2::new(start(isotropic, pressure, given), 0.0);
     for _ in 0..STEPS {
-        let (residual, slopes) = at(found[0], found[1]);
-        let normal: Matrix2<f64> = slopes.transpose() * slopes;
-        let mut step = normal.try_inverse()? * slopes.transpose() * residual;
+        let (residual, slopes) = at(found);
+        let gain = (slopes.transpose() * slopes).try_inverse()? * slopes.transpose();
+        let step = gain * residual;
         if !step.iter().all(|s| s.is_finite()) {
             return None;
         }
-        if step[0].abs() < 1e-13 * found[0].abs() && step[1].abs() < 1e-14 {
-            // Both shares positive: else this is a solution of the equations and of no packing.
-            let [m12, m13] = shares(found[1]);
-            return (m12 > 0.0 && m13 > 0.0 && found[0] > 0.0).then_some((found[0], found[1]));
+        let mut share = 1.0;
+        // Where rounding alone is left, nothing improves any more.
+        while share > 1e-9 && at(found + step * share).0.norm() > residual.norm() {
+            share *= 0.5;
         }
-        let mut halvings = 0;
-        while halvings < 30 && at(found[0] + step[0], found[1] + step[1]).0.norm() > residual.norm() {
-            step *= 0.5;
-            halvings += 1;
+        let settled = step[0].abs() < 1e-13 * found[0].abs() && step[1].abs() < 1e-14;
+        if settled || share <= 1e-9 {
+            let stiff = shares(found[1]).iter().all(|share| *share > 0.0);
+            return (stiff && found[0] > 0.0).then_some((found, gain));
         }
-        found += step;
-        if halvings == 30 {
-            let [m12, m13] = shares(found[1]);
-            return (m12 > 0.0 && m13 > 0.0 && found[0] > 0.0).then_some((found[0], found[1]));
-        }
+        found += step * share;
     }
     None
 }

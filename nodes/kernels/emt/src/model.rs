@@ -2,13 +2,13 @@
 
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
+use crate::directional::Directional;
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::estimate::{Estimate, assemble};
 use crate::moduli::Moduli;
 use crate::observation::{INPUTS, Observation};
 use crate::propagation::numerical_slopes;
-use crate::directional::Directional;
 use crate::relaxed::Relaxed;
 use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
