@@ -162,11 +162,12 @@ fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) 
             return None;
         }
         let mut share = 1.0;
-        // Where rounding alone is left, nothing improves any more.
-        while share > 1e-9 && at(found + step * share).0.norm() > residual.norm() {
+        // Rounding alone is no deterioration.
+        let enough = residual.norm() * (1.0 + 1e-12);
+        while share > 1e-9 && at(found + step * share).0.norm() > enough {
             share *= 0.5;
         }
-        let settled = step[0].abs() < 1e-13 * found[0].abs() && step[1].abs() < 1e-14;
+        let settled = step[0].abs() < 1e-11 * found[0].abs() && step[1].abs() < 1e-11;
         if settled || share <= 1e-9 {
             let stiff = shares(found[1]).iter().all(|share| *share > 0.0);
             return (stiff && found[0] > 0.0).then_some((found, gain));
