@@ -1,5 +1,6 @@
 //! The trust boundary: what is good crosses it unchanged both ways, what is not is refused by name.
 
+mod estimates;
 mod lockstep;
 mod packing;
 mod results;
