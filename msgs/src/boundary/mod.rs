@@ -11,6 +11,7 @@ mod run_state;
 mod strain_rate;
 mod stress;
 mod structure;
+mod wave_speeds;
 
 pub use fabric::fabric_message;
 pub use microstructure::{EstimateReading, EstimateStatus, Inferred, Interval, MicrostructureReading};
@@ -19,6 +20,7 @@ pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;
+pub use wave_speeds::{WaveMethod, WaveSpeedReading, WaveSpeedsReading};
 
 /// Why a message, or what should become one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
