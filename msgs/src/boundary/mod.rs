@@ -12,6 +12,7 @@ mod run_state;
 mod strain_rate;
 mod stress;
 mod structure;
+mod wave_speeds;
 
 pub use estimate::{
     DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
@@ -23,6 +24,7 @@ pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;
+pub use wave_speeds::{WaveMethod, WaveSpeedReading, WaveSpeedsReading};
 
 /// Why a message, or what should become one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

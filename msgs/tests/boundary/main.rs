@@ -5,6 +5,7 @@ mod lockstep;
 mod packing;
 mod results;
 mod structure;
+mod wave_speeds;
 
 use grainlab_msgs::boundary::BoundaryError;
 

@@ -10,6 +10,7 @@
 //! - [`mod@calibration`]: what packings have taught the models
 //! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
+//! - [`mod@christoffel`]: moduli from the speeds of waves
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //!
 //! ```
@@ -24,6 +25,7 @@
 //! ```
 
 pub mod calibration;
+pub mod christoffel;
 pub mod conditions;
 pub mod domain;
 pub mod error;
@@ -40,6 +42,7 @@ pub mod structure;
 pub mod warning;
 
 pub use calibration::{Calibration, CalibrationError, Isotropic};
+pub use christoffel::ChristoffelError;
 pub use conditions::{Conditions, Gamma, GammaSource, Measured};
 pub use domain::Domain;
 pub use error::EmtError;
