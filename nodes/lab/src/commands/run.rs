@@ -83,7 +83,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(FabricAnalyzer::new(bus, settings)?)
             }
-            _ => Box::new(EmtInversion::new(bus, parameters.into())?),
+            _ => {
+                let settings = emt_inversion::Settings::try_from(parameters);
+                let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+                Box::new(EmtInversion::new(bus, settings)?)
+            }
         };
         Ok(node)
     }))
