@@ -3,17 +3,21 @@ use emt_inversion::{Axis, Settings, microstructure_message};
 use grainlab_msgs::boundary::{DATA, MicrostructureReading, QUANTITIES};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, Moduli};
-use grains::{TransverseIsotropy, Vec3};
+use grains::{Stiffness, TransverseIsotropy, Vec3};
 use nalgebra::Rotation3;
 
-/// S1 with the rest of a stiffness that has its three moduli.
-fn s1_stiffness() -> Moduli {
+/// A medium with the three moduli of S1.
+pub(crate) fn s1_medium() -> Stiffness {
     let m = s1();
     let (c33, c13) = (310e6, 65e6);
     let c11 = (9.0 * m.theta - 4.0 * c13 - c33 + 4.0 * m.g12) / 4.0;
     let c12 = c11 - 2.0 * m.g12;
-    let t = TransverseIsotropy { c11, c12, c13, c33, g13: m.g13, g12: m.g12, residual: 0.0 };
-    Moduli { stiffness: t.stiffness().row_major(), ..m }
+    TransverseIsotropy { c11, c12, c13, c33, g13: m.g13, g12: m.g12, residual: 0.0 }.stiffness()
+}
+
+/// S1 with the whole stiffness of that.
+pub(crate) fn s1_stiffness() -> Moduli {
+    Moduli { stiffness: s1_medium().row_major(), ..s1() }
 }
 
 fn with_error(modulus_error: f64) -> Settings {
@@ -168,8 +172,7 @@ fn a_stiffness_that_is_not_isotropic_about_the_axis_says_so() {
 /// S1 lying on its side: what was along e3 now is along this axis.
 fn turned(axis: Vec3) -> Moduli {
     let turn = Rotation3::rotation_between(&Vec3::z(), &axis).unwrap();
-    let upright = grains::Stiffness::from_row_major(&s1_stiffness().stiffness);
-    let lying = upright.rotated(turn.matrix());
+    let lying = s1_medium().rotated(turn.matrix());
     let t = lying.transverse_isotropy();
     Moduli {
         stiffness: lying.row_major(),

@@ -24,7 +24,11 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
         node("dem_simulator", "owns the run: publishes stress and packings, obeys strain rates", simulator),
         node("servo_controller", "answers every stress with a strain rate", servo_controller::parameters()),
         node("fabric_analyzer", "turns packings into fabric and moduli", fabric_analyzer::parameters()),
-        node("emt_inversion", "turns moduli into microstructure", emt_inversion::parameters()),
+        node(
+            "emt_inversion",
+            "turns moduli and wave speeds into microstructure",
+            emt_inversion::parameters(),
+        ),
         node("recorder", "records every topic to MCAP", recorder::parameters()),
     ]
 }
