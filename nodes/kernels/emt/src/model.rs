@@ -2,15 +2,17 @@
 
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
+use crate::directional::Directional;
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::estimate::{Estimate, assemble};
 use crate::moduli::Moduli;
 use crate::observation::{INPUTS, Observation};
 use crate::propagation::numerical_slopes;
-use crate::ratio;
+use crate::relaxed::Relaxed;
 use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
+use crate::{effective, full, ratio, sqrt};
 use nalgebra::SMatrix;
 use std::fmt::Debug;
 
@@ -98,7 +100,16 @@ pub trait Model: Sync + Debug {
 
 /// Every model, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {
-    &[&ratio::CORRECTED, &ratio::AS_PRINTED, &ratio::VOLUME]
+    &[
+        &effective::Effective,
+        &ratio::CORRECTED,
+        &ratio::AS_PRINTED,
+        &ratio::VOLUME,
+        &full::LINEAR,
+        &sqrt::SQRT,
+        &Directional,
+        &Relaxed,
+    ]
 }
 
 /// The model of this name.
