@@ -1,6 +1,5 @@
 //! From one message of data to one `Microstructure`.
 
-use crate::calibration::calibration_for;
 use crate::estimate::{estimate_message, failure, unobserved};
 use crate::moduli::of_moduli;
 use crate::observed::{Observed, Unobservable};
@@ -37,7 +36,7 @@ fn microstructure(
     settings: &Settings,
 ) -> msg::Microstructure {
     let estimates = settings.models.iter().map(|model| {
-        let calibration = calibration_for(model, settings);
+        let calibration = settings.calibration.calibration_for(model);
         let observed = match observed {
             Ok(observed) => observed,
             Err(nothing) => return unobserved(model, calibration.name(), nothing),

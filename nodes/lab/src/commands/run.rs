@@ -88,7 +88,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 Box::new(FabricAnalyzer::new(bus, settings)?)
             }
             _ => {
-                let settings = emt_inversion::Settings::try_from(parameters);
+                let read = |path: &str| std::fs::read_to_string(path).map_err(|e| e.to_string());
+                let settings = emt_inversion::Settings::new(parameters, read);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(EmtInversion::new(bus, settings)?)
             }
