@@ -1,15 +1,16 @@
 //! From what a model says to an `Estimate`.
 
+use crate::observed::{Observed, Unobservable};
 use emt::{
-    CREDIBLE_LEVEL, EmtError, Estimate, Gamma, INPUTS, Model, QUANTITIES, Quantity, Status,
+    CREDIBLE_LEVEL, EmtError, Estimate, Gamma, INPUTS, Misfit, Model, QUANTITIES, Quantity, Status,
     StructureCovariance,
 };
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
 
 /// The message of an estimate. What a reader would refuse is sent as a failure that says why.
-pub(crate) fn estimate_message(estimate: &Estimate) -> msg::Estimate {
-    let message = as_it_is(estimate);
+pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
+    let message = as_it_is(estimate, observed);
     match EstimateReading::try_from(&message) {
         Ok(_) => message,
         Err(error) => msg::Estimate {
@@ -24,15 +25,16 @@ pub(crate) fn estimate_message(estimate: &Estimate) -> msg::Estimate {
     }
 }
 
-fn as_it_is(estimate: &Estimate) -> msg::Estimate {
+fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let structure = &estimate.structure;
     let value = |q| structure.get(q).unwrap_or_default();
     let known = |q| structure.get(q).is_some();
     let status = match estimate.status {
         _ if structure.values().iter().all(Option::is_none) => msg::Estimate::STATUS_UNDETERMINED,
-        Status::Ok => msg::Estimate::STATUS_OK,
-        Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
+        Status::Ok if !observed.in_conflict => msg::Estimate::STATUS_OK,
+        Status::Ok | Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
     };
+    let misfit = both(observed.misfit, estimate.misfit);
     let covariance = known_covariance(estimate.covariance());
     let bounds = Quantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
     let shares = Quantity::ALL.map(|q| estimate.information(q));
@@ -57,12 +59,28 @@ fn as_it_is(estimate: &Estimate) -> msg::Estimate {
         covariance_model: entries(known_covariance(estimate.model_covariance)),
         interval: std::array::from_fn(|i| bounds[i / 2].map_or(0.0, |b| b[i % 2])),
         credible_level: if covariance.is_some() { CREDIBLE_LEVEL } else { 0.0 },
-        chi_square: estimate.misfit.map_or(0.0, |m| m.chi_square),
-        degrees_of_freedom: estimate.misfit.map_or(0, |m| m.degrees_of_freedom as u32),
+        chi_square: misfit.chi_square,
+        degrees_of_freedom: misfit.degrees_of_freedom as u32,
         condition_number: estimate.condition_number().unwrap_or_default(),
         information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
-        warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
+        warnings: observed
+            .notes
+            .iter()
+            .cloned()
+            .chain(estimate.warnings.iter().map(ToString::to_string))
+            .collect(),
     }
+}
+
+/// Misfit of data about moduli and of moduli about a structure: the squares and the freedoms add up.
+fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
+    let nothing = Misfit { chi_square: 0.0, degrees_of_freedom: 0 };
+    [of_data, of_moduli].into_iter().flatten().filter(|m| m.degrees_of_freedom > 0).fold(nothing, |sum, m| {
+        Misfit {
+            chi_square: sum.chi_square + m.chi_square,
+            degrees_of_freedom: sum.degrees_of_freedom + m.degrees_of_freedom,
+        }
+    })
 }
 
 /// A covariance of zeros is on the wire one that is not known.
@@ -80,33 +98,39 @@ fn gamma_fields(gamma: Option<Gamma>) -> (f64, String) {
     (gamma.map_or(0.0, |g| g.value), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
-/// The message of a model that was fed with `gamma` and has no estimate.
-pub(crate) fn failure(model: &dyn Model, calibration: &str, gamma: Gamma, error: &EmtError) -> msg::Estimate {
-    let status =
-        if error.is_of_input() { msg::Estimate::STATUS_UNDETERMINED } else { msg::Estimate::STATUS_FAILED };
-    without_values(model, calibration, gamma, status, error.to_string())
+/// The message of a model that has no estimate.
+pub(crate) fn failure(
+    model: &dyn Model,
+    calibration: &str,
+    observed: &Observed,
+    error: &EmtError,
+) -> msg::Estimate {
+    let gamma = observed.observation.conditions.gamma;
+    let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
+    without_values(model, calibration, gamma, error.is_of_input(), reasons)
 }
 
 /// The message of a model that was never asked, because there was nothing to ask it.
-pub(crate) fn unobserved(model: &dyn Model, calibration: &str, reason: String) -> msg::Estimate {
-    without_values(model, calibration, Gamma::ZERO, msg::Estimate::STATUS_UNDETERMINED, reason)
+pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
+    without_values(model, calibration, Gamma::ZERO, nothing.is_of_input(), vec![nothing.to_string()])
 }
 
 fn without_values(
     model: &dyn Model,
     calibration: &str,
     gamma: Gamma,
-    status: u8,
-    reason: String,
+    of_input: bool,
+    reasons: Vec<String>,
 ) -> msg::Estimate {
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(model.uses_gamma().then_some(gamma));
+    let status = if of_input { msg::Estimate::STATUS_UNDETERMINED } else { msg::Estimate::STATUS_FAILED };
     msg::Estimate {
         model: model.name().to_owned(),
         calibration: calibration.to_owned(),
         status,
         gamma_over_delta,
         gamma_over_delta_source,
-        warnings: vec![reason],
+        warnings: reasons,
         ..Default::default()
     }
 }

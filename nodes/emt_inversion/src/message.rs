@@ -1,11 +1,11 @@
 //! From one message of data to one `Microstructure`.
 
-use crate::calibration::calibration_for;
 use crate::estimate::{estimate_message, failure, unobserved};
-use crate::observation::{Unobservable, of_moduli};
+use crate::moduli::of_moduli;
+use crate::observed::{Observed, Unobservable};
 use crate::settings::Settings;
-use emt::Observation;
-use grainlab_msgs::boundary::{BoundaryError, ModuliReading};
+use crate::speeds::of_speeds;
+use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
 
@@ -15,33 +15,41 @@ pub fn microstructure_message(
     moduli: &msg::Moduli,
     settings: &Settings,
 ) -> Result<msg::Microstructure, BoundaryError> {
-    let reading = ModuliReading::try_from(moduli)?;
-    let observation = of_moduli(&reading, settings);
-    Ok(microstructure(&moduli.header, moduli.source_step, &topics::MODULI, &observation, settings))
+    let observed = of_moduli(&ModuliReading::try_from(moduli)?, settings);
+    Ok(microstructure(&moduli.header, moduli.source_step, &topics::MODULI, &observed, settings))
+}
+
+/// The same of one set of wave speeds.
+pub fn microstructure_of_speeds(
+    speeds: &msg::WaveSpeeds,
+    settings: &Settings,
+) -> Result<msg::Microstructure, BoundaryError> {
+    let observed = of_speeds(&WaveSpeedsReading::try_from(speeds)?, settings);
+    Ok(microstructure(&speeds.header, speeds.source_step, &topics::WAVE_SPEEDS, &observed, settings))
 }
 
 fn microstructure(
     header: &Header,
     source_step: u64,
     source: &Topic,
-    observation: &Result<Observation, Unobservable>,
+    observed: &Result<Observed, Unobservable>,
     settings: &Settings,
 ) -> msg::Microstructure {
     let estimates = settings.models.iter().map(|model| {
-        let calibration = calibration_for(model, settings);
-        let observation = match observation {
-            Ok(observation) => observation,
-            Err(nothing) => return unobserved(model, calibration.name(), nothing.to_string()),
+        let calibration = settings.calibration.calibration_for(model);
+        let observed = match observed {
+            Ok(observed) => observed,
+            Err(nothing) => return unobserved(model, calibration.name(), nothing),
         };
-        match model.infer(observation, calibration) {
-            Ok(estimate) => estimate_message(&estimate),
-            Err(error) => failure(model, calibration.name(), observation.conditions.gamma, &error),
+        match model.infer(&observed.observation, calibration) {
+            Ok(estimate) => estimate_message(&estimate, observed),
+            Err(error) => failure(model, calibration.name(), observed, &error),
         }
     });
     msg::Microstructure {
         header: header.clone(),
         source_step,
-        // The contract's name and not the resolved one: the bytes must not depend on a namespace.
+        // The contract's name and not the resolved one: the bytes must not depend on a namespace or a remap.
         source: source.name.to_owned(),
         estimates: estimates.collect(),
     }

@@ -15,8 +15,8 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "calibration",
             "default",
-            "constants of the models: default (to each its own), the name of one for all of them (paper, grainlab, grainlab-z), \
-             or the text of one (TOML)",
+            "constants of the models: default (to each its own), or one for all of them: paper, grainlab, grainlab-z, or \
+             a FILE.toml",
         ),
         ParameterSpec::new(
             "axis",
@@ -89,18 +89,23 @@ pub enum SettingsError {
         known: String,
     },
     /// A calibration that does not exist.
-    #[error("parameter \"calibration\": no calibration {name:?}; there are: {known}")]
+    #[error("parameter \"calibration\": no calibration {name:?}; there are: {known}, or a FILE.toml")]
     Calibration {
         /// What was given.
         name: String,
         /// What could have been.
         known: String,
     },
-    /// A text that is no calibration.
-    #[error("parameter \"calibration\": {error}")]
-    CalibrationText {
-        /// What is wrong with it.
-        error: CalibrationError,
+    /// A calibration that cannot be read.
+    #[error("parameter \"calibration\": {0}")]
+    CalibrationText(CalibrationError),
+    /// A file that cannot be read.
+    #[error("parameter \"calibration\" = {path:?}: {reason}")]
+    CalibrationFile {
+        /// The path given.
+        path: String,
+        /// Why.
+        reason: String,
     },
     /// Not an axis.
     #[error(
@@ -109,14 +114,23 @@ pub enum SettingsError {
     Axis(String),
 }
 
-impl TryFrom<&Parameters> for Settings {
-    type Error = SettingsError;
-
-    fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
+impl Settings {
+    /// The parameters, typed. `read` gives the text of a file, or why there is none: a `calibration` that ends in `.toml` is
+    /// one.
+    pub fn new(
+        parameters: &Parameters,
+        read: impl FnOnce(&str) -> Result<String, String>,
+    ) -> Result<Self, SettingsError> {
         let text = |name| parameters.get::<String>(name);
+        let mut calibration = text("calibration");
+        if calibration.ends_with(".toml") {
+            let read = read(&calibration);
+            calibration =
+                read.map_err(|reason| SettingsError::CalibrationFile { path: calibration, reason })?;
+        }
         Ok(Self {
             models: Models::named(&text("models"))?,
-            calibration: CalibrationChoice::named(&text("calibration"))?,
+            calibration: CalibrationChoice::named(&calibration)?,
             axis: axis(&text("axis"))?,
             gamma: match text("gamma_over_delta").as_str() {
                 "elastic" => GammaSource::Elastic,

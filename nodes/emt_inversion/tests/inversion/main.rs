@@ -3,10 +3,11 @@
 mod moduli;
 mod node;
 mod settings;
+mod speeds;
 
 use emt_inversion::{Settings, microstructure_message};
 use grainlab_msgs::boundary::MicrostructureReading;
-use grainlab_msgs::msg::{Estimate, Moduli};
+use grainlab_msgs::msg::{Estimate, Microstructure, Moduli};
 use grainlab_msgs::stamp;
 use grainlab_msgs::std_msgs::Header;
 
@@ -34,7 +35,10 @@ fn s1() -> Moduli {
 
 /// Of model `ratio`, as every reader takes it.
 fn corrected(moduli: &Moduli, settings: &Settings) -> Estimate {
-    let message = microstructure_message(moduli, settings).unwrap();
+    of_ratio(microstructure_message(moduli, settings).unwrap())
+}
+
+fn of_ratio(message: Microstructure) -> Estimate {
     assert!(MicrostructureReading::try_from(&message).is_ok(), "a reader refuses {message:?}");
     message.estimates.into_iter().find(|e| e.model == "ratio").unwrap()
 }

@@ -1,18 +1,30 @@
 use crate::{corrected, s1};
 use emt::{Calibration, GammaSource};
-use emt_inversion::{
-    Axis, CalibrationChoice, Models, Settings, SettingsError, microstructure_message, parameters,
-};
+use emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
 use grains::Vec3;
 use node_kit::{Names, Parameters, RosArgs};
 
-/// As they come from a command line.
+/// A calibration as text: ours, by another name.
+fn mine() -> String {
+    let grainlab = Calibration::builtin("grainlab").unwrap().to_toml().unwrap();
+    let text = grainlab.replacen("\"grainlab\"", "\"mine\"", 1);
+    assert_ne!(text, grainlab);
+    text
+}
+
+/// As they come from a command line; there are two files.
 fn given(arguments: &[&str]) -> Result<Settings, SettingsError> {
     let owned: Vec<String> =
         std::iter::once("--ros-args").chain(arguments.iter().copied()).map(Into::into).collect();
     let (ros, _) = RosArgs::parse(&owned).unwrap();
     let names = Names::from_args("emt_inversion", &ros).unwrap();
-    Settings::try_from(&Parameters::resolve(&parameters(), "emt_inversion", &names, &ros).unwrap())
+    Settings::new(&Parameters::resolve(&parameters(), "emt_inversion", &names, &ros).unwrap(), |path| {
+        match path {
+            "mine.toml" => Ok(mine()),
+            "cut.toml" => Ok(mine()[..40].to_owned()),
+            _ => Err("no such file".to_owned()),
+        }
+    })
 }
 
 fn models_of(arguments: &[&str]) -> Vec<String> {
@@ -22,7 +34,8 @@ fn models_of(arguments: &[&str]) -> Vec<String> {
 
 #[test]
 fn the_declared_defaults_are_the_typed_ones() {
-    assert_eq!(Settings::try_from(&Parameters::defaults(&parameters())), Ok(Settings::default()));
+    let settings = Settings::new(&Parameters::defaults(&parameters()), |path| panic!("{path}"));
+    assert_eq!(settings, Ok(Settings::default()));
 }
 
 #[test]
@@ -39,25 +52,46 @@ fn the_models_named_answer_each_once_and_in_the_order_of_the_list() {
     }
 }
 
+/// Model and calibration of every estimate.
+fn calibrations_of(arguments: &[&str]) -> Vec<(String, String)> {
+    let message = microstructure_message(&s1(), &given(arguments).unwrap()).unwrap();
+    message.estimates.into_iter().map(|e| (e.model, e.calibration)).collect()
+}
+
 #[test]
-fn a_calibration_is_that_of_each_model_or_one_for_all_and_named_in_the_result() {
-    assert_eq!(given(&[]).unwrap().calibration, CalibrationChoice::Default);
-    let paper = given(&["-p", "calibration:=paper"]).unwrap();
-    assert_eq!(paper.calibration, CalibrationChoice::One(Calibration::PAPER));
-    assert_eq!(
-        corrected(&s1(), &Settings::default()).calibration,
-        "paper",
-        "the paper's models have the paper's"
-    );
-    let mut other = Settings::default();
-    let isotropic = emt::Isotropic::new([190.0, -3.9, 80.0, -0.4], emt::Quantity::K, [4.4, 6.0]).unwrap();
-    other.calibration =
-        CalibrationChoice::One(Calibration::of_isotropic("mine", isotropic, grains::Material::GLASS));
-    let (a, b) = (corrected(&s1(), &other), corrected(&s1(), &paper));
-    assert_eq!((a.calibration.as_str(), b.calibration.as_str()), ("mine", "paper"));
-    assert!((a.k - b.k).abs() > 0.1, "{} {}: the constants are not those named", a.k, b.k);
-    let refused = given(&["-p", "calibration:=papper"]).unwrap_err().to_string();
-    assert!(refused.contains("\"papper\"") && refused.contains("default, paper"), "{refused}");
+fn every_model_gets_its_own_constants_or_all_of_them_those_named() {
+    for (model, calibration) in calibrations_of(&[]) {
+        let ours = ["relaxed"].contains(&model.as_str());
+        assert_eq!(calibration, if ours { "grainlab" } else { "paper" }, "{model}");
+    }
+    for (name, expected) in [("paper", "paper"), ("grainlab-z", "grainlab-z"), ("mine.toml", "mine")] {
+        for (model, calibration) in calibrations_of(&["-p", &format!("calibration:={name}")]) {
+            assert_eq!(calibration, expected, "{model}");
+        }
+    }
+    let of = |name: &str| corrected(&s1(), &given(&["-p", &format!("calibration:={name}")]).unwrap());
+    assert_eq!(corrected(&s1(), &Settings::default()), of("paper"));
+    assert!((of("paper").k - of("grainlab").k).abs() > 1e-2, "other constants, another k");
+    assert_eq!(of("mine.toml").k, of("grainlab").k);
+}
+
+#[test]
+fn what_a_calibration_has_learned_of_a_model_is_the_part_that_the_model_leaves_out() {
+    let of = |name: &str| corrected(&s1(), &given(&["-p", &format!("calibration:={name}")]).unwrap());
+    let (paper, ours) = (of("paper"), of("grainlab"));
+    assert_eq!(paper.covariance_model, [0.0; 25]);
+    assert!(ours.covariance_model[0] > 0.0 && ours.covariance_model[18] > 0.0, "{ours:?}");
+    assert!(ours.covariance[18] > ours.covariance_model[18], "the data have a part in it, too");
+}
+
+#[test]
+fn a_calibration_that_is_none_is_refused_by_name() {
+    let refused = |name: &str| given(&["-p", &format!("calibration:={name}")]).unwrap_err().to_string();
+    let text = refused("papper");
+    assert!(text.contains("\"papper\"") && text.contains("default, paper, grainlab"), "{text}");
+    let text = refused("gone.toml");
+    assert!(text.contains("gone.toml") && text.contains("no such file"), "{text}");
+    assert!(matches!(given(&["-p", "calibration:=cut.toml"]), Err(SettingsError::CalibrationText(_))));
 }
 
 #[test]

@@ -173,3 +173,73 @@ impl Inference {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use emt::{Calibration, Gamma, Measured, Observation};
+    use grainlab_msgs::boundary::MicrostructureReading;
+    use grainlab_msgs::msg::Moduli;
+    use grains::Material;
+
+    #[test]
+    fn a_result_read_back_from_a_message_is_the_one_that_the_kernel_gave() {
+        let message = Moduli {
+            g12: 121.71e6,
+            g13: 127.37e6,
+            theta: 144.38e6,
+            pressure: 50e3,
+            solid_fraction: 0.636,
+            grain_shear_modulus: Material::GLASS.shear_modulus,
+            grain_poisson_ratio: Material::GLASS.poisson_ratio,
+            grain_density: Material::GLASS.density,
+            ..Moduli::default()
+        };
+        let sent =
+            emt_inversion::microstructure_message(&message, &emt_inversion::Settings::default()).unwrap();
+        let reading = MicrostructureReading::try_from(&sent).unwrap();
+        let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
+        let read = Inference::of_reading("moduli", &reading.estimates[at]);
+        let mut observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::ZERO);
+        observation.conditions.solid_fraction = Some(Measured::exact(0.636));
+        observation.conditions.material = Some(Material::GLASS);
+        let observation = observation.with_relative_error(0.01);
+        let outcome = emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
+        let direct = Inference::of("ratio", "paper", &outcome);
+        assert!(direct.sigma.k.is_some() && direct.interval.level.is_some(), "{direct:?}");
+        assert_eq!(read, Inference { source: Some("moduli".to_owned()), ..direct });
+    }
+
+    #[test]
+    fn the_keys_of_a_result_are_the_agreed_ones() {
+        let failed = Inference::failed("ratio", "paper", "failed", vec!["why".into()]);
+        let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        let value = serde_json::to_value(&failed).unwrap();
+        let quantities = ["eps", "eps_stiffness", "k", "k_hat", "z"];
+        let mut expected = vec![
+            "model",
+            "calibration",
+            "sigma",
+            "sigma_model",
+            "interval",
+            "chi_square",
+            "degrees_of_freedom",
+            "condition_number",
+            "status",
+            "gamma_over_delta",
+            "gamma_over_delta_source",
+            "warnings",
+        ];
+        expected.extend(quantities);
+        expected.sort_unstable();
+        let mut found = keys(&value);
+        found.sort_unstable();
+        assert_eq!(found, expected);
+        for group in ["sigma", "sigma_model"] {
+            let mut found = keys(&value[group]);
+            found.sort_unstable();
+            assert_eq!(found, quantities, "{group}");
+        }
+        assert!(value["interval"].get("level").is_some() && value["interval"].get("z").is_some());
+    }
+}

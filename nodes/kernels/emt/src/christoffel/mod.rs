@@ -13,27 +13,24 @@
 //! speed in between. These only know (C13 + C44)²: C13 + C44 > 0 is assumed, as it is in every packing.
 //!
 //! What the speeds leave open is left open. What they determine more than once is a weighted least-squares fit, and how
-//! well they agree is told. The density is that of the mass that moves with the wave: rattlers do not.
+//! well they agree is told. Where several media have the same speeds (without P speeds along and across the axis that
+//! happens), the moduli in which they differ are left open, too. The density is that of the mass that moves with the wave: rattlers do not.
 
+mod conflict;
+mod determined;
 mod error;
 mod fit;
 mod ray;
+mod search;
 
+pub use conflict::SpeedConflict;
 pub use error::ChristoffelError;
 
 use crate::conditions::{Conditions, Measured};
-use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
+use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
-use fit::Fit;
 use grains::{Vec3, WaveSpeed};
-use nalgebra::SMatrix;
-use ray::{Column, Ray, UNKNOWNS};
-
-/// Part of a modulus that may be open while it counts as known.
-const OPEN: f64 = 1e-2;
-
-/// Quantile of the standard normal distribution beyond which a misfit is called a conflict: one in a thousand.
-const CONFLICT: f64 = 3.09;
+use ray::Ray;
 
 /// Moduli from wave speeds, and how well the speeds agree.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,21 +43,12 @@ pub struct Fitted {
     pub chi_square: Option<f64>,
     /// Speeds less combinations of moduli that they determine.
     pub degrees_of_freedom: usize,
-    /// Of every speed: measured over fitted, less 1.
+    /// Of every speed: measured less fitted, over measured.
     pub residuals: Vec<f64>,
     /// Speeds without an uncertainty, where others have one; they were given the largest relative one of the others.
     pub assumed: usize,
     /// Whether the speeds contradict each other beyond their uncertainty, and which most.
     pub conflict: Option<SpeedConflict>,
-}
-
-/// Speeds that no medium has, within their uncertainty (a chance of less than one in a thousand).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpeedConflict {
-    /// Index of the speed furthest from what the others say.
-    pub worst: usize,
-    /// How far, in its standard deviations.
-    pub sigma: f64,
 }
 
 impl Fitted {
@@ -109,17 +97,23 @@ pub fn observation(
         (Some(errors), Some(unit)) => errors.iter().map(|e| (unit / e).powi(2)).collect(),
         _ => vec![1.0; rays.len()],
     };
-    let fit = fit::fit(&rays, &weights)?;
-    for (index, share) in fit.shares.iter().enumerate() {
-        ray::refuse_ambiguous(index, *share)?;
+    let fit = fit::fit(&rays, &weights, unit)?;
+    // Where the motion said it all, a mode that moves otherwise is a matter of the speeds.
+    for (index, (ray, share)) in rays.iter().zip(&fit.shares).enumerate() {
+        if !ray.named && !ray::is_clear(*share) {
+            return Err(ray::ambiguous(index, *share));
+        }
     }
-    let (moduli, covariance) = moduli(&fit, density, unit);
-    if stands_against(&moduli) {
+    let (moduli, covariance) = determined::moduli(&fit, density, unit);
+    if !moduli.known().all(|(_, value)| value.is_finite()) {
+        return Err(ChristoffelError::NoMedium);
+    }
+    if is_unstable(&moduli) {
         return Err(ChristoffelError::Unstable { moduli: listed(&moduli) });
     }
-    let sigmas = errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| r / e));
-    let sigmas: Option<Vec<f64>> = sigmas.map(Iterator::collect);
-    let degrees_of_freedom = rays.len() - fit.rank;
+    let sigmas: Option<Vec<f64>> =
+        errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| r / e).collect());
+    let degrees_of_freedom = rays.len().saturating_sub(fit.rank);
     let chi_square = sigmas.as_ref().map(|s| s.iter().map(|s| s * s).sum());
     Ok(Fitted {
         observation: Observation { covariance, ..Observation::new(moduli, conditions) },
@@ -127,7 +121,7 @@ pub fn observation(
         chi_square,
         degrees_of_freedom,
         assumed: if errors.is_some() { rays.iter().filter(|r| r.error.is_none()).count() } else { 0 },
-        conflict: sigmas.as_ref().and_then(|s| conflict(s, &fit.leverages, degrees_of_freedom)),
+        conflict: sigmas.as_ref().and_then(|s| conflict::conflict(s, &fit.leverages, degrees_of_freedom)),
         residuals: fit.residuals,
     })
 }
@@ -157,33 +151,7 @@ fn errors(rays: &[Ray]) -> Option<Vec<f64>> {
     Some(rays.iter().map(|r| r.error.unwrap_or(largest)).collect())
 }
 
-/// The moduli that are determined, Pa, and their covariance, Pa², for a speed of weight 1 that has the relative error
-/// `unit`.
-fn moduli(fit: &Fit, density: Measured, unit: Option<f64>) -> (Moduli, Option<ModuliCovariance>) {
-    // 9 Θ = 4 C11 − 4 C66 + 4 C13 + C33.
-    let rows: SMatrix<f64, MODULI, UNKNOWNS> = SMatrix::from_rows(&[
-        Column::from([0.0, 0.0, 0.0, 0.0, 1.0]).transpose(),
-        Column::from([0.0, 0.0, 0.0, 1.0, 0.0]).transpose(),
-        Column::from([4.0, 1.0, 4.0, 0.0, -4.0]).transpose() / 9.0,
-        Column::from([1.0, 0.0, 0.0, 0.0, 0.0]).transpose(),
-        Column::from([0.0, 1.0, 0.0, 0.0, 0.0]).transpose(),
-        Column::from([0.0, 0.0, 1.0, 0.0, 0.0]).transpose(),
-    ]);
-    let specific = rows * fit.specific;
-    let open = rows * fit.open;
-    let known: [bool; MODULI] = std::array::from_fn(|i| open.row(i).norm() <= OPEN * fit.specific.amax());
-    let values = std::array::from_fn(|i| known[i].then_some(density.value * specific[i]));
-    let covariance = unit.map(|unit| {
-        // What is open may be off by its whole scale; where that is seen in a modulus, it is small.
-        let of_speeds = rows * fit.covariance * rows.transpose() * unit.powi(2) + open * open.transpose();
-        let of_density = specific * specific.transpose() * density.stddev.powi(2);
-        let full = of_speeds * density.value.powi(2) + of_density;
-        ModuliCovariance::from_fn(|i, j| if known[i] && known[j] { full[(i, j)] } else { 0.0 })
-    });
-    (Moduli::of_values(values), covariance)
-}
-
-fn stands_against(moduli: &Moduli) -> bool {
+fn is_unstable(moduli: &Moduli) -> bool {
     let negative = moduli.known().any(|(modulus, value)| value <= 0.0 && modulus != Modulus::C13);
     negative || moduli.unstable()
 }
@@ -191,19 +159,4 @@ fn stands_against(moduli: &Moduli) -> bool {
 fn listed(moduli: &Moduli) -> String {
     let parts: Vec<String> = moduli.known().map(|(m, v)| format!("{m} = {:.3} MPa", v / 1e6)).collect();
     parts.join(", ")
-}
-
-/// Whether χ² is too large for chance, by the cube-root approximation of Wilson and Hilferty.
-fn conflict(sigmas: &[f64], leverages: &[f64], degrees_of_freedom: usize) -> Option<SpeedConflict> {
-    // Without a degree of freedom the fit is exact, or C13 + C44 = 0 stood in its way.
-    let freedom = degrees_of_freedom.max(1) as f64;
-    let chi_square: f64 = sigmas.iter().map(|s| s * s).sum();
-    let spread = 2.0 / (9.0 * freedom);
-    if (chi_square / freedom).cbrt() < 1.0 - spread + CONFLICT * spread.sqrt() {
-        return None;
-    }
-    // A residual is smaller than the error by what the speed itself pulled the fit.
-    let own = sigmas.iter().zip(leverages).map(|(s, h)| s.abs() / (1.0 - h).max(1e-6).sqrt());
-    let (worst, sigma) = own.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(SpeedConflict { worst, sigma })
 }

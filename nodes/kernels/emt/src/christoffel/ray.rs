@@ -31,6 +31,9 @@ pub(super) struct Ray {
     motion: [f64; 3],
     /// Whether it is the S mode that moves across the plane.
     horizontal: bool,
+    /// Whether direction and motion alone say which mode it is: in no packing are the modes turned far from theirs in an
+    /// isotropic medium.
+    pub(super) named: bool,
 }
 
 /// What a medium says to a ray.
@@ -70,20 +73,30 @@ impl Ray {
             .unwrap_or_else(|| axis.cross(&least(axis)).normalize());
         let motion = [p.dot(&radial), p.dot(&axis.cross(&radial)), p.dot(axis)];
         let [radially, across, axially] = motion.map(|m| m * m);
-        let nearest = match (sin * sin <= AXIAL, cos * cos <= AXIAL) {
-            (true, _) => axially.max(radially + across),
-            (_, true) => radially.max(axially).max(across),
-            // In the plane the modes are the medium's.
-            _ => across.max(radially + axially),
-        };
-        refuse_ambiguous(index, nearest)?;
+        let along = p.dot(&n).powi(2);
+        let upright = radially + axially - along;
+        let is_axial = sin * sin <= AXIAL;
+        // Along the axis the two S modes are one.
+        let shear = if is_axial { upright + across } else { upright.max(across) };
+        let nearest = along.max(shear);
+        let named = is_clear(nearest);
+        // Between the axes the medium may have turned the modes in the plane.
+        let is_between = !is_axial && cos * cos > AXIAL;
+        if !named && !(is_between && is_clear(along + upright)) {
+            return Err(ambiguous(index, nearest));
+        }
         let horizontal = across > radially.max(axially);
-        Ok(Self { speed, error: stddev.map(|s| s / speed), sin, cos, motion, horizontal })
+        Ok(Self { speed, error: stddev.map(|s| s / speed), sin, cos, motion, horizontal, named })
     }
 
     /// Whether the grains move more along the direction than across it.
     pub(super) fn is_compressional(&self) -> bool {
         (self.sin * self.motion[0] + self.cos * self.motion[2]).powi(2) > 0.5
+    }
+
+    /// Whether the motion of the mode, and with it v², hangs on C13 and on how the moduli compare.
+    pub(super) fn is_coupled(&self) -> bool {
+        !self.horizontal && (self.sin * self.cos).powi(2) > AXIAL
     }
 
     /// v² of a mode with exactly the motion measured, as a sum over the specific moduli: p·Γ p/ρ.
@@ -149,12 +162,14 @@ impl Ray {
     }
 }
 
-/// Refuses what is between two modes.
-pub(super) fn refuse_ambiguous(index: usize, share: f64) -> Result<(), ChristoffelError> {
-    if share >= CLEAR {
-        return Ok(());
-    }
-    Err(ChristoffelError::Ambiguous { index, degrees: share.max(0.0).sqrt().acos().to_degrees() })
+/// Whether a motion with this cos² of the angle to a mode's is that mode's.
+pub(super) fn is_clear(share: f64) -> bool {
+    share >= CLEAR
+}
+
+/// What to say to a motion with this cos² of the angle to the nearest mode's.
+pub(super) fn ambiguous(index: usize, share: f64) -> ChristoffelError {
+    ChristoffelError::Ambiguous { index, degrees: share.max(0.0).sqrt().acos().to_degrees() }
 }
 
 /// The vector at exactly unit length, if it has it to the rounding of a file or a message.

@@ -1,5 +1,6 @@
 //! From `Moduli` to what a model takes.
 
+use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
 use emt::{Conditions, Gamma, Measured, Moduli, Modulus, Observation};
 use grainlab_msgs::boundary::ModuliReading;
@@ -8,32 +9,11 @@ use grains::{Mat3, Stiffness, Vec3};
 /// Sine of the angle to e3 below which an axis is e3: rounding.
 const ALONG: f64 = 1e-9;
 
-/// Why moduli say nothing about the axis asked for.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum Unobservable {
-    /// The axis is to come with the data, and did not.
-    #[error("the axis is to be the one found, and these data name none: set the parameter axis")]
-    NoAxis,
-    /// Moduli about e3 cannot be turned.
-    #[error(
-        "the moduli given are those about e3, and without the full stiffness they say nothing about the axis \
-         ({x:.4}, {y:.4}, {z:.4})"
-    )]
-    NoStiffness {
-        /// Components of the axis.
-        x: f64,
-        /// Second.
-        y: f64,
-        /// Third.
-        z: f64,
-    },
-}
-
 /// The moduli about the axis set, all of them where the full stiffness is known, with their errors and their state.
 ///
 /// Without errors in the data, each modulus measured gets the error of the settings; of a full stiffness these are five,
 /// and Θ follows from them.
-pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observation, Unobservable> {
+pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observed, Unobservable> {
     let axis = match settings.axis {
         Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
@@ -48,18 +28,20 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     };
     // The covariance of the message is that of the moduli about e3.
     let covariance = reading.covariance.filter(|_| along_e3).map(|c| Mat3::from_row_slice(&c));
-    match &reading.stiffness {
-        Some(stiffness) if along_e3 => {
-            let observation = Observation::of_stiffness(stiffness, conditions);
-            Ok(of_six(observation, covariance, settings.modulus_error))
-        }
-        Some(stiffness) => Ok(of_six(turned(stiffness, &axis, conditions), None, settings.modulus_error)),
+    let observation = match &reading.stiffness {
+        Some(stiffness) if along_e3 => Observation::of_stiffness(stiffness, conditions),
+        Some(stiffness) => turned(stiffness, &axis, conditions),
         None if along_e3 => {
-            let moduli = Moduli::of_values([reading.g12, reading.g13, reading.theta, None, None, None]);
-            Ok(of_three(Observation::new(moduli, conditions), covariance, settings.modulus_error))
+            let (g12, g13, theta) = (reading.g12, reading.g13, reading.theta);
+            Observation::new(Moduli::of_values([g12, g13, theta, None, None, None]), conditions)
         }
-        None => Err(Unobservable::NoStiffness { x: axis.x, y: axis.y, z: axis.z }),
-    }
+        None => return Err(Unobservable::NoStiffness { axis: axis.into() }),
+    };
+    let error = settings.modulus_error;
+    Ok(match covariance {
+        None => with_error(observation, error).into(),
+        Some(paper) => with_covariance(observation, &paper, error).into(),
+    })
 }
 
 /// γ/Δ about another axis than e3, of a strain that is symmetric about e3: less by the Legendre polynomial P₂.
@@ -72,36 +54,20 @@ fn turned(stiffness: &Stiffness, axis: &Vec3, conditions: Conditions) -> Observa
     Observation { asymmetry: Some(t.residual), ..Observation::new(Moduli::of_medium(&t), conditions) }
 }
 
-fn of_six(observation: Observation, covariance: Option<Mat3>, error: f64) -> Observation {
-    let Some(paper) = covariance else {
-        if error == 0.0 {
-            return observation;
-        }
-        let moduli = observation.moduli.without(Modulus::Theta);
-        return Observation { moduli, ..observation }.with_relative_error(error);
-    };
-    // Nothing is said of the errors of C11 and C33. Taken as exact they would outweigh everything else.
+/// With these errors of G12, G13 and Θ, Pa², and that of the settings for the other two of a full stiffness.
+fn with_covariance(observation: Observation, paper: &Mat3, error: f64) -> Observation {
+    // Nothing is said of the errors of C11 and C33: taken as exact they would outweigh everything else. C13 follows.
     let mut moduli = observation.moduli.without(Modulus::C13);
     if error == 0.0 {
         moduli = moduli.without(Modulus::C11).without(Modulus::C33);
     }
     let mut observation = Observation { moduli, ..observation }.with_relative_error(error);
+    let known = [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| moduli.get(m).is_some());
     if let Some(all) = &mut observation.covariance {
-        all.fixed_view_mut::<3, 3>(0, 0).copy_from(&paper);
+        let of_known = |i: usize, j: usize| if known[i] && known[j] { paper[(i, j)] } else { 0.0 };
+        all.fixed_view_mut::<3, 3>(0, 0).copy_from(&Mat3::from_fn(of_known));
     }
     observation
-}
-
-fn of_three(observation: Observation, covariance: Option<Mat3>, error: f64) -> Observation {
-    let known = [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| observation.moduli.get(m).is_some());
-    match covariance {
-        Some(c) => {
-            let of_known = |i: usize, j: usize| if known[i] && known[j] { c[(i, j)] } else { 0.0 };
-            observation.with_paper_covariance(&Mat3::from_fn(of_known))
-        }
-        None if error > 0.0 => observation.with_relative_error(error),
-        None => observation,
-    }
 }
 
 #[cfg(test)]
@@ -121,7 +87,11 @@ mod tests {
 
     fn observation(covariance: Option<Mat3>, error: f64) -> Observation {
         let of_medium = Observation::of_stiffness(&T.stiffness(), Conditions::at(50e3));
-        of_six(of_medium, covariance, error).checked().unwrap()
+        let observation = match covariance {
+            None => with_error(of_medium, error),
+            Some(paper) => with_covariance(of_medium, &paper, error),
+        };
+        observation.checked().unwrap()
     }
 
     #[test]
