@@ -66,7 +66,9 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Json => printer.json_element(&answer)?,
                 Format::Table => String::new(),
             };
-            Ok::<_, Failure>((text, answer.exit(), complaint(&answer, printer), answer))
+            let (exit, complaint) = (answer.exit(), complaint(&answer, printer));
+            // An answer is a hundred times its text: only a table for people waits for the rest.
+            Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;
         let Some(piece) = piece else { break };
         let mut texts = Vec::with_capacity(piece.len());
@@ -74,9 +76,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
             let (text, exit, complaint, answer) = found?;
             tally.add(exit, &complaint);
             texts.push(text);
-            if format == Format::Table {
-                kept.push(answer);
-            }
+            kept.extend(answer);
         }
         if kept.len() > FOR_PEOPLE {
             let most = format!("more than {FOR_PEOPLE} states are no table for people");

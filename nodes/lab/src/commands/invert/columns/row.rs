@@ -162,3 +162,99 @@ impl Cells<'_> {
         Ok(values)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Defaults;
+    use super::*;
+    use emt::Modulus;
+
+    fn columns(header: &str) -> Columns {
+        Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()
+    }
+
+    fn state(header: &str, row: &str) -> Result<State, String> {
+        columns(header).row(row.as_bytes()).unwrap().map(|r| r.state).map_err(|bad| bad.fault)
+    }
+
+    fn matrix_names() -> Vec<String> {
+        (0..36).map(|n| format!("c{}{}_pa", n / 6 + 1, n % 6 + 1)).collect()
+    }
+
+    #[test]
+    fn three_constants_are_moduli_and_a_whole_stiffness_is_projected() {
+        let few = state("p_pa,c11_pa,c33_pa,c13_pa", "5e4,300,200,100").unwrap();
+        assert_eq!(few.moduli.values(), [None, None, None, Some(300.0), Some(200.0), Some(100.0)]);
+        assert_eq!(few.asymmetry, None);
+
+        // C11 ≠ C22: neither is the modulus of the medium.
+        let mut entries = [0.0; 36];
+        for (n, value) in [(0, 300.0), (7, 340.0), (14, 280.0), (21, 90.0), (28, 110.0), (35, 95.0)] {
+            entries[n] = value;
+        }
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            (entries[6 * i + j], entries[6 * j + i]) = (120.0, 120.0);
+        }
+        let row = entries.map(|e| e.to_string()).join(",");
+        let full = state(&format!("p_pa,{}", matrix_names().join(",")), &format!("5e4,{row}")).unwrap();
+        let medium = Stiffness::from_row_major(&entries).transverse_isotropy();
+        assert_eq!(full.moduli, Moduli::of_medium(&medium));
+        assert_eq!(full.asymmetry, Some(medium.residual));
+        assert_ne!(full.moduli.get(Modulus::C11), Some(300.0));
+
+        // One half of it says the same.
+        let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();
+        let names = matrix_names();
+        let header = upper.iter().map(|n| names[*n].clone()).collect::<Vec<_>>().join(",");
+        let row = upper.iter().map(|n| entries[*n].to_string()).collect::<Vec<_>>().join(",");
+        let half = state(&format!("p_pa,{header}"), &format!("5e4,{row}")).unwrap();
+        assert_eq!(half, full);
+    }
+
+    #[test]
+    fn a_packing_without_stiffness_is_a_row_without_moduli() {
+        let header = format!("p_pa,phi,{}", matrix_names().join(","));
+        let empty = state(&header, &format!("5e4,0.6{}", ",".repeat(36))).unwrap();
+        assert_eq!(empty.moduli, Moduli::NONE);
+        let torn = state(&header, &format!("5e4,0.6,1{}", ",".repeat(35))).unwrap_err();
+        assert!(torn.contains("c12_pa is empty"), "{torn}");
+    }
+
+    #[test]
+    fn pressures_are_in_the_unit_that_their_column_names() {
+        for header in ["p_kpa,g12_pa", "p_pa,g12_pa", "pressure_pa,g12_pa"] {
+            let unit = if header.starts_with("p_kpa") { 1e3 } else { 1.0 };
+            assert_eq!(state(header, "50,1").unwrap().pressure.value, 50.0 * unit, "{header}");
+        }
+        assert!(state("p_pa,g12_pa", ",1").unwrap_err().contains("p_pa is empty"));
+    }
+
+    #[test]
+    fn errors_are_no_negative_numbers() {
+        let fault = state("p_pa,g12_pa,g12_sigma_pa", "5e4,1e8,-1e6").unwrap_err();
+        assert!(fault.contains("g12_sigma_pa") && fault.contains("-1000000"), "{fault}");
+    }
+
+    #[test]
+    fn blank_lines_and_comments_are_no_rows() {
+        let columns = columns("p_pa,g12_pa");
+        for line in ["", "   ", "# 5e4,1e8"] {
+            assert!(columns.row(line.as_bytes()).is_none(), "{line:?}");
+        }
+        assert!(columns.row(b"\xff,1").unwrap().unwrap_err().fault.contains("UTF-8"));
+    }
+
+    #[test]
+    fn pressures_as_a_servo_leaves_them_are_one_group_and_whole_numbers_stay() {
+        for (cell, label) in [
+            ("49998.31", "50000"),
+            ("50012.7", "50000"),
+            ("0.15", "0.15"),
+            ("1017", "1017"),
+            ("s1", "s1"),
+            ("", ""),
+        ] {
+            assert_eq!(group_label(cell), label, "{cell}");
+        }
+    }
+}
