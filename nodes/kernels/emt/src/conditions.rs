@@ -52,6 +52,16 @@ impl Gamma {
         Self { value, stddev: 0.0, source: GammaSource::Given }
     }
 
+    /// Whether the ratio that `source` names was measured.
+    pub fn is_known(measured: &Anisotropy, source: GammaSource) -> bool {
+        match source {
+            GammaSource::Total => measured.total.is_some(),
+            GammaSource::Elastic => measured.elastic.is_some(),
+            GammaSource::Contact => measured.contact.is_some(),
+            GammaSource::Given | GammaSource::Zero => false,
+        }
+    }
+
     /// What the paper's models take of a measured packing: the total ratio where it is known, else the one of the
     /// contacts, else zero.
     pub fn preferred(measured: &Anisotropy) -> Self {

@@ -91,9 +91,9 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
-    /// The strain ratio makes contacts of negative stiffness.
+    /// The strain ratio leaves contacts open, or makes their stiffness negative.
     #[error(
-        "gamma/Delta = {g} is outside {range}, where {law} gives some contacts a negative stiffness: \
+        "gamma/Delta = {g} is outside {range}: beyond it {law} leaves some contacts without a positive stiffness; \
          give the elastic or the contact-fitted ratio, or 0"
     )]
     GammaOutOfRange {

@@ -1,7 +1,7 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
 //! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), and inverts them in
-//! closed form with first-order error propagation. SI at every interface. The axis of anisotropy is e3; ε and
+//! closed form, or by a root that its bracket makes unique, with first-order error propagation. SI at every interface. The axis of anisotropy is e3; ε and
 //! g = γ/Δ are positive when there is more (of contacts, of extension) along it.
 //!
 //! - [`structure`], [`moduli`], [`conditions`]: what is inferred, what it is inferred from, and at what state
@@ -10,7 +10,10 @@
 //! - [`mod@calibration`]: what packings have taught the models
 //! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
+//! - [`effective`]: the plain theory, with the pressure closing the strain
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
+//! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
+//! - [`invariants`], [`relaxed`]: our own model, and the parts of a stiffness that it rests on
 //!
 //! ```
 //! use emt::{Calibration, Gamma, Observation, Quantity};
@@ -26,9 +29,13 @@
 pub mod calibration;
 pub mod conditions;
 pub mod domain;
+pub mod effective;
+mod equivalent;
 pub mod error;
 pub mod estimate;
 pub mod form;
+pub mod full;
+pub mod invariants;
 pub mod medium;
 pub mod model;
 pub mod moduli;
@@ -36,15 +43,19 @@ pub mod moments;
 pub mod observation;
 mod propagation;
 pub mod ratio;
+pub mod relaxed;
+mod root;
+pub mod sqrt;
 pub mod structure;
 pub mod warning;
 
-pub use calibration::{Calibration, CalibrationError, Isotropic};
+pub use calibration::{Calibration, CalibrationError, Isotropic, Sample, learn};
 pub use conditions::{Conditions, Gamma, GammaSource, Measured};
 pub use domain::Domain;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
 pub use form::Form;
+pub use invariants::Invariants;
 pub use medium::{Medium, Psi};
 pub use model::{Misfit, Model, Slopes, Solution, model, models};
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};

@@ -45,6 +45,31 @@ impl Medium {
             * (self.volume_strain / 3.0).sqrt()
     }
 
+    /// The same strained until the pressure is `pressure`, Pa: the Δ of [`Medium::pressure`], whose own one is not read.
+    #[must_use]
+    pub fn under(self, pressure: f64) -> Self {
+        let unit = Self { volume_strain: 1.0, ..self }.pressure();
+        Self { volume_strain: (pressure / unit).cbrt().powi(2), ..self }
+    }
+
+    /// Mean of the normal stresses, Pa, from Eq. 4: p = (2/3π) φ k E* (Δ/3)^{3/2} J.
+    ///
+    /// Every contact carries the Hertz force of the overlap whose root is Eq. 10, (4/3) E* √R* (√δ)³ ∝ (1 + g − 3gx²)³,
+    /// and so the force that belongs to its own stiffness. J is the mean of that cube over the contacts of Eq. 6; to
+    /// first order in g it is 1 − 12εg/5, as any reading of Eq. 10 has it.
+    pub fn pressure(&self) -> f64 {
+        let (eps, g) = (self.eps, self.gamma_over_delta);
+        let mean_cube = 1.0 + g * g * (12.0 / 5.0 - 16.0 / 35.0 * g)
+            - eps * g * (12.0 / 5.0 - 48.0 / 35.0 * g + 48.0 / 35.0 * g * g);
+        let root = (self.volume_strain / 3.0).sqrt();
+        2.0 / (3.0 * PI)
+            * self.solid_fraction
+            * self.k
+            * self.material.effective_young()
+            * root.powi(3)
+            * mean_cube
+    }
+
     /// ψ1, ψ3 and ψ5, Eqs. 13–15.
     pub fn psi(&self, form: Form) -> Psi {
         let m = Moments::new(self.eps, self.gamma_over_delta);

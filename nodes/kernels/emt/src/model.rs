@@ -8,9 +8,10 @@ use crate::estimate::{Estimate, assemble};
 use crate::moduli::Moduli;
 use crate::observation::{INPUTS, Observation};
 use crate::propagation::numerical_slopes;
-use crate::ratio;
+use crate::relaxed::Relaxed;
 use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
+use crate::{effective, full, ratio, sqrt};
 use nalgebra::SMatrix;
 use std::fmt::Debug;
 
@@ -98,7 +99,15 @@ pub trait Model: Sync + Debug {
 
 /// Every model, in the order of every list of results.
 pub fn models() -> &'static [&'static dyn Model] {
-    &[&ratio::CORRECTED, &ratio::AS_PRINTED, &ratio::VOLUME]
+    &[
+        &effective::Effective,
+        &ratio::CORRECTED,
+        &ratio::AS_PRINTED,
+        &ratio::VOLUME,
+        &full::LINEAR,
+        &sqrt::SQRT,
+        &Relaxed,
+    ]
 }
 
 /// The model of this name.

@@ -7,6 +7,7 @@
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
+use crate::equivalent::Factors;
 use crate::error::EmtError;
 use crate::form::Form;
 use crate::model::{Model, Solution};
@@ -36,7 +37,7 @@ pub const AS_PRINTED: Ratio = Ratio { name: "ratio-as-printed", form: Form::AsPr
 pub const VOLUME: Ratio = Ratio { name: "ratio-volume", form: Form::Corrected, power: 2.0 / 3.0 };
 
 /// Highest coordination number of the domain: more than equal spheres find room for.
-const HIGHEST: f64 = 15.0;
+pub(crate) const HIGHEST: f64 = 15.0;
 
 impl Model for Ratio {
     fn name(&self) -> &'static str {
@@ -54,57 +55,30 @@ impl Model for Ratio {
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).take(structure, conditions)?;
-        let [k, k_hat, eps] =
-            [calibration.isotropic().abscissa, Quantity::KHat, Quantity::Eps].map(|q| found[q as usize]);
-        let isotropic = calibration.isotropic_for(conditions.material);
-        let (g, pressure) = (conditions.gamma.value, conditions.pressure.value);
-        let m = Moments::new(eps, g);
-        let denser = (k / k_hat).powf(self.power);
-        let g12 = denser * 3.0 * m.m1 * isotropic.shear_modulus(k_hat, pressure);
-        let g13 = g12 * (1.0 + m.spin());
-        let theta = denser * self.form.bulk_factor(eps, g) * isotropic.bulk_modulus(k_hat, pressure);
-        Ok(Moduli::paper(g12, g13, theta))
+        let (eps, g) = (found[Quantity::Eps as usize], conditions.gamma.value);
+        let factors = self.factors(eps, Moments::new(eps, g).spin(), g);
+        Ok(factors.moduli(&found, self.power, conditions, calibration))
     }
 
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<Solution, EmtError> {
-        let need = |m| observation.moduli.get(m).ok_or(EmtError::missing(self.name, m));
-        let (g12, g13) = (need(Modulus::G12)?, need(Modulus::G13)?);
-        let g = observation.conditions.gamma.value;
-        if !(g > -1.0 && g < 0.5) {
-            return Err(EmtError::GammaOutOfRange { g, range: "(-1, 1/2)", law: "Eq. 10" });
-        }
-        let ratio = g13 / g12;
-        if !(ratio > 0.0 && ratio < 2.0) {
-            return Err(EmtError::RatioOutOfRange { ratio });
-        }
+        let g = check_eq_10(observation.conditions.gamma.value)?;
+        let ratio = shear_ratio(self.name, observation)?;
         let a = ratio - 1.0;
         let no_anisotropy = EmtError::NoAnisotropy { ratio, g };
         let eps = eps_of_spin(a, g).ok_or(no_anisotropy.clone())?;
-        let bulk = self.form.bulk(eps, a, g);
-        if bulk <= 0.0 {
+        let factors = self.factors(eps, a, g);
+        if factors.bulk <= 0.0 {
             return Err(no_anisotropy);
         }
-        let mut structure = Structure::default().with(Quantity::Eps, eps);
-        let mut warnings = ratio_warnings(ratio);
-        if let Some(theta) = observation.moduli.get(Modulus::Theta) {
-            let isotropic = calibration.isotropic_for(observation.conditions.material);
-            let of_isotropic = bulk / (3.0 * Moments::new(eps, g).m1);
-            let s = isotropic.reduced(g12 / theta * of_isotropic);
-            if s >= 1.0 {
-                let limit = 1.0 / isotropic.reduced(of_isotropic);
-                return Err(EmtError::ShearTooStiff {
-                    ratio: g12 / theta,
-                    limit,
-                    calibration: calibration.name().into(),
-                });
-            }
-            let k_hat = isotropic.coordination(s);
-            let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * bulk);
-            let k = k_hat * if self.power == 1.0 { denser } else { denser.powf(1.0 / self.power) };
-            structure = structure.with(calibration.isotropic().abscissa, k).with(Quantity::KHat, k_hat);
-            warnings.extend(outside_fit(k_hat, calibration));
-        }
-        Ok(Solution { warnings, ..Solution::exact(structure) })
+        factors.solution(eps, self.power, observation, calibration)
+    }
+}
+
+impl Ratio {
+    /// Brackets of Eqs. 16–18, with a as a variable of its own.
+    fn factors(&self, eps: f64, a: f64, g: f64) -> Factors {
+        let g12 = 3.0 * Moments::new(eps, g).m1;
+        Factors { g12, g13: g12 * (1.0 + a), bulk: self.form.bulk(eps, a, g) }
     }
 }
 
@@ -117,6 +91,25 @@ pub(crate) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
     structure[Quantity::KHat as usize] = Some([-isotropic.constants()[1] * (1.0 + 1e-3), HIGHEST]);
     structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
     Domain { model, structure, gamma: [-0.5, 0.25], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+}
+
+/// G13/G12, which is below 2 in every theory here.
+pub(crate) fn shear_ratio(model: &'static str, observation: &Observation) -> Result<f64, EmtError> {
+    let need = |m| observation.moduli.get(m).ok_or(EmtError::missing(model, m));
+    let (g12, g13) = (need(Modulus::G12)?, need(Modulus::G13)?);
+    let ratio = g13 / g12;
+    if !(ratio > 0.0 && ratio < 2.0) {
+        return Err(EmtError::RatioOutOfRange { ratio });
+    }
+    Ok(ratio)
+}
+
+/// g, where Eq. 10 leaves every contact a positive stiffness.
+pub(crate) fn check_eq_10(g: f64) -> Result<f64, EmtError> {
+    if g > -1.0 && g < 0.5 {
+        return Ok(g);
+    }
+    Err(EmtError::GammaOutOfRange { g, range: "(-1, 1/2)", law: "Eq. 10" })
 }
 
 /// What to say of a shear ratio that contact anisotropy alone cannot give.

@@ -63,7 +63,7 @@ impl Isotropic {
             ("fitted", fitted[0], fitted[0].is_finite() && fitted[0] < fitted[1], "a range, low and high"),
         ] {
             if !valid {
-                return Err(CalibrationError { field, value, requirement });
+                return Err(CalibrationError::Constant { field, value, requirement });
             }
         }
         Ok(Self { alpha, beta, rho, zeta, abscissa, fitted, covariance: None, scatter: None })

@@ -1,11 +1,20 @@
 //! What packings have taught the models: data, named in every result.
 
+mod ensemble;
+mod file;
 mod isotropic;
+mod learn;
+mod network;
+mod regression;
 
+pub use ensemble::Sample;
 pub use isotropic::Isotropic;
+pub use learn::learn;
+pub(crate) use network::SCATTERED;
+pub use network::{Amplitude, Law, Network};
 
 use crate::conditions::GammaSource;
-use crate::structure::StructureCovariance;
+use crate::structure::{Quantity, StructureCovariance};
 use grains::Material;
 use std::borrow::Cow;
 
@@ -14,8 +23,11 @@ use std::borrow::Cow;
 pub struct Calibration {
     name: Cow<'static, str>,
     isotropic: Isotropic,
+    /// The same packings by the other coordination number.
+    other: Option<Isotropic>,
     material: Material,
     pressures: Option<[f64; 2]>,
+    network: Option<Box<Network>>,
     discrepancies: Vec<Discrepancy>,
 }
 
@@ -24,22 +36,40 @@ pub struct Calibration {
 pub struct Discrepancy {
     /// Name of the model.
     pub model: String,
+    /// The coordination number that its isotropic packings are told by.
+    pub abscissa: Quantity,
     /// The γ/Δ that it was fed with; `None` if it uses none.
     pub gamma: Option<GammaSource>,
-    /// Mean of error times error, the bias in it.
-    pub mean_square: StructureCovariance,
+    /// Mean of error times error, the bias in it, of the coordination number and ε.
+    pub mean_square: [[f64; 2]; 2],
 }
 
-/// Why numbers are not a calibration.
+/// Why there is no calibration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{field} = {value} is invalid: {requirement}")]
-pub struct CalibrationError {
-    /// Which constant.
-    pub field: &'static str,
-    /// The value found.
-    pub value: f64,
-    /// What is required.
-    pub requirement: &'static str,
+pub enum CalibrationError {
+    /// A constant is out of range.
+    #[error("{field} = {value} is invalid: {requirement}")]
+    Constant {
+        /// Which constant.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// The text is not that of a calibration.
+    #[error("{0}")]
+    Text(String),
+    /// The packings do not determine the constants.
+    #[error("{found} {what}, {needed} or more are needed: prepare more packings, or more different ones")]
+    Packings {
+        /// What is too few.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
 }
 
 impl Calibration {
@@ -47,8 +77,10 @@ impl Calibration {
     pub const PAPER: Calibration = Calibration {
         name: Cow::Borrowed("paper"),
         isotropic: Isotropic::PAPER,
+        other: None,
         material: Material::GLASS,
         pressures: None,
+        network: None,
         discrepancies: Vec::new(),
     };
 
@@ -58,7 +90,15 @@ impl Calibration {
         isotropic: Isotropic,
         material: Material,
     ) -> Self {
-        Self { name: name.into(), isotropic, material, pressures: None, discrepancies: Vec::new() }
+        Self {
+            name: name.into(),
+            isotropic,
+            other: None,
+            material,
+            pressures: None,
+            network: None,
+            discrepancies: Vec::new(),
+        }
     }
 
     /// Its name, reported with every estimate.
@@ -74,6 +114,11 @@ impl Calibration {
     /// Lowest and highest pressure of its packings, Pa; `None` if not known.
     pub fn pressures(&self) -> Option<[f64; 2]> {
         self.pressures
+    }
+
+    /// What relaxed networks are like; `None` if the calibration has not looked.
+    pub fn network(&self) -> Option<&Network> {
+        self.network.as_deref()
     }
 
     /// Eqs. 21 and 22 for the calibration's own material.
@@ -92,8 +137,46 @@ impl Calibration {
         material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
     }
 
+    /// The same with its isotropic packings told by the other coordination number; `None` if it does not know how.
+    pub fn with_abscissa(&self, abscissa: Quantity) -> Option<Self> {
+        if self.isotropic.abscissa == abscissa {
+            return Some(self.clone());
+        }
+        let isotropic = self.other.clone().filter(|i| i.abscissa == abscissa)?;
+        Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
+    }
+
+    /// Names that [`Calibration::builtin`] knows.
+    pub const BUILTIN: [&str; 3] = ["paper", "grainlab", "grainlab-z"];
+
+    /// `paper`: the paper's constants. `grainlab`: our own, of packings of 2,000 grains, k̂ and k in the sense of contacts
+    /// over all grains; `grainlab-z`: the same packings, rattlers left out.
+    pub fn builtin(name: &str) -> Option<Self> {
+        let own = || Self::parse(include_str!("grainlab.toml")).ok();
+        match name {
+            "paper" => Some(Self::PAPER),
+            "grainlab" => own(),
+            "grainlab-z" => {
+                let by_z = own()?.with_abscissa(Quantity::Z)?;
+                Some(Self { name: Cow::Borrowed("grainlab-z"), ..by_z })
+            }
+            _ => None,
+        }
+    }
+
     /// What was learned of a model fed with this γ/Δ.
     pub(crate) fn discrepancy(&self, model: &str, gamma: Option<GammaSource>) -> Option<StructureCovariance> {
-        self.discrepancies.iter().find(|d| d.model == model && d.gamma == gamma).map(|d| d.mean_square)
+        let abscissa = self.isotropic.abscissa;
+        let learned = self
+            .discrepancies
+            .iter()
+            .find(|d| d.model == model && d.gamma == gamma && d.abscissa == abscissa)?;
+        let mut covariance = StructureCovariance::zeros();
+        for (a, row) in [abscissa, Quantity::Eps].into_iter().zip(learned.mean_square) {
+            for (b, value) in [abscissa, Quantity::Eps].into_iter().zip(row) {
+                covariance[(a as usize, b as usize)] = value;
+            }
+        }
+        Some(covariance)
     }
 }

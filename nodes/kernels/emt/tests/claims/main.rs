@@ -1,7 +1,17 @@
 //! What the crate claims, one file a subject.
 
+mod cases;
 mod faults;
 mod inversion;
 mod propagation;
 mod quadrature;
+mod recovery;
 mod table3;
+
+/// The models of the paper, its slips and its approximations: all that read G12 and G13 and are fed with γ/Δ.
+const PAPER_MODELS: [&str; 6] = ["emt", "ratio", "ratio-as-printed", "ratio-volume", "full", "sqrt"];
+
+/// The model of this name.
+fn model(name: &str) -> &'static dyn emt::Model {
+    emt::model(name).unwrap_or_else(|| panic!("no model {name}"))
+}

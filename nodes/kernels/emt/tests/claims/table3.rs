@@ -8,20 +8,35 @@ pub(crate) struct Row {
     pub(crate) label: String,
     /// γ/Δ of Table II.
     pub(crate) g: f64,
-    /// What Table III says.
-    pub(crate) structure: Structure,
+    /// k, k̂ and ε as Table III has them.
+    pub(crate) printed: [f64; 3],
+    /// Pa.
+    pub(crate) g12: f64,
     pressure: f64,
-    g12: f64,
     g13: f64,
     theta: f64,
     theta_printed: f64,
 }
 
 impl Row {
-    /// The moduli that imply this row under the model of this name.
-    pub(crate) fn observation(&self, model: &str) -> Observation {
-        let theta = if model == "ratio" { self.theta } else { self.theta_printed };
-        Observation::new(self.g12, self.g13, theta, self.pressure, Gamma::given(self.g))
+    /// The moduli that imply this row under Eq. 16 corrected.
+    pub(crate) fn observation(&self) -> Observation {
+        self.with_theta(self.theta)
+    }
+
+    /// The moduli that imply this row under Eq. 16 as it is printed.
+    pub(crate) fn observation_as_printed(&self) -> Observation {
+        self.with_theta(self.theta_printed)
+    }
+
+    /// What Table III says.
+    pub(crate) fn structure(&self) -> Structure {
+        let [k, k_hat, eps] = self.printed;
+        Structure::paper(k, k_hat, eps)
+    }
+
+    fn with_theta(&self, theta: f64) -> Observation {
+        Observation::paper(self.g12, self.g13, theta, self.pressure, Gamma::given(self.g))
     }
 }
 
@@ -37,7 +52,7 @@ fn row(line: &str) -> Row {
     Row {
         label: format!("{sample} at {p_kpa} kPa"),
         g,
-        structure: Structure { k, k_hat, eps },
+        printed: [k, k_hat, eps],
         pressure: 1.0e3 * p_kpa,
         g12,
         g13,

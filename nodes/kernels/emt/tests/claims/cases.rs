@@ -1,0 +1,56 @@
+//! Random structures and states, the same in every run.
+
+use emt::{Calibration, Conditions, Domain, Gamma, Isotropic, Measured, Quantity, Structure};
+use grains::Material;
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+/// The paper's calibration, one of other constants whose coordination number leaves rattlers out, and our own.
+pub(crate) fn calibrations() -> Vec<Calibration> {
+    let own = Isotropic::new([150.0, -3.5, 80.0, -0.2], Quantity::Z, [4.2, 6.5]).unwrap();
+    let grains = Material { shear_modulus: 25.0e9, poisson_ratio: 0.25, density: 2600.0 };
+    let relaxed = Calibration::builtin("grainlab").unwrap();
+    vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
+}
+
+/// A generator.
+pub(crate) struct Random(Pcg64Mcg);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Pcg64Mcg::seed_from_u64(seed))
+    }
+
+    /// Uniform between two numbers.
+    pub(crate) fn within(&mut self, [low, high]: [f64; 2]) -> f64 {
+        let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        (low + (high - low) * unit).min(high)
+    }
+
+    /// Uniform in a range, and one time in eight one of its ends.
+    fn with_ends(&mut self, range: [f64; 2]) -> f64 {
+        match self.0.next_u64() >> 60 {
+            0 => range[0],
+            1 => range[1],
+            _ => self.within(range),
+        }
+    }
+
+    /// A structure and a state of a domain: pressures from 100 Pa to 100 MPa, solid fractions from 0.5 to 0.7, the
+    /// calibration's grains or others.
+    pub(crate) fn case(&mut self, domain: &Domain) -> (Structure, Conditions) {
+        let structure = domain.structure.map(|range| range.map(|r| self.with_ends(r)));
+        let other = Material {
+            shear_modulus: 10f64.powf(self.within([9.0, 11.5])),
+            poisson_ratio: self.with_ends(domain.poisson_ratio),
+            density: 2500.0,
+        };
+        let conditions = Conditions {
+            pressure: Measured::exact(10f64.powf(self.with_ends([2.0, 8.0]))),
+            gamma: Gamma::given(self.with_ends(domain.gamma)),
+            solid_fraction: Some(Measured::exact(self.within([0.5, 0.7]))),
+            material: (self.0.next_u64() >> 63 == 0).then_some(other),
+        };
+        (Structure::of_values(structure), conditions)
+    }
+}
