@@ -3,12 +3,16 @@
 //! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
 //! - [`lines`], [`cells`], [`columns`], [`rows`]: a table as it comes, each row a state
 //! - [`table`], [`print`]: answers in order, as text
+//! - [`explain`]: which datum decides which unknown
+//! - [`judge`]: answers against the truth of a table
 //! - [`calibrations`]: by name
 
 mod answer;
 mod calibrations;
 mod cells;
 mod columns;
+mod explain;
+mod judge;
 mod lines;
 mod print;
 mod rows;
@@ -35,6 +39,8 @@ Examples:
   Many states at once, or what an analysis has measured:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
+  How good the models are on packings whose structure was counted:
+    grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --judge --gamma all --by grains
 
 A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
 columns are ignored:
@@ -47,6 +53,7 @@ columns are ignored:
   phi grain_shear_modulus_pa poisson   solid fraction; of the grains
   theta_printed_pa                     what the model ratio-as-printed takes for theta_pa
   sample, or source and step           kept with the result
+  k z eps eps_stiffness                what the microstructure is, for --judge
 A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
 in the results, and does not stop the rest; the exit code is that of the worst row.";
 
@@ -96,12 +103,24 @@ pub(crate) struct Args {
     /// Which gamma/Delta of a table feeds the models that use one [default: given, else total, else contact, else zero]
     #[arg(long, value_enum, value_name = "WHICH", requires = "table", hide_possible_values = false)]
     gamma: Option<GammaChoice>,
-    /// One model alone [default: all of them]
-    #[arg(long, value_name = "NAME")]
-    model: Option<String>,
-    /// Which packings the constants of the models come from
-    #[arg(long, value_name = "NAME", default_value = calibrations::DEFAULT)]
-    calibration: String,
+    /// These models alone, with commas between them [default: all of them]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    model: Vec<String>,
+    /// Which packings the constants of the models come from: a name, a file, or several, one after the other; own is the
+    /// paper's for the paper's models, grainlab for ours
+    #[arg(long, value_name = "NAME|FILE.toml", value_delimiter = ',', default_value = calibrations::OWN)]
+    calibration: Vec<String>,
+    /// Print how far the estimates are from the truth that the table says in its columns k, z, eps and eps_stiffness, for
+    /// each model and gamma/Delta: bias, scatter, rms error, and how many of the 95 % intervals have the truth in them
+    #[arg(long, requires = "table")]
+    judge: bool,
+    /// Judge the rows with the same cells in these columns together; numbers that are not whole are the same to three digits
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
+    by: Vec<String>,
+    /// Print which datum decides which unknown, and how much of the uncertainty is that of the data and how much is what
+    /// the model leaves out
+    #[arg(long, conflicts_with = "table")]
+    explain: bool,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -109,21 +128,28 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let ways = ways(args.model.as_deref(), args.gamma)?;
-    let calibration = calibrations::load(&args.calibration)?;
+    let ways = ways(&args.model, &args.calibration, args.gamma)?;
     let defaults = args.defaults()?;
-    let printer = Printer { ways: &ways, calibration: &calibration };
+    let printer = Printer { ways: &ways };
     if let Some(path) = &args.table {
-        return table::run(Rows::open(path, &[], defaults)?, &printer, args.format);
+        let rows = Rows::open(path, &args.by, defaults)?;
+        if args.judge {
+            return judge::run(rows, &args.by, &ways, args.format);
+        }
+        return table::run(rows, &printer, args.format);
     }
-    let answer = Answer::of(args.state(defaults)?, None, &ways, &calibration);
+    let answer = Answer::of(args.state(defaults)?, None, &ways);
     for fault in answer.faults(&ways) {
         say!("grainlab: {fault}");
     }
-    print(&match args.format {
-        Format::Json => printer.json(&answer)?,
-        Format::Csv => Printer::csv_header() + &printer.csv(&answer),
-        Format::Table => printer.state(&answer),
+    let explained = args.explain.then(|| explain::explained(&answer, &ways));
+    print(&match (args.format, explained) {
+        (Format::Json, explained) => printer.json(&answer, explained)?,
+        (Format::Csv, None) => Printer::csv_header() + &printer.csv(&answer),
+        (Format::Csv, Some(_)) => return Err(Failure::usage("--explain is printed as a table or as JSON")),
+        (Format::Table, explained) => {
+            printer.state(&answer) + &explained.map_or_else(String::new, |e| explain::people(&e))
+        }
     })?;
     Ok(answer.exit())
 }

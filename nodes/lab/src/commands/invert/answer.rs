@@ -1,11 +1,12 @@
 //! What the models say of one state.
 
 use super::columns::BadRow;
+use super::explain::Explained;
 use super::state::State;
 use super::way::Way;
 use crate::failure::worse;
 use crate::results::inference::Inference;
-use emt::{Calibration, EmtError, Estimate, Quantity};
+use emt::{EmtError, Estimate, Quantity};
 use node_kit::Exit;
 use serde::Serialize;
 
@@ -27,13 +28,14 @@ pub(super) struct View<'a> {
     line: Option<u64>,
     inputs: Option<&'a State>,
     results: Vec<Inference>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    explained: Option<Vec<Explained>>,
 }
 
 impl Answer {
     /// What each way makes of a state.
-    pub(super) fn of(state: State, line: Option<u64>, ways: &[Way], calibration: &Calibration) -> Self {
-        let infer = |way: &Way| way.model.infer(&state.observation(way, calibration)?, calibration);
-        let outcomes = ways.iter().map(infer).collect();
+    pub(super) fn of(state: State, line: Option<u64>, ways: &[Way]) -> Self {
+        let outcomes = ways.iter().map(|way| state.infer(way)).collect();
         Self { line, state: Ok(state), outcomes }
     }
 
@@ -50,13 +52,18 @@ impl Answer {
     }
 
     /// With the stable keys of results, one for each way.
-    pub(super) fn inferences(&self, ways: &[Way], calibration: &Calibration) -> Vec<Inference> {
-        let name = calibration.name();
-        let one = |(i, way): (usize, &Way)| match (&self.state, self.outcomes.get(i)) {
+    pub(super) fn inferences(&self, ways: &[Way]) -> Vec<Inference> {
+        let one = |(i, way): (usize, &Way)| self.inference(way, self.outcomes.get(i));
+        ways.iter().enumerate().map(one).collect()
+    }
+
+    fn inference(&self, way: &Way, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
+        let name = way.calibration.name();
+        match (&self.state, outcome) {
             (Ok(_), Some(outcome)) => {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
                 match outcome {
-                    Ok(estimate) => inference.warnings.extend(undetermined(estimate, way, calibration)),
+                    Ok(estimate) => inference.warnings.extend(undetermined(estimate, way)),
                     Err(error) if error.is_of_input() => inference.status = "undetermined",
                     Err(_) => {}
                 }
@@ -64,16 +71,12 @@ impl Answer {
             }
             (Err(row), _) => Inference::failed(way.model.name(), name, "failed", vec![row.fault.clone()]),
             (Ok(_), None) => Inference::failed(way.model.name(), name, "failed", Vec::new()),
-        };
-        ways.iter().enumerate().map(one).collect()
+        }
     }
 
-    pub(super) fn view(&self, ways: &[Way], calibration: &Calibration) -> View<'_> {
-        View {
-            line: self.line,
-            inputs: self.state.as_ref().ok(),
-            results: self.inferences(ways, calibration),
-        }
+    pub(super) fn view(&self, ways: &[Way], explained: Option<Vec<Explained>>) -> View<'_> {
+        let inputs = self.state.as_ref().ok();
+        View { line: self.line, inputs, results: self.inferences(ways), explained }
     }
 
     /// How a command ends that had nothing but this to say. Numbers that are no moduli are wrong usage, moduli that no
@@ -113,6 +116,18 @@ impl Answer {
         faults.into_iter().map(|(text, models)| format!("{}: {text}", models.join(", "))).collect()
     }
 
+    /// The same as lines for stderr, each with the number of the row.
+    pub(super) fn complaint(&self, ways: &[Way]) -> String {
+        let line = self.line.map_or_else(String::new, |l| format!("line {l}"));
+        let place = match self.sample() {
+            Some(sample) => format!("{line} ({sample})"),
+            None => line,
+        };
+        let lines: Vec<String> =
+            self.faults(ways).iter().map(|f| format!("grainlab: {place}: {f}")).collect();
+        lines.join("\n")
+    }
+
     fn errors(&self) -> impl Iterator<Item = &EmtError> {
         self.outcomes.iter().filter_map(|o| o.as_ref().err())
     }
@@ -124,8 +139,8 @@ fn is_lacking(error: &EmtError) -> bool {
 }
 
 /// What the model speaks of and the data do not determine.
-fn undetermined(estimate: &Estimate, way: &Way, calibration: &Calibration) -> Option<String> {
-    let domain = way.model.domain(calibration);
+fn undetermined(estimate: &Estimate, way: &Way) -> Option<String> {
+    let domain = way.model.domain(&way.calibration);
     let of_model = |q: &Quantity| domain.structure[*q as usize].is_some();
     let unknown = |q: &Quantity| estimate.structure.get(*q).is_none();
     let names: Vec<&str> =

@@ -1,16 +1,15 @@
 //! Answers as text: JSON, CSV, a table for people.
 
 use super::answer::Answer;
+use super::explain::Explained;
 use super::way::Way;
 use crate::failure::Failure;
 use crate::output::{Table, exact, json};
 use crate::results::inference::{self, Inference};
-use emt::Calibration;
 
 /// What turns answers into text.
 pub(super) struct Printer<'a> {
     pub(super) ways: &'a [Way],
-    pub(super) calibration: &'a Calibration,
 }
 
 impl Printer<'_> {
@@ -26,7 +25,7 @@ impl Printer<'_> {
         let pressure = exact(answer.state.as_ref().ok().map(|s| s.pressure.value));
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
         let mut text = String::new();
-        for result in answer.inferences(self.ways, self.calibration) {
+        for result in answer.inferences(self.ways) {
             let without = matches!(result.status, "failed" | "undetermined");
             let reason = if without { result.warnings.join("; ") } else { String::new() };
             let cells = [sample.to_owned(), pressure.clone()].into_iter().chain(result.exact_cells());
@@ -36,19 +35,19 @@ impl Printer<'_> {
     }
 
     /// An object, for one state.
-    pub(super) fn json(&self, answer: &Answer) -> Result<String, Failure> {
-        json(&answer.view(self.ways, self.calibration))
+    pub(super) fn json(&self, answer: &Answer, explained: Option<Vec<Explained>>) -> Result<String, Failure> {
+        json(&answer.view(self.ways, explained))
     }
 
     /// An element of an array, without what separates it from the next.
     pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
-        let object = self.json(answer)?;
+        let object = self.json(answer, None)?;
         Ok(object.lines().map(|line| format!("\n  {line}")).collect())
     }
 
     /// One state, warnings below.
     pub(super) fn state(&self, answer: &Answer) -> String {
-        inference::table(&answer.inferences(self.ways, self.calibration))
+        inference::table(&answer.inferences(self.ways))
     }
 
     /// Many states, warnings below.
@@ -59,7 +58,7 @@ impl Printer<'_> {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
             let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
             let pressure = answer.state.as_ref().ok().map(|s| format!("{}", s.pressure.value / 1e3));
-            let results = answer.inferences(self.ways, self.calibration);
+            let results = answer.inferences(self.ways);
             for result in &results {
                 let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned())];
                 t.row(label.into_iter().chain(result.cells()));

@@ -2,8 +2,8 @@
 
 use super::way::Way;
 use emt::{
-    Calibration, Conditions, EmtError, Gamma, GammaSource, Measured, Moduli, ModuliCovariance, Modulus,
-    Observation, Structure,
+    Calibration, Conditions, EmtError, Estimate, Gamma, GammaSource, Measured, Moduli, ModuliCovariance,
+    Modulus, Observation, Structure,
 };
 use grains::{Anisotropy, Material};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -63,12 +63,16 @@ impl State {
         }
     }
 
-    /// As a model takes it, in the way asked for.
-    pub(super) fn observation(&self, way: &Way, calibration: &Calibration) -> Result<Observation, EmtError> {
+    /// What a model says of it, in the way asked for.
+    pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
+        way.model.infer(&self.observation(way)?, &way.calibration)
+    }
+
+    fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
         let mut conditions = Conditions::at(self.pressure.value);
         conditions.pressure = self.pressure;
         conditions.solid_fraction = self.phi;
-        conditions.material = self.material(calibration);
+        conditions.material = self.material(&way.calibration);
         if way.model.uses_gamma() {
             let model = way.model.name();
             conditions.gamma =
@@ -78,8 +82,26 @@ impl State {
         if let Some(theta) = self.theta_printed.filter(|_| way.model.name() == "ratio-as-printed") {
             moduli = moduli.with(Modulus::Theta, theta);
         }
+        let covariance = self.covariance(&moduli);
+        if self.is_stiffness() && covariance.is_some() && self.sigma[Modulus::Theta as usize].is_none() {
+            // Five moduli were measured: the error of Θ follows from theirs.
+            moduli = moduli.without(Modulus::Theta);
+        }
         let observation = Observation::new(moduli, conditions);
-        Ok(Observation { asymmetry: self.asymmetry, covariance: self.covariance(&moduli), ..observation })
+        Ok(Observation { asymmetry: self.asymmetry, covariance, ..observation })
+    }
+
+    fn is_stiffness(&self) -> bool {
+        self.asymmetry.is_some()
+    }
+
+    /// Where the γ/Δ comes from that a model is fed with, or would be.
+    pub(super) fn gamma_source(&self, way: &Way) -> &'static str {
+        match self.gamma(way.gamma) {
+            _ if !way.model.uses_gamma() => "none",
+            Ok(gamma) => gamma.source.name(),
+            Err(_) => way.gamma.map_or("none", GammaSource::name),
+        }
     }
 
     /// Independent errors; what has none stated is exact if others have. `None` if no error is known at all.

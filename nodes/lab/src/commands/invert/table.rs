@@ -51,7 +51,7 @@ impl Tally {
 /// Inverts every row.
 pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Result<Exit, Failure> {
     let answer = |number, row: Result<Row, _>| match row {
-        Ok(row) => Answer::of(row.state, Some(number), printer.ways, printer.calibration),
+        Ok(row) => Answer::of(row.state, Some(number), printer.ways),
         Err(bad) => Answer::of_bad_row(bad, number),
     };
     let mut tally = Tally::new();
@@ -66,7 +66,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Json => printer.json_element(&answer)?,
                 Format::Table => String::new(),
             };
-            let (exit, complaint) = (answer.exit(), complaint(&answer, printer));
+            let (exit, complaint) = (answer.exit(), answer.complaint(printer.ways));
             // An answer is a hundred times its text: only a table for people waits for the rest.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;
@@ -93,14 +93,6 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
     let ended = tally.end(rows.name());
     out.end()?;
     ended
-}
-
-fn complaint(answer: &Answer, printer: &Printer<'_>) -> String {
-    let faults = answer.faults(printer.ways);
-    let line = answer.line.unwrap_or_default();
-    let name = answer.sample().map_or_else(String::new, |s| format!(" ({s})"));
-    let lines: Vec<String> = faults.iter().map(|f| format!("grainlab: line {line}{name}: {f}")).collect();
-    lines.join("\n")
 }
 
 /// Texts that, one after the other, are one CSV or one JSON array, on stdout.

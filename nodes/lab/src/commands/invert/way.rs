@@ -1,7 +1,9 @@
-//! The ways in which each state is inverted: a model, and the γ/Δ that it is fed with.
+//! The ways in which each state is inverted: a model, its constants, and the γ/Δ that it is fed with.
 
+use super::calibrations::Choice;
 use crate::failure::Failure;
-use emt::{GammaSource, Model};
+use emt::{Calibration, GammaSource, Model};
+use std::sync::Arc;
 
 /// Which γ/Δ feeds the models that use one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -21,19 +23,24 @@ pub(super) enum GammaChoice {
 }
 
 /// One way to an estimate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) model: &'static dyn Model,
+    pub(super) calibration: Arc<Calibration>,
     /// `None` takes what is given, else what the paper's models take of what is measured.
     pub(super) gamma: Option<GammaSource>,
 }
 
-/// Every model, or the one of this name, with every γ/Δ asked for.
-pub(super) fn ways(model: Option<&str>, gamma: Option<GammaChoice>) -> Result<Vec<Way>, Failure> {
-    let models = match model {
-        None => emt::models().to_vec(),
-        Some(name) => vec![emt::model(name).ok_or_else(|| no_model(name))?],
-    };
+/// Every model, or those of these names, with every calibration and every γ/Δ asked for.
+pub(super) fn ways(
+    models: &[String],
+    calibrations: &[String],
+    gamma: Option<GammaChoice>,
+) -> Result<Vec<Way>, Failure> {
+    let named = models.iter().map(|name| emt::model(name).ok_or_else(|| no_model(name)));
+    let named = named.collect::<Result<Vec<_>, _>>()?;
+    let models = if named.is_empty() { emt::models().to_vec() } else { named };
+    let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
     let gammas: &[Option<GammaSource>] = match gamma {
         None => &[None],
         Some(GammaChoice::Given) => &[Some(GammaSource::Given)],
@@ -48,11 +55,16 @@ pub(super) fn ways(model: Option<&str>, gamma: Option<GammaChoice>) -> Result<Ve
             Some(GammaSource::Zero),
         ],
     };
-    let of = |model: &'static dyn Model| {
+    let mut ways = Vec::new();
+    for model in models {
         let gammas = if model.uses_gamma() { gammas } else { &[None] };
-        gammas.iter().map(move |gamma| Way { model, gamma: *gamma })
-    };
-    Ok(models.into_iter().flat_map(of).collect())
+        for choice in &choices {
+            let calibration = choice.of(model);
+            let with = |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma };
+            ways.extend(gammas.iter().map(with));
+        }
+    }
+    Ok(ways)
 }
 
 fn no_model(name: &str) -> Failure {
