@@ -58,6 +58,19 @@ impl Table {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
+    /// The same with these columns alone, in this order; an unknown one comes back.
+    pub(crate) fn select(&self, columns: &[String]) -> Result<Self, String> {
+        let header = self.rows.first().map_or(&[][..], Vec::as_slice);
+        let at = |name: &String| header.iter().position(|h| h == name).ok_or_else(|| name.clone());
+        let chosen = columns.iter().map(at).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { rows: self.rows.iter().map(|r| chosen.iter().map(|c| r[*c].clone()).collect()).collect() })
+    }
+
+    /// Names of the columns.
+    pub(crate) fn header(&self) -> &[String] {
+        self.rows.first().map_or(&[], Vec::as_slice)
+    }
+
     /// Aligned columns, two spaces apart.
     pub(crate) fn text(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -111,6 +124,15 @@ mod tests {
         let mut t = Table::new(["a", "b"]);
         t.row(["x,y", "say \"no\""]);
         assert_eq!(t.csv(), "a,b\n\"x,y\",\"say \"\"no\"\"\"\n");
+    }
+
+    #[test]
+    fn columns_come_in_the_order_asked_for_and_an_unknown_one_is_named() {
+        let mut t = Table::new(["a", "b", "c"]);
+        t.row(["1", "2", "3"]);
+        let of = |names: &[&str]| t.select(&names.iter().map(ToString::to_string).collect::<Vec<_>>());
+        assert_eq!(of(&["c", "a"]).unwrap().csv(), "c,a\n3,1\n");
+        assert_eq!(of(&["c", "d"]).unwrap_err(), "d");
     }
 
     #[test]

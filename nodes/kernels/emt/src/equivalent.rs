@@ -72,7 +72,7 @@ impl Factors {
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
         let k = k_hat * if power == 1.0 { denser } else { denser.powf(1.0 / power) };
-        warnings.extend(outside_fit(k_hat, calibration));
+        warnings.extend(outside_fit(Quantity::KHat, k_hat, calibration));
         let structure = structure.with(isotropic.abscissa, k).with(Quantity::KHat, k_hat);
         Ok(Solution { warnings, ..Solution::exact(structure) })
     }

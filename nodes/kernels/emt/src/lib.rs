@@ -1,8 +1,9 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
 //! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), and inverts them in
-//! closed form, or by a root that its bracket makes unique, with first-order error propagation. SI at every interface. The axis of anisotropy is e3; ε and
-//! g = γ/Δ are positive when there is more (of contacts, of extension) along it.
+//! closed form, or by a root that its bracket makes unique, with errors propagated to first order or by sampling. SI at
+//! every interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there is more (of contacts, of
+//! extension) along it.
 //!
 //! - [`structure`], [`moduli`], [`conditions`]: what is inferred, what it is inferred from, and at what state
 //! - [`observation`], [`estimate`], [`warning`], [`error`]: what goes into an inversion and what comes out
@@ -13,7 +14,9 @@
 //! - [`effective`]: the plain theory, with the pressure closing the strain
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
+//! - [`directional`]: each modulus by a coordination number of its own
 //! - [`invariants`], [`relaxed`]: our own model, and the parts of a stiffness that it rests on
+//! - [`sampling`]: the distribution of what is inferred, where errors are too large for slopes
 //!
 //! ```
 //! use emt::{Calibration, Gamma, Observation, Quantity};
@@ -28,6 +31,7 @@
 
 pub mod calibration;
 pub mod conditions;
+pub mod directional;
 pub mod domain;
 pub mod effective;
 mod equivalent;
@@ -45,6 +49,7 @@ mod propagation;
 pub mod ratio;
 pub mod relaxed;
 mod root;
+pub mod sampling;
 pub mod sqrt;
 pub mod structure;
 pub mod warning;
@@ -61,5 +66,6 @@ pub use model::{Misfit, Model, Slopes, Solution, model, models};
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
 pub use observation::{INPUT_NAMES, INPUTS, Observation};
+pub use sampling::{Samples, sample};
 pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;

@@ -2,6 +2,7 @@
 
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
+use crate::directional::Directional;
 use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::estimate::{Estimate, assemble};
@@ -106,6 +107,7 @@ pub fn models() -> &'static [&'static dyn Model] {
         &ratio::VOLUME,
         &full::LINEAR,
         &sqrt::SQRT,
+        &Directional,
         &Relaxed,
     ]
 }

@@ -79,16 +79,7 @@ impl Observation {
 
     /// The same with the modulus that follows from the others, after a look at every number.
     pub fn checked(&self) -> Result<Self, EmtError> {
-        for (modulus, value) in self.moduli.known() {
-            if !value.is_finite() {
-                return Err(EmtError::NotFinite { quantity: modulus.name(), value });
-            }
-            // C13 alone may be negative in a stable medium.
-            if value <= 0.0 && modulus != Modulus::C13 {
-                return Err(EmtError::NotPositive { quantity: modulus.name(), value });
-            }
-        }
-        self.conditions.check()?;
+        self.check_values()?;
         if let Some(covariance) = &self.covariance {
             check_covariance(covariance)?;
         }
@@ -102,6 +93,20 @@ impl Observation {
             }
         }
         Ok(Self { moduli, covariance, ..self.clone() })
+    }
+
+    /// The first number that is none, the covariance apart.
+    pub(crate) fn check_values(&self) -> Result<(), EmtError> {
+        for (modulus, value) in self.moduli.known() {
+            if !value.is_finite() {
+                return Err(EmtError::NotFinite { quantity: modulus.name(), value });
+            }
+            // C13 alone may be negative in a stable medium.
+            if value <= 0.0 && modulus != Modulus::C13 {
+                return Err(EmtError::NotPositive { quantity: modulus.name(), value });
+            }
+        }
+        self.conditions.check()
     }
 
     /// Covariance of the relative errors of the inputs; `None` if that of the moduli is not known.

@@ -118,9 +118,9 @@ pub(crate) fn ratio_warnings(ratio: f64) -> Vec<Warning> {
     if usual { Vec::new() } else { vec![Warning::RatioUnusual { ratio }] }
 }
 
-/// What to say of a k̂ that no packing of the calibration had.
-pub(crate) fn outside_fit(k_hat: f64, calibration: &Calibration) -> Option<Warning> {
+/// What to say of a coordination number in Eqs. 21 and 22 that no packing of the calibration had.
+pub(crate) fn outside_fit(quantity: Quantity, value: f64, calibration: &Calibration) -> Option<Warning> {
     let range = calibration.isotropic().fitted;
-    let outside = !(range[0]..=range[1]).contains(&k_hat);
-    outside.then_some(Warning::CoordinationOutsideFit { quantity: Quantity::KHat, value: k_hat, range })
+    let outside = !(range[0]..=range[1]).contains(&value);
+    outside.then_some(Warning::CoordinationOutsideFit { quantity, value, range })
 }

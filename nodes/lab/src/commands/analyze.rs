@@ -110,6 +110,9 @@ pub(crate) struct Args {
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    /// Columns of --format csv, in this order [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    columns: Vec<String>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -140,7 +143,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let (options, measure) = (options(args)?, Measure { settings: settings(args)?, scan: scan(args)? });
     let recorder = args.record.as_deref().map(record::Recorder::create).transpose()?;
-    let sink = Sink::new(args.format, recorder);
+    let sink = Sink::new(args.format, args.columns.clone(), recorder)?;
     if args.live {
         live::run(&args.topic, args.count, &measure, sink)
     } else {

@@ -26,6 +26,8 @@ pub(crate) struct State {
     /// L, Voigt order, tensor components.
     pub(crate) fabric: [f64; 6],
     pub(crate) eps: f64,
+    /// The same with every contact weighted by its normal stiffness.
+    pub(crate) eps_stiffness: Option<f64>,
     pub(crate) axis: [f64; 3],
     pub(crate) g: Ratios,
     /// How the stiffness was found: frozen_network, prestressed_network, probe, affine or acoustic.
@@ -39,6 +41,12 @@ pub(crate) struct State {
     pub(crate) g12_pa: Option<f64>,
     pub(crate) g13_pa: Option<f64>,
     pub(crate) theta_pa: Option<f64>,
+    /// C11, C33 and C13 of the projection on media isotropic about e3.
+    pub(crate) ti_c11_pa: Option<f64>,
+    pub(crate) ti_c33_pa: Option<f64>,
+    pub(crate) ti_c13_pa: Option<f64>,
+    pub(crate) grain_shear_modulus_pa: f64,
+    pub(crate) poisson: f64,
     pub(crate) theta_reuss_pa: Option<f64>,
     /// Lower bound of theta_reuss_pa by the forces present.
     pub(crate) theta_bound_pa: Option<f64>,
@@ -75,11 +83,21 @@ pub(crate) fn three_moduli(c: &Stiffness) -> [f64; 3] {
     [t.g12, t.g13, c.bulk_voigt()]
 }
 
+/// ε about e3 of the contacts weighted by their normal stiffness and squared branch: the deviator of C_ijkk of the affine
+/// stiffness, where tangential springs cancel. `None` without contacts.
+fn eps_stiffness(affine: &Stiffness) -> Option<f64> {
+    let row = |i: usize| (0..3).map(|j| affine.0[(i, j)]).sum::<f64>();
+    let [xx, yy, zz] = [row(0), row(1), row(2)];
+    let trace = xx + yy + zz;
+    (trace > 0.0).then(|| 2.5 * (zz - 0.5 * (xx + yy)) / trace)
+}
+
 impl State {
     /// Puts together what was measured.
     pub(crate) fn new(source: String, packing: &Packing, fabric: &Fabric, moduli: Option<&Moduli>) -> Self {
         let stress = grains::stress::stress(packing).tensor;
         let three = moduli.map(|m| three_moduli(&m.stiffness));
+        let projected = moduli.map(|m| m.stiffness.transverse_isotropy());
         let rows = |c: &Stiffness| std::array::from_fn(|i| std::array::from_fn(|j| c.0[(i, j)]));
         Self {
             source,
@@ -94,6 +112,7 @@ impl State {
             contacts: fabric.contacts,
             fabric: fabric.contact_fabric.voigt(),
             eps: fabric.eps,
+            eps_stiffness: moduli.and_then(|m| eps_stiffness(&m.affine)),
             axis: fabric.axis.into(),
             g: Ratios::from(&fabric.anisotropy),
             method: moduli.map(|m| ModuliMethod::from(m.method).word()),
@@ -104,6 +123,11 @@ impl State {
             g12_pa: three.map(|m| m[0]),
             g13_pa: three.map(|m| m[1]),
             theta_pa: three.map(|m| m[2]),
+            ti_c11_pa: projected.map(|t| t.c11),
+            ti_c33_pa: projected.map(|t| t.c33),
+            ti_c13_pa: projected.map(|t| t.c13),
+            grain_shear_modulus_pa: packing.material.shear_modulus,
+            poisson: packing.material.poisson_ratio,
             theta_reuss_pa: moduli.and_then(|m| m.stiffness.bulk_reuss()),
             theta_bound_pa: moduli.and_then(|m| m.reuss_bound),
             residual: moduli.map(|m| m.residual),
@@ -138,6 +162,11 @@ const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// States as CSV, one a line, at full precision.
 pub(crate) fn csv(states: &[State]) -> String {
+    table(states).csv()
+}
+
+/// States as a table, one a row, at full precision.
+pub(crate) fn table(states: &[State]) -> Table {
     let of = |prefix: &'static str| VOIGT.iter().map(move |c| format!("{prefix}_{c}"));
     let entries =
         |prefix: &'static str| (0..36).map(move |n| format!("{prefix}{}{}_pa", n / 6 + 1, n % 6 + 1));
@@ -156,6 +185,8 @@ pub(crate) fn csv(states: &[State]) -> String {
     header.push("theta_bound_pa".to_owned());
     header.extend(entries("stddev_c"));
     header.extend(entries("mean_spin_c"));
+    header.extend(["eps_stiffness", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"].map(String::from));
+    header.extend(["grain_shear_modulus_pa", "poisson"].map(String::from));
     let mut t = Table::new(header);
     for s in states {
         let number = |v: f64| exact(Some(v));
@@ -178,9 +209,11 @@ pub(crate) fn csv(states: &[State]) -> String {
         for matrix in [&s.stiffness_stddev_pa, &s.stiffness_mean_spin_pa] {
             cells.extend((0..36).map(|n| exact(matrix.as_ref().map(|m| m[n / 6][n % 6]))));
         }
+        cells.extend([s.eps_stiffness, s.ti_c11_pa, s.ti_c33_pa, s.ti_c13_pa].map(exact));
+        cells.extend([s.grain_shear_modulus_pa, s.poisson].map(number));
         t.row(cells);
     }
-    t.csv()
+    t
 }
 
 #[cfg(test)]
@@ -242,6 +275,16 @@ mod tests {
             assert!(s["structure"][key].is_null(), "{key}");
         }
         assert!(s["structure"]["orientation"]["eps"].is_null());
+    }
+
+    /// Equal springs along the edges of a cube are isotropic in their second moments.
+    #[test]
+    fn contacts_of_equal_stiffness_weigh_alike() {
+        let s = state(&lattice(true));
+        assert!(s.eps.abs() < 1e-12 && s.eps_stiffness.unwrap().abs() < 1e-12);
+        assert!(state(&lattice(false)).eps_stiffness.is_none());
+        let t = s.ti_c11_pa.unwrap();
+        assert!((t / s.ti_c33_pa.unwrap() - 1.0).abs() < 0.5 && s.ti_c13_pa.unwrap().abs() < t);
     }
 
     /// The columns that were there first stay first, and every row is as long as the header.

@@ -161,14 +161,16 @@ fn network(
         grains: all().map(|s| s.grains).min().unwrap_or(0),
         ..fitted(&rows.iter().collect::<Vec<_>>())?
     };
-    // How the laws do on a preparation that they have not seen.
+    // How the laws do on a preparation that they have not seen, wherever the others reach.
     let mut squares = [[0.0; SCATTERED]; SCATTERED];
     for preparation in preparations {
         let (left_out, kept): (Vec<_>, Vec<_>) =
             rows.iter().partition(|row| row.sample.preparation == preparation);
         let others = Network { solid_fraction, pressure: REFERENCE_PRESSURE, ..fitted(&kept)? };
+        let (low, high) = bounds(kept.iter().map(|row| row.sample.z));
         for row in left_out {
-            let residual = residual(&others, row);
+            let reached = (low..=high).contains(&row.sample.z);
+            let residual = residual(if reached { &others } else { &ranges }, row);
             for (i, a) in residual.iter().enumerate() {
                 for (j, b) in residual.iter().enumerate() {
                     squares[i][j] += a * b / rows.len() as f64;
@@ -267,14 +269,16 @@ fn discrepancies(samples: &[&Sample], calibration: &Calibration) -> Vec<Discrepa
     let mut learned = Vec::new();
     for abscissa in [Quantity::K, Quantity::Z] {
         let Some(calibration) = calibration.with_abscissa(abscissa) else { continue };
-        for model in models().iter().filter(|m| m.uses_gamma()) {
-            for gamma in SOURCES {
-                let mean_square = mean_square(*model, samples, gamma, abscissa, &calibration);
+        for model in models() {
+            let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
+            for source in sources {
+                let mean_square = mean_square(*model, samples, *source, abscissa, &calibration);
+                let gamma = model.uses_gamma().then_some(*source);
                 let model = model.name().to_owned();
                 learned.extend(mean_square.map(|mean_square| Discrepancy {
                     model,
                     abscissa,
-                    gamma: Some(gamma),
+                    gamma,
                     mean_square,
                 }));
             }
@@ -292,7 +296,11 @@ fn mean_square(
     calibration: &Calibration,
 ) -> Option<[[f64; 2]; 2]> {
     let error = |s: &Sample| -> Result<Option<[f64; 2]>, EmtError> {
-        let found = model.solve(&s.observation(gamma).checked()?, calibration)?.structure;
+        let solution = model.solve(&s.observation(gamma).checked()?, calibration)?;
+        if solution.discrepancy.is_some() {
+            return Ok(None);
+        }
+        let found = solution.structure;
         let truth = if abscissa == Quantity::Z { s.z } else { s.k };
         Ok(found.get(abscissa).zip(found.eps).map(|(n, eps)| [n - truth, eps - s.eps]))
     };

@@ -27,6 +27,11 @@ impl Random {
         (low + (high - low) * unit).min(high)
     }
 
+    /// Of mean 0 and variance 1: a sum of twelve uniform numbers, near enough to normal.
+    pub(crate) fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.within([0.0, 1.0])).sum::<f64>() - 6.0
+    }
+
     /// Uniform in a range, and one time in eight one of its ends.
     fn with_ends(&mut self, range: [f64; 2]) -> f64 {
         match self.0.next_u64() >> 60 {

@@ -2,10 +2,14 @@
 
 mod cases;
 mod faults;
+mod forward;
+mod hard;
 mod inversion;
 mod propagation;
 mod quadrature;
 mod recovery;
+mod sampling;
+mod sphere;
 mod table3;
 
 /// The models of the paper, its slips and its approximations: all that read G12 and G13 and are fed with γ/Δ.

@@ -40,9 +40,20 @@ pub(super) struct Sink {
 }
 
 impl Sink {
-    pub(super) fn new(format: Format, recorder: Option<Recorder>) -> Self {
-        Self {
-            printer: Printer { format, printed: 0 },
+    /// `columns` of CSV; none for all.
+    pub(super) fn new(
+        format: Format,
+        columns: Vec<String>,
+        recorder: Option<Recorder>,
+    ) -> Result<Self, Failure> {
+        let printer = Printer { format, columns, printed: 0 };
+        if !printer.columns.is_empty() && format != Format::Csv {
+            return Err(Failure::usage("--columns is for --format csv"));
+        }
+        // An unknown column is better refused before the work than after it.
+        printer.csv(&[])?;
+        Ok(Self {
+            printer,
             recorder,
             next: (0, 0),
             waiting: BTreeMap::new(),
@@ -51,7 +62,7 @@ impl Sink {
             without: 0,
             measured: 0,
             bar: Bar::hidden(),
-        }
+        })
     }
 
     /// Takes what was found of one packing.
@@ -129,7 +140,7 @@ impl Sink {
             self.complain(ending);
         }
         self.bar.clear();
-        print(&self.printer.end())?;
+        print(&self.printer.end()?)?;
         if let Some(recorder) = self.recorder.take() {
             recorder.finish()?;
         }
@@ -144,6 +155,8 @@ impl Sink {
 /// Texts that, one after the other, are one table, one JSON array or one CSV.
 struct Printer {
     format: Format,
+    /// Of CSV; none for all.
+    columns: Vec<String>,
     printed: usize,
 }
 
@@ -154,7 +167,7 @@ impl Printer {
         Ok(match self.format {
             Format::Table => format!("{}, step {}\n{}", state.source, state.step, state_text::text(state)),
             Format::Csv => {
-                let text = state::csv(std::slice::from_ref(state));
+                let text = self.csv(std::slice::from_ref(state))?;
                 match text.split_once('\n') {
                     Some((_, row)) if !first => row.to_owned(),
                     _ => text,
@@ -173,13 +186,25 @@ impl Printer {
         })
     }
 
-    fn end(&self) -> String {
-        match (self.format, self.printed) {
+    fn end(&self) -> Result<String, Failure> {
+        Ok(match (self.format, self.printed) {
             (Format::Json, 0) => "[]\n".to_owned(),
             (Format::Json, _) => "\n]\n".to_owned(),
-            (Format::Csv, 0) => state::csv(&[]),
+            (Format::Csv, 0) => self.csv(&[])?,
             _ => String::new(),
+        })
+    }
+
+    fn csv(&self, states: &[State]) -> Result<String, Failure> {
+        let table = state::table(states);
+        if self.columns.is_empty() {
+            return Ok(table.csv());
         }
+        let unknown = |name| {
+            let known = table.header().join(", ");
+            Failure::usage(format!("--columns: there is no column {name:?}; there are: {known}"))
+        };
+        Ok(table.select(&self.columns).map_err(unknown)?.csv())
     }
 }
 
@@ -213,9 +238,9 @@ mod tests {
         for count in 0..4 {
             let states: Vec<State> = (0..count).map(state).collect();
             let text = |format| {
-                let mut printer = Printer { format, printed: 0 };
+                let mut printer = Printer { format, columns: Vec::new(), printed: 0 };
                 let parts: String = states.iter().map(|s| printer.next(s).unwrap()).collect();
-                parts + &printer.end()
+                parts + &printer.end().unwrap()
             };
             assert_eq!(text(Format::Json), crate::output::json(&states).unwrap());
             assert_eq!(text(Format::Csv), state::csv(&states));

@@ -1,0 +1,280 @@
+//! Cases at the edges of what the models can be asked, by name, with what comes out.
+
+use crate::cases::Random;
+use crate::{PAPER_MODELS, model};
+use emt::{
+    Calibration, Conditions, EmtError, Estimate, Gamma, Measured, Modulus, Observation, Quantity, Status,
+    Structure, Warning,
+};
+use grains::Material;
+
+/// G12, G13 = `ratio` G12 and Θ of a packing of some k̂ near 5.
+fn with_ratio(ratio: f64) -> Observation {
+    let mut o = Observation::paper(100.0e6, ratio * 100.0e6, 160.0e6, 100.0e3, Gamma::given(0.0));
+    o.conditions.solid_fraction = Some(Measured::exact(0.636));
+    o
+}
+
+fn infer(name: &str, o: &Observation) -> Result<Estimate, EmtError> {
+    model(name).infer(o, &Calibration::PAPER)
+}
+
+/// The estimate from what a structure is predicted to have.
+fn there_and_back(name: &str, structure: Structure, g: f64, nu: f64) -> Estimate {
+    let conditions = Conditions {
+        gamma: Gamma::given(g),
+        solid_fraction: Some(Measured::exact(0.636)),
+        material: Some(Material { poisson_ratio: nu, ..Material::GLASS }),
+        ..Conditions::at(100.0e3)
+    };
+    let moduli = model(name).predict(&structure, &conditions, &Calibration::PAPER).unwrap();
+    infer(name, &Observation::new(moduli, conditions)).unwrap()
+}
+
+fn eps_of(name: &str, ratio: f64) -> f64 {
+    infer(name, &with_ratio(ratio)).unwrap().structure.eps.unwrap()
+}
+
+/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not move.
+#[test]
+fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_eps() {
+    for name in PAPER_MODELS {
+        assert!((eps_of(name, 2.0 / 3.0) + 0.5).abs() < 1e-12, "{name}");
+        assert!(eps_of(name, 1.0).abs() < 1e-12, "{name}");
+        let apart = matches!(name, "full" | "sqrt");
+        let upper = eps_of(name, 1.5);
+        assert!(
+            if apart { (0.9..0.99).contains(&upper) } else { (upper - 1.0).abs() < 1e-12 },
+            "{name}: {upper}"
+        );
+    }
+}
+
+/// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: said to be outside, or, where ε is looked for in its range only, refused.
+#[test]
+fn a_shear_ratio_of_1_99_is_outside_every_range_and_said_to_be() {
+    for name in PAPER_MODELS {
+        // Beside the usual Θ the shear is too stiff for any k̂ there.
+        let mut o = with_ratio(1.99);
+        o.moduli = o.moduli.with(Modulus::Theta, 50.0 * 160.0e6);
+        match infer(name, &o) {
+            Ok(e) => {
+                assert!(
+                    (e.structure.eps.unwrap() - 35.0 * 0.99 / (21.0 - 7.0 * 0.99)).abs() < 1e-10,
+                    "{name}"
+                );
+                assert_eq!(e.status, Status::Extrapolated);
+                assert!(e.warnings.iter().any(|w| matches!(w, Warning::EpsOutOfRange { .. })));
+                assert!(e.warnings.iter().any(|w| matches!(w, Warning::RatioUnusual { .. })));
+            }
+            Err(e) => {
+                assert_eq!(e, EmtError::NoAnisotropy { ratio: 1.99, g: 0.0 });
+                assert!(matches!(name, "full" | "sqrt"), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_shear_ratio_of_2_or_more_is_refused_and_a_negative_one_is_no_modulus() {
+    for name in PAPER_MODELS {
+        for ratio in [2.0, 2.5, 1e9] {
+            assert_eq!(infer(name, &with_ratio(ratio)).unwrap_err(), EmtError::RatioOutOfRange { ratio });
+        }
+        let e = infer(name, &with_ratio(-1.0)).unwrap_err();
+        assert_eq!(e, EmtError::NotPositive { quantity: "G13", value: -100.0e6 });
+    }
+}
+
+/// s = (ρ/α)(G12/Θ) = 75/170 G12/Θ at r = 1; k̂ = (3.66 − s/2)/(1 − s).
+#[test]
+fn as_s_goes_to_1_k_hat_grows_without_bound_and_from_1_on_there_is_none() {
+    let with = |s: f64| {
+        let mut o = with_ratio(1.0);
+        o.moduli = o.moduli.with(Modulus::Theta, 75.0 / 170.0 * 100.0e6 / s);
+        o
+    };
+    for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
+        for s in [0.9, 0.999, 1.0 - 1e-9] {
+            let e = infer(name, &with(s)).unwrap();
+            let k_hat = (3.66 - 0.5 * s) / (1.0 - s);
+            assert!((e.structure.k_hat.unwrap() / k_hat - 1.0).abs() < 1e-6, "{name}");
+            assert!(e.warnings.iter().any(|w| matches!(w, Warning::CoordinationImpossible { .. })));
+            assert_eq!(e.status, Status::Extrapolated);
+        }
+        for s in [1.0 + 1e-9, 1.5, 100.0] {
+            let e = infer(name, &with(s)).unwrap_err();
+            assert!(matches!(e, EmtError::ShearTooStiff { .. }), "{name}: {e}");
+        }
+    }
+}
+
+#[test]
+fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
+    for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
+        for k_hat in [3.67, 4.79] {
+            let e = there_and_back(name, Structure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
+            assert!((e.structure.k_hat.unwrap() - k_hat).abs() < 1e-12, "{name}");
+            let below = Warning::CoordinationOutsideFit {
+                quantity: Quantity::KHat,
+                value: e.structure.k_hat.unwrap(),
+                range: [4.8, f64::INFINITY],
+            };
+            assert_eq!((e.warnings.as_slice(), e.status), (&[below][..], Status::Extrapolated));
+        }
+    }
+}
+
+/// Inside, everything comes back; outside, Eq. 10 goes on with a warning, and contacts of an overlap that is not linear
+/// are open.
+#[test]
+fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
+    let truth = Structure::paper(5.2, 5.4, 0.1);
+    for name in PAPER_MODELS {
+        for g in [0.25, -0.5] {
+            let found = there_and_back(name, truth, g, 0.2).structure;
+            assert!(
+                (found.eps.unwrap() - 0.1).abs() < 1e-12 && (found.k.unwrap() - 5.2).abs() < 1e-12,
+                "{name}"
+            );
+        }
+        for g in [0.26, -0.51] {
+            let mut o = with_ratio(1.02);
+            o.conditions.gamma = Gamma::given(g);
+            match infer(name, &o) {
+                Ok(e) => {
+                    assert!(name != "sqrt" && e.status == Status::Extrapolated);
+                    assert!(e.warnings.contains(&Warning::ContactsOpen { g }), "{name}");
+                }
+                Err(e) => {
+                    assert!(name == "sqrt" && matches!(e, EmtError::GammaOutOfRange { .. }), "{name}: {e}");
+                }
+            }
+            let e = model(name).predict(&truth, &o.conditions, &Calibration::PAPER).unwrap_err();
+            match e {
+                EmtError::OutsideDomain { quantity: "gamma/Delta", value, .. } => assert_eq!(value, g),
+                EmtError::GammaOutOfRange { g: value, .. } => assert_eq!((value, name), (g, "sqrt")),
+                other => panic!("{name}: {other}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn eps_of_minus_a_half_and_1_come_back() {
+    for name in PAPER_MODELS {
+        for (eps, g) in [-0.5, 1.0].into_iter().flat_map(|eps| [-0.5, 0.0, 0.25].map(|g| (eps, g))) {
+            let found = there_and_back(name, Structure::paper(5.2, 5.4, eps), g, 0.2).structure;
+            assert!((found.eps.unwrap() - eps).abs() < 1e-12, "{name} eps {eps} g {g}");
+        }
+    }
+}
+
+/// Towards ν = 1/2, where K_N/K_T is 3/2, nothing is singular; beyond there is no such material.
+#[test]
+fn nu_of_a_half_is_the_last_one() {
+    for name in PAPER_MODELS {
+        for nu in [0.5 - 1e-9, 0.5] {
+            let found = there_and_back(name, Structure::paper(5.2, 5.4, 0.1), -0.07, nu).structure;
+            assert!(
+                (found.eps.unwrap() - 0.1).abs() < 1e-12 && (found.k.unwrap() - 5.2).abs() < 1e-12,
+                "{name}"
+            );
+        }
+        let mut o = with_ratio(1.02);
+        o.conditions.material = Some(Material { poisson_ratio: 0.5 + 1e-9, ..Material::GLASS });
+        assert!(matches!(infer(name, &o), Err(EmtError::PoissonRatio { .. })), "{name}");
+    }
+}
+
+#[test]
+fn a_bulk_modulus_or_pressure_that_is_none_is_refused_by_name() {
+    for name in PAPER_MODELS {
+        for value in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut theta = with_ratio(1.02);
+            theta.moduli = theta.moduli.with(Modulus::Theta, value);
+            let mut pressure = with_ratio(1.02);
+            pressure.conditions.pressure.value = value;
+            for (o, named) in [(theta, "Theta"), (pressure, "pressure")] {
+                match infer(name, &o).unwrap_err() {
+                    EmtError::NotPositive { quantity, .. } => {
+                        assert_eq!((quantity, value.is_finite()), (named, true))
+                    }
+                    EmtError::NotFinite { quantity, .. } => {
+                        assert_eq!((quantity, value.is_finite()), (named, false))
+                    }
+                    other => panic!("{name}: {other}"),
+                }
+            }
+        }
+    }
+}
+
+/// Nothing of k or k̂ is guessed; ε is the same as with Θ.
+#[test]
+fn without_theta_eps_alone_is_determined() {
+    let all = with_ratio(1.02).with_relative_error(0.01);
+    let mut o = all.clone();
+    o.moduli = o.moduli.without(Modulus::Theta);
+    for name in PAPER_MODELS {
+        let (e, with_theta) = (infer(name, &o).unwrap(), infer(name, &all).unwrap());
+        assert_eq!(e.structure.eps, with_theta.structure.eps);
+        if name == "emt" {
+            // It has no use for Θ.
+            assert_eq!(e.structure, with_theta.structure);
+            continue;
+        }
+        assert_eq!(e.structure, Structure { eps: e.structure.eps, ..Structure::default() }, "{name}");
+        assert!(e.stddev(Quantity::Eps).unwrap() > 0.01);
+        assert!(e.stddev(Quantity::K).is_none() && e.information(Quantity::KHat).is_none());
+        assert_eq!(e.condition_number(), Some(1.0));
+    }
+}
+
+/// The one modulus that the others leave no choice for is as good as given.
+#[test]
+fn theta_follows_from_the_p_moduli() {
+    let mut o = with_ratio(1.02);
+    let theta = o.moduli.get(Modulus::Theta).unwrap();
+    let (c11, c13) = (230.0e6, 40.0e6);
+    let c33 = 9.0 * theta - 4.0 * c11 + 4.0 * 100.0e6 - 4.0 * c13;
+    o.moduli = o.moduli.without(Modulus::Theta);
+    for (modulus, value) in [(Modulus::C11, c11), (Modulus::C33, c33), (Modulus::C13, c13)] {
+        o.moduli = o.moduli.with(modulus, value);
+    }
+    for name in PAPER_MODELS {
+        let (found, expected) =
+            (infer(name, &o).unwrap().structure, infer(name, &with_ratio(1.02)).unwrap().structure);
+        for (found, expected) in found.values().into_iter().zip(expected.values()) {
+            assert!(found.zip(expected).is_none_or(|(f, e)| (f - e).abs() < 1e-12), "{name}");
+            assert_eq!(found.is_some(), expected.is_some());
+        }
+    }
+}
+
+/// 0 %, 1 %, 5 % and 30 % noise on each modulus: an error, or numbers with an uncertainty. Up to 5 % it is an estimate.
+#[test]
+fn noise_of_30_percent_gives_an_error_or_numbers_never_a_nan() {
+    let mut random = Random::new(30);
+    for relative in [0.0, 0.01, 0.05, 0.3] {
+        for _ in 0..2_000 {
+            let mut o = with_ratio(1.02).with_relative_error(relative);
+            for modulus in [Modulus::G12, Modulus::G13, Modulus::Theta] {
+                let noisy = o.moduli.get(modulus).unwrap() * (1.0 + relative * random.normal());
+                o.moduli = o.moduli.with(modulus, noisy);
+            }
+            for name in PAPER_MODELS {
+                match infer(name, &o) {
+                    Ok(e) => {
+                        let numbers = e.structure.values().into_iter().flatten();
+                        assert!(numbers.chain(e.covariance().unwrap().iter().copied()).all(f64::is_finite));
+                        assert!(Quantity::ALL.into_iter().all(|q| e.stddev(q).is_none_or(|s| s >= 0.0)));
+                    }
+                    Err(e) => {
+                        assert!(relative > 0.05 || matches!(e, EmtError::NoAnisotropy { .. }), "{name}: {e}")
+                    }
+                }
+            }
+        }
+    }
+}

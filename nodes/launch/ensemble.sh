@@ -1,0 +1,47 @@
+#!/bin/sh
+# Prepares packings of one kind, measures them, and prints one line of CSV for each: what `grainlab calibrate` learns from
+# and `grainlab invert --table FILE --judge` is judged on.
+#
+#   nodes/launch/ensemble.sh SCENE "MU2 ..." FIRST_SEED LAST_SEED [RUNS] > measurements.csv
+#
+# SCENE is a file whose lines `friction = ... # mu2` take each MU2 in turn, such as those in nodes/scenes/ensemble.
+# GRAINLAB names the binary (default: grainlab on the PATH). Runs land in RUNS (default: recordings/runs); a run that is
+# there already, under the same scene, mu2 and seed, is measured and not repeated, so an interrupted ensemble goes on.
+set -eu
+grainlab=${GRAINLAB:-grainlab}
+[ $# -ge 4 ] || { sed -n '5p' "$0" | cut -c 5- >&2; exit 2; }
+scene=$1 frictions=$2 first=$3 last=$4 runs=${5:-recordings/runs}
+preparation=$(basename "$scene" .toml)
+columns=grains,phi,pressure_pa,k,z,eps,eps_stiffness,g_total,g_elastic,g_contact
+columns=$columns,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,grain_shear_modulus_pa,poisson
+
+# The first run of this name that came to its end; nothing if there is none.
+finished() {
+    for summary in "$runs/$1"-*/summary.json; do
+        if [ -f "$summary" ]; then
+            dirname "$summary"
+            return
+        fi
+    done
+}
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+header=preparation,mu2,seed,$columns
+for mu2 in $frictions; do
+    # A name has no point: 0.05 becomes 005.
+    name=$preparation-$(printf %s "$mu2" | tr -d .)
+    sed "s/^friction = .* # mu2/friction = $mu2/; s/^name = .*/name = \"$name\"/" "$scene" > "$work/$name.toml"
+    seed=$first
+    while [ "$seed" -le "$last" ]; do
+        run=$(finished "$name-$seed")
+        if [ -z "$run" ]; then
+            "$grainlab" launch --scene "$work/$name.toml" --seed "$seed" --out "$runs" > /dev/null
+            run=$(finished "$name-$seed")
+        fi
+        "$grainlab" analyze "$run" --format csv --columns "$columns" > "$work/run.csv"
+        [ -z "$header" ] || { echo "$header"; header=; }
+        sed "1d; s/^/$preparation,$mu2,$seed,/" "$work/run.csv"
+        seed=$((seed + 1))
+    done
+done
