@@ -3,7 +3,7 @@
 //! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
 //! - [`lines`], [`cells`], [`columns`], [`rows`]: a table as it comes, each row a state
 //! - [`table`], [`print`]: answers in order, as text
-//! - [`explain`]: which datum decides which unknown
+//! - [`explain`]: which datum decides which unknown; [`sampled`]: the posterior by sampling
 //! - [`judge`]: answers against the truth of a table
 //! - [`calibrations`]: by name
 
@@ -16,13 +16,14 @@ mod judge;
 mod lines;
 mod print;
 mod rows;
+mod sampled;
 mod state;
 mod table;
 mod way;
 
 use crate::failure::Failure;
 use crate::output::{Format, print, say};
-use answer::Answer;
+use answer::{Answer, More};
 use columns::Defaults;
 use emt::{Measured, Modulus};
 use node_kit::Exit;
@@ -47,6 +48,7 @@ columns are ignored:
   p_kpa, p_pa or pressure_pa           confining pressure, the one that is needed
   g12_pa g13_pa theta_pa c11_pa c33_pa c13_pa   moduli about e3 (c66_pa and c44_pa are other names of g12_pa and g13_pa)
   c11_pa c12_pa ... c66_pa             all 36, or one half: a stiffness, projected on its medium isotropic about e3
+  ti_c11_pa ti_c33_pa ti_c13_pa        the same moduli as grainlab analyze has projected them
   g12_sigma_pa ... c13_sigma_pa        standard deviations; also pressure_sigma_pa, gamma_over_delta_sigma, phi_sigma
   gamma_over_delta                     ratio of deviatoric to volumetric strain; as grainlab analyze measures it: g_total,
                                        g_elastic, g_contact (see --gamma)
@@ -117,6 +119,13 @@ pub(crate) struct Args {
     /// Judge the rows with the same cells in these columns together; numbers that are not whole are the same to three digits
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
     by: Vec<String>,
+    /// Also sample the distribution of the estimates by this many draws of the data: for errors that are large, where those
+    /// of the other columns, linear in the errors, are not to be trusted; 20000 is plenty
+    #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..))]
+    samples: Option<u32>,
+    /// Seed of the samples: the same one gives the same numbers
+    #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
+    seed: u64,
     /// Print which datum decides which unknown, and how much of the uncertainty is that of the data and how much is what
     /// the model leaves out
     #[arg(long, conflicts_with = "table")]
@@ -142,14 +151,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     for fault in answer.faults(&ways) {
         say!("grainlab: {fault}");
     }
-    let explained = args.explain.then(|| explain::explained(&answer, &ways));
-    print(&match (args.format, explained) {
-        (Format::Json, explained) => printer.json(&answer, explained)?,
-        (Format::Csv, None) => Printer::csv_header() + &printer.csv(&answer),
-        (Format::Csv, Some(_)) => return Err(Failure::usage("--explain is printed as a table or as JSON")),
-        (Format::Table, explained) => {
-            printer.state(&answer) + &explained.map_or_else(String::new, |e| explain::people(&e))
+    let more = More {
+        explained: args.explain.then(|| explain::explained(&answer, &ways)),
+        sampled: args.samples.map(|draws| sampled::sampled(&answer, &ways, draws as usize, args.seed)),
+    };
+    print(&match args.format {
+        Format::Json => printer.json(&answer, more)?,
+        Format::Csv if args.explain || args.samples.is_some() => {
+            return Err(Failure::usage("--explain and --samples are printed as a table or as JSON"));
         }
+        Format::Csv => Printer::csv_header() + &printer.csv(&answer),
+        Format::Table => printer.state(&answer, &more),
     })?;
     Ok(answer.exit())
 }

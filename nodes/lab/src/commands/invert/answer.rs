@@ -2,6 +2,7 @@
 
 use super::columns::BadRow;
 use super::explain::Explained;
+use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
 use crate::failure::worse;
@@ -28,8 +29,17 @@ pub(super) struct View<'a> {
     line: Option<u64>,
     inputs: Option<&'a State>,
     results: Vec<Inference>,
+    #[serde(flatten)]
+    more: More,
+}
+
+/// What is only told when asked for.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct More {
     #[serde(skip_serializing_if = "Option::is_none")]
-    explained: Option<Vec<Explained>>,
+    pub(super) explained: Option<Vec<Explained>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sampled: Option<Vec<Sampled>>,
 }
 
 impl Answer {
@@ -74,9 +84,9 @@ impl Answer {
         }
     }
 
-    pub(super) fn view(&self, ways: &[Way], explained: Option<Vec<Explained>>) -> View<'_> {
+    pub(super) fn view(&self, ways: &[Way], more: More) -> View<'_> {
         let inputs = self.state.as_ref().ok();
-        View { line: self.line, inputs, results: self.inferences(ways), explained }
+        View { line: self.line, inputs, results: self.inferences(ways), more }
     }
 
     /// How a command ends that had nothing but this to say. Numbers that are no moduli are wrong usage, moduli that no

@@ -30,6 +30,8 @@ pub(crate) struct Columns {
     /// All 36 entries of a stiffness, row by row. With them C11, C33 and C13 are entries of a matrix and no moduli of a
     /// medium: those are then its projection.
     stiffness: Option<[usize; 36]>,
+    /// Whether the moduli are named as those that `grainlab analyze` projects a stiffness on.
+    projected: bool,
     theta_printed: Option<usize>,
     gamma: Option<usize>,
     gamma_sigma: Option<usize>,
@@ -43,6 +45,7 @@ pub(crate) struct Columns {
     source: Option<usize>,
     step: Option<usize>,
     group: Vec<usize>,
+    grains: Option<usize>,
     defaults: Defaults,
 }
 
@@ -72,6 +75,10 @@ impl Columns {
             // The same moduli by their place in the matrix.
             moduli[Modulus::G12 as usize] = moduli[Modulus::G12 as usize].or(find("c66_pa")?);
             moduli[Modulus::G13 as usize] = moduli[Modulus::G13 as usize].or(find("c44_pa")?);
+            for modulus in [Modulus::C11, Modulus::C33, Modulus::C13] {
+                let at = modulus as usize;
+                moduli[at] = find(&format!("ti_{}", MODULUS_KEYS[at]))?.or(moduli[at]);
+            }
             if moduli.iter().all(Option::is_none) {
                 return Err(format!("no column of a modulus ({}); {}", MODULUS_KEYS.join(", "), there()));
             }
@@ -83,6 +90,7 @@ impl Columns {
             pressure_sigma: find("pressure_sigma_pa")?,
             moduli,
             sigma: find_all(&find, SIGMA_KEYS)?,
+            projected: stiffness.is_some() || find("ti_c11_pa")?.is_some(),
             stiffness,
             theta_printed: find("theta_printed_pa")?,
             gamma: find("gamma_over_delta")?,
@@ -97,6 +105,7 @@ impl Columns {
             source: find("source")?,
             step: find("step")?,
             group: group.collect::<Result<_, String>>()?,
+            grains: find("grains")?,
             defaults,
             names,
         })

@@ -1,8 +1,8 @@
 //! Answers as text: JSON, CSV, a table for people.
 
-use super::answer::Answer;
-use super::explain::Explained;
+use super::answer::{Answer, More};
 use super::way::Way;
+use super::{explain, sampled};
 use crate::failure::Failure;
 use crate::output::{Table, exact, json};
 use crate::results::inference::{self, Inference};
@@ -35,19 +35,21 @@ impl Printer<'_> {
     }
 
     /// An object, for one state.
-    pub(super) fn json(&self, answer: &Answer, explained: Option<Vec<Explained>>) -> Result<String, Failure> {
-        json(&answer.view(self.ways, explained))
+    pub(super) fn json(&self, answer: &Answer, more: More) -> Result<String, Failure> {
+        json(&answer.view(self.ways, more))
     }
 
     /// An element of an array, without what separates it from the next.
     pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
-        let object = self.json(answer, None)?;
+        let object = self.json(answer, More::default())?;
         Ok(object.lines().map(|line| format!("\n  {line}")).collect())
     }
 
     /// One state, warnings below.
-    pub(super) fn state(&self, answer: &Answer) -> String {
-        inference::table(&answer.inferences(self.ways))
+    pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
+        let mut text = inference::table(&answer.inferences(self.ways));
+        text += &more.explained.as_deref().map_or_else(String::new, explain::people);
+        text + &more.sampled.as_deref().map_or_else(String::new, sampled::people)
     }
 
     /// Many states, warnings below.

@@ -23,6 +23,8 @@ pub(crate) struct State {
     pub(crate) moduli: Moduli,
     /// Part of a full stiffness that is not isotropic about e3; `None` if only moduli are given.
     pub(crate) asymmetry: Option<f64>,
+    /// Whether the moduli are the projection of one stiffness, so that five of them were measured and Θ follows.
+    pub(crate) projected: bool,
     /// Standard deviations of the moduli, Pa.
     pub(crate) sigma: [Option<f64>; emt::MODULI],
     /// Relative standard deviation of the moduli that have none of their own.
@@ -39,6 +41,8 @@ pub(crate) struct State {
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     pub(crate) poisson: Option<f64>,
+    /// Number of grains, where a table says it.
+    pub(crate) grains: Option<f64>,
     /// What the microstructure is, where a table says it.
     pub(crate) truth: Structure,
 }
@@ -50,6 +54,8 @@ impl State {
             sample: None,
             moduli: Moduli::NONE,
             asymmetry: None,
+            projected: false,
+            grains: None,
             sigma: [None; emt::MODULI],
             relative_error: None,
             theta_printed: None,
@@ -68,7 +74,8 @@ impl State {
         way.model.infer(&self.observation(way)?, &way.calibration)
     }
 
-    fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
+    /// As a model takes it, in the way asked for.
+    pub(super) fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
         let mut conditions = Conditions::at(self.pressure.value);
         conditions.pressure = self.pressure;
         conditions.solid_fraction = self.phi;
@@ -82,17 +89,12 @@ impl State {
         if let Some(theta) = self.theta_printed.filter(|_| way.model.name() == "ratio-as-printed") {
             moduli = moduli.with(Modulus::Theta, theta);
         }
-        let covariance = self.covariance(&moduli);
-        if self.is_stiffness() && covariance.is_some() && self.sigma[Modulus::Theta as usize].is_none() {
-            // Five moduli were measured: the error of Θ follows from theirs.
+        if self.theta_follows() {
             moduli = moduli.without(Modulus::Theta);
         }
+        let covariance = self.covariance(&moduli);
         let observation = Observation::new(moduli, conditions);
         Ok(Observation { asymmetry: self.asymmetry, covariance, ..observation })
-    }
-
-    fn is_stiffness(&self) -> bool {
-        self.asymmetry.is_some()
     }
 
     /// Where the γ/Δ comes from that a model is fed with, or would be.
@@ -102,6 +104,16 @@ impl State {
             Ok(gamma) => gamma.source.name(),
             Err(_) => way.gamma.map_or("none", GammaSource::name),
         }
+    }
+
+    /// Whether Θ is no datum of its own: with errors, it would be one more measurement than there was.
+    fn theta_follows(&self) -> bool {
+        let mut others = Modulus::ALL.into_iter().filter(|m| *m != Modulus::Theta);
+        let errors_known = self.relative_error.is_some() || self.sigma.iter().any(Option::is_some);
+        self.projected
+            && errors_known
+            && self.sigma[Modulus::Theta as usize].is_none()
+            && others.all(|m| self.moduli.get(m).is_some())
     }
 
     /// Independent errors; what has none stated is exact if others have. `None` if no error is known at all.
@@ -173,5 +185,42 @@ impl Serialize for State {
         map.serialize_entry("phi_sigma", &self.phi.map(|p| p.stddev))?;
         map.serialize_entry("relative_error", &self.relative_error)?;
         map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::way::ways;
+    use super::*;
+
+    /// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33.
+    fn medium(projected: bool) -> State {
+        let moduli = Moduli::of_values([140.0, 150.0, 1840.0 / 9.0, 360.0, 400.0, 140.0].map(Some));
+        State { moduli, projected, relative_error: Some(0.01), ..State::at(Measured::exact(5e4)) }
+    }
+
+    #[test]
+    fn of_a_projected_stiffness_five_moduli_are_measured_and_of_single_ones_all() {
+        let way = &ways(&["relaxed".to_owned()], &["own".to_owned()], None).unwrap()[0];
+        let variance = |state: &State| {
+            let observation = state.observation(way).unwrap();
+            let checked = observation.checked().unwrap();
+            assert!((checked.moduli.get(Modulus::Theta).unwrap() - 1840.0 / 9.0).abs() < 1e-9);
+            checked.covariance.unwrap()[(Modulus::Theta as usize, Modulus::Theta as usize)]
+        };
+        let follows =
+            [4.0 * 3.6, 4.0 * 1.4, 4.0 * 1.4, 4.0].map(|part| (part / 9.0).powi(2)).iter().sum::<f64>();
+        assert!((variance(&medium(true)) / follows - 1.0).abs() < 1e-12);
+        assert!((variance(&medium(false)) / (0.01 * 1840.0 / 9.0).powi(2) - 1.0).abs() < 1e-12);
+        let without = medium(true).infer(way).unwrap();
+        assert_ne!(Ok(without), medium(false).infer(way), "a sixth datum changes the estimate");
+    }
+
+    #[test]
+    fn what_is_not_said_of_the_grains_is_the_calibration_s() {
+        let state = State { poisson: Some(0.3), ..State::at(Measured::exact(5e4)) };
+        let material = state.material(&Calibration::PAPER).unwrap();
+        assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));
+        assert_eq!(State::at(Measured::exact(5e4)).material(&Calibration::PAPER), None);
     }
 }

@@ -77,6 +77,8 @@ impl Columns {
         let [total, elastic, contact] = cells.several(self.measured_gamma)?;
         Ok(State {
             sample: self.sample(cells),
+            projected: self.projected,
+            grains: cells.optional(self.grains)?,
             relative_error: self.defaults.relative_error,
             theta_printed: cells.optional(self.theta_printed)?,
             gamma: with_stddev(self.gamma, self.gamma_sigma)?,
@@ -209,6 +211,14 @@ mod tests {
         let row = upper.iter().map(|n| entries[*n].to_string()).collect::<Vec<_>>().join(",");
         let half = state(&format!("p_pa,{header}"), &format!("5e4,{row}")).unwrap();
         assert_eq!(half, full);
+    }
+
+    #[test]
+    fn the_projection_that_analyze_prints_is_that_of_a_stiffness() {
+        let names = "p_pa,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,c11_pa";
+        let printed = state(names, "5e4,1,2,3,4,5,6,7").unwrap();
+        assert_eq!(printed.moduli.values(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(Some));
+        assert!(printed.projected && !state("p_pa,c11_pa", "5e4,7").unwrap().projected);
     }
 
     #[test]
