@@ -42,7 +42,7 @@ fn unknown_parameters_and_commands_end_with_exit_code_2() {
     let unknown = ["run", "fabric_analyzer", "--ros-args", "-p", "tolerence:=1e-8"];
     refused(&lab, &unknown, 2, &["tolerence", "tolerance"]);
     refused(&lab, &["run", "no_such_node"], 2, &["no_such_node", "dem_simulator"]);
-    refused(&lab, &["invert", "--g12", "1e8"], 2, &["--g13"]);
+    refused(&lab, &["invert", "--g12", "1e8"], 2, &["--pressure"]);
     refused(&lab, &["analyse-this"], 2, &[]);
     let reference = golden("reference/ref_packing_500.csv.gz");
     let reference = reference.to_string_lossy();

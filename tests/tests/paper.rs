@@ -44,9 +44,21 @@ fn invert_reproduces_table_iii_from_the_moduli_it_implies() {
     assert_eq!(rows, 16);
     let all = lab.run(&["invert", "--table", &table.to_string_lossy(), "--format", "csv"]);
     assert_eq!(all.code, Some(0), "{}", all.stderr);
+    let mut results = all.stdout.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let names = results.next().unwrap();
+    let cell = |row: &[&str], name: &str| row[names.iter().position(|n| *n == name).unwrap()].to_owned();
+    let results: Vec<Vec<&str>> = results.collect();
     for model in ["ratio", "ratio-as-printed"] {
-        let rows = all.stdout.lines().filter(|l| l.split(',').any(|cell| cell == model)).count();
-        assert_eq!(rows, 16, "{model}:\n{}", all.stdout);
+        let of_model: Vec<_> = results.iter().filter(|r| cell(r, "model") == model).collect();
+        assert_eq!(of_model.len(), 16, "{model}:\n{}", all.stdout);
+        for (line, found) in text.lines().filter(|l| !l.starts_with('#')).skip(1).zip(of_model) {
+            let row: Vec<&str> = line.split(',').collect();
+            assert_eq!(cell(found, "sample"), row[0]);
+            for key in ["k", "k_hat", "eps"] {
+                let found: f64 = cell(found, key).parse().unwrap();
+                assert!((found - column(&row, key)).abs() < 1e-6, "{model} {key} of {line}: {found}");
+            }
+        }
     }
 }
 

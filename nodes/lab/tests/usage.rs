@@ -34,7 +34,13 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
         (&["run", "dem_simulator", "--ros-args", "-p", "scene"], "\"scene\""),
         (&["launch", "--scene", "no-such-scene"], "demo, s1"),
         (&["launch", "--seed", "-3"], "-3"),
-        (&["invert", "--g12", "1e8"], "--g13"),
+        (&["invert", "--g12", "1e8"], "--pressure"),
+        (&["invert", "--pressure", "5e4"], "G12"),
+        (&["invert", "--table", "x.csv", "--g12", "1e8"], "--table"),
+        (&["invert", "--pressure", "5e4", "--calibration", "x"], "paper"),
+        (&["invert", "--pressure", "5e4", "--g12", "1e8", "--samples", "100"], "--error"),
+        (&["invert", "--table", "x.csv", "--by", "mu2"], "--judge"),
+        (&["invert", "--pressure", "5e4", "--poisson", "0.7"], "--poisson 0.7"),
         (
             &[
                 "invert",

@@ -1,36 +1,76 @@
 //! `grainlab invert`: moduli in, microstructure out.
+//!
+//! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
+//! - [`lines`], [`cells`], [`columns`], [`rows`]: a table as it comes, each row a state
+//! - [`table`], [`print`]: answers in order, as text
+//! - [`explain`]: which datum decides which unknown; [`sampled`]: the posterior by sampling
+//! - [`judge`]: answers against the truth of a table
+//! - [`calibrations`]: by name
 
-mod inputs;
+mod answer;
+mod calibrations;
+mod cells;
+mod columns;
+mod explain;
+mod judge;
+mod lines;
+mod print;
+mod rows;
+mod sampled;
+mod state;
 mod table;
+mod way;
 
-use crate::failure::{Failure, worse};
-use crate::output::{Format, Table, exact, json, print};
-use crate::results::inference::{self, Inference};
-use emt::{Calibration, EmtError, Model};
-use inputs::Inputs;
+use crate::failure::Failure;
+use crate::output::{Format, print, say};
+use answer::{Answer, More};
+use columns::Defaults;
+use emt::{Measured, Modulus};
 use node_kit::Exit;
-use serde::Serialize;
+use print::Printer;
+use rows::Rows;
+use state::State;
 use std::path::PathBuf;
+use way::{GammaChoice, ways};
 
 const EXAMPLES: &str = "\
 Examples:
   The first state of the paper's Table III (k = 5.73, k_hat = 5.63, eps = 0.016), with 1 % error on each modulus:
     grainlab invert --g12 121.7e6 --g13 127.4e6 --theta 144.4e6 --pressure 50e3 --gamma-over-delta -0.0623 --error 0.01
-  Many states at once:
-    grainlab invert --table states.csv --format csv";
+  Many states at once, or what an analysis has measured:
+    grainlab invert --table states.csv --format csv
+    grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
+  How good the models are on packings whose structure was counted:
+    grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --judge --gamma all --by grains
+
+A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
+columns are ignored:
+  p_kpa, p_pa or pressure_pa           confining pressure, the one that is needed
+  g12_pa g13_pa theta_pa c11_pa c33_pa c13_pa   moduli about e3 (c66_pa and c44_pa are other names of g12_pa and g13_pa)
+  c11_pa c12_pa ... c66_pa             all 36, or one half: a stiffness, projected on its medium isotropic about e3
+  ti_c11_pa ti_c33_pa ti_c13_pa        the same moduli as grainlab analyze has projected them
+  g12_sigma_pa ... c13_sigma_pa        standard deviations; also pressure_sigma_pa, gamma_over_delta_sigma, phi_sigma
+  gamma_over_delta                     ratio of deviatoric to volumetric strain; as grainlab analyze measures it: g_total,
+                                       g_elastic, g_contact (see --gamma)
+  phi grain_shear_modulus_pa poisson   solid fraction; of the grains
+  theta_printed_pa                     what the model ratio-as-printed takes for theta_pa
+  sample, or source and step           kept with the result
+  k z eps eps_stiffness                what the microstructure is, for --judge
+A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
+in the results, and does not stop the rest; the exit code is that of the worst row.";
 
 /// What to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Shear modulus in the plane of isotropy, Pa
-    #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
     g12: Option<f64>,
     /// Shear modulus along the axis, Pa
-    #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
     g13: Option<f64>,
     /// Bulk modulus C_iijj/9 (Voigt), Pa
-    #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
     theta: Option<f64>,
     /// Confining pressure, Pa, positive in compression
     #[arg(long, value_name = "PA", required_unless_present = "table", conflicts_with = "table")]
@@ -38,117 +78,142 @@ pub(crate) struct Args {
     /// Ratio of deviatoric to volumetric strain about the axis [default: unknown, taken as 0]
     #[arg(long, value_name = "G", conflicts_with = "table")]
     gamma_over_delta: Option<f64>,
-    /// Longitudinal modulus across the axis, Pa: checks the others, with --c33
-    #[arg(long, value_name = "PA", requires = "c33", conflicts_with = "table")]
+    /// Longitudinal modulus across the axis, Pa
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
     c11: Option<f64>,
-    /// Longitudinal modulus along the axis, Pa: checks the others, with --c11
-    #[arg(long, value_name = "PA", requires = "c11", conflicts_with = "table")]
+    /// Longitudinal modulus along the axis, Pa
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
     c33: Option<f64>,
-    /// Shear modulus of the grains, Pa: warns where the calibration is for others
+    /// Modulus that couples the two, Pa; may be negative
+    #[arg(long, value_name = "PA", conflicts_with = "table")]
+    c13: Option<f64>,
+    /// Shear modulus of the grains, Pa [default: that of the calibration]
     #[arg(long, value_name = "PA")]
     grain_shear_modulus: Option<f64>,
-    /// Poisson ratio of the grains: warns where the calibration is for others
+    /// Poisson ratio of the grains [default: that of the calibration]
     #[arg(long, value_name = "NU")]
     poisson: Option<f64>,
-    /// Solid fraction, kept with the result (the paper's models do not use it)
+    /// Solid fraction
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
-    /// Relative one-sigma error of each of G12, G13 and Theta: 0.01 is one percent [default: unknown]
+    /// Relative one-sigma error of each modulus that has none of its own: 0.01 is one percent [default: unknown]
     #[arg(long, value_name = "REL")]
     error: Option<f64>,
-    /// States from a CSV file with columns p_kpa, g12_pa, g13_pa, theta_pa, and optionally sample, gamma_over_delta and
-    /// theta_printed_pa (which the model ratio-as-printed then takes for theta); other columns are ignored
+    /// States from a CSV file, as described below; - is the standard input
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
-    /// One model alone [default: all of them]
-    #[arg(long, value_name = "NAME")]
-    model: Option<String>,
+    /// Which gamma/Delta of a table feeds the models that use one [default: given, else total, else contact, else zero]
+    #[arg(long, value_enum, value_name = "WHICH", requires = "table", hide_possible_values = false)]
+    gamma: Option<GammaChoice>,
+    /// These models alone, with commas between them [default: all of them]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    model: Vec<String>,
+    /// Which packings the constants of the models come from: a name, a file, or several, one after the other; own is the
+    /// paper's for the paper's models, grainlab for ours
+    #[arg(long, value_name = "NAME|FILE.toml", value_delimiter = ',', default_value = calibrations::OWN)]
+    calibration: Vec<String>,
+    /// Print how far the estimates are from the truth that the table says in its columns k, z, eps and eps_stiffness, for
+    /// each model and gamma/Delta: bias, scatter, rms error, and how many of the 95 % intervals have the truth in them
+    #[arg(long, requires = "table")]
+    judge: bool,
+    /// Judge the rows with the same cells in these columns together; numbers that are not whole are the same to three digits
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
+    by: Vec<String>,
+    /// Also sample the distribution of the estimates by this many draws of the data: for errors that are large, where those
+    /// of the other columns, linear in the errors, are not to be trusted; 20000 is plenty
+    #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..))]
+    samples: Option<u32>,
+    /// Seed of the samples: the same one gives the same numbers
+    #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
+    seed: u64,
+    /// Print which datum decides which unknown, and how much of the uncertainty is that of the data and how much is what
+    /// the model leaves out
+    #[arg(long, conflicts_with = "table")]
+    explain: bool,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// One state and what the models say of it.
-#[derive(Debug, Serialize)]
-struct Inverted {
-    inputs: Inputs,
-    results: Vec<Inference>,
-    #[serde(skip)]
-    exit: Exit,
-}
-
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    let models = models(args.model.as_deref())?;
-    let states = match &args.table {
-        Some(path) => table::read(path, args)?,
-        None => vec![Inputs::of_args(args)?],
+    let ways = ways(&args.model, &args.calibration, args.gamma)?;
+    let defaults = args.defaults()?;
+    let printer = Printer { ways: &ways };
+    if let Some(path) = &args.table {
+        let rows = Rows::open(path, &args.by, defaults)?;
+        if args.judge {
+            return judge::run(rows, &args.by, &ways, args.format);
+        }
+        return table::run(rows, &printer, args.format);
+    }
+    let answer = Answer::of(args.state(defaults)?, None, &ways);
+    for fault in answer.faults(&ways) {
+        say!("grainlab: {fault}");
+    }
+    let more = More {
+        explained: args.explain.then(|| explain::explained(&answer, &ways)),
+        sampled: args.samples.map(|draws| sampled::sampled(&answer, &ways, draws as usize, args.seed)),
     };
-    let inverted: Vec<Inverted> = states.into_iter().map(|inputs| invert(inputs, &models)).collect();
-    let text = match args.format {
-        Format::Json if args.table.is_none() => json(&inverted[0])?,
-        Format::Json => json(&inverted)?,
-        Format::Csv => csv(&inverted),
-        Format::Table => people(&inverted),
-    };
-    print(&text)?;
-    Ok(inverted.iter().fold(Exit::Done, |exit, i| worse(exit, i.exit)))
-}
-
-fn models(name: Option<&str>) -> Result<Vec<&'static dyn Model>, Failure> {
-    let Some(name) = name else { return Ok(emt::models().to_vec()) };
-    let known = || emt::models().iter().map(|m| m.name()).collect::<Vec<_>>().join(", ");
-    let model = emt::model(name);
-    model.map(|m| vec![m]).ok_or_else(|| Failure::usage(format!("no model {name:?}; there are: {}", known())))
-}
-
-fn invert(inputs: Inputs, models: &[&'static dyn Model]) -> Inverted {
-    let calibration = Calibration::PAPER;
-    let mut exit = Exit::Done;
-    let results = models.iter().map(|model| {
-        let outcome = model.infer(&inputs.observation(model.name()), &calibration);
-        if let Err(error) = &outcome {
-            exit = worse(exit, exit_of(error));
-            crate::output::say!("grainlab: {}: {error}", model.name());
+    print(&match args.format {
+        Format::Json => printer.json(&answer, more)?,
+        Format::Csv if args.explain || args.samples.is_some() => {
+            return Err(Failure::usage("--explain and --samples are printed as a table or as JSON"));
         }
-        let mut result = Inference::of(model.name(), calibration.name(), &outcome);
-        result.warnings.extend(inputs.warnings());
-        result
-    });
-    let results = results.collect();
-    Inverted { inputs, results, exit }
+        Format::Csv => Printer::csv_header() + &printer.csv(&answer),
+        Format::Table => printer.state(&answer, &more),
+    })?;
+    Ok(answer.exit())
 }
 
-/// Numbers that are no moduli are wrong usage; moduli that no packing has are invalid physics.
-fn exit_of(error: &EmtError) -> Exit {
-    if error.is_of_input() { Exit::Usage } else { Exit::PhysicsInvalid }
-}
+impl Args {
+    /// What holds for every state.
+    fn defaults(&self) -> Result<Defaults, Failure> {
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        in_range("grain-shear-modulus", self.grain_shear_modulus, "more than 0 and finite", positive)?;
+        in_range("poisson", self.poisson, "0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
+        in_range("error", self.error, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
+        Ok(Defaults {
+            relative_error: self.error,
+            grain_shear_modulus: self.grain_shear_modulus,
+            poisson: self.poisson,
+        })
+    }
 
-fn csv(inverted: &[Inverted]) -> String {
-    let mut t = Table::new(["sample", "pressure_pa"].into_iter().chain(Inference::EXACT_COLUMNS));
-    for i in inverted {
-        for r in &i.results {
-            let label = [i.inputs.sample.clone().unwrap_or_default(), exact(Some(i.inputs.pressure_pa))];
-            t.row(label.into_iter().chain(r.exact_cells()));
+    /// The state that the flags tell.
+    fn state(&self, defaults: Defaults) -> Result<State, Failure> {
+        let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
+        let mut state = State::at(Measured::exact(pressure));
+        for (modulus, value) in [
+            (Modulus::G12, self.g12),
+            (Modulus::G13, self.g13),
+            (Modulus::Theta, self.theta),
+            (Modulus::C11, self.c11),
+            (Modulus::C33, self.c33),
+            (Modulus::C13, self.c13),
+        ] {
+            if let Some(value) = value {
+                state.moduli = state.moduli.with(modulus, value);
+            }
         }
+        state.gamma = self.gamma_over_delta.map(Measured::exact);
+        state.phi = self.phi.map(Measured::exact);
+        state.relative_error = defaults.relative_error;
+        state.grain_shear_modulus = defaults.grain_shear_modulus;
+        state.poisson = defaults.poisson;
+        Ok(state)
     }
-    t.csv()
 }
 
-fn people(inverted: &[Inverted]) -> String {
-    if let [only] = inverted {
-        return inference::table(&only.results);
+/// Refuses a flag whose value is out of range, by its name.
+fn in_range(
+    flag: &str,
+    value: Option<f64>,
+    range: &str,
+    accept: impl Fn(f64) -> bool,
+) -> Result<(), Failure> {
+    match value.filter(|v| !accept(*v)) {
+        Some(v) => Err(Failure::usage(format!("--{flag} {v} is out of range: {range}"))),
+        None => Ok(()),
     }
-    let mut t = Table::new(["sample", "p/kPa"].into_iter().chain(Inference::COLUMNS));
-    let mut warnings = String::new();
-    for i in inverted {
-        let label =
-            || [i.inputs.sample.clone().unwrap_or_default(), format!("{}", i.inputs.pressure_pa / 1e3)];
-        i.results.iter().for_each(|r| t.row(label().into_iter().chain(r.cells())));
-        let lines = inference::warning_lines(&i.results);
-        if !lines.is_empty() {
-            warnings += &format!("{} at {} kPa:\n{lines}", label()[0], label()[1]);
-        }
-    }
-    t.text() + &warnings
 }

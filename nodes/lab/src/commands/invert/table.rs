@@ -1,53 +1,140 @@
-//! States from a CSV file.
+//! A whole table: read in pieces, inverted in parallel, written in order as it comes.
 
-use super::Args;
-use super::inputs::Inputs;
-use crate::failure::Failure;
-use std::path::Path;
+use super::answer::Answer;
+use super::columns::Row;
+use super::print::Printer;
+use super::rows::Rows;
+use crate::failure::{Failure, worse};
+use crate::output::{Format, say};
+use node_kit::Exit;
+use std::io::{ErrorKind, Write};
+use std::time::Instant;
 
-/// Reads a table of states: a header line, then one state a line; lines that begin with `#` are comments.
-pub(super) fn read(path: &Path, args: &Args) -> Result<Vec<Inputs>, Failure> {
-    let text =
-        std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
-    parse(&text, args).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
+/// Most states that are printed as a table for people: it must be known as a whole before it can be aligned.
+const FOR_PEOPLE: usize = 1000;
+
+/// What has become of the rows so far.
+#[derive(Debug)]
+pub(super) struct Tally {
+    rows: u64,
+    bad: u64,
+    exit: Exit,
+    begin: Instant,
 }
 
-fn parse(text: &str, args: &Args) -> Result<Vec<Inputs>, String> {
-    // Spreadsheets begin their files with a byte order mark.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#'));
-    let header: Vec<&str> =
-        lines.next().map(|(_, l)| l.split(',').map(str::trim).collect()).ok_or("the table is empty")?;
-    let at = |name: &str| header.iter().position(|h| *h == name);
-    let need =
-        |name: &str| at(name).ok_or_else(|| format!("no column {name}; there are: {}", header.join(", ")));
-    let (g12, g13, theta) = (need("g12_pa")?, need("g13_pa")?, need("theta_pa")?);
-    let (pressure, scale) = match at("p_pa") {
-        Some(column) => (column, 1.0),
-        None => (need("p_kpa")?, 1e3),
-    };
-    let mut states = Vec::new();
-    for (number, line) in lines {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        if cells.len() != header.len() {
-            return Err(format!("line {}: {} cells under {} columns", number + 1, cells.len(), header.len()));
-        }
-        let value = |column: usize| -> Result<f64, String> {
-            let bad = |_| {
-                format!("line {}, column {}: {:?} is not a number", number + 1, header[column], cells[column])
-            };
-            cells[column].parse().map_err(bad)
-        };
-        let optional = |name: &str| match at(name).filter(|c| !cells[*c].is_empty()) {
-            Some(column) => value(column).map(Some),
-            None => Ok(None),
-        };
-        let moduli = [value(g12)?, value(g13)?, value(theta)?, value(pressure)? * scale];
-        let g = optional("gamma_over_delta")?;
-        let mut state = Inputs::new(args, moduli, g).map_err(|e| e.to_string())?;
-        state.theta_printed_pa = optional("theta_printed_pa")?;
-        state.sample = at("sample").map(|c| cells[c].to_owned());
-        states.push(state);
+impl Tally {
+    pub(super) fn new() -> Self {
+        Self { rows: 0, bad: 0, exit: Exit::Done, begin: Instant::now() }
     }
-    if states.is_empty() { Err("there is no state below the header".to_owned()) } else { Ok(states) }
+
+    /// Counts a row and says what is wrong with it.
+    pub(super) fn add(&mut self, exit: Exit, complaint: &str) {
+        self.rows += 1;
+        self.bad += u64::from(exit != Exit::Done);
+        self.exit = worse(self.exit, exit);
+        if !complaint.is_empty() {
+            say!("{complaint}");
+        }
+    }
+
+    /// The last word.
+    pub(super) fn end(self, name: &str) -> Result<Exit, Failure> {
+        if self.rows == 0 {
+            return Err(Failure::usage(format!("{name}: there is no state below the header")));
+        }
+        let seconds = self.begin.elapsed().as_secs_f64();
+        say!("grainlab: {} rows, {} bad, {seconds:.1} s", self.rows, self.bad);
+        Ok(self.exit)
+    }
+}
+
+/// Inverts every row.
+pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Result<Exit, Failure> {
+    let answer = |number, row: Result<Row, _>| match row {
+        Ok(row) => Answer::of(row.state, Some(number), printer.ways),
+        Err(bad) => Answer::of_bad_row(bad, number),
+    };
+    let mut tally = Tally::new();
+    let mut kept = Vec::new();
+    let mut out = Out::new(format);
+    loop {
+        // Text is made where answers are: it takes as long as they do.
+        let piece = rows.next(|number, row| {
+            let answer = answer(number, row);
+            let text = match format {
+                Format::Csv => printer.csv(&answer),
+                Format::Json => printer.json_element(&answer)?,
+                Format::Table => String::new(),
+            };
+            let (exit, complaint) = (answer.exit(), answer.complaint(printer.ways));
+            // An answer is a hundred times its text: only a table for people waits for the rest.
+            Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
+        })?;
+        let Some(piece) = piece else { break };
+        let mut texts = Vec::with_capacity(piece.len());
+        for found in piece {
+            let (text, exit, complaint, answer) = found?;
+            tally.add(exit, &complaint);
+            texts.push(text);
+            kept.extend(answer);
+        }
+        if kept.len() > FOR_PEOPLE {
+            let most = format!("more than {FOR_PEOPLE} states are no table for people");
+            return Err(Failure::usage(format!("{}: {most}; take --format csv or json", rows.name())));
+        }
+        if !out.write(&texts)? {
+            // The reader has seen enough.
+            return Ok(tally.exit);
+        }
+    }
+    if format == Format::Table && tally.rows > 0 {
+        out.write(&[printer.people(&kept)])?;
+    }
+    let ended = tally.end(rows.name());
+    out.end()?;
+    ended
+}
+
+/// Texts that, one after the other, are one CSV or one JSON array, on stdout.
+struct Out {
+    format: Format,
+    begun: bool,
+}
+
+impl Out {
+    fn new(format: Format) -> Self {
+        Self { format, begun: false }
+    }
+
+    /// Whether somebody still reads.
+    fn write(&mut self, texts: &[String]) -> Result<bool, Failure> {
+        if texts.is_empty() {
+            return Ok(true);
+        }
+        let first = !std::mem::replace(&mut self.begun, true);
+        let text = match (self.format, first) {
+            (Format::Json, true) => format!("[{}", texts.join(",")),
+            (Format::Json, false) => format!(",{}", texts.join(",")),
+            (Format::Csv, true) => Printer::csv_header() + &texts.concat(),
+            _ => texts.concat(),
+        };
+        raw(&text)
+    }
+
+    fn end(&self) -> Result<bool, Failure> {
+        raw(match (self.format, self.begun) {
+            (Format::Json, true) => "\n]\n",
+            (Format::Json, false) => "[]\n",
+            _ => "",
+        })
+    }
+}
+
+fn raw(text: &str) -> Result<bool, Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(false),
+        Err(e) => Err(Failure::failed(format!("stdout: {e}"))),
+        Ok(()) => Ok(true),
+    }
 }

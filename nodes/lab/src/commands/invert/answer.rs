@@ -1,0 +1,159 @@
+//! What the models say of one state.
+
+use super::columns::BadRow;
+use super::explain::Explained;
+use super::sampled::Sampled;
+use super::state::State;
+use super::way::Way;
+use crate::failure::worse;
+use crate::results::inference::Inference;
+use emt::{EmtError, Estimate, Quantity};
+use node_kit::Exit;
+use serde::Serialize;
+
+/// One state and one outcome for each way.
+#[derive(Debug)]
+pub(super) struct Answer {
+    /// Line of the table.
+    pub(super) line: Option<u64>,
+    /// Or why the line is none.
+    pub(super) state: Result<State, BadRow>,
+    /// As many as there are ways; none where there is no state.
+    pub(super) outcomes: Vec<Result<Estimate, EmtError>>,
+}
+
+/// As JSON has it.
+#[derive(Debug, Serialize)]
+pub(super) struct View<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<u64>,
+    inputs: Option<&'a State>,
+    results: Vec<Inference>,
+    #[serde(flatten)]
+    more: More,
+}
+
+/// What is only told when asked for.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct More {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) explained: Option<Vec<Explained>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sampled: Option<Vec<Sampled>>,
+}
+
+impl Answer {
+    /// What each way makes of a state.
+    pub(super) fn of(state: State, line: Option<u64>, ways: &[Way]) -> Self {
+        let outcomes = ways.iter().map(|way| state.infer(way)).collect();
+        Self { line, state: Ok(state), outcomes }
+    }
+
+    /// Of a line that is no state.
+    pub(super) fn of_bad_row(row: BadRow, line: u64) -> Self {
+        Self { line: Some(line), state: Err(row), outcomes: Vec::new() }
+    }
+
+    pub(super) fn sample(&self) -> Option<&str> {
+        match &self.state {
+            Ok(state) => state.sample.as_deref(),
+            Err(row) => row.sample.as_deref(),
+        }
+    }
+
+    /// With the stable keys of results, one for each way.
+    pub(super) fn inferences(&self, ways: &[Way]) -> Vec<Inference> {
+        let one = |(i, way): (usize, &Way)| self.inference(way, self.outcomes.get(i));
+        ways.iter().enumerate().map(one).collect()
+    }
+
+    fn inference(&self, way: &Way, outcome: Option<&Result<Estimate, EmtError>>) -> Inference {
+        let name = way.calibration.name();
+        match (&self.state, outcome) {
+            (Ok(_), Some(outcome)) => {
+                let mut inference = Inference::of(way.model.name(), name, outcome);
+                match outcome {
+                    Ok(estimate) => inference.warnings.extend(undetermined(estimate, way)),
+                    Err(error) if error.is_of_input() => inference.status = "undetermined",
+                    Err(_) => {}
+                }
+                inference
+            }
+            (Err(row), _) => Inference::failed(way.model.name(), name, "failed", vec![row.fault.clone()]),
+            (Ok(_), None) => Inference::failed(way.model.name(), name, "failed", Vec::new()),
+        }
+    }
+
+    pub(super) fn view(&self, ways: &[Way], more: More) -> View<'_> {
+        let inputs = self.state.as_ref().ok();
+        View { line: self.line, inputs, results: self.inferences(ways), more }
+    }
+
+    /// How a command ends that had nothing but this to say. Numbers that are no moduli are wrong usage, moduli that no
+    /// packing has are invalid physics. That a model needs what is not given is no fault, unless nothing at all could be
+    /// inferred.
+    pub(super) fn exit(&self) -> Exit {
+        if self.state.is_err() || !self.outcomes.iter().any(Result::is_ok) && self.errors().all(is_lacking) {
+            return Exit::Usage;
+        }
+        self.errors().filter(|e| !is_lacking(e)).fold(Exit::Done, |exit, e| {
+            worse(exit, if e.is_of_input() { Exit::Usage } else { Exit::PhysicsInvalid })
+        })
+    }
+
+    /// What went wrong, each fault once with the models it comes from; empty if [`Answer::exit`] is `Done`.
+    pub(super) fn faults(&self, ways: &[Way]) -> Vec<String> {
+        if let Err(row) = &self.state {
+            return vec![row.fault.clone()];
+        }
+        if self.exit() == Exit::Done {
+            return Vec::new();
+        }
+        let nothing = self.errors().all(is_lacking);
+        let mut faults: Vec<(String, Vec<&str>)> = Vec::new();
+        for (outcome, way) in self.outcomes.iter().zip(ways) {
+            let Err(error) = outcome else { continue };
+            if is_lacking(error) && !nothing {
+                continue;
+            }
+            let (text, model) = (error.to_string(), way.model.name());
+            match faults.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, models)) if models.contains(&model) => {}
+                Some((_, models)) => models.push(model),
+                None => faults.push((text, vec![model])),
+            }
+        }
+        faults.into_iter().map(|(text, models)| format!("{}: {text}", models.join(", "))).collect()
+    }
+
+    /// The same as lines for stderr, each with the number of the row.
+    pub(super) fn complaint(&self, ways: &[Way]) -> String {
+        let line = self.line.map_or_else(String::new, |l| format!("line {l}"));
+        let place = match self.sample() {
+            Some(sample) => format!("{line} ({sample})"),
+            None => line,
+        };
+        let lines: Vec<String> =
+            self.faults(ways).iter().map(|f| format!("grainlab: {place}: {f}")).collect();
+        lines.join("\n")
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &EmtError> {
+        self.outcomes.iter().filter_map(|o| o.as_ref().err())
+    }
+}
+
+/// Whether a model was not told enough.
+fn is_lacking(error: &EmtError) -> bool {
+    matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. })
+}
+
+/// What the model speaks of and the data do not determine.
+fn undetermined(estimate: &Estimate, way: &Way) -> Option<String> {
+    let domain = way.model.domain(&way.calibration);
+    let of_model = |q: &Quantity| domain.structure[*q as usize].is_some();
+    let unknown = |q: &Quantity| estimate.structure.get(*q).is_none();
+    let names: Vec<&str> =
+        Quantity::ALL.into_iter().filter(|q| of_model(q) && unknown(q)).map(Quantity::name).collect();
+    (!names.is_empty()).then(|| format!("what is given does not determine {}", names.join(", ")))
+}

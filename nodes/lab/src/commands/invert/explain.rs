@@ -1,0 +1,80 @@
+//! Which datum decides which unknown, and what the uncertainty is made of.
+
+use super::answer::Answer;
+use super::way::Way;
+use crate::output::{Table, fixed};
+use emt::{Estimate, INPUT_NAMES, Quantity, StructureCovariance};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// One quantity of one model.
+#[derive(Debug, Serialize)]
+pub(super) struct Explained {
+    model: &'static str,
+    calibration: String,
+    gamma_over_delta_source: Option<&'static str>,
+    quantity: &'static str,
+    value: Option<f64>,
+    sigma: Option<f64>,
+    /// The parts of it: from the errors of the data, and from what the model leaves out.
+    sigma_data: Option<f64>,
+    sigma_model: Option<f64>,
+    /// Share of each input in the variance that the errors of the data cause.
+    information: BTreeMap<&'static str, f64>,
+    condition_number: Option<f64>,
+}
+
+/// All that the models found.
+pub(super) fn explained(answer: &Answer, ways: &[Way]) -> Vec<Explained> {
+    let found = answer.outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
+    found.flat_map(|(estimate, way)| of_estimate(estimate, way)).collect()
+}
+
+fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
+    let condition_number = estimate.condition_number();
+    let determined = Quantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
+    let one = |quantity: Quantity| {
+        let i = quantity as usize;
+        let part = |c: Option<StructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
+        let shares = estimate.information(quantity).unwrap_or_default();
+        Explained {
+            model: way.model.name(),
+            calibration: estimate.calibration.clone(),
+            gamma_over_delta_source: estimate.gamma.map(|g| g.source.name()),
+            quantity: quantity.name(),
+            value: estimate.structure.get(quantity),
+            sigma: estimate.stddev(quantity),
+            sigma_data: part(estimate.data_covariance),
+            sigma_model: part(estimate.model_covariance),
+            information: INPUT_NAMES.into_iter().zip(shares).filter(|(_, s)| *s != 0.0).collect(),
+            condition_number,
+        }
+    };
+    determined.map(one).collect()
+}
+
+/// As a table for people: a column for each input that has a say.
+pub(super) fn people(explained: &[Explained]) -> String {
+    let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
+    let inputs: Vec<&str> = INPUT_NAMES.iter().filter(has_a_say).copied().collect();
+    let columns = ["model", "inferred", "value", "sigma", "from data", "from model"];
+    let mut t = Table::new(columns.into_iter().chain(inputs.iter().copied()).chain(["condition"]));
+    for e in explained {
+        let digits = if e.quantity.starts_with("eps") { 4 } else { 3 };
+        let numbers = [e.value, e.sigma, e.sigma_data, e.sigma_model].map(|v| fixed(v, digits));
+        let share = |name: &&str| {
+            let share = e.information.get(*name).map(|s| format!("{:.0} %", 100.0 * s));
+            share.unwrap_or_else(|| "-".to_owned())
+        };
+        let labels = [e.model, e.quantity].map(str::to_owned);
+        let shares = inputs.iter().map(share);
+        t.row(labels.into_iter().chain(numbers).chain(shares).chain([fixed(e.condition_number, 1)]));
+    }
+    let errors_known = explained.iter().any(|e| e.sigma_data.is_some());
+    let of_what = if errors_known {
+        "share of each datum in the variance that the errors of the data cause"
+    } else {
+        "errors of the data are not known: shares are those of equal relative errors"
+    };
+    format!("\n{}  {of_what}\n", t.text())
+}

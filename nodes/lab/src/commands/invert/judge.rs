@@ -1,0 +1,194 @@
+//! Estimates against the truth of a table, model by model.
+//!
+//! - [`score`]: errors of one quantity, summed up
+
+mod score;
+
+use super::answer::Answer;
+use super::rows::Rows;
+use super::state::State;
+use super::table::Tally;
+use super::way::Way;
+use crate::failure::Failure;
+use crate::output::{Format, Table, exact, fixed, json, print};
+use emt::Quantity;
+use node_kit::Exit;
+use score::Score;
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// What one way makes of one quantity of one group of rows.
+#[derive(Debug, Serialize)]
+struct Judged {
+    /// Cells of the columns grouped by.
+    group: Vec<String>,
+    model: &'static str,
+    calibration: String,
+    /// Which γ/Δ the model was fed with, or `none`.
+    gamma_over_delta_source: &'static str,
+    quantity: &'static str,
+    /// What it is compared with.
+    truth: &'static str,
+    #[serde(flatten)]
+    score: Score,
+}
+
+/// What one row says of one way: the γ/Δ it was fed with, and the error of each quantity whose truth is known.
+struct Verdict {
+    gamma: &'static str,
+    errors: [Option<score::Error>; emt::QUANTITIES],
+}
+
+/// Inverts every row, and prints how far from the truth it is.
+pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -> Result<Exit, Failure> {
+    if !rows.columns.has_truth() {
+        let needed = Quantity::ALL.map(Quantity::name).join(", ");
+        return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));
+    }
+    let mut tally = Tally::new();
+    let mut board = Board::default();
+    loop {
+        let piece = rows.next(|number, row| {
+            let row = row.map_err(|bad| Answer::of_bad_row(bad, number))?;
+            let verdicts = ways.iter().map(|way| Verdict::of(&row.state, way)).collect();
+            Ok::<(_, Vec<_>), Answer>((row.group, verdicts))
+        })?;
+        let Some(piece) = piece else { break };
+        for row in piece {
+            match row {
+                Ok((group, verdicts)) => {
+                    tally.add(Exit::Done, "");
+                    board.enter(group, &verdicts);
+                }
+                // That a model has no estimate is what is judged. That a row is none is not.
+                Err(bad) => tally.add(bad.exit(), &bad.complaint(ways)),
+            }
+        }
+    }
+    let judged = board.judged(ways);
+    print(&match format {
+        Format::Json => json(&judged)?,
+        Format::Csv => csv(&judged, by),
+        Format::Table => people(&judged, by),
+    })?;
+    tally.end(rows.name())
+}
+
+impl Verdict {
+    fn of(state: &State, way: &Way) -> Self {
+        let estimate = state.infer(way).ok();
+        let errors = Quantity::ALL.map(|quantity| {
+            let truth = state.truth.get(against(quantity, way))?;
+            Some(score::Error::of(estimate.as_ref(), quantity, truth))
+        });
+        Self { gamma: state.gamma_source(way), errors }
+    }
+}
+
+/// What a quantity is compared with: k̂ is no property of a packing, the coordination number that it stands for is.
+fn against(quantity: Quantity, way: &Way) -> Quantity {
+    match quantity {
+        Quantity::KHat => way.calibration.isotropic().abscissa,
+        other => other,
+    }
+}
+
+/// Scores by group, way and γ/Δ, each in the order of its first row.
+#[derive(Default)]
+struct Board {
+    groups: Vec<Vec<String>>,
+    index: HashMap<Vec<String>, usize>,
+    /// Group, way, γ/Δ.
+    scores: Vec<((usize, usize, &'static str), [Score; emt::QUANTITIES])>,
+    places: HashMap<(usize, usize, &'static str), usize>,
+}
+
+impl Board {
+    fn enter(&mut self, group: Vec<String>, verdicts: &[Verdict]) {
+        let group = match self.index.get(&group) {
+            Some(known) => *known,
+            None => {
+                self.groups.push(group.clone());
+                self.index.insert(group, self.groups.len() - 1);
+                self.groups.len() - 1
+            }
+        };
+        for (way, verdict) in verdicts.iter().enumerate() {
+            let key = (group, way, verdict.gamma);
+            let place = *self.places.entry(key).or_insert_with(|| {
+                self.scores.push((key, Default::default()));
+                self.scores.len() - 1
+            });
+            for (score, error) in self.scores[place].1.iter_mut().zip(&verdict.errors) {
+                if let Some(error) = error {
+                    score.add(error);
+                }
+            }
+        }
+    }
+
+    /// Of everything that a model speaks of and the truth is known of.
+    fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
+        self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
+        let groups = self.groups;
+        let of = |((group, way, gamma), scores): ((usize, usize, _), [Score; emt::QUANTITIES])| {
+            let (group, way) = (groups[group].clone(), &ways[way]);
+            let domain = way.model.domain(&way.calibration);
+            let speaks = move |(q, score): &(Quantity, Score)| {
+                score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
+            };
+            Quantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| Judged {
+                group: group.clone(),
+                model: way.model.name(),
+                calibration: way.calibration.name().to_owned(),
+                gamma_over_delta_source: gamma,
+                quantity: quantity.name(),
+                truth: against(quantity, way).name(),
+                score,
+            })
+        };
+        self.scores.into_iter().flat_map(of).collect()
+    }
+}
+
+fn people(judged: &[Judged], by: &[String]) -> String {
+    let columns =
+        ["model", "calibration", "gamma/Delta", "inferred", "truth", "rows", "solved", "bias", "scatter"];
+    let columns = columns.into_iter().chain(["rms", "mean |error|", "in 95 %"]);
+    let mut t = Table::new(by.iter().map(String::as_str).chain(columns));
+    for j in judged {
+        let digits = if j.quantity.starts_with("eps") { 4 } else { 3 };
+        let s = &j.score;
+        // Rounding leaves no sign on a zero.
+        let number = |value: Option<f64>| {
+            let text = fixed(value, digits);
+            let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+            if value.is_some() && is_zero { text.replace('-', "") } else { text }
+        };
+        let covered = s.coverage().map_or_else(|| "-".to_owned(), |c| format!("{:.1} %", 100.0 * c));
+        let cells =
+            [j.model, &j.calibration, j.gamma_over_delta_source, j.quantity, j.truth].map(str::to_owned);
+        let numbers =
+            [number(s.bias()), number(s.scatter()), number(s.rms()), number(s.mean_absolute()), covered];
+        let counts = [s.rows.to_string(), s.solved.to_string()];
+        t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers));
+    }
+    t.text()
+}
+
+fn csv(judged: &[Judged], by: &[String]) -> String {
+    let columns = ["model", "calibration", "gamma_over_delta_source", "quantity", "truth", "rows", "solved"];
+    let columns = columns.into_iter().chain(["extrapolated", "bias", "scatter", "rms", "mean_absolute"]);
+    let columns = columns.chain(["intervals", "covered"]);
+    let mut t = Table::new(by.iter().map(String::as_str).chain(columns));
+    for j in judged {
+        let s = &j.score;
+        let cells =
+            [j.model, &j.calibration, j.gamma_over_delta_source, j.quantity, j.truth].map(str::to_owned);
+        let counts = [s.rows, s.solved, s.extrapolated].map(|n| n.to_string());
+        let numbers = [s.bias(), s.scatter(), s.rms(), s.mean_absolute()].map(exact);
+        let covered = [s.intervals.to_string(), exact(s.coverage())];
+        t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers).chain(covered));
+    }
+    t.csv()
+}

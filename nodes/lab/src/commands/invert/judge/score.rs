@@ -1,0 +1,138 @@
+//! How far estimates of one quantity are from its truth.
+
+use emt::{Estimate, Quantity, Status};
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+
+/// One estimate against the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Error {
+    /// Estimate less truth; `None` without an estimate.
+    error: Option<f64>,
+    extrapolated: bool,
+    /// Whether the interval has the truth in it; `None` without an interval.
+    covered: Option<bool>,
+}
+
+impl Error {
+    pub(super) fn of(estimate: Option<&Estimate>, quantity: Quantity, truth: f64) -> Self {
+        let found = estimate.and_then(|e| Some((e, e.structure.get(quantity)?)));
+        Self {
+            error: found.map(|(_, value)| value - truth),
+            extrapolated: found.is_some_and(|(e, _)| e.status == Status::Extrapolated),
+            covered: found
+                .and_then(|(e, _)| e.interval(quantity))
+                .map(|[low, high]| (low..=high).contains(&truth)),
+        }
+    }
+}
+
+/// Errors summed up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Score {
+    /// Rows whose truth is known.
+    pub(super) rows: u64,
+    /// Those of them that have an estimate; all below is of these.
+    pub(super) solved: u64,
+    /// Those of them outside the range of model or calibration.
+    pub(super) extrapolated: u64,
+    /// Those of them that have an interval.
+    pub(super) intervals: u64,
+    covered: u64,
+    mean: f64,
+    /// Sum of squares about the mean.
+    squares: f64,
+    absolute: f64,
+}
+
+impl Score {
+    /// Takes one more, in one pass (Welford).
+    pub(super) fn add(&mut self, error: &Error) {
+        self.rows += 1;
+        let Some(value) = error.error else { return };
+        self.solved += 1;
+        self.extrapolated += u64::from(error.extrapolated);
+        self.intervals += u64::from(error.covered.is_some());
+        self.covered += u64::from(error.covered == Some(true));
+        let off = value - self.mean;
+        self.mean += off / self.solved as f64;
+        self.squares += off * (value - self.mean);
+        self.absolute += value.abs();
+    }
+
+    /// Mean error.
+    pub(super) fn bias(&self) -> Option<f64> {
+        (self.solved > 0).then_some(self.mean)
+    }
+
+    /// Standard deviation of the errors, of two or more.
+    pub(super) fn scatter(&self) -> Option<f64> {
+        (self.solved > 1).then(|| (self.squares / (self.solved - 1) as f64).sqrt())
+    }
+
+    /// Root of the mean squared error.
+    pub(super) fn rms(&self) -> Option<f64> {
+        Some((self.bias()?.powi(2) + self.squares / self.solved as f64).sqrt())
+    }
+
+    /// Mean size of the error.
+    pub(super) fn mean_absolute(&self) -> Option<f64> {
+        (self.solved > 0).then(|| self.absolute / self.solved as f64)
+    }
+
+    /// Share of the intervals that have the truth in them.
+    pub(super) fn coverage(&self) -> Option<f64> {
+        (self.intervals > 0).then(|| self.covered as f64 / self.intervals as f64)
+    }
+}
+
+impl Serialize for Score {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (key, count) in
+            [("rows", self.rows), ("solved", self.solved), ("extrapolated", self.extrapolated)]
+        {
+            map.serialize_entry(key, &count)?;
+        }
+        for (key, value) in [
+            ("bias", self.bias()),
+            ("scatter", self.scatter()),
+            ("rms", self.rms()),
+            ("mean_absolute", self.mean_absolute()),
+        ] {
+            map.serialize_entry(key, &value)?;
+        }
+        map.serialize_entry("intervals", &self.intervals)?;
+        map.serialize_entry("covered", &self.coverage())?;
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bias_scatter_and_rms_are_those_of_the_errors() {
+        let mut score = Score::default();
+        // Far from zero, where a sum of squares would lose what they differ by.
+        let errors = [1e6 + 1.0, 1e6 - 2.0, 1e6 + 4.0];
+        for (i, value) in errors.into_iter().enumerate() {
+            score.add(&Error { error: Some(value), extrapolated: i == 0, covered: Some(i < 2) });
+        }
+        score.add(&Error { error: None, extrapolated: false, covered: None });
+        assert_eq!((score.rows, score.solved, score.extrapolated, score.intervals), (4, 3, 1, 3));
+        assert!((score.bias().unwrap() - (1e6 + 1.0)).abs() < 1e-6);
+        assert!((score.scatter().unwrap() - 3.0).abs() < 1e-6, "of -0, -3 and 3");
+        let rms = (errors.map(|e| e * e).iter().sum::<f64>() / 3.0).sqrt();
+        assert!((score.rms().unwrap() - rms).abs() < 1e-6);
+        assert_eq!(score.coverage(), Some(2.0 / 3.0));
+    }
+
+    #[test]
+    fn nothing_solved_has_no_error() {
+        let mut score = Score::default();
+        score.add(&Error { error: None, extrapolated: false, covered: None });
+        assert_eq!((score.bias(), score.scatter(), score.rms(), score.coverage()), (None, None, None, None));
+    }
+}

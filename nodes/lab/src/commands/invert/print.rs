@@ -1,0 +1,76 @@
+//! Answers as text: JSON, CSV, a table for people.
+
+use super::answer::{Answer, More};
+use super::way::Way;
+use super::{explain, sampled};
+use crate::failure::Failure;
+use crate::output::{Table, exact, json};
+use crate::results::inference::{self, Inference};
+
+/// What turns answers into text.
+pub(super) struct Printer<'a> {
+    pub(super) ways: &'a [Way],
+}
+
+impl Printer<'_> {
+    /// Names of the cells of [`Printer::csv`].
+    pub(super) fn csv_header() -> String {
+        let columns = ["sample", "pressure_pa"].into_iter().chain(Inference::EXACT_COLUMNS);
+        Table::new(columns.chain(["line", "reason"])).csv()
+    }
+
+    /// One line for each way.
+    pub(super) fn csv(&self, answer: &Answer) -> String {
+        let sample = answer.sample().unwrap_or_default();
+        let pressure = exact(answer.state.as_ref().ok().map(|s| s.pressure.value));
+        let line = answer.line.map_or_else(String::new, |l| l.to_string());
+        let mut text = String::new();
+        for result in answer.inferences(self.ways) {
+            let without = matches!(result.status, "failed" | "undetermined");
+            let reason = if without { result.warnings.join("; ") } else { String::new() };
+            let cells = [sample.to_owned(), pressure.clone()].into_iter().chain(result.exact_cells());
+            text += &Table::new(cells.chain([line.clone(), reason])).csv();
+        }
+        text
+    }
+
+    /// An object, for one state.
+    pub(super) fn json(&self, answer: &Answer, more: More) -> Result<String, Failure> {
+        json(&answer.view(self.ways, more))
+    }
+
+    /// An element of an array, without what separates it from the next.
+    pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
+        let object = self.json(answer, More::default())?;
+        Ok(object.lines().map(|line| format!("\n  {line}")).collect())
+    }
+
+    /// One state, warnings below.
+    pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
+        let mut text = inference::table(&answer.inferences(self.ways));
+        text += &more.explained.as_deref().map_or_else(String::new, explain::people);
+        text + &more.sampled.as_deref().map_or_else(String::new, sampled::people)
+    }
+
+    /// Many states, warnings below.
+    pub(super) fn people(&self, answers: &[Answer]) -> String {
+        let mut t = Table::new(["sample", "p/kPa"].into_iter().chain(Inference::COLUMNS));
+        let mut warnings = String::new();
+        for answer in answers {
+            let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
+            let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
+            let pressure = answer.state.as_ref().ok().map(|s| format!("{}", s.pressure.value / 1e3));
+            let results = answer.inferences(self.ways);
+            for result in &results {
+                let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned())];
+                t.row(label.into_iter().chain(result.cells()));
+            }
+            let lines = inference::warning_lines(&results);
+            if !lines.is_empty() {
+                let at = pressure.map_or_else(String::new, |p| format!(" at {p} kPa"));
+                warnings += &format!("{sample}{at}:\n{lines}");
+            }
+        }
+        t.text() + &warnings
+    }
+}

@@ -1,0 +1,68 @@
+//! The rows of a table, in pieces, each row looked at by one of several threads.
+
+use super::columns::{BadRow, Columns, Defaults, Row};
+use super::lines::{Lines, Piece};
+use crate::failure::Failure;
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Rows that one thread takes at a time.
+const SHARE: usize = 32;
+
+/// The first line that is no comment, and the lines below it as they come.
+pub(crate) struct Rows {
+    lines: Lines,
+    pub(crate) columns: Columns,
+    /// What came with the header.
+    first: Option<Piece>,
+    /// Number of the header's line.
+    header: u64,
+}
+
+impl Rows {
+    /// Opens a table; `-` is the standard input.
+    pub(crate) fn open(path: &Path, by: &[String], defaults: Defaults) -> Result<Self, Failure> {
+        let mut lines = Lines::open(path)?;
+        loop {
+            let Some(piece) = lines.piece()? else {
+                return Err(Failure::usage(format!("{}: the table is empty", lines.name())));
+            };
+            let is_header =
+                |line: &[u8]| !(line.starts_with(b"#") || line.iter().all(u8::is_ascii_whitespace));
+            let header = piece.lines().map(|(n, l)| (n, without_mark(l))).find(|(_, l)| is_header(l));
+            let Some((header, line)) = header else { continue };
+            let columns = Columns::of_header(line, by, defaults)
+                .map_err(|e| Failure::usage(format!("{}: {e}", lines.name())))?;
+            return Ok(Self { lines, columns, first: Some(piece), header });
+        }
+    }
+
+    /// What `work` makes of the rows of the next piece, in order; `None` at the end.
+    pub(crate) fn next<T: Send>(
+        &mut self,
+        work: impl Fn(u64, Result<Row, BadRow>) -> T + Sync,
+    ) -> Result<Option<Vec<T>>, Failure> {
+        let piece = match self.first.take() {
+            Some(piece) => piece,
+            None => match self.lines.piece()? {
+                Some(piece) => piece,
+                None => return Ok(None),
+            },
+        };
+        let lines: Vec<(u64, &[u8])> = piece.lines().filter(|(number, _)| *number > self.header).collect();
+        let of_line = |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line)?));
+        let worked: Vec<Vec<T>> =
+            lines.par_chunks(SHARE).map(|share| share.iter().filter_map(of_line).collect()).collect();
+        Ok(Some(worked.into_iter().flatten().collect()))
+    }
+
+    /// What to call the table in a message.
+    pub(crate) fn name(&self) -> &str {
+        self.lines.name()
+    }
+}
+
+/// Spreadsheets begin their files with a byte order mark.
+fn without_mark(line: &[u8]) -> &[u8] {
+    line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
+}

@@ -1,0 +1,78 @@
+//! Estimates as samples of their distribution.
+
+use super::answer::Answer;
+use super::state::State;
+use super::way::Way;
+use crate::output::{Table, fixed};
+use emt::sampling::Settings;
+use emt::{CREDIBLE_LEVEL, EmtError, Quantity, Samples, sample};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// One quantity of one model.
+#[derive(Debug, Serialize)]
+pub(super) struct Sampled {
+    model: &'static str,
+    calibration: String,
+    quantity: &'static str,
+    draws: usize,
+    /// How many of them have no solution; all other numbers are of the rest.
+    unsolved: usize,
+    mean: Option<f64>,
+    sigma: Option<f64>,
+    median: Option<f64>,
+    /// Probability of the interval.
+    level: f64,
+    interval: Option<[f64; 2]>,
+    /// 0 where both parts of the interval are as long, 1 where all of it lies above the median, -1 below.
+    skewness: Option<f64>,
+}
+
+/// All that has an estimate, sampled.
+pub(super) fn sampled(answer: &Answer, ways: &[Way], draws: usize, seed: u64) -> Vec<Sampled> {
+    let Ok(state) = &answer.state else { return Vec::new() };
+    let settings = Settings { draws, seed };
+    let found: Vec<_> =
+        ways.iter().zip(&answer.outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
+    // What has an estimate has samples, too: its errors are known, or the flag is refused.
+    let samples: Vec<_> = found.par_iter().filter_map(|way| of_way(state, way, settings).ok()).collect();
+    samples.iter().flat_map(of_samples).collect()
+}
+
+fn of_way(state: &State, way: &Way, settings: Settings) -> Result<Samples, EmtError> {
+    sample(way.model, &state.observation(way)?, &way.calibration, settings)
+}
+
+fn of_samples(samples: &Samples) -> Vec<Sampled> {
+    let determined = Quantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
+    let one = |quantity: Quantity| Sampled {
+        model: samples.model,
+        calibration: samples.calibration.clone(),
+        quantity: quantity.name(),
+        draws: samples.draws,
+        unsolved: samples.unsolved,
+        mean: samples.mean.get(quantity),
+        sigma: samples.stddev(quantity),
+        median: samples.quantile(quantity, 0.5),
+        level: CREDIBLE_LEVEL,
+        interval: samples.interval(quantity),
+        skewness: samples.skewness(quantity),
+    };
+    determined.map(one).collect()
+}
+
+/// As a table for people.
+pub(super) fn people(sampled: &[Sampled]) -> String {
+    let level = format!("{} %", 100.0 * CREDIBLE_LEVEL);
+    let columns = ["model", "sampled", "mean", "sigma", "median", &format!("{level} from"), "to", "skewness"];
+    let mut t = Table::new(columns.into_iter().chain(["without solution"]));
+    for s in sampled {
+        let digits = if s.quantity.starts_with("eps") { 4 } else { 3 };
+        let [low, high] = [s.interval.map(|i| i[0]), s.interval.map(|i| i[1])];
+        let numbers = [s.mean, s.sigma, s.median, low, high].map(|v| fixed(v, digits));
+        let unsolved = format!("{:.1} %", 100.0 * s.unsolved as f64 / s.draws as f64);
+        let labels = [s.model, s.quantity].map(str::to_owned);
+        t.row(labels.into_iter().chain(numbers).chain([fixed(s.skewness, 2), unsolved]));
+    }
+    format!("\n{}", t.text())
+}

@@ -1,0 +1,226 @@
+//! What is known of one state.
+
+use super::way::Way;
+use emt::{
+    Calibration, Conditions, EmtError, Estimate, Gamma, GammaSource, Measured, Moduli, ModuliCovariance,
+    Modulus, Observation, Structure,
+};
+use grains::{Anisotropy, Material};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// Keys of the moduli, in the order of [`Modulus::ALL`].
+pub(super) const MODULUS_KEYS: [&str; emt::MODULI] =
+    ["g12_pa", "g13_pa", "theta_pa", "c11_pa", "c33_pa", "c13_pa"];
+
+/// Keys of their standard deviations.
+pub(super) const SIGMA_KEYS: [&str; emt::MODULI] =
+    ["g12_sigma_pa", "g13_sigma_pa", "theta_sigma_pa", "c11_sigma_pa", "c33_sigma_pa", "c13_sigma_pa"];
+
+/// One state, as given.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct State {
+    pub(crate) sample: Option<String>,
+    pub(crate) moduli: Moduli,
+    /// Part of a full stiffness that is not isotropic about e3; `None` if only moduli are given.
+    pub(crate) asymmetry: Option<f64>,
+    /// Whether the moduli are the projection of one stiffness, so that five of them were measured and Θ follows.
+    pub(crate) projected: bool,
+    /// Standard deviations of the moduli, Pa.
+    pub(crate) sigma: [Option<f64>; emt::MODULI],
+    /// Relative standard deviation of the moduli that have none of their own.
+    pub(crate) relative_error: Option<f64>,
+    /// What the model `ratio-as-printed` takes for Θ, if that is something else, Pa.
+    pub(crate) theta_printed: Option<f64>,
+    /// Pa.
+    pub(crate) pressure: Measured,
+    /// γ/Δ from whoever asks.
+    pub(crate) gamma: Option<Measured>,
+    /// γ/Δ as `grainlab analyze` measures it.
+    pub(crate) measured_gamma: Anisotropy,
+    pub(crate) phi: Option<Measured>,
+    /// Pa.
+    pub(crate) grain_shear_modulus: Option<f64>,
+    pub(crate) poisson: Option<f64>,
+    /// Number of grains, where a table says it.
+    pub(crate) grains: Option<f64>,
+    /// What the microstructure is, where a table says it.
+    pub(crate) truth: Structure,
+}
+
+impl State {
+    /// Nothing known but the pressure, Pa.
+    pub(crate) fn at(pressure: Measured) -> Self {
+        Self {
+            sample: None,
+            moduli: Moduli::NONE,
+            asymmetry: None,
+            projected: false,
+            grains: None,
+            sigma: [None; emt::MODULI],
+            relative_error: None,
+            theta_printed: None,
+            pressure,
+            gamma: None,
+            measured_gamma: Anisotropy::default(),
+            phi: None,
+            grain_shear_modulus: None,
+            poisson: None,
+            truth: Structure::default(),
+        }
+    }
+
+    /// What a model says of it, in the way asked for.
+    pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
+        way.model.infer(&self.observation(way)?, &way.calibration)
+    }
+
+    /// As a model takes it, in the way asked for.
+    pub(super) fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
+        let mut conditions = Conditions::at(self.pressure.value);
+        conditions.pressure = self.pressure;
+        conditions.solid_fraction = self.phi;
+        conditions.material = self.material(&way.calibration);
+        if way.model.uses_gamma() {
+            let model = way.model.name();
+            conditions.gamma =
+                self.gamma(way.gamma).map_err(|missing| EmtError::Missing { model, missing })?;
+        }
+        let mut moduli = self.moduli;
+        if let Some(theta) = self.theta_printed.filter(|_| way.model.name() == "ratio-as-printed") {
+            moduli = moduli.with(Modulus::Theta, theta);
+        }
+        if self.theta_follows() {
+            moduli = moduli.without(Modulus::Theta);
+        }
+        let covariance = self.covariance(&moduli);
+        let observation = Observation::new(moduli, conditions);
+        Ok(Observation { asymmetry: self.asymmetry, covariance, ..observation })
+    }
+
+    /// Where the γ/Δ comes from that a model is fed with, or would be.
+    pub(super) fn gamma_source(&self, way: &Way) -> &'static str {
+        match self.gamma(way.gamma) {
+            _ if !way.model.uses_gamma() => "none",
+            Ok(gamma) => gamma.source.name(),
+            Err(_) => way.gamma.map_or("none", GammaSource::name),
+        }
+    }
+
+    /// Whether Θ is no datum of its own: with errors, it would be one more measurement than there was.
+    fn theta_follows(&self) -> bool {
+        let mut others = Modulus::ALL.into_iter().filter(|m| *m != Modulus::Theta);
+        let errors_known = self.relative_error.is_some() || self.sigma.iter().any(Option::is_some);
+        self.projected
+            && errors_known
+            && self.sigma[Modulus::Theta as usize].is_none()
+            && others.all(|m| self.moduli.get(m).is_some())
+    }
+
+    /// Independent errors; what has none stated is exact if others have. `None` if no error is known at all.
+    fn covariance(&self, moduli: &Moduli) -> Option<ModuliCovariance> {
+        if self.relative_error.is_none() && self.sigma.iter().all(Option::is_none) {
+            return None;
+        }
+        let values = moduli.values();
+        let variance = std::array::from_fn::<f64, { emt::MODULI }, _>(|i| {
+            let Some(value) = values[i] else { return 0.0 };
+            self.sigma[i].unwrap_or_else(|| self.relative_error.unwrap_or(0.0) * value).powi(2)
+        });
+        Some(ModuliCovariance::from_diagonal(&variance.into()))
+    }
+
+    /// Of what is given of the grains; the rest is the calibration's. `None` if nothing is.
+    fn material(&self, calibration: &Calibration) -> Option<Material> {
+        let own = calibration.material();
+        (self.grain_shear_modulus.is_some() || self.poisson.is_some()).then(|| Material {
+            shear_modulus: self.grain_shear_modulus.unwrap_or(own.shear_modulus),
+            poisson_ratio: self.poisson.unwrap_or(own.poisson_ratio),
+            ..*own
+        })
+    }
+
+    /// The γ/Δ asked for, or the name of what is missing. Where nothing is asked for: the one given, else what the paper's
+    /// models take.
+    fn gamma(&self, asked: Option<GammaSource>) -> Result<Gamma, &'static str> {
+        let of = |source, measured: Option<f64>, missing| {
+            measured.map(|value| Gamma { value, stddev: 0.0, source }).ok_or(missing)
+        };
+        let given =
+            self.gamma.map(|g| Gamma { value: g.value, stddev: g.stddev, source: GammaSource::Given });
+        let measured = &self.measured_gamma;
+        match asked {
+            None => Ok(given.unwrap_or_else(|| Gamma::preferred(measured))),
+            Some(GammaSource::Given) => given.ok_or("gamma_over_delta"),
+            Some(source @ GammaSource::Total) => of(source, measured.total, "g_total"),
+            Some(source @ GammaSource::Elastic) => of(source, measured.elastic, "g_elastic"),
+            Some(source @ GammaSource::Contact) => of(source, measured.contact, "g_contact"),
+            Some(GammaSource::Zero) => Ok(Gamma::ZERO),
+        }
+    }
+}
+
+impl Serialize for State {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("sample", &self.sample)?;
+        let covariance = self.covariance(&self.moduli);
+        for (i, value) in self.moduli.values().iter().enumerate() {
+            map.serialize_entry(MODULUS_KEYS[i], value)?;
+            let sigma = covariance.filter(|_| value.is_some()).map(|c| c[(i, i)].sqrt());
+            map.serialize_entry(SIGMA_KEYS[i], &sigma)?;
+        }
+        map.serialize_entry("theta_printed_pa", &self.theta_printed)?;
+        map.serialize_entry("asymmetry", &self.asymmetry)?;
+        map.serialize_entry("pressure_pa", &self.pressure.value)?;
+        map.serialize_entry("pressure_sigma_pa", &self.pressure.stddev)?;
+        map.serialize_entry("gamma_over_delta", &self.gamma.map(|g| g.value))?;
+        map.serialize_entry("gamma_over_delta_sigma", &self.gamma.map(|g| g.stddev))?;
+        let g = &self.measured_gamma;
+        for (key, value) in [("g_total", g.total), ("g_elastic", g.elastic), ("g_contact", g.contact)] {
+            map.serialize_entry(key, &value)?;
+        }
+        map.serialize_entry("grain_shear_modulus_pa", &self.grain_shear_modulus)?;
+        map.serialize_entry("poisson", &self.poisson)?;
+        map.serialize_entry("phi", &self.phi.map(|p| p.value))?;
+        map.serialize_entry("phi_sigma", &self.phi.map(|p| p.stddev))?;
+        map.serialize_entry("relative_error", &self.relative_error)?;
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::way::ways;
+    use super::*;
+
+    /// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33.
+    fn medium(projected: bool) -> State {
+        let moduli = Moduli::of_values([140.0, 150.0, 1840.0 / 9.0, 360.0, 400.0, 140.0].map(Some));
+        State { moduli, projected, relative_error: Some(0.01), ..State::at(Measured::exact(5e4)) }
+    }
+
+    #[test]
+    fn of_a_projected_stiffness_five_moduli_are_measured_and_of_single_ones_all() {
+        let way = &ways(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
+        let variance = |state: &State| {
+            let observation = state.observation(way).unwrap();
+            let checked = observation.checked().unwrap();
+            assert!((checked.moduli.get(Modulus::Theta).unwrap() - 1840.0 / 9.0).abs() < 1e-9);
+            checked.covariance.unwrap()[(Modulus::Theta as usize, Modulus::Theta as usize)]
+        };
+        let follows =
+            [4.0 * 3.6, 4.0 * 1.4, 4.0 * 1.4, 4.0].map(|part| (part / 9.0).powi(2)).iter().sum::<f64>();
+        assert!((variance(&medium(true)) / follows - 1.0).abs() < 1e-12);
+        assert!((variance(&medium(false)) / (0.01 * 1840.0 / 9.0).powi(2) - 1.0).abs() < 1e-12);
+        let without = medium(true).infer(way).unwrap();
+        assert_ne!(Ok(without), medium(false).infer(way), "a sixth datum changes the estimate");
+    }
+
+    #[test]
+    fn what_is_not_said_of_the_grains_is_the_calibration_s() {
+        let state = State { poisson: Some(0.3), ..State::at(Measured::exact(5e4)) };
+        let material = state.material(&Calibration::PAPER).unwrap();
+        assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));
+        assert_eq!(State::at(Measured::exact(5e4)).material(&Calibration::PAPER), None);
+    }
+}

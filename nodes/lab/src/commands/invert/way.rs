@@ -1,0 +1,73 @@
+//! The ways in which each state is inverted: a model, its constants, and the γ/Δ that it is fed with.
+
+use super::calibrations::Choice;
+use crate::failure::Failure;
+use emt::{Calibration, GammaSource, Model};
+use std::sync::Arc;
+
+/// Which γ/Δ feeds the models that use one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum GammaChoice {
+    /// The column gamma_over_delta, or --gamma-over-delta
+    Given,
+    /// The column g_total: of the strain since the reference state
+    Total,
+    /// The column g_elastic: of an isotropic stress increment
+    Elastic,
+    /// The column g_contact: of the overlaps of the contacts
+    Contact,
+    /// None: 0
+    Zero,
+    /// Each of total, elastic, contact and zero, one after the other
+    All,
+}
+
+/// One way to an estimate.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    pub(super) model: &'static dyn Model,
+    pub(super) calibration: Arc<Calibration>,
+    /// `None` takes what is given, else what the paper's models take of what is measured.
+    pub(super) gamma: Option<GammaSource>,
+}
+
+/// Every model, or those of these names, with every calibration and every γ/Δ asked for.
+pub(super) fn ways(
+    models: &[String],
+    calibrations: &[String],
+    gamma: Option<GammaChoice>,
+) -> Result<Vec<Way>, Failure> {
+    let named = models.iter().map(|name| emt::model(name).ok_or_else(|| no_model(name)));
+    let named = named.collect::<Result<Vec<_>, _>>()?;
+    let models = if named.is_empty() { emt::models().to_vec() } else { named };
+    let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
+    let gammas: &[Option<GammaSource>] = match gamma {
+        None => &[None],
+        Some(GammaChoice::Given) => &[Some(GammaSource::Given)],
+        Some(GammaChoice::Total) => &[Some(GammaSource::Total)],
+        Some(GammaChoice::Elastic) => &[Some(GammaSource::Elastic)],
+        Some(GammaChoice::Contact) => &[Some(GammaSource::Contact)],
+        Some(GammaChoice::Zero) => &[Some(GammaSource::Zero)],
+        Some(GammaChoice::All) => &[
+            Some(GammaSource::Total),
+            Some(GammaSource::Elastic),
+            Some(GammaSource::Contact),
+            Some(GammaSource::Zero),
+        ],
+    };
+    let mut ways = Vec::new();
+    for model in models {
+        let gammas = if model.uses_gamma() { gammas } else { &[None] };
+        for choice in &choices {
+            let calibration = choice.of(model);
+            let with = |gamma: &_| Way { model, calibration: Arc::clone(&calibration), gamma: *gamma };
+            ways.extend(gammas.iter().map(with));
+        }
+    }
+    Ok(ways)
+}
+
+fn no_model(name: &str) -> Failure {
+    let known: Vec<&str> = emt::models().iter().map(|m| m.name()).collect();
+    Failure::usage(format!("no model {name:?}; there are: {}", known.join(", ")))
+}

@@ -1,0 +1,45 @@
+//! `grainlab invert` as a user meets it.
+
+mod judged;
+mod single;
+mod tables;
+
+use serde_json::Value;
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+/// Runs the command with this standard input.
+fn grainlab(arguments: &[&str], input: &[u8]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    let bytes = input.to_vec();
+    let writer = std::thread::spawn(move || stdin.write_all(&bytes));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap().unwrap();
+    output
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// What `--table -` says: exit code, rows of the CSV by column name, stderr.
+fn table(input: &str, flags: &[&str]) -> (i32, Vec<Value>, String) {
+    let flags = [&["invert", "--table", "-", "--format", "csv"], flags].concat();
+    let output = grainlab(&flags, input.as_bytes());
+    let out = text(&output.stdout);
+    let mut lines = out.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap_or_default();
+    let object = |cells: Vec<&str>| -> Value {
+        header.iter().zip(cells).map(|(name, cell)| (name.to_string(), Value::from(cell))).collect()
+    };
+    (output.status.code().unwrap(), lines.map(object).collect(), text(&output.stderr))
+}
+
+fn number(row: &Value, column: &str) -> f64 {
+    row[column].as_str().unwrap_or_else(|| panic!("no {column}")).parse().unwrap()
+}
+
+const RATIO: [&str; 2] = ["--model", "ratio"];

@@ -1,0 +1,102 @@
+//! One state from flags.
+
+use crate::{grainlab, text};
+use serde_json::Value;
+
+const S1: [&str; 6] = [
+    "invert",
+    "--g12=121708340.234",
+    "--g13=127373906.955",
+    "--theta=144375790.847",
+    "--pressure=50e3",
+    "--gamma-over-delta=-0.0623",
+];
+
+fn json(flags: &[&str]) -> Value {
+    let output = grainlab(&[flags, &["--format=json"]].concat(), b"");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn every_model_that_can_answers_and_the_others_say_what_they_need() {
+    let answer = json(&S1);
+    let results = answer["results"].as_array().unwrap();
+    let result = |model: &str| results.iter().find(|r| r["model"] == model).unwrap();
+    assert!((result("ratio")["k"].as_f64().unwrap() - 5.73).abs() < 1e-6);
+    assert_eq!(
+        (&result("ratio")["calibration"], &result("ratio")["status"]),
+        (&"paper".into(), &"ok".into())
+    );
+    let without_phi = result("emt");
+    assert_eq!(without_phi["status"], "undetermined");
+    assert!(without_phi["warnings"][0].as_str().unwrap().contains("solid fraction"), "{without_phi}");
+    let with_phi = json(&[&S1[..], &["--phi=0.636", "--model=emt"]].concat());
+    assert!(with_phi["results"][0]["k"].as_f64().is_some(), "{with_phi}");
+}
+
+#[test]
+fn several_calibrations_answer_one_after_the_other() {
+    let answer = json(&[&S1[..], &["--model=ratio", "--calibration=grainlab,paper"]].concat());
+    let names: Vec<_> =
+        answer["results"].as_array().unwrap().iter().map(|r| r["calibration"].clone()).collect();
+    assert_eq!(names, ["grainlab", "paper"]);
+    assert_ne!(answer["results"][0]["k"], answer["results"][1]["k"]);
+    let refused = grainlab(&[&S1[..], &["--calibration=nowhere.toml"]].concat(), b"");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(text(&refused.stderr).contains("nowhere.toml"));
+}
+
+#[test]
+fn explained_shares_are_all_of_the_variance_and_name_what_decides() {
+    let answer = json(&[&S1[..], &["--error=0.01", "--model=ratio", "--explain"]].concat());
+    let explained = answer["explained"].as_array().unwrap();
+    assert_eq!(explained.iter().map(|e| e["quantity"].clone()).collect::<Vec<_>>(), ["k", "k_hat", "eps"]);
+    for e in explained {
+        let shares: Vec<f64> =
+            e["information"].as_object().unwrap().values().map(|s| s.as_f64().unwrap()).collect();
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{e}");
+        assert_eq!(
+            e["sigma"], e["sigma_data"],
+            "the paper's calibration knows nothing of what its model leaves out"
+        );
+        assert!(e["sigma_model"].is_null() && e["condition_number"].as_f64().unwrap() > 1.0);
+    }
+    assert!(explained[0]["information"]["Theta"].as_f64().unwrap() > 0.9, "k follows Theta almost alone");
+    assert!(explained[2]["information"]["Theta"].is_null(), "and eps does not hear of it");
+
+    let people = grainlab(&[&S1[..], &["--error=0.01", "--explain"]].concat(), b"");
+    let people = text(&people.stdout);
+    for word in ["from data", "from model", "condition", "G13", "98 %"] {
+        assert!(people.contains(word), "{word:?} is missing:\n{people}");
+    }
+}
+
+#[test]
+fn what_the_model_leaves_out_is_told_apart_from_the_errors_of_the_data() {
+    let flags = ["--error=0.01", "--phi=0.636", "--model=relaxed", "--explain"];
+    let answer = json(&[&S1[..], &flags].concat());
+    for e in answer["explained"].as_array().unwrap() {
+        let [sigma, data, model] = ["sigma", "sigma_data", "sigma_model"].map(|k| e[k].as_f64().unwrap());
+        assert!(data > 0.0 && model > 0.0, "{e}");
+        assert!((sigma - data.hypot(model)).abs() < 1e-9 * sigma, "{e}");
+    }
+}
+
+#[test]
+fn small_errors_sampled_agree_with_those_propagated_and_a_seed_repeats_them() {
+    let flags = ["--error=0.001", "--model=ratio", "--samples=20000", "--seed=7"];
+    let answer = json(&[&S1[..], &flags].concat());
+    let sampled = answer["sampled"].as_array().unwrap();
+    assert_eq!(sampled.iter().map(|s| s["quantity"].clone()).collect::<Vec<_>>(), ["k", "k_hat", "eps"]);
+    for s in sampled {
+        let quantity = s["quantity"].as_str().unwrap();
+        let linear = answer["results"][0]["sigma"][quantity].as_f64().unwrap();
+        // The standard deviation of 20,000 draws is known to half a percent.
+        assert!((s["sigma"].as_f64().unwrap() / linear - 1.0).abs() < 0.02, "{s}");
+        assert_eq!((s["draws"].as_u64(), s["unsolved"].as_u64()), (Some(20000), Some(0)));
+    }
+    assert_eq!(answer, json(&[&S1[..], &flags].concat()));
+    let people = grainlab(&[&S1[..], &flags].concat(), b"");
+    assert!(text(&people.stdout).contains("without solution"));
+}
