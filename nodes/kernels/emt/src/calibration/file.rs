@@ -82,7 +82,7 @@ struct Off {
     model: String,
     abscissa: String,
     gamma: String,
-    mean_square: [[f64; 2]; 2],
+    mean_square: [[f64; 3]; 3],
 }
 
 impl Calibration {
@@ -187,9 +187,10 @@ fn off(o: Off) -> Result<Discrepancy, CalibrationError> {
             ))
         })?),
     };
-    let [[a, b], [c, d]] = o.mean_square;
-    let valid = a >= 0.0 && d >= 0.0 && b == c && a * d >= b * b * (1.0 - 1e-9);
-    constant("discrepancy.mean_square", a, valid, "it must be symmetric without negative eigenvalue")?;
+    let m = nalgebra::Matrix3::from_fn(|i, j| o.mean_square[i][j]);
+    let lowest = if m.iter().all(|v| v.is_finite()) { m.symmetric_eigenvalues().min() } else { f64::NAN };
+    let valid = m == m.transpose() && lowest >= -1e-9 * m.amax();
+    constant("discrepancy.mean_square", lowest, valid, "it must be symmetric without negative eigenvalue")?;
     Ok(Discrepancy { model: o.model, abscissa: abscissa(&o.abscissa)?, gamma, mean_square: o.mean_square })
 }
 

@@ -36,7 +36,7 @@ pub fn learn(
     };
     if !anisotropic.is_empty() {
         calibration.network = Some(Box::new(network(isotropic, anisotropic, &material)?));
-        calibration.discrepancies = discrepancies(&all, &calibration);
+        calibration.discrepancies = discrepancies(anisotropic, &calibration);
     }
     Ok(calibration)
 }
@@ -262,8 +262,9 @@ fn residual(network: &Network, row: &Reduced<'_>) -> [f64; SCATTERED] {
     off.map(|v| v * row.weight)
 }
 
-/// How far every model that has no scatter of its own is from the packings, by each γ/Δ and coordination number.
-fn discrepancies(samples: &[&Sample], calibration: &Calibration) -> Vec<Discrepancy> {
+/// How far every model that has no scatter of its own is from the packings, by each γ/Δ and coordination number. Isotropic
+/// packings, which every model gets right, are left out.
+fn discrepancies(samples: &[Sample], calibration: &Calibration) -> Vec<Discrepancy> {
     const SOURCES: [GammaSource; 4] =
         [GammaSource::Zero, GammaSource::Total, GammaSource::Elastic, GammaSource::Contact];
     let mut learned = Vec::new();
@@ -290,26 +291,27 @@ fn discrepancies(samples: &[&Sample], calibration: &Calibration) -> Vec<Discrepa
 /// `None` if the model does not solve nine in ten.
 fn mean_square(
     model: &dyn Model,
-    samples: &[&Sample],
+    samples: &[Sample],
     gamma: GammaSource,
     abscissa: Quantity,
     calibration: &Calibration,
-) -> Option<[[f64; 2]; 2]> {
-    let error = |s: &Sample| -> Result<Option<[f64; 2]>, EmtError> {
+) -> Option<[[f64; 3]; 3]> {
+    let error = |s: &Sample| -> Result<Option<[f64; 3]>, EmtError> {
         let solution = model.solve(&s.observation(gamma).checked()?, calibration)?;
         if solution.discrepancy.is_some() {
             return Ok(None);
         }
         let found = solution.structure;
         let truth = if abscissa == Quantity::Z { s.z } else { s.k };
-        Ok(found.get(abscissa).zip(found.eps).map(|(n, eps)| [n - truth, eps - s.eps]))
+        let k_hat = found.k_hat.map_or(0.0, |k_hat| k_hat - truth);
+        Ok(found.get(abscissa).zip(found.eps).map(|(n, eps)| [n - truth, k_hat, eps - s.eps]))
     };
-    let known = |s: &&&Sample| gamma == GammaSource::Zero || Gamma::is_known(&s.gamma, gamma);
+    let known = |s: &&Sample| gamma == GammaSource::Zero || Gamma::is_known(&s.gamma, gamma);
     let asked: Vec<_> = samples.iter().filter(known).collect();
-    let errors: Vec<[f64; 2]> = asked.iter().filter_map(|s| error(s).ok().flatten()).collect();
+    let errors: Vec<[f64; 3]> = asked.iter().filter_map(|s| error(s).ok().flatten()).collect();
     if errors.is_empty() || errors.len() * 10 < asked.len() * 9 {
         return None;
     }
     let mean = |i: usize, j: usize| errors.iter().map(|e| e[i] * e[j]).sum::<f64>() / errors.len() as f64;
-    Some([[mean(0, 0), mean(0, 1)], [mean(1, 0), mean(1, 1)]])
+    Some(std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j))))
 }

@@ -42,8 +42,8 @@ pub struct Discrepancy {
     pub abscissa: Quantity,
     /// The γ/Δ that it was fed with; `None` if it uses none.
     pub gamma: Option<GammaSource>,
-    /// Mean of error times error, the bias in it, of the coordination number and ε.
-    pub mean_square: [[f64; 2]; 2],
+    /// Mean of error times error, the bias in it, of the coordination number, k̂ and ε; zero where the model has no k̂.
+    pub mean_square: [[f64; 3]; 3],
 }
 
 /// Why there is no calibration.
@@ -184,8 +184,9 @@ impl Calibration {
             .iter()
             .find(|d| d.model == model && d.gamma == gamma && d.abscissa == abscissa)?;
         let mut covariance = StructureCovariance::zeros();
-        for (a, row) in [abscissa, Quantity::Eps].into_iter().zip(learned.mean_square) {
-            for (b, value) in [abscissa, Quantity::Eps].into_iter().zip(row) {
+        let order = [abscissa, Quantity::KHat, Quantity::Eps];
+        for (a, row) in order.into_iter().zip(learned.mean_square) {
+            for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;
             }
         }
