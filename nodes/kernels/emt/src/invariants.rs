@@ -52,6 +52,11 @@ impl Invariants {
         [self.ln_theta, self.ln_shear, self.dilatation, self.voigt, self.harmonic]
     }
 
+    /// All six moduli.
+    pub fn as_moduli(&self) -> Moduli {
+        Moduli::of_values(self.moduli().map(Some))
+    }
+
     /// The moduli, in the order of [`Modulus::ALL`].
     pub(crate) fn moduli(&self) -> [f64; 6] {
         let (theta, voigt) = self.scales();

@@ -8,6 +8,7 @@ mod inversion;
 mod propagation;
 mod quadrature;
 mod recovery;
+mod relaxed;
 mod sampling;
 mod sphere;
 mod table3;

@@ -1,0 +1,248 @@
+//! The relaxed network: what any set of moduli tells, and how sure it is.
+
+use crate::cases::Random;
+use emt::relaxed::Relaxed;
+use emt::{
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Quantity,
+    Structure, Warning,
+};
+use grains::{Material, Stiffness, TransverseIsotropy};
+use nalgebra::Matrix6;
+
+fn ours() -> &'static Calibration {
+    Calibration::builtin("grainlab").unwrap()
+}
+
+fn conditions() -> Conditions {
+    Conditions {
+        solid_fraction: Some(Measured::exact(0.633)),
+        material: Some(Material::GLASS),
+        ..Conditions::at(100e3)
+    }
+}
+
+fn structure(z: f64, eps: f64) -> Structure {
+    Structure { z: Some(z), eps: Some(eps), ..Structure::default() }
+}
+
+fn moduli(z: f64, eps: f64) -> Moduli {
+    Relaxed.predict(&structure(z, eps), &conditions(), ours()).unwrap()
+}
+
+fn infer(moduli: Moduli) -> Result<Estimate, EmtError> {
+    Relaxed.infer(&Observation::new(moduli, conditions()).with_relative_error(0.005), ours())
+}
+
+fn only(all: &Moduli, kept: &[Modulus]) -> Moduli {
+    kept.iter().fold(Moduli::NONE, |m, k| m.with(*k, all.get(*k).unwrap()))
+}
+
+#[test]
+fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
+    use Modulus::{C11, C33, G12, G13, Theta};
+    let all = moduli(5.3, 0.05);
+    for set in [&[G12, G13, Theta][..], &[C11, C33], &[G12, G13], &[C11, C33, G12, G13], &[C33, Theta]] {
+        let found = infer(only(&all, set)).unwrap();
+        assert!((found.structure.z.unwrap() - 5.3).abs() < 1e-9, "{set:?}: {:?}", found.structure);
+        assert!((found.structure.eps.unwrap() - 0.05).abs() < 1e-9, "{set:?}: {:?}", found.structure);
+    }
+    // One modulus has nothing to say of ε, and says z less well than two.
+    for one in [G12, Theta, C33] {
+        let found = infer(only(&all, &[one])).unwrap();
+        assert_eq!((found.structure.eps, found.structure.eps_stiffness), (None, None), "{one}");
+        let off = (found.structure.z.unwrap() - 5.3).abs();
+        assert!(off < 2.0 * found.stddev(Quantity::Z).unwrap(), "{one}: {found:?}");
+        let together = infer(all).unwrap();
+        assert!(found.stddev(Quantity::Z) > together.stddev(Quantity::Z), "{one}");
+    }
+    let nothing = Relaxed.infer(&Observation::new(Moduli::NONE, conditions()), ours()).unwrap_err();
+    assert!(matches!(nothing, EmtError::Missing { .. }), "{nothing}");
+}
+
+#[test]
+fn more_moduli_are_never_worse() {
+    use Modulus::{C11, C33, G12, G13, Theta};
+    let all = moduli(5.1, 0.04);
+    let sigma = |set: &[Modulus]| infer(only(&all, set)).unwrap().stddev(Quantity::Eps).unwrap();
+    let (three, four, five) = (sigma(&[G12, G13, Theta]), sigma(&[G12, G13, C11, C33]), infer(all).unwrap());
+    assert!(three > 1.5 * four, "{three} {four}: P moduli carry more of eps than the ratio of shear moduli");
+    assert!(four >= five.stddev(Quantity::Eps).unwrap());
+}
+
+/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they promise,
+/// and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
+#[test]
+fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
+    let network = ours().network().unwrap();
+    let mut random = Random::new(7);
+    for (noise, at_least_solved) in [(0.0, 1.0), (0.01, 1.0), (0.05, 0.999), (0.3, 0.5)] {
+        let (mut solved, mut held) = (0.0, [0.0; 2]);
+        const DRAWS: usize = 4000;
+        for _ in 0..DRAWS {
+            let (z, eps) = (random.within([4.9, 5.7]), random.within([-0.06, 0.08]));
+            let exact = moduli(z, eps);
+            let scattered = scattered(&exact, network, z, &mut random);
+            let observed = scattered.map(|m| m.map(|m| m * (1.0 + noise * random.normal())));
+            let observation = Observation::new(Moduli::of_values(observed), conditions());
+            let observation = observation.with_relative_error(noise);
+            let Ok(found) = Relaxed.infer(&observation, ours()) else { continue };
+            solved += 1.0;
+            let warned = found.warnings.iter().any(|w| matches!(w, Warning::ErrorsLarge { .. }));
+            assert_eq!(warned, noise > 0.1);
+            for (i, (q, truth)) in [(Quantity::Z, z), (Quantity::Eps, eps)].into_iter().enumerate() {
+                let Some([low, high]) = found.interval(q) else {
+                    held[i] += 1.0;
+                    continue;
+                };
+                assert!(low.is_finite() && high.is_finite());
+                held[i] += f64::from(u8::from((low..=high).contains(&truth)));
+            }
+        }
+        assert!(solved / DRAWS as f64 >= at_least_solved, "noise {noise}: {solved} of {DRAWS} solved");
+        if noise < 0.1 {
+            for held in held {
+                let share = held / solved;
+                assert!(
+                    (0.93..=0.97).contains(&share),
+                    "noise {noise}: {share} of the intervals hold the truth"
+                );
+            }
+        } else {
+            // Far beyond first order, which every one of them was warned of.
+            assert!(held.iter().all(|h| h / solved > 0.6), "noise {noise}: {held:?} of {solved}");
+        }
+    }
+}
+
+/// The five independent moduli of a sample of this mean, in the order of [`Modulus::ALL`] and without Θ.
+fn scattered(
+    mean: &Moduli,
+    network: &emt::calibration::Network,
+    z: f64,
+    random: &mut Random,
+) -> [Option<f64>; 6] {
+    let covariance = nalgebra::Matrix5::from_fn(|i, j| network.scatter[i][j]);
+    let excess = (z - 4.0) / z;
+    let root = covariance.cholesky().unwrap().l() / excess;
+    let off = root * nalgebra::Vector5::from_fn(|_, _| random.normal());
+    let at = emt::Invariants::of(mean).unwrap();
+    let [ln_theta, ln_shear, dilatation, voigt, harmonic]: [f64; 5] =
+        std::array::from_fn(|i| at.values()[i] + off[i]);
+    let moved = emt::Invariants { ln_theta, ln_shear, dilatation, voigt, harmonic };
+    let mut values = moved.as_moduli().values();
+    values[Modulus::Theta as usize] = None;
+    values
+}
+
+#[test]
+fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
+    let sound = moduli(5.2, 0.03);
+    let conflict = |m: Moduli| {
+        let found = infer(m).unwrap();
+        found.warnings.iter().find_map(|w| match w {
+            Warning::Conflict { worst, chi_square, .. } => Some((worst.0, *chi_square)),
+            _ => None,
+        })
+    };
+    assert_eq!(conflict(sound), None);
+    for modulus in [Modulus::G12, Modulus::C11] {
+        let wrong = sound.without(Modulus::Theta).with(modulus, 1.2 * sound.get(modulus).unwrap());
+        let (worst, chi_square) = conflict(wrong).unwrap();
+        assert!(worst == modulus && chi_square > 16.3, "{modulus}: {worst} is blamed, {chi_square}");
+    }
+}
+
+#[test]
+fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
+    let m = moduli(5.2, 0.03);
+    let get = |q| m.get(q).unwrap();
+    let (c11, g12) = (get(Modulus::C11), get(Modulus::G12));
+    let t = TransverseIsotropy {
+        c11,
+        c12: c11 - 2.0 * g12,
+        c13: get(Modulus::C13),
+        c33: get(Modulus::C33),
+        g12,
+        g13: get(Modulus::G13),
+        residual: 0.0,
+    };
+    let warned = |c: Matrix6<f64>| {
+        let found = Relaxed.infer(&Observation::of_stiffness(&Stiffness(c), conditions()), ours()).unwrap();
+        found
+            .warnings
+            .iter()
+            .any(|w| matches!(w, Warning::NotTransverselyIsotropic { asymmetry } if *asymmetry > 0.05))
+    };
+    let round = t.stiffness().0;
+    assert!(!warned(round));
+    let mut orthotropic = round;
+    orthotropic[(0, 0)] *= 1.2;
+    orthotropic[(3, 3)] *= 0.8;
+    assert!(warned(orthotropic));
+}
+
+#[test]
+fn an_unknown_solid_fraction_is_assumed_and_costs_certainty() {
+    let mut o = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.002);
+    let known = Relaxed.infer(&o, ours()).unwrap();
+    o.conditions.solid_fraction = None;
+    let assumed = Relaxed.infer(&o, ours()).unwrap();
+    assert!(assumed.warnings.iter().any(|w| matches!(w, Warning::SolidFractionAssumed { .. })));
+    assert!(assumed.stddev(Quantity::Z) > known.stddev(Quantity::Z));
+    let off = (assumed.structure.z.unwrap() - 5.3).abs();
+    assert!(off < 2.0 * assumed.stddev(Quantity::Z).unwrap());
+}
+
+/// Hertz contacts know no length and no pressure but in units of E*.
+#[test]
+fn stiffer_grains_at_as_much_higher_a_pressure_are_the_same_packing() {
+    let (z, eps) = (5.4, -0.02);
+    let stiffer = Material { shear_modulus: 7.0 * Material::GLASS.shear_modulus, ..Material::GLASS };
+    let at = Conditions { pressure: Measured::exact(700e3), material: Some(stiffer), ..conditions() };
+    let predicted = Relaxed.predict(&structure(z, eps), &at, ours()).unwrap();
+    for (modulus, value) in moduli(z, eps).known() {
+        assert!((predicted.get(modulus).unwrap() / value / 7.0 - 1.0).abs() < 1e-12, "{modulus}");
+    }
+}
+
+#[test]
+fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
+    let exact = Observation::new(moduli(5.25, 0.06), conditions()).checked().unwrap();
+    let found = Relaxed.solve(&exact, ours()).unwrap();
+    let slopes = found.slopes.unwrap();
+    const STEP: f64 = 1e-6;
+    for modulus in Modulus::ALL {
+        let at = |by: f64| {
+            let m = exact.moduli.with(modulus, exact.moduli.get(modulus).unwrap() * (1.0 + by));
+            Relaxed.solve(&Observation { moduli: m, ..exact.clone() }, ours()).unwrap().structure
+        };
+        let (up, down) = (at(STEP), at(-STEP));
+        for q in [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness] {
+            let numerical = (up.get(q).unwrap() - down.get(q).unwrap()) / (2.0 * STEP);
+            let stated = slopes[(q as usize, modulus as usize)];
+            assert!((numerical - stated).abs() < 1e-4, "{q} by {modulus}: {numerical} {stated}");
+        }
+    }
+    let at = |by: f64| {
+        let mut o = exact.clone();
+        o.conditions.pressure.value *= 1.0 + by;
+        Relaxed.solve(&o, ours()).unwrap().structure
+    };
+    for q in [Quantity::K, Quantity::Z, Quantity::Eps] {
+        let numerical = (at(STEP).get(q).unwrap() - at(-STEP).get(q).unwrap()) / (2.0 * STEP);
+        assert!((numerical - slopes[(q as usize, 6)]).abs() < 1e-4, "{q} by pressure");
+    }
+}
+
+#[test]
+fn moduli_of_no_packing_and_a_calibration_without_networks_are_refused_by_name() {
+    let sound = moduli(5.2, 0.03);
+    let scaled = |by: f64| Moduli::of_values(sound.values().map(|m| m.map(|m| m * by)));
+    for by in [1e-3, 0.3, 3.0, 1e3] {
+        let e = infer(scaled(by)).unwrap_err();
+        assert!(matches!(e, EmtError::NoCoordination { .. }), "{by}: {e}");
+        assert!(e.to_string().contains("grainlab"), "{e}");
+    }
+    let e = Relaxed.infer(&Observation::new(sound, conditions()), &Calibration::PAPER).unwrap_err();
+    assert!(matches!(e, EmtError::NotCalibrated { .. }), "{e}");
+}

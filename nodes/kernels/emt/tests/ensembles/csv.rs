@@ -1,0 +1,75 @@
+//! Kept measurements, as `grainlab analyze` and the ensemble script wrote them.
+
+use emt::{Gamma, Moduli, Observation, Sample};
+use grains::{Anisotropy, Material};
+use std::path::Path;
+
+/// Header and rows of a file in `tests/golden`.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+fn read(name: &str) -> Table {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../tests/golden").join(name);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut lines =
+        text.lines().filter(|l| !l.starts_with('#')).map(|l| l.split(',').map(String::from).collect());
+    Table { header: lines.next().unwrap(), rows: lines.collect() }
+}
+
+impl Table {
+    fn cell<'a>(&self, row: &'a [String], column: &str) -> &'a str {
+        let at = self.header.iter().position(|h| h == column);
+        &row[at.unwrap_or_else(|| panic!("no column {column}"))]
+    }
+
+    fn number(&self, row: &[String], column: &str) -> f64 {
+        self.cell(row, column).parse().unwrap()
+    }
+}
+
+/// The packings of one ensemble; path and friction are the preparation.
+pub(crate) fn samples(name: &str) -> Vec<Sample> {
+    let t = read(&format!("ensembles/{name}"));
+    let sample = |row: &Vec<String>| {
+        let number = |column| t.number(row, column);
+        let preparation = format!("{}-{}", t.cell(row, "preparation"), t.cell(row, "mu2"));
+        let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];
+        Sample {
+            packing: format!("{preparation}-{}", t.cell(row, "seed")),
+            preparation,
+            grains: number("grains") as u32,
+            material: Material {
+                shear_modulus: number("grain_shear_modulus_pa"),
+                poisson_ratio: number("poisson"),
+                ..Material::GLASS
+            },
+            pressure: number("pressure_pa"),
+            solid_fraction: number("phi"),
+            moduli: Moduli::of_values(moduli.map(|m| Some(number(m)))),
+            gamma: Anisotropy {
+                total: t.cell(row, "g_total").parse().ok(),
+                elastic: t.cell(row, "g_elastic").parse().ok(),
+                contact: t.cell(row, "g_contact").parse().ok(),
+            },
+            k: number("k"),
+            z: number("z"),
+            eps: number("eps"),
+            eps_stiffness: number("eps_stiffness"),
+        }
+    };
+    t.rows.iter().map(sample).collect()
+}
+
+/// The states of the paper's Table III, each with the ε that its simulation counted.
+pub(crate) fn paper_rows() -> Vec<(Observation, f64)> {
+    let t = read("paper_rows.csv");
+    let row = |row: &Vec<String>| {
+        let n = |column| t.number(row, column);
+        let g = Gamma::given(n("gamma_over_delta"));
+        let o = Observation::paper(n("g12_pa"), n("g13_pa"), n("theta_pa"), 1e3 * n("p_kpa"), g);
+        (o, n("eps"))
+    };
+    t.rows.iter().map(row).collect()
+}
