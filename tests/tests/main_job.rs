@@ -90,6 +90,11 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
         results.iter().any(|r| r["model"] == "ratio")
             && results.iter().any(|r| r["model"] == "ratio-as-printed")
     );
+    let ratio = results.iter().find(|r| r["model"] == "ratio").unwrap();
+    assert_eq!((&ratio["source"], &ratio["calibration"]), (&"moduli".into(), &"paper".into()), "{ratio}");
+    assert!(ratio["k"].is_f64() && ratio["z"].is_null() && ratio["sigma"]["k"].is_f64(), "{ratio}");
+    assert!(ratio["degrees_of_freedom"] == 0 && ratio["condition_number"].is_f64(), "{ratio}");
+    assert!(ended.stdout.contains("errors against k, z and eps measured"), "{}", ended.stdout);
     assert!(run.join("metadata.yaml").is_file());
 
     if let Some(python) = python::with("mcap_ros2, rosbags, zstandard, lz4, yaml") {

@@ -108,24 +108,43 @@ impl Check {
         if known { self.finite(field, value).map(Some) } else { Ok(None) }
     }
 
-    /// A 3×3 covariance, row-major; `None` if it is all zero.
-    pub(super) fn covariance(self, field: &str, c: &[f64; 9]) -> Checked<Option<[f64; 9]>> {
+    /// A covariance, row-major; `None` if it is all zero.
+    pub(super) fn covariance<const ENTRIES: usize>(
+        self,
+        field: &str,
+        c: &[f64; ENTRIES],
+    ) -> Checked<Option<[f64; ENTRIES]>> {
         self.all_finite(field, c)?;
         if c.iter().all(|v| *v == 0.0) {
             return Ok(None);
         }
-        for i in 0..3 {
-            self.not_negative(&format!("{field}[{}]", 4 * i), c[4 * i])?;
+        let side = ENTRIES.isqrt();
+        let variance = |i: usize| c[(side + 1) * i];
+        for i in 0..side {
+            self.not_negative(&format!("{field}[{}]", (side + 1) * i), variance(i))?;
             for j in 0..i {
-                let (lower, upper) = (c[3 * i + j], c[3 * j + i]);
-                let bound = (c[4 * i] * c[4 * j]).sqrt();
+                let (lower, upper) = (c[side * i + j], c[side * j + i]);
+                let bound = (variance(i) * variance(j)).sqrt();
                 // 1e-9: rounding of whoever made it, far below any uncertainty of an uncertainty.
                 let good = (lower - upper).abs() <= 1e-9 * bound && lower.abs() <= bound * (1.0 + 1e-9);
-                let name = format!("{field}[{}]", 3 * i + j);
+                let name = format!("{field}[{}]", side * i + j);
                 self.that(good, &name, lower, "symmetric and at most 1 as a correlation")?;
             }
         }
         Ok(Some(*c))
+    }
+
+    /// The one of `allowed` that `word` is; `listed` is all of them in words.
+    pub(super) fn word(
+        self,
+        field: &'static str,
+        word: &str,
+        allowed: &[&'static str],
+        listed: &'static str,
+    ) -> Checked<&'static str> {
+        let refused =
+            || BoundaryError::Word { message: self.0, field, value: word.to_owned(), allowed: listed };
+        allowed.iter().find(|w| **w == word).copied().ok_or_else(refused)
     }
 }
 

@@ -3,6 +3,7 @@
 //! checks, so that no node publishes what another would refuse.
 
 mod check;
+mod estimate;
 mod fabric;
 mod microstructure;
 mod moduli;
@@ -11,14 +12,19 @@ mod run_state;
 mod strain_rate;
 mod stress;
 mod structure;
+mod wave_speeds;
 
+pub use estimate::{
+    DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
+};
 pub use fabric::fabric_message;
-pub use microstructure::{EstimateReading, EstimateStatus, Inferred, Interval, MicrostructureReading};
+pub use microstructure::MicrostructureReading;
 pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
 pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;
+pub use wave_speeds::{WaveMethod, WaveSpeedReading, WaveSpeedsReading};
 
 /// Why a message, or what should become one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -45,6 +51,18 @@ pub enum BoundaryError {
         /// The value found.
         value: u8,
         /// The constants.
+        allowed: &'static str,
+    },
+    /// A word that is none of those agreed on.
+    #[error("{message}.{field} = {value:?} is refused: it must be one of {allowed}")]
+    Word {
+        /// Name of the message.
+        message: &'static str,
+        /// Name of the field.
+        field: &'static str,
+        /// The word found.
+        value: String,
+        /// Those agreed on.
         allowed: &'static str,
     },
     /// An array of the wrong length.

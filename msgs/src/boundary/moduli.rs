@@ -70,11 +70,11 @@ pub struct ModuliReading {
     /// Number of grains.
     pub grains: Option<u32>,
     /// Shear modulus in the plane of isotropy, Pa.
-    pub g12: f64,
+    pub g12: Option<f64>,
     /// Shear modulus along e3, Pa.
-    pub g13: f64,
+    pub g13: Option<f64>,
     /// Voigt bulk modulus Θ, Pa.
-    pub theta: f64,
+    pub theta: Option<f64>,
     /// Reuss bulk modulus, Pa.
     pub theta_reuss: Option<f64>,
     /// Lower bound of that, Pa.
@@ -97,8 +97,8 @@ pub struct ModuliReading {
     pub covariance: Option<[f64; 9]>,
     /// Confining pressure, Pa, 0 or more.
     pub pressure: f64,
-    /// Solid fraction φ, more than 0.
-    pub solid_fraction: f64,
+    /// Solid fraction φ.
+    pub solid_fraction: Option<f64>,
     /// Unit axis of symmetry found.
     pub axis: Option<Vec3>,
     /// The three ratios γ/Δ.
@@ -180,10 +180,10 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             source_step: m.source_step,
             method: method(m.method)?,
             grains: Some(m.grains).filter(|n| *n > 0),
-            g12: CHECK.finite("g12", m.g12)?,
-            g13: CHECK.finite("g13", m.g13)?,
-            theta: CHECK.finite("theta", m.theta)?,
-            theta_reuss: Some(CHECK.finite("theta_reuss", m.theta_reuss)?).filter(|v| *v != 0.0),
+            g12: not_zero("g12", m.g12)?,
+            g13: not_zero("g13", m.g13)?,
+            theta: not_zero("theta", m.theta)?,
+            theta_reuss: not_zero("theta_reuss", m.theta_reuss)?,
             c11: projected.map(|t| t.c11),
             c33: projected.map(|t| t.c33),
             c13: projected.map(|t| t.c13),
@@ -194,7 +194,7 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             affine: known_stiffness("stiffness_affine", &m.stiffness_affine)?,
             covariance: CHECK.covariance("covariance", &m.covariance)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
-            solid_fraction: CHECK.positive("solid_fraction", m.solid_fraction)?,
+            solid_fraction: CHECK.known("solid_fraction", m.solid_fraction)?,
             axis: CHECK.direction("axis", &m.axis)?,
             gamma_over_delta: anisotropy(m)?,
             k,
@@ -239,6 +239,11 @@ impl TryFrom<&msg::Moduli> for Moduli {
             iterations: m.iterations,
         })
     }
+}
+
+/// A finite number of either sign; `None` if it is 0.
+fn not_zero(field: &str, value: f64) -> Result<Option<f64>, BoundaryError> {
+    Ok(Some(CHECK.finite(field, value)?).filter(|v| *v != 0.0))
 }
 
 fn known_stiffness(field: &str, values: &[f64; 36]) -> Result<Option<Stiffness>, BoundaryError> {

@@ -1,9 +1,11 @@
 //! The trust boundary: what is good crosses it unchanged both ways, what is not is refused by name.
 
+mod estimates;
 mod lockstep;
 mod packing;
 mod results;
 mod structure;
+mod wave_speeds;
 
 use grainlab_msgs::boundary::BoundaryError;
 

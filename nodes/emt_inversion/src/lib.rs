@@ -1,13 +1,21 @@
-//! The inversion node: turns moduli into microstructure.
+//! The inversion node: turns moduli and wave speeds into microstructure.
 //!
 //! - [`parameters`]: what can be set; [`Settings`]: the same, typed
-//! - [`microstructure_message`]: the whole work, a pure function of one message
+//! - [`microstructure_message`], [`microstructure_of_speeds`]: the whole work, pure functions of one message
 //! - [`EmtInversion`]: the node
 
+mod calibration;
+mod estimate;
 mod message;
+mod models;
+mod moduli;
 mod node;
+mod observed;
 mod settings;
+mod speeds;
 
-pub use message::microstructure_message;
+pub use calibration::CalibrationChoice;
+pub use message::{microstructure_message, microstructure_of_speeds};
+pub use models::Models;
 pub use node::EmtInversion;
-pub use settings::{Settings, parameters};
+pub use settings::{Axis, Settings, SettingsError, parameters};

@@ -1,91 +1,131 @@
 //! The node.
 
-use crate::{Settings, microstructure_message};
-use grainlab_msgs::msg::{Estimate, Microstructure, Moduli};
-use grainlab_msgs::topics;
+use crate::{Settings, microstructure_message, microstructure_of_speeds};
+use grainlab_msgs::boundary::BoundaryError;
+use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
+use grainlab_msgs::{Message, Topic, topics};
 use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
-/// There is nothing to do between two sets of moduli.
+/// There is nothing to do between two sets of data.
 const IDLE: Duration = Duration::from_secs(3600);
 
-/// Moduli that may wait.
+/// Messages of one topic that may wait.
 const BACKLOG: u32 = 64;
 
-/// The inversion: every model's word on every set of moduli.
+/// One topic of data, and what is made of its messages.
 #[derive(Debug)]
-pub struct EmtInversion {
-    settings: Settings,
-    moduli: Subscription<Moduli>,
-    microstructure: Publisher<Microstructure>,
+struct Source<T> {
+    messages: Subscription<T>,
+    invert: fn(&T, &Settings) -> Result<Microstructure, BoundaryError>,
+}
+
+/// What became of the data so far.
+#[derive(Debug, Default)]
+struct Tally {
     inverted: u64,
     without_solution: u64,
     last_step: Option<u64>,
-    /// What was wrong with the latest moduli, if something was.
+    /// What was wrong with the latest data, if something was.
     trouble: Option<String>,
 }
 
+/// The inversion: every model's word on every set of data.
+#[derive(Debug)]
+pub struct EmtInversion {
+    settings: Settings,
+    moduli: Source<Moduli>,
+    wave_speeds: Source<WaveSpeeds>,
+    microstructure: Publisher<Microstructure>,
+    tally: Tally,
+}
+
 impl EmtInversion {
-    /// Takes the latest moduli, where some are latched, and all after them.
+    /// Takes the latest data, where some are latched, and all after them.
     pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
             settings,
-            moduli: Subscription::subscribe(bus, &topics::MODULI, Demand::reliable(BACKLOG))?,
+            moduli: Source::subscribe(bus, &topics::MODULI, microstructure_message)?,
+            wave_speeds: Source::subscribe(bus, &topics::WAVE_SPEEDS, microstructure_of_speeds)?,
             microstructure: Publisher::advertise(bus, &topics::MICROSTRUCTURE)?,
-            inverted: 0,
-            without_solution: 0,
-            last_step: None,
-            trouble: None,
+            tally: Tally::default(),
         })
     }
+}
 
-    fn publish(&mut self, bus: &mut dyn Bus, message: &Microstructure) -> Result<(), BusError> {
-        self.microstructure.publish(bus, message)?;
+impl<T: Message> Source<T> {
+    fn subscribe(
+        bus: &mut dyn Bus,
+        topic: &Topic,
+        invert: fn(&T, &Settings) -> Result<Microstructure, BoundaryError>,
+    ) -> Result<Self, BusError> {
+        Ok(Self { messages: Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?, invert })
+    }
+
+    /// Answers everything that has come.
+    fn answer(
+        &self,
+        bus: &mut dyn Bus,
+        settings: &Settings,
+        microstructure: &Publisher<Microstructure>,
+        tally: &mut Tally,
+    ) -> Result<(), BusError> {
+        while let Some((data, _)) = self.messages.take_valid(bus)? {
+            match (self.invert)(&data, settings) {
+                Ok(message) => match microstructure.publish(bus, &message) {
+                    Ok(_) => tally.count(&message),
+                    // A reader is hundreds of results behind: it is as good as dead, and this node is not.
+                    Err(full @ BusError::Full { .. }) => tally.complain(full.to_string()),
+                    Err(error) => return Err(error),
+                },
+                Err(error) => {
+                    bus.count_refused(self.messages.id());
+                    tally.complain(error.to_string());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Tally {
+    fn complain(&mut self, trouble: String) {
+        log::error!("{trouble}");
+        self.trouble = Some(trouble);
+    }
+
+    fn count(&mut self, message: &Microstructure) {
         self.inverted += 1;
         self.last_step = Some(message.source_step);
         self.trouble = None;
         let solved = |e: &&Estimate| matches!(e.status, Estimate::STATUS_OK | Estimate::STATUS_EXTRAPOLATED);
         for unsolved in message.estimates.iter().filter(|e| !solved(e)) {
             self.without_solution += 1;
-            let reason = unsolved.warnings.join("; ");
-            let trouble = format!("step {}, model {}: {reason}", message.source_step, unsolved.model);
-            log::warn!("no estimate at {trouble}");
+            let (source, step, model) = (&message.source, message.source_step, &unsolved.model);
+            let trouble = format!("{source} of step {step}, model {model}: {}", unsolved.warnings.join("; "));
+            log::warn!("no estimate from {trouble}");
             self.trouble = Some(trouble);
         }
-        Ok(())
     }
 }
 
 impl Node for EmtInversion {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        while let Some((moduli, _)) = self.moduli.take_valid(bus)? {
-            match microstructure_message(&moduli, &self.settings) {
-                Ok(message) => match self.publish(bus, &message) {
-                    // A reader is hundreds of results behind: it is as good as dead, and this node is not.
-                    Err(full @ BusError::Full { .. }) => {
-                        log::error!("{full}");
-                        self.trouble = Some(full.to_string());
-                    }
-                    published => published?,
-                },
-                Err(error) => {
-                    bus.count_refused(self.moduli.id());
-                    log::error!("{error}");
-                    self.trouble = Some(error.to_string());
-                }
-            }
-        }
+        let Self { settings, moduli, wave_speeds, microstructure, tally } = self;
+        moduli.answer(bus, settings, microstructure, tally)?;
+        wave_speeds.answer(bus, settings, microstructure, tally)?;
         Ok(Next::Wait(IDLE))
     }
 
     fn health(&self) -> Health {
-        let health = match &self.trouble {
-            None => Health::ok(format!("{} sets of moduli", self.inverted)),
+        let tally = &self.tally;
+        let health = match &tally.trouble {
+            None => Health::ok(format!("{} sets of data", tally.inverted)),
             Some(trouble) => Health::warn(trouble.clone()),
         };
         health
-            .with("inverted", self.inverted)
-            .with("without_solution", self.without_solution)
-            .with("last_step", self.last_step.map_or("none".into(), |s| s.to_string()))
+            .with("inverted", tally.inverted)
+            .with("without_solution", tally.without_solution)
+            .with("last_step", tally.last_step.map_or("none".into(), |s| s.to_string()))
     }
 }

@@ -71,6 +71,19 @@ impl Table {
         self.rows.first().map_or(&[], Vec::as_slice)
     }
 
+    /// The same without the columns in which no row has a value: every cell is a `-`.
+    #[must_use]
+    pub(crate) fn without_empty_columns(mut self) -> Self {
+        let (header, rows) = self.rows.split_at(1);
+        let has_value = |c: usize| rows.iter().filter_map(|r| r.get(c)).any(|cell| cell != "-");
+        let kept: Vec<bool> = (0..header[0].len()).map(|c| rows.is_empty() || has_value(c)).collect();
+        for row in &mut self.rows {
+            let mut kept = kept.iter();
+            row.retain(|_| *kept.next().unwrap_or(&true));
+        }
+        self
+    }
+
     /// Aligned columns, two spaces apart.
     pub(crate) fn text(&self) -> String {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -133,6 +146,19 @@ mod tests {
         let of = |names: &[&str]| t.select(&names.iter().map(ToString::to_string).collect::<Vec<_>>());
         assert_eq!(of(&["c", "a"]).unwrap().csv(), "c,a\n3,1\n");
         assert_eq!(of(&["c", "d"]).unwrap_err(), "d");
+    }
+
+    #[test]
+    fn a_column_is_left_out_only_if_no_row_has_a_value_there() {
+        let mut t = Table::new(["a", "b", "c"]);
+        t.row(["x", "-", "-"]);
+        t.row(["y", "1", "-"]);
+        assert_eq!(t.without_empty_columns().text(), "a  b\nx  -\ny  1\n");
+        assert_eq!(
+            Table::new(["a", "b"]).without_empty_columns().text(),
+            "a  b\n",
+            "no rows, nothing to judge by"
+        );
     }
 
     #[test]

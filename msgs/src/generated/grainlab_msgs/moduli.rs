@@ -29,11 +29,11 @@ pub struct Moduli {
     /// Pa, row-major, affine motion with one spin of all grains, all 0 = not computed
     #[serde(with = "crate::fixed_array")]
     pub stiffness_mean_spin: [f64; 36],
-    /// Pa, shear modulus in the plane of isotropy: (C11 + C22)/8 - C12/4 + C66/2
+    /// Pa, shear modulus in the plane of isotropy: (C11 + C22)/8 - C12/4 + C66/2, 0 = unknown
     pub g12: f64,
-    /// Pa, shear modulus along e3: (C44 + C55)/2
+    /// Pa, shear modulus along e3: (C44 + C55)/2, 0 = unknown
     pub g13: f64,
-    /// Pa, Voigt bulk modulus C_iijj/9
+    /// Pa, Voigt bulk modulus C_iijj/9, 0 = unknown
     pub theta: f64,
     /// Pa, Reuss bulk modulus, 0 = undefined
     pub theta_reuss: f64,
@@ -43,7 +43,7 @@ pub struct Moduli {
     pub covariance: [f64; 9],
     /// Pa, confining, compression positive
     pub pressure: f64,
-    /// Dimensionless.
+    /// 0 = unknown
     pub solid_fraction: f64,
     /// unit axis of symmetry found, all 0 = unknown
     pub axis: Vector3,

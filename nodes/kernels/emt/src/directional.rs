@@ -163,7 +163,7 @@ fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) 
         }
         let mut share = 1.0;
         // Rounding alone is no deterioration.
-        let enough = residual.norm() * (1.0 + 1e-12);
+        let enough = residual.norm() + 4.0 * f64::EPSILON;
         while share > 1e-9 && at(found + step * share).0.norm() > enough {
             share *= 0.5;
         }

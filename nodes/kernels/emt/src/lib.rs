@@ -12,6 +12,7 @@
 //! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
 //! - [`effective`]: the plain theory, with the pressure closing the strain
+//! - [`mod@christoffel`]: moduli from the speeds of waves
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
 //! - [`directional`]: each modulus by a coordination number of its own
@@ -30,6 +31,7 @@
 //! ```
 
 pub mod calibration;
+pub mod christoffel;
 pub mod conditions;
 pub mod directional;
 pub mod domain;
@@ -55,6 +57,7 @@ pub mod structure;
 pub mod warning;
 
 pub use calibration::{Calibration, CalibrationError, Isotropic, Sample, learn};
+pub use christoffel::ChristoffelError;
 pub use conditions::{Conditions, Gamma, GammaSource, Measured};
 pub use domain::Domain;
 pub use error::EmtError;

@@ -12,6 +12,7 @@
 //! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
 //! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
 //! - [`control`]: what a loading path asks of each strain component, and the law that answers
+//! - [`waves`]: plane waves in a medium, and one measured speed of one
 //! - [`structure`]: what is measured on a contact network beyond coordination and fabric
 //! - [`results`]: what the kernels report
 
@@ -25,6 +26,7 @@ pub mod stress;
 pub mod structure;
 pub mod symmetry;
 pub mod tensor;
+pub mod waves;
 
 pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
@@ -35,3 +37,4 @@ pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use structure::Structure;
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};
+pub use waves::{PlaneWaves, WaveMode, WaveSpeed};

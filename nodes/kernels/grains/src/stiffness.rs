@@ -140,7 +140,7 @@ impl TransverseIsotropy {
 }
 
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
-const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
+pub(crate) const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
 
 /// Voigt to Mandel, in which the matrix norm is the tensor norm.
 fn mandel(c: &Matrix6<f64>) -> Matrix6<f64> {

@@ -24,12 +24,12 @@ mod way;
 use crate::failure::Failure;
 use crate::output::{Format, print, say};
 use answer::{Answer, More};
-use columns::Defaults;
+pub(super) use columns::{BadRow, Defaults, Row};
 use emt::{Measured, Modulus};
 use node_kit::Exit;
 use print::Printer;
-use rows::Rows;
-use state::State;
+pub(super) use rows::Rows;
+pub(super) use state::State;
 use std::path::PathBuf;
 use way::{GammaChoice, ways};
 

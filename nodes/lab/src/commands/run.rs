@@ -24,7 +24,11 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
         node("dem_simulator", "owns the run: publishes stress and packings, obeys strain rates", simulator),
         node("servo_controller", "answers every stress with a strain rate", servo_controller::parameters()),
         node("fabric_analyzer", "turns packings into fabric and moduli", fabric_analyzer::parameters()),
-        node("emt_inversion", "turns moduli into microstructure", emt_inversion::parameters()),
+        node(
+            "emt_inversion",
+            "turns moduli and wave speeds into microstructure",
+            emt_inversion::parameters(),
+        ),
         node("recorder", "records every topic to MCAP", recorder::parameters()),
     ]
 }
@@ -83,7 +87,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(FabricAnalyzer::new(bus, settings)?)
             }
-            _ => Box::new(EmtInversion::new(bus, parameters.into())?),
+            _ => {
+                let read = |path: &str| std::fs::read_to_string(path).map_err(|e| e.to_string());
+                let settings = emt_inversion::Settings::new(parameters, read);
+                let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+                Box::new(EmtInversion::new(bus, settings)?)
+            }
         };
         Ok(node)
     }))

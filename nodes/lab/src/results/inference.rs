@@ -1,28 +1,39 @@
 //! What the models infer, with the stable keys of `results[]`.
 
-use crate::output::{Table, exact, fixed};
 use emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
-use grainlab_msgs::msg;
 use serde::Serialize;
+
+pub(crate) use super::inference_text::{table, warning_lines};
 
 /// One model's result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Inference {
+    /// Topic that the data came from; absent where they came from a command line or a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) source: Option<String>,
     /// Name of the model.
     pub(crate) model: String,
-    /// Name of the isotropic calibration.
+    /// Name of the calibration.
     pub(crate) calibration: String,
     /// What it infers.
     #[serde(flatten)]
     pub(crate) values: Quantities<Option<f64>>,
-    /// Standard deviations.
+    /// Standard deviations, from data and model.
     pub(crate) sigma: Quantities<Option<f64>>,
+    /// The part of them that the model leaves out.
+    pub(crate) sigma_model: Quantities<Option<f64>>,
     /// Credible intervals.
     pub(crate) interval: Interval,
+    /// Misfit by the errors of data and model; null where there are as many data as unknowns.
+    pub(crate) chi_square: Option<f64>,
+    /// Data less unknowns; null without a solution.
+    pub(crate) degrees_of_freedom: Option<usize>,
+    /// How much more one combination suffers from errors of the data than another.
+    pub(crate) condition_number: Option<f64>,
     /// `ok`, `extrapolated`, `undetermined` or `failed`.
     pub(crate) status: &'static str,
-    /// The strain ratio that the model was fed with, and which of the three it is.
+    /// The strain ratio that the model was fed with, and where it is from; null if it takes none.
     pub(crate) gamma_over_delta: Option<f64>,
     pub(crate) gamma_over_delta_source: Option<String>,
     /// For a reader.
@@ -32,27 +43,29 @@ pub(crate) struct Inference {
 /// One value for each quantity of the microstructure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Quantities<T> {
-    /// Coordination number, in the calibration's sense.
+    /// Coordination number.
     pub(crate) k: T,
-    /// Coordination number of the equivalent isotropic packing.
+    /// Coordination number of the equivalent isotropic packing, in the calibration's sense.
     pub(crate) k_hat: T,
-    /// Coordination number without rattlers; the paper's models do not give it.
+    /// Coordination number without rattlers.
     pub(crate) z: T,
     /// Contact anisotropy.
     pub(crate) eps: T,
-    /// Contact anisotropy weighted by contact stiffness; the paper's models do not give it.
+    /// Contact anisotropy weighted by contact stiffness.
     pub(crate) eps_stiffness: T,
 }
 
 impl<T> Quantities<T> {
-    fn of(mut value: impl FnMut(Quantity) -> T) -> Self {
-        Self {
-            k: value(Quantity::K),
-            k_hat: value(Quantity::KHat),
-            z: value(Quantity::Z),
-            eps: value(Quantity::Eps),
-            eps_stiffness: value(Quantity::EpsStiffness),
-        }
+    pub(super) fn of(value: impl FnMut(Quantity) -> T) -> Self {
+        let [k, k_hat, z, eps, eps_stiffness] = Quantity::ALL.map(value);
+        Self { k, k_hat, z, eps, eps_stiffness }
+    }
+}
+
+impl<T: Copy> Quantities<T> {
+    /// In the order of [`Quantity::ALL`].
+    pub(super) fn all(&self) -> [T; emt::QUANTITIES] {
+        [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }
 
@@ -74,11 +87,16 @@ impl Inference {
         warnings: Vec<String>,
     ) -> Self {
         Self {
+            source: None,
             model: model.to_owned(),
             calibration: calibration.to_owned(),
             values: Quantities::default(),
             sigma: Quantities::default(),
+            sigma_model: Quantities::default(),
             interval: Interval::default(),
+            chi_square: None,
+            degrees_of_freedom: None,
+            condition_number: None,
             status,
             gamma_over_delta: None,
             gamma_over_delta_source: None,
@@ -86,31 +104,38 @@ impl Inference {
         }
     }
 
-    /// What was read from a recording: the message, and the same checked.
-    pub(crate) fn of_reading(message: &msg::Estimate, e: &EstimateReading) -> Self {
+    /// What was read from a recording, of data that came by the topic `source`.
+    pub(crate) fn of_reading(source: &str, e: &EstimateReading) -> Self {
         let status = match e.status {
             EstimateStatus::Ok => "ok",
             EstimateStatus::Extrapolated => "extrapolated",
             EstimateStatus::Undetermined => "undetermined",
             EstimateStatus::Failed => "failed",
         };
-        let mut inference = Self::failed(&e.model, &e.calibration, status, e.warnings.clone());
-        inference.gamma_over_delta = Some(message.gamma_over_delta);
-        inference.gamma_over_delta_source = Some(message.gamma_over_delta_source.clone());
-        let Some(found) = &e.inferred else { return inference };
-        (inference.values.k, inference.values.k_hat, inference.values.eps) =
-            (Some(found.k), Some(found.k_hat), Some(found.eps));
-        if let Some(c) = &found.covariance {
-            let sigma = |i: usize| Some(c[4 * i].max(0.0).sqrt());
-            (inference.sigma.k, inference.sigma.k_hat, inference.sigma.eps) = (sigma(0), sigma(1), sigma(2));
+        let without_values = Self {
+            source: Some(source.to_owned()),
+            gamma_over_delta: e.strain_ratio.map(|g| g.value),
+            gamma_over_delta_source: e.strain_ratio.map(|g| g.source.to_owned()),
+            ..Self::failed(&e.model, &e.calibration, status, e.warnings.clone())
+        };
+        let Some(found) = &e.inferred else { return without_values };
+        let value = |q: Quantity| found.values[q as usize];
+        let sigma = |covariance: Option<[f64; 25]>| {
+            Quantities::of(|q| value(q).and(covariance).map(|c| c[6 * q as usize].sqrt()))
+        };
+        Self {
+            values: Quantities::of(value),
+            sigma: sigma(found.covariance),
+            sigma_model: sigma(found.covariance_model),
+            interval: Interval {
+                level: found.interval.map(|i| i.level),
+                bounds: Quantities::of(|q| found.interval?.bounds[q as usize]),
+            },
+            chi_square: found.misfit.map(|m| m.chi_square),
+            degrees_of_freedom: Some(found.misfit.map_or(0, |m| m.degrees_of_freedom as usize)),
+            condition_number: found.condition_number,
+            ..without_values
         }
-        if let Some(i) = &found.interval {
-            let pair = |(low, high): (f64, f64)| Some([low, high]);
-            let none = Quantities::default();
-            let bounds = Quantities { k: pair(i.k), k_hat: pair(i.k_hat), eps: pair(i.eps), ..none };
-            inference.interval = Interval { level: Some(i.level), bounds };
-        }
-        inference
     }
 
     /// What a model of the kernel says.
@@ -120,15 +145,24 @@ impl Inference {
             Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),
         };
         let known = estimate.covariance().is_some();
+        let of_model = |q: Quantity| {
+            let i = q as usize;
+            estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
+        };
         Self {
+            source: None,
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),
             values: Quantities::of(|q| estimate.structure.get(q)),
             sigma: Quantities::of(|q| estimate.stddev(q)),
+            sigma_model: Quantities::of(of_model),
             interval: Interval {
                 level: known.then_some(CREDIBLE_LEVEL),
                 bounds: Quantities::of(|q| estimate.interval(q)),
             },
+            chi_square: estimate.misfit.map(|m| m.chi_square),
+            degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
+            condition_number: estimate.condition_number(),
             status: match estimate.status {
                 emt::Status::Ok => "ok",
                 emt::Status::Extrapolated => "extrapolated",
@@ -138,73 +172,74 @@ impl Inference {
             warnings: estimate.warnings.iter().map(ToString::to_string).collect(),
         }
     }
-
-    /// Names of the cells of [`Inference::cells`].
-    pub(crate) const COLUMNS: [&str; 9] =
-        ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"];
-
-    /// As cells for people.
-    pub(crate) fn cells(&self) -> Vec<String> {
-        let pair = |value, sigma, digits| [fixed(value, digits), fixed(sigma, digits)];
-        let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        cells.extend(pair(self.values.k, self.sigma.k, 3));
-        cells.extend(pair(self.values.k_hat, self.sigma.k_hat, 3));
-        cells.extend(pair(self.values.eps, self.sigma.eps, 4));
-        cells.push(self.status.to_owned());
-        cells
-    }
-
-    /// Names of the cells of [`Inference::exact_cells`].
-    pub(crate) const EXACT_COLUMNS: [&str; 16] = [
-        "model",
-        "calibration",
-        "k",
-        "k_hat",
-        "z",
-        "eps",
-        "sigma_k",
-        "sigma_k_hat",
-        "sigma_eps",
-        "k_low",
-        "k_high",
-        "k_hat_low",
-        "k_hat_high",
-        "eps_low",
-        "eps_high",
-        "status",
-    ];
-
-    /// As cells at full precision.
-    pub(crate) fn exact_cells(&self) -> Vec<String> {
-        let (v, s) = (&self.values, &self.sigma);
-        let mut cells = vec![self.model.clone(), self.calibration.clone()];
-        cells.extend([v.k, v.k_hat, v.z, v.eps, s.k, s.k_hat, s.eps].map(exact));
-        let b = &self.interval.bounds;
-        for bound in [b.k, b.k_hat, b.eps] {
-            cells.extend([bound.map(|b| b[0]), bound.map(|b| b[1])].map(exact));
-        }
-        cells.push(self.status.to_owned());
-        cells
-    }
 }
 
-/// The warnings of several results as lines, each with the models it comes from.
-pub(crate) fn warning_lines(results: &[Inference]) -> String {
-    let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
-    for r in results {
-        for w in &r.warnings {
-            match seen.iter_mut().find(|(known, _)| known == w) {
-                Some((_, models)) => models.push(&r.model),
-                None => seen.push((w, vec![&r.model])),
-            }
-        }
-    }
-    seen.iter().map(|(text, models)| format!("  {}: {text}\n", models.join(", "))).collect()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use emt::{Calibration, Gamma, Measured, Observation};
+    use grainlab_msgs::boundary::MicrostructureReading;
+    use grainlab_msgs::msg::Moduli;
+    use grains::Material;
 
-/// Results as a table for people, warnings below.
-pub(crate) fn table(results: &[Inference]) -> String {
-    let mut t = Table::new(Inference::COLUMNS);
-    results.iter().for_each(|r| t.row(r.cells()));
-    t.text() + &warning_lines(results)
+    #[test]
+    fn a_result_read_back_from_a_message_is_the_one_that_the_kernel_gave() {
+        let message = Moduli {
+            g12: 121.71e6,
+            g13: 127.37e6,
+            theta: 144.38e6,
+            pressure: 50e3,
+            solid_fraction: 0.636,
+            grain_shear_modulus: Material::GLASS.shear_modulus,
+            grain_poisson_ratio: Material::GLASS.poisson_ratio,
+            grain_density: Material::GLASS.density,
+            ..Moduli::default()
+        };
+        let sent =
+            emt_inversion::microstructure_message(&message, &emt_inversion::Settings::default()).unwrap();
+        let reading = MicrostructureReading::try_from(&sent).unwrap();
+        let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
+        let read = Inference::of_reading("moduli", &reading.estimates[at]);
+        let mut observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::ZERO);
+        observation.conditions.solid_fraction = Some(Measured::exact(0.636));
+        observation.conditions.material = Some(Material::GLASS);
+        let observation = observation.with_relative_error(0.01);
+        let outcome = emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
+        let direct = Inference::of("ratio", "paper", &outcome);
+        assert!(direct.sigma.k.is_some() && direct.interval.level.is_some(), "{direct:?}");
+        assert_eq!(read, Inference { source: Some("moduli".to_owned()), ..direct });
+    }
+
+    #[test]
+    fn the_keys_of_a_result_are_the_agreed_ones() {
+        let failed = Inference::failed("ratio", "paper", "failed", vec!["why".into()]);
+        let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        let value = serde_json::to_value(&failed).unwrap();
+        let quantities = ["eps", "eps_stiffness", "k", "k_hat", "z"];
+        let mut expected = vec![
+            "model",
+            "calibration",
+            "sigma",
+            "sigma_model",
+            "interval",
+            "chi_square",
+            "degrees_of_freedom",
+            "condition_number",
+            "status",
+            "gamma_over_delta",
+            "gamma_over_delta_source",
+            "warnings",
+        ];
+        expected.extend(quantities);
+        expected.sort_unstable();
+        let mut found = keys(&value);
+        found.sort_unstable();
+        assert_eq!(found, expected);
+        for group in ["sigma", "sigma_model"] {
+            let mut found = keys(&value[group]);
+            found.sort_unstable();
+            assert_eq!(found, quantities, "{group}");
+        }
+        assert!(value["interval"].get("level").is_some() && value["interval"].get("z").is_some());
+    }
 }

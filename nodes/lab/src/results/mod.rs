@@ -1,6 +1,7 @@
 //! What commands find, in the forms in which it is printed and stored.
 
 pub(crate) mod inference;
+mod inference_text;
 pub(crate) mod probe;
 pub(crate) mod read_back;
 pub(crate) mod state;

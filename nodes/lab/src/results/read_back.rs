@@ -36,7 +36,8 @@ struct About {
     packing: Option<Packing>,
     fabric: Option<Fabric>,
     moduli: Option<Moduli>,
-    results: Vec<Inference>,
+    /// By the topic the data came from.
+    results: BTreeMap<String, Vec<Inference>>,
 }
 
 /// Reads a recording back.
@@ -75,8 +76,11 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
                 if about.moduli.is_none() {
                     state.warnings.push("no moduli were published for this packing".to_owned());
                 }
-                back.states.push(InvertedState { state, results: about.results });
+                let results = about.results.into_values().flatten().collect();
+                back.states.push(InvertedState { state, results });
             }
+            // An instrument's data are of no packing of the run.
+            (None, None) if step == 0 => {}
             (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
             (_, None) => back.complaints.push(format!("the packing of step {step} was not analysed")),
         }
@@ -110,9 +114,9 @@ fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Res
         _ => {
             let message: msg::Microstructure = decoded(payload)?;
             let reading = MicrostructureReading::try_from(&message).map_err(text)?;
-            let results = message.estimates.iter().zip(&reading.estimates);
-            about.entry(message.source_step).or_default().results =
-                results.map(|(m, e)| Inference::of_reading(m, e)).collect();
+            let results =
+                reading.estimates.iter().map(|e| Inference::of_reading(&reading.source, e)).collect();
+            about.entry(reading.source_step).or_default().results.insert(reading.source, results);
         }
     }
     Ok(())

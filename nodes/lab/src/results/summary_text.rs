@@ -1,6 +1,6 @@
 //! A launched run for people.
 
-use super::inference::warning_lines;
+use super::inference::{Inference, warning_lines};
 use super::read_back::InvertedState;
 use super::state_text::{self, indented};
 use super::summary::Summary;
@@ -46,11 +46,15 @@ fn inferred(s: &InvertedState) -> String {
     }
     let mut t = Table::new([
         "inferred by",
+        "from",
         "k",
         "sigma",
         "error",
         "k_hat",
         "sigma",
+        "z",
+        "sigma",
+        "error",
         "eps",
         "sigma",
         "error",
@@ -59,25 +63,32 @@ fn inferred(s: &InvertedState) -> String {
     let off = |found: Option<f64>, truth: f64, digits: usize| {
         found.map_or_else(|| "-".to_owned(), |v| format!("{:+.digits$}", v - truth))
     };
+    let source = |r: &Inference| r.source.clone().unwrap_or_else(|| "-".to_owned());
+    let one_source = s.results.iter().all(|r| r.source == s.results[0].source);
     for r in &s.results {
+        let (v, sigma) = (&r.values, &r.sigma);
         t.row([
             r.model.clone(),
-            fixed(r.values.k, 3),
-            fixed(r.sigma.k, 3),
-            off(r.values.k, s.state.k, 3),
-            fixed(r.values.k_hat, 3),
-            fixed(r.sigma.k_hat, 3),
-            fixed(r.values.eps, 4),
-            fixed(r.sigma.eps, 4),
-            off(r.values.eps, s.state.eps, 4),
+            if one_source { "-".to_owned() } else { source(r) },
+            fixed(v.k, 3),
+            fixed(sigma.k, 3),
+            off(v.k, s.state.k, 3),
+            fixed(v.k_hat, 3),
+            fixed(sigma.k_hat, 3),
+            fixed(v.z, 3),
+            fixed(sigma.z, 3),
+            off(v.z, s.state.z, 3),
+            fixed(v.eps, 4),
+            fixed(sigma.eps, 4),
+            off(v.eps, s.state.eps, 4),
             r.status.to_owned(),
         ]);
     }
-    let mut text = indented(&t.text());
-    if let Some(r) = s.results.first()
-        && let (Some(g), Some(source)) = (r.gamma_over_delta, &r.gamma_over_delta_source)
-    {
-        text += &format!("  errors against k and eps measured; gamma/Delta taken: {g:.4} ({source})\n");
+    let mut text = indented(&t.without_empty_columns().text());
+    text += "  errors against k, z and eps measured";
+    let taken = s.results.iter().find_map(|r| r.gamma_over_delta.zip(r.gamma_over_delta_source.as_ref()));
+    if let Some((g, source)) = taken {
+        text += &format!("; gamma/Delta taken, by the models that need it: {g:.4} ({source})");
     }
-    text + &warning_lines(&s.results)
+    text + "\n" + &warning_lines(&s.results)
 }

@@ -14,9 +14,11 @@ pub(crate) use network::SCATTERED;
 pub use network::{Amplitude, Law, Network};
 
 use crate::conditions::GammaSource;
+use crate::model::Model;
 use crate::structure::{Quantity, StructureCovariance};
 use grains::Material;
 use std::borrow::Cow;
+use std::sync::LazyLock;
 
 /// Constants of the models, measured on packings of one material.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,17 +153,27 @@ impl Calibration {
 
     /// `paper`: the paper's constants. `grainlab`: our own, of packings of 2,000 grains, k̂ and k in the sense of contacts
     /// over all grains; `grainlab-z`: the same packings, rattlers left out.
-    pub fn builtin(name: &str) -> Option<Self> {
-        let own = || Self::parse(include_str!("grainlab.toml")).ok();
+    pub fn builtin(name: &str) -> Option<&'static Self> {
+        static PAPER: Calibration = Calibration::PAPER;
+        static BY_K: LazyLock<Option<Calibration>> =
+            LazyLock::new(|| Calibration::parse(include_str!("grainlab.toml")).ok());
+        static BY_Z: LazyLock<Option<Calibration>> = LazyLock::new(|| {
+            let by_z = BY_K.as_ref()?.with_abscissa(Quantity::Z)?;
+            Some(Calibration { name: Cow::Borrowed("grainlab-z"), ..by_z })
+        });
         match name {
-            "paper" => Some(Self::PAPER),
-            "grainlab" => own(),
-            "grainlab-z" => {
-                let by_z = own()?.with_abscissa(Quantity::Z)?;
-                Some(Self { name: Cow::Borrowed("grainlab-z"), ..by_z })
-            }
+            "paper" => Some(&PAPER),
+            "grainlab" => BY_K.as_ref(),
+            "grainlab-z" => BY_Z.as_ref(),
             _ => None,
         }
+    }
+
+    /// The one to use where none is asked for: the paper's for the models that it has the constants of, else our own.
+    pub fn default_for(model: &dyn Model) -> &'static Self {
+        static PAPER: Calibration = Calibration::PAPER;
+        let needs_more = model.domain(&PAPER).structure.iter().all(Option::is_none);
+        needs_more.then(|| Self::builtin("grainlab")).flatten().unwrap_or(&PAPER)
     }
 
     /// What was learned of a model fed with this γ/Δ.

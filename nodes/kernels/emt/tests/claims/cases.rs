@@ -9,7 +9,7 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 pub(crate) fn calibrations() -> Vec<Calibration> {
     let own = Isotropic::new([150.0, -3.5, 80.0, -0.2], Quantity::Z, [4.2, 6.5]).unwrap();
     let grains = Material { shear_modulus: 25.0e9, poisson_ratio: 0.25, density: 2600.0 };
-    let relaxed = Calibration::builtin("grainlab").unwrap();
+    let relaxed = Calibration::builtin("grainlab").unwrap().clone();
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
 }
 

@@ -1,0 +1,252 @@
+//! `Estimate`: what one model infers.
+
+use super::BoundaryError;
+use super::check::Check;
+use crate::msg::Estimate;
+
+/// The quantities of the microstructure, in the order of every array.
+pub const QUANTITIES: [&str; 5] = ["k", "k_hat", "z", "eps", "eps_stiffness"];
+
+/// The data, in the order of every row of [`Inferred::information`].
+pub const DATA: [&str; 9] =
+    ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction"];
+
+/// What one model inferred, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimateReading {
+    /// Name of the model.
+    pub model: String,
+    /// Name of the calibration.
+    pub calibration: String,
+    /// How it went.
+    pub status: EstimateStatus,
+    /// The strain ratio γ/Δ that the model was fed with; `None` if it takes none.
+    pub strain_ratio: Option<StrainRatio>,
+    /// The values; `None` unless the status is `Ok` or `Extrapolated`.
+    pub inferred: Option<Inferred>,
+    /// For a reader.
+    pub warnings: Vec<String>,
+}
+
+/// How an inversion went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EstimateStatus {
+    /// Inside the range the model was made for.
+    Ok,
+    /// A solution outside that range.
+    Extrapolated,
+    /// The data do not determine the answer.
+    Undetermined,
+    /// No solution.
+    Failed,
+}
+
+/// A strain ratio γ/Δ, and where it is from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainRatio {
+    /// γ/Δ, dimensionless.
+    pub value: f64,
+    /// `total`, `elastic` or `contact`: which of the three measured ones; `given`; `zero`: not known, taken as 0.
+    pub source: &'static str,
+}
+
+/// Inferred values; arrays have the order of [`QUANTITIES`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inferred {
+    /// The values, at least one of them known; `None` is undetermined or no part of the model.
+    pub values: [Option<f64>; 5],
+    /// Covariance from data and model, row-major; 0 where a value is not known.
+    pub covariance: Option<[f64; 25]>,
+    /// The part of it that the model leaves out.
+    pub covariance_model: Option<[f64; 25]>,
+    /// Credible intervals.
+    pub interval: Option<Interval>,
+    /// Misfit of more data than unknowns; `None` if there are as many.
+    pub misfit: Option<Misfit>,
+    /// How much more one combination suffers from errors of the data than another, 1 or more.
+    pub condition_number: Option<f64>,
+    /// Share of each of [`DATA`] in the variance of each quantity that the data cause; a row sums to 1.
+    pub information: [Option<[f64; 9]>; 5],
+}
+
+/// Credible intervals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Probability inside each, between 0 and 1.
+    pub level: f64,
+    /// Low and high of each quantity that is known.
+    pub bounds: [Option<[f64; 2]>; 5],
+}
+
+/// How far more data than unknowns are from any structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Weighted sum of squares, by errors of data and model.
+    pub chi_square: f64,
+    /// Data less unknowns, 1 or more.
+    pub degrees_of_freedom: u32,
+}
+
+const CHECK: Check = Check("Estimate");
+
+impl TryFrom<&Estimate> for EstimateReading {
+    type Error = BoundaryError;
+
+    fn try_from(m: &Estimate) -> Result<Self, BoundaryError> {
+        let status = match m.status {
+            Estimate::STATUS_OK => EstimateStatus::Ok,
+            Estimate::STATUS_EXTRAPOLATED => EstimateStatus::Extrapolated,
+            Estimate::STATUS_UNDETERMINED => EstimateStatus::Undetermined,
+            Estimate::STATUS_FAILED => EstimateStatus::Failed,
+            other => {
+                let allowed = "0 (ok), 1 (extrapolated), 2 (undetermined), 3 (failed)";
+                return Err(CHECK.code("status", other, allowed));
+            }
+        };
+        let has_values = matches!(status, EstimateStatus::Ok | EstimateStatus::Extrapolated);
+        Ok(Self {
+            model: m.model.clone(),
+            calibration: m.calibration.clone(),
+            status,
+            strain_ratio: strain_ratio(m)?,
+            inferred: if has_values { Some(inferred(m)?) } else { None },
+            warnings: m.warnings.clone(),
+        })
+    }
+}
+
+fn strain_ratio(m: &Estimate) -> Result<Option<StrainRatio>, BoundaryError> {
+    const SOURCES: [&str; 6] = ["total", "elastic", "contact", "given", "zero", "none"];
+    let listed = "total, elastic, contact, given, zero, none";
+    let source = CHECK.word("gamma_over_delta_source", &m.gamma_over_delta_source, &SOURCES, listed)?;
+    let value = CHECK.finite("gamma_over_delta", m.gamma_over_delta)?;
+    if source == "none" {
+        CHECK.that(value == 0.0, "gamma_over_delta", value, "0 where its source is none")?;
+        return Ok(None);
+    }
+    Ok(Some(StrainRatio { value, source }))
+}
+
+fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
+    let values = values(m)?;
+    let known = values.map(|v| v.is_some());
+    Ok(Inferred {
+        values,
+        covariance: covariance("covariance", &m.covariance, &known)?,
+        covariance_model: covariance_model(m, &known)?,
+        interval: interval(m, &known)?,
+        misfit: misfit(m)?,
+        condition_number: condition_number(m)?,
+        information: information(m, &known)?,
+    })
+}
+
+fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
+    let fields = [
+        (m.k_known, m.k),
+        (m.k_hat_known, m.k_hat),
+        (m.z_known, m.z),
+        (m.eps_known, m.eps),
+        (m.eps_stiffness_known, m.eps_stiffness),
+    ];
+    let mut values = [None; 5];
+    for (i, (known, value)) in fields.into_iter().enumerate() {
+        if known {
+            values[i] = Some(CHECK.finite(QUANTITIES[i], value)?);
+        }
+    }
+    let any = values.iter().any(Option::is_some);
+    CHECK.that(
+        any,
+        "number of known quantities",
+        0.0,
+        "1 or more where the status is 0 (ok) or 1 (extrapolated)",
+    )?;
+    Ok(values)
+}
+
+/// What an unknown quantity must have of everything that belongs to it.
+const NOTHING: &str = "0, because its quantity is not known";
+
+fn covariance(
+    field: &str,
+    values: &[f64; 25],
+    known: &[bool; 5],
+) -> Result<Option<[f64; 25]>, BoundaryError> {
+    let checked = CHECK.covariance(field, values)?;
+    for (at, value) in values.iter().enumerate() {
+        let both = known[at / 5] && known[at % 5];
+        CHECK.that(both || *value == 0.0, &format!("{field}[{at}]"), *value, NOTHING)?;
+    }
+    Ok(checked)
+}
+
+fn covariance_model(m: &Estimate, known: &[bool; 5]) -> Result<Option<[f64; 25]>, BoundaryError> {
+    let part = covariance("covariance_model", &m.covariance_model, known)?;
+    for at in (0..25).step_by(6) {
+        let (part, whole) = (m.covariance_model[at], m.covariance[at]);
+        let fits = part <= whole * (1.0 + 1e-9);
+        CHECK.that(fits, &format!("covariance_model[{at}]"), part, "at most the same entry of covariance")?;
+    }
+    Ok(part)
+}
+
+fn interval(m: &Estimate, known: &[bool; 5]) -> Result<Option<Interval>, BoundaryError> {
+    let level = CHECK.share("credible_level", m.credible_level)?;
+    if level == 0.0 {
+        return Ok(None);
+    }
+    CHECK.all_finite("interval", &m.interval)?;
+    let mut bounds = [None; 5];
+    for (i, bounds) in bounds.iter_mut().enumerate() {
+        let (low, high) = (m.interval[2 * i], m.interval[2 * i + 1]);
+        let name = format!("interval[{}]", 2 * i);
+        if known[i] {
+            CHECK.that(low <= high, &name, low, "at most the upper bound that follows it")?;
+            *bounds = Some([low, high]);
+        } else {
+            CHECK.that(
+                low == 0.0 && high == 0.0,
+                &name,
+                low,
+                "0 as the bound after it, because its quantity is not known",
+            )?;
+        }
+    }
+    Ok(Some(Interval { level, bounds }))
+}
+
+fn misfit(m: &Estimate) -> Result<Option<Misfit>, BoundaryError> {
+    let chi_square = CHECK.not_negative("chi_square", m.chi_square)?;
+    if m.degrees_of_freedom == 0 {
+        CHECK.that(chi_square == 0.0, "chi_square", chi_square, "0 where degrees_of_freedom is 0")?;
+        return Ok(None);
+    }
+    Ok(Some(Misfit { chi_square, degrees_of_freedom: m.degrees_of_freedom }))
+}
+
+fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
+    let number = m.condition_number;
+    let good = number == 0.0 || (number.is_finite() && number >= 1.0);
+    CHECK.that(good, "condition_number", number, "finite and 1 or more, or 0 if unknown")?;
+    Ok((number != 0.0).then_some(number))
+}
+
+fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; 9]>; 5], BoundaryError> {
+    CHECK.all_finite("information", &m.information)?;
+    let mut rows = [None; 5];
+    for (i, row) in rows.iter_mut().enumerate() {
+        let start = 9 * i;
+        let shares: [f64; 9] = std::array::from_fn(|j| m.information[start + j]);
+        if let Some(j) = shares.iter().position(|s| *s != 0.0) {
+            CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
+            // Parts of correlated data may be large and cancel; their rounding then shows in the sum.
+            let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
+            let (sum, name) =
+                (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + 9));
+            CHECK.that((sum - 1.0).abs() <= slack, &name, sum, "1, or the row all 0 if unknown")?;
+            *row = Some(shares);
+        }
+    }
+    Ok(rows)
+}

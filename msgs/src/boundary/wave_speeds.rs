@@ -1,0 +1,147 @@
+//! `WaveSpeeds`: what an acoustic instrument, real or virtual, hands to an inversion.
+
+use super::BoundaryError;
+use super::check::Check;
+use crate::builtin_interfaces::Time;
+use crate::geometry_msgs::Vector3;
+use crate::msg;
+use grains::{Vec3, WaveSpeed};
+
+const CHECK: Check = Check("WaveSpeeds");
+
+/// How a speed was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaveMethod {
+    /// Onset of the first arrival.
+    FirstArrival,
+    /// Delay of greatest correlation.
+    CrossCorrelation,
+    /// Delay of the peak.
+    Peak,
+    /// Frequency of a standing wave.
+    StandingWave,
+    /// Slope of the dispersion relation.
+    Dispersion,
+}
+
+impl WaveMethod {
+    /// All of them, in the order of their codes.
+    pub const ALL: [WaveMethod; 5] =
+        [Self::FirstArrival, Self::CrossCorrelation, Self::Peak, Self::StandingWave, Self::Dispersion];
+
+    /// One word for it, as tables and files have it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::FirstArrival => "first_arrival",
+            Self::CrossCorrelation => "cross_correlation",
+            Self::Peak => "peak",
+            Self::StandingWave => "standing_wave",
+            Self::Dispersion => "dispersion",
+        }
+    }
+
+    /// As messages have it.
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
+            Self::CrossCorrelation => msg::WaveSpeed::METHOD_CROSS_CORRELATION,
+            Self::Peak => msg::WaveSpeed::METHOD_PEAK,
+            Self::StandingWave => msg::WaveSpeed::METHOD_STANDING_WAVE,
+            Self::Dispersion => msg::WaveSpeed::METHOD_DISPERSION,
+        }
+    }
+}
+
+/// One speed of one mode, and how it was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveSpeedReading {
+    /// Direction, particle motion, speed and its standard deviation.
+    pub measured: WaveSpeed,
+    /// How it was measured.
+    pub method: WaveMethod,
+    /// Dominant frequency, Hz; `None` if the speed is extrapolated to zero frequency.
+    pub frequency: Option<f64>,
+    /// Peak strain, 0 or more.
+    pub strain_amplitude: f64,
+}
+
+/// Wave speeds as an inversion takes them: checked, and with `None` for what the sender did not know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaveSpeedsReading {
+    /// Stamp of the source.
+    pub stamp: Time,
+    /// Step of the packing probed; `None` if it is not from a simulation.
+    pub source_step: Option<u64>,
+    /// Density of the mass that moves with the wave, kg/m³, more than 0.
+    pub density: f64,
+    /// Its standard deviation, kg/m³.
+    pub density_stddev: Option<f64>,
+    /// Confining pressure, Pa, 0 or more.
+    pub pressure: f64,
+    /// Solid fraction φ.
+    pub solid_fraction: Option<f64>,
+    /// Unit axis of symmetry.
+    pub axis: Option<Vec3>,
+    /// Shear modulus of the grains, Pa, more than 0.
+    pub grain_shear_modulus: f64,
+    /// Poisson ratio of the grains, in [0, 0.5].
+    pub grain_poisson_ratio: f64,
+    /// The speeds, in the order of the message. There may be none.
+    pub speeds: Vec<WaveSpeedReading>,
+}
+
+impl WaveSpeedsReading {
+    /// The speeds without how they were measured, as the kernels take them.
+    pub fn measured(&self) -> Vec<WaveSpeed> {
+        self.speeds.iter().map(|s| s.measured).collect()
+    }
+}
+
+impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
+    type Error = BoundaryError;
+
+    fn try_from(m: &msg::WaveSpeeds) -> Result<Self, BoundaryError> {
+        CHECK.header(&m.header)?;
+        let (modulus, ratio) = ("grain_shear_modulus", "grain_poisson_ratio");
+        let is_ratio = (0.0..=0.5).contains(&m.grain_poisson_ratio);
+        Ok(Self {
+            stamp: m.header.stamp,
+            source_step: Some(m.source_step).filter(|step| *step > 0),
+            density: CHECK.positive("density", m.density)?,
+            density_stddev: CHECK.known("density_stddev", m.density_stddev)?,
+            pressure: CHECK.not_negative("pressure", m.pressure)?,
+            solid_fraction: Some(CHECK.share("solid_fraction", m.solid_fraction)?).filter(|phi| *phi > 0.0),
+            axis: CHECK.direction("axis", &m.axis)?,
+            grain_shear_modulus: CHECK.positive(modulus, m.grain_shear_modulus)?,
+            grain_poisson_ratio: CHECK.that(is_ratio, ratio, m.grain_poisson_ratio, "between 0 and 0.5")?,
+            speeds: m.speeds.iter().enumerate().map(|(i, s)| speed(i, s)).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+fn speed(index: usize, s: &msg::WaveSpeed) -> Result<WaveSpeedReading, BoundaryError> {
+    let name = |field: &str| format!("speeds[{index}].{field}");
+    let unit = |field: &str, vector: &Vector3| {
+        let field = name(field);
+        let known = CHECK.direction(&field, vector)?;
+        known.map_or_else(|| CHECK.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
+    };
+    Ok(WaveSpeedReading {
+        method: method(&name("method"), s.method)?,
+        measured: WaveSpeed {
+            direction: unit("direction", &s.direction)?,
+            polarization: unit("polarization", &s.polarization)?,
+            speed: CHECK.positive(&name("speed"), s.speed)?,
+            stddev: CHECK.known(&name("speed_stddev"), s.speed_stddev)?,
+        },
+        frequency: CHECK.known(&name("frequency"), s.frequency)?,
+        strain_amplitude: CHECK.not_negative(&name("strain_amplitude"), s.strain_amplitude)?,
+    })
+}
+
+fn method(field: &str, code: u8) -> Result<WaveMethod, BoundaryError> {
+    WaveMethod::ALL.into_iter().find(|m| m.code() == code).ok_or_else(|| {
+        let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";
+        CHECK.code(field, code, known)
+    })
+}

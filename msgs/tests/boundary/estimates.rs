@@ -1,0 +1,180 @@
+use super::refuses;
+use grainlab_msgs::boundary::{
+    EstimateStatus, Interval, MicrostructureReading, Misfit, QUANTITIES, StrainRatio,
+};
+use grainlab_msgs::msg::{Estimate, Microstructure};
+use grainlab_msgs::{from_cdr, to_cdr};
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+/// A model that speaks of k, k̂ and ε, and has no word on the other two.
+fn estimate() -> Estimate {
+    let mut e = Estimate {
+        model: "ratio".into(),
+        calibration: "paper".into(),
+        status: Estimate::STATUS_OK,
+        gamma_over_delta: -0.0623,
+        gamma_over_delta_source: "total".into(),
+        k_known: true,
+        k: 5.2,
+        k_hat_known: true,
+        k_hat: 5.1,
+        eps_known: true,
+        eps: 0.06,
+        interval: [5.1, 5.3, 4.9, 5.3, 0.0, 0.0, 0.05, 0.07, 0.0, 0.0],
+        credible_level: 0.68,
+        chi_square: 1.5,
+        degrees_of_freedom: 2,
+        condition_number: 12.0,
+        ..Estimate::default()
+    };
+    for (at, variance) in [(0, 0.01), (6, 0.04), (18, 1e-4)] {
+        e.covariance[at] = variance;
+        e.covariance_model[at] = 0.5 * variance;
+    }
+    (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
+    // ε: G12 and G13 share it, and what they have in common takes some of it away again.
+    (e.information[27], e.information[28], e.information[29]) = (0.75, 0.5, -0.25);
+    e
+}
+
+fn message(estimates: Vec<Estimate>) -> Microstructure {
+    Microstructure { source: "moduli".into(), estimates, ..Microstructure::default() }
+}
+
+fn read(estimate: Estimate) -> grainlab_msgs::boundary::EstimateReading {
+    let received: Microstructure = from_cdr(&to_cdr(&message(vec![estimate]))).unwrap();
+    MicrostructureReading::try_from(&received).unwrap().estimates.remove(0)
+}
+
+#[test]
+fn an_estimate_is_read_with_none_for_what_the_model_has_no_word_on() {
+    let e = read(estimate());
+    assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", EstimateStatus::Ok));
+    assert_eq!(e.strain_ratio, Some(StrainRatio { value: -0.0623, source: "total" }));
+    let found = e.inferred.unwrap();
+    assert_eq!(found.values, [Some(5.2), Some(5.1), None, Some(0.06), None]);
+    assert_eq!((found.covariance.unwrap()[1], found.covariance_model.unwrap()[0]), (0.004, 0.005));
+    let bounds = [Some([5.1, 5.3]), Some([4.9, 5.3]), None, Some([0.05, 0.07]), None];
+    assert_eq!(found.interval, Some(Interval { level: 0.68, bounds }));
+    assert_eq!(found.misfit, Some(Misfit { chi_square: 1.5, degrees_of_freedom: 2 }));
+    assert_eq!(found.condition_number, Some(12.0));
+    let of_eps = [0.75, 0.5, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(found.information, [None, None, None, Some(of_eps), None]);
+}
+
+#[test]
+fn zeros_stand_for_unknown_and_a_zero_that_is_known_for_zero() {
+    let bare = Estimate { gamma_over_delta_source: "none".into(), eps_known: true, ..Estimate::default() };
+    let e = read(bare);
+    assert_eq!(e.strain_ratio, None);
+    let found = e.inferred.unwrap();
+    assert_eq!(found.values, [None, None, None, Some(0.0), None]);
+    assert_eq!((found.covariance, found.covariance_model, found.interval), (None, None, None));
+    assert_eq!((found.misfit, found.condition_number, found.information), (None, None, [None; 5]));
+}
+
+#[test]
+fn each_quantity_is_read_from_its_own_field() {
+    type Set = fn(&mut Estimate) -> (&mut bool, &mut f64);
+    let fields: [Set; 5] = [
+        |e| (&mut e.k_known, &mut e.k),
+        |e| (&mut e.k_hat_known, &mut e.k_hat),
+        |e| (&mut e.z_known, &mut e.z),
+        |e| (&mut e.eps_known, &mut e.eps),
+        |e| (&mut e.eps_stiffness_known, &mut e.eps_stiffness),
+    ];
+    for (i, field) in fields.into_iter().enumerate() {
+        let mut e = Estimate { gamma_over_delta_source: "none".into(), ..Estimate::default() };
+        let (known, value) = field(&mut e);
+        (*known, *value) = (true, 0.5);
+        let found = read(e.clone()).inferred.unwrap();
+        let expected: Vec<Option<f64>> = (0..5).map(|j| (j == i).then_some(0.5)).collect();
+        assert_eq!(found.values.to_vec(), expected);
+        *field(&mut e).1 = NAN;
+        let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
+        assert_eq!(refused, format!("Estimate.{} = NaN is refused: it must be finite", QUANTITIES[i]));
+    }
+}
+
+#[test]
+fn estimates_without_an_answer_have_no_values() {
+    for (status, expected) in [
+        (Estimate::STATUS_UNDETERMINED, EstimateStatus::Undetermined),
+        (Estimate::STATUS_FAILED, EstimateStatus::Failed),
+    ] {
+        let e = read(Estimate { status, k: NAN, ..estimate() });
+        assert_eq!((e.status, e.inferred), (expected, None));
+        assert_eq!(e.strain_ratio.map(|g| g.value), Some(-0.0623), "what it was fed with stays");
+    }
+}
+
+#[test]
+fn each_fault_of_an_estimate_is_refused_by_name() {
+    refuses(
+        &message(vec![estimate()]),
+        &[
+            (|m| m.estimates[0].status = 4, "Estimate.status = 4 is refused: it must be one of 0 (ok)"),
+            (|m| m.estimates[0].gamma_over_delta = NAN, "Estimate.gamma_over_delta = NaN is refused"),
+            (
+                |m| m.estimates[0].gamma_over_delta_source = "plastic".into(),
+                "Estimate.gamma_over_delta_source = \"plastic\" is refused: it must be one of total, elastic",
+            ),
+            (
+                |m| m.estimates[0].gamma_over_delta_source = "none".into(),
+                "Estimate.gamma_over_delta = -0.0623 is refused: it must be 0 where its source is none",
+            ),
+            (
+                |m| {
+                    m.estimates[0] =
+                        Estimate { gamma_over_delta_source: "zero".into(), ..Estimate::default() }
+                },
+                "Estimate.number of known quantities = 0.0 is refused: it must be 1 or more",
+            ),
+            (|m| m.estimates[0].covariance[18] = NAN, "Estimate.covariance[18] = NaN is refused"),
+            (|m| m.estimates[0].covariance[18] = -1.0, "Estimate.covariance[18] = -1.0 is refused"),
+            (
+                |m| m.estimates[0].covariance[5] = 0.003,
+                "Estimate.covariance[5] = 0.003 is refused: it must be symmetric",
+            ),
+            (
+                |m| m.estimates[0].covariance[12] = 0.01,
+                "Estimate.covariance[12] = 0.01 is refused: it must be 0, because its quantity is not known",
+            ),
+            (|m| m.estimates[0].covariance_model[6] = INF, "Estimate.covariance_model[6] = inf is refused"),
+            (
+                |m| m.estimates[0].covariance_model[24] = 0.01,
+                "Estimate.covariance_model[24] = 0.01 is refused: it must be 0, because",
+            ),
+            (
+                |m| m.estimates[0].covariance_model[0] = 0.02,
+                "Estimate.covariance_model[0] = 0.02 is refused: it must be at most the same entry",
+            ),
+            (|m| m.estimates[0].interval[3] = NAN, "Estimate.interval[3] = NaN is refused"),
+            (
+                |m| m.estimates[0].interval[6] = 0.08,
+                "Estimate.interval[6] = 0.08 is refused: it must be at most",
+            ),
+            (|m| m.estimates[0].interval[5] = 1.0, "Estimate.interval[4] = 0.0 is refused: it must be 0 as"),
+            (|m| m.estimates[0].credible_level = 68.0, "Estimate.credible_level = 68.0 is refused"),
+            (|m| m.estimates[0].chi_square = -1.0, "Estimate.chi_square = -1.0 is refused"),
+            (
+                |m| m.estimates[0].degrees_of_freedom = 0,
+                "Estimate.chi_square = 1.5 is refused: it must be 0 where degrees_of_freedom is 0",
+            ),
+            (|m| m.estimates[0].condition_number = 0.5, "Estimate.condition_number = 0.5 is refused"),
+            (|m| m.estimates[0].condition_number = NAN, "Estimate.condition_number = NaN is refused"),
+            (|m| m.estimates[0].information[44] = NAN, "Estimate.information[44] = NaN is refused"),
+            (
+                |m| m.estimates[0].information[20] = 1.0,
+                "Estimate.information[20] = 1.0 is refused: it must be 0, because",
+            ),
+            (
+                |m| m.estimates[0].information[30] = 0.5,
+                "Estimate.sum of information[27..36] = 1.5 is refused: it must be 1",
+            ),
+        ],
+        |m| MicrostructureReading::try_from(m),
+    );
+}

@@ -1,0 +1,122 @@
+use super::refuses;
+use super::results::header;
+use grainlab_msgs::boundary::{WaveMethod, WaveSpeedsReading};
+use grainlab_msgs::geometry_msgs::Vector3;
+use grainlab_msgs::{from_cdr, msg, stamp, to_cdr};
+use grains::{Vec3, WaveSpeed};
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
+
+fn sent() -> msg::WaveSpeeds {
+    let (x, z) = (Vector3 { x: 1.0, y: 0.0, z: 0.0 }, Vector3 { x: 0.0, y: 0.0, z: 1.0 });
+    let compression = msg::WaveSpeed {
+        method: msg::WaveSpeed::METHOD_DISPERSION,
+        direction: z.clone(),
+        polarization: z.clone(),
+        speed: 500.0,
+        speed_stddev: 1.5,
+        ..msg::WaveSpeed::default()
+    };
+    let shear = msg::WaveSpeed {
+        method: msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
+        polarization: x,
+        speed: 300.0,
+        speed_stddev: 0.0,
+        frequency: 2e4,
+        strain_amplitude: 1e-7,
+        ..compression.clone()
+    };
+    msg::WaveSpeeds {
+        header: header(),
+        source_step: 7,
+        density: 1550.0,
+        density_stddev: 8.0,
+        pressure: 5e4,
+        solid_fraction: 0.64,
+        axis: z,
+        grain_shear_modulus: 29e9,
+        grain_poisson_ratio: 0.2,
+        speeds: vec![compression, shear],
+    }
+}
+
+#[test]
+fn an_inversion_reads_the_speeds_that_were_sent() {
+    let received: msg::WaveSpeeds = from_cdr(&to_cdr(&sent())).unwrap();
+    let r = WaveSpeedsReading::try_from(&received).unwrap();
+    assert_eq!((r.stamp, r.source_step, r.axis), (stamp(0.25), Some(7), Some(Vec3::z())));
+    assert_eq!((r.density, r.density_stddev, r.pressure), (1550.0, Some(8.0), 5e4));
+    assert_eq!((r.solid_fraction, r.grain_shear_modulus, r.grain_poisson_ratio), (Some(0.64), 29e9, 0.2));
+    let compression =
+        WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
+    let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
+    assert_eq!(r.measured(), [compression, shear]);
+    let [p, s] = &r.speeds[..] else { panic!("two speeds") };
+    assert_eq!((p.method, p.frequency, p.strain_amplitude), (WaveMethod::Dispersion, None, 0.0));
+    assert_eq!((s.method, s.frequency, s.strain_amplitude), (WaveMethod::FirstArrival, Some(2e4), 1e-7));
+}
+
+#[test]
+fn zeros_of_an_instrument_are_unknown() {
+    let message = msg::WaveSpeeds {
+        source_step: 0,
+        density_stddev: 0.0,
+        solid_fraction: 0.0,
+        axis: Vector3::default(),
+        speeds: Vec::new(),
+        ..sent()
+    };
+    let r = WaveSpeedsReading::try_from(&message).unwrap();
+    assert_eq!((r.source_step, r.density_stddev, r.solid_fraction, r.axis), (None, None, None, None));
+    assert!(r.speeds.is_empty());
+}
+
+#[test]
+fn every_method_has_its_code_and_its_word() {
+    for (code, word) in
+        ["first_arrival", "cross_correlation", "peak", "standing_wave", "dispersion"].iter().enumerate()
+    {
+        let mut m = sent();
+        m.speeds[0].method = code as u8;
+        let method = WaveSpeedsReading::try_from(&m).unwrap().speeds[0].method;
+        assert_eq!((usize::from(method.code()), method.word()), (code, *word));
+    }
+}
+
+#[test]
+fn each_fault_of_the_wave_speeds_is_refused_by_name() {
+    refuses(
+        &sent(),
+        &[
+            (|m| m.header.stamp.nanosec = u32::MAX, "WaveSpeeds.header.stamp.nanosec"),
+            (|m| m.density = 0.0, "WaveSpeeds.density = 0.0 is refused"),
+            (|m| m.density_stddev = -1.0, "WaveSpeeds.density_stddev = -1.0 is refused"),
+            (|m| m.pressure = -5e4, "WaveSpeeds.pressure = -50000.0 is refused"),
+            (|m| m.solid_fraction = 1.5, "WaveSpeeds.solid_fraction = 1.5 is refused"),
+            (|m| m.axis.z = 0.5, "WaveSpeeds.|axis| = 0.5 is refused: it must be 1"),
+            (|m| m.axis.x = NAN, "WaveSpeeds.|axis| = NaN is refused"),
+            (|m| m.grain_shear_modulus = 0.0, "WaveSpeeds.grain_shear_modulus = 0.0 is refused"),
+            (|m| m.grain_poisson_ratio = NAN, "WaveSpeeds.grain_poisson_ratio = NaN is refused"),
+            (
+                |m| m.speeds[1].method = 5,
+                "WaveSpeeds.speeds[1].method = 5 is refused: it must be one of 0 (first arrival)",
+            ),
+            (
+                |m| m.speeds[0].direction.z = 0.0,
+                "WaveSpeeds.|speeds[0].direction| = 0.0 is refused: it must be 1",
+            ),
+            (|m| m.speeds[1].direction.y = INF, "WaveSpeeds.|speeds[1].direction| = inf is refused"),
+            (|m| m.speeds[1].polarization.x = 0.9, "WaveSpeeds.|speeds[1].polarization| = 0.9 is refused"),
+            (|m| m.speeds[1].speed = 0.0, "WaveSpeeds.speeds[1].speed = 0.0 is refused"),
+            (|m| m.speeds[0].speed = NAN, "WaveSpeeds.speeds[0].speed = NaN is refused"),
+            (|m| m.speeds[1].speed_stddev = -1.0, "WaveSpeeds.speeds[1].speed_stddev = -1.0 is refused"),
+            (|m| m.speeds[0].frequency = -1.0, "WaveSpeeds.speeds[0].frequency = -1.0 is refused"),
+            (
+                |m| m.speeds[0].strain_amplitude = NAN,
+                "WaveSpeeds.speeds[0].strain_amplitude = NaN is refused",
+            ),
+        ],
+        |m| WaveSpeedsReading::try_from(m),
+    );
+}

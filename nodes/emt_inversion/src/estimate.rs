@@ -1,0 +1,136 @@
+//! From what a model says to an `Estimate`.
+
+use crate::observed::{Observed, Unobservable};
+use emt::{
+    CREDIBLE_LEVEL, EmtError, Estimate, Gamma, INPUTS, Misfit, Model, QUANTITIES, Quantity, Status,
+    StructureCovariance,
+};
+use grainlab_msgs::boundary::EstimateReading;
+use grainlab_msgs::msg;
+
+/// The message of an estimate. What a reader would refuse is sent as a failure that says why.
+pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
+    let message = as_it_is(estimate, observed);
+    match EstimateReading::try_from(&message) {
+        Ok(_) => message,
+        Err(error) => msg::Estimate {
+            model: message.model,
+            calibration: message.calibration,
+            status: msg::Estimate::STATUS_FAILED,
+            gamma_over_delta: message.gamma_over_delta,
+            gamma_over_delta_source: message.gamma_over_delta_source,
+            warnings: vec![error.to_string()],
+            ..Default::default()
+        },
+    }
+}
+
+fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
+    let structure = &estimate.structure;
+    let value = |q| structure.get(q).unwrap_or_default();
+    let known = |q| structure.get(q).is_some();
+    let status = match estimate.status {
+        _ if structure.values().iter().all(Option::is_none) => msg::Estimate::STATUS_UNDETERMINED,
+        Status::Ok if !observed.in_conflict => msg::Estimate::STATUS_OK,
+        Status::Ok | Status::Extrapolated => msg::Estimate::STATUS_EXTRAPOLATED,
+    };
+    let misfit = both(observed.misfit, estimate.misfit);
+    let covariance = known_covariance(estimate.covariance());
+    let bounds = Quantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
+    let shares = Quantity::ALL.map(|q| estimate.information(q));
+    let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(estimate.gamma);
+    msg::Estimate {
+        model: estimate.model.to_owned(),
+        calibration: estimate.calibration.clone(),
+        status,
+        gamma_over_delta,
+        gamma_over_delta_source,
+        k_known: known(Quantity::K),
+        k: value(Quantity::K),
+        k_hat_known: known(Quantity::KHat),
+        k_hat: value(Quantity::KHat),
+        z_known: known(Quantity::Z),
+        z: value(Quantity::Z),
+        eps_known: known(Quantity::Eps),
+        eps: value(Quantity::Eps),
+        eps_stiffness_known: known(Quantity::EpsStiffness),
+        eps_stiffness: value(Quantity::EpsStiffness),
+        covariance: entries(covariance),
+        covariance_model: entries(known_covariance(estimate.model_covariance)),
+        interval: std::array::from_fn(|i| bounds[i / 2].map_or(0.0, |b| b[i % 2])),
+        credible_level: if covariance.is_some() { CREDIBLE_LEVEL } else { 0.0 },
+        chi_square: misfit.chi_square,
+        degrees_of_freedom: misfit.degrees_of_freedom as u32,
+        condition_number: estimate.condition_number().unwrap_or_default(),
+        information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
+        warnings: observed
+            .notes
+            .iter()
+            .cloned()
+            .chain(estimate.warnings.iter().map(ToString::to_string))
+            .collect(),
+    }
+}
+
+/// Misfit of data about moduli and of moduli about a structure: the squares and the freedoms add up.
+fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
+    let nothing = Misfit { chi_square: 0.0, degrees_of_freedom: 0 };
+    [of_data, of_moduli].into_iter().flatten().filter(|m| m.degrees_of_freedom > 0).fold(nothing, |sum, m| {
+        Misfit {
+            chi_square: sum.chi_square + m.chi_square,
+            degrees_of_freedom: sum.degrees_of_freedom + m.degrees_of_freedom,
+        }
+    })
+}
+
+/// A covariance of zeros is on the wire one that is not known.
+fn known_covariance(covariance: Option<StructureCovariance>) -> Option<StructureCovariance> {
+    covariance.filter(|c| c.amax() > 0.0)
+}
+
+fn entries(covariance: Option<StructureCovariance>) -> [f64; QUANTITIES * QUANTITIES] {
+    covariance.map_or([0.0; QUANTITIES * QUANTITIES], |c| {
+        std::array::from_fn(|i| c[(i / QUANTITIES, i % QUANTITIES)])
+    })
+}
+
+fn gamma_fields(gamma: Option<Gamma>) -> (f64, String) {
+    (gamma.map_or(0.0, |g| g.value), gamma.map_or("none", |g| g.source.name()).to_owned())
+}
+
+/// The message of a model that has no estimate.
+pub(crate) fn failure(
+    model: &dyn Model,
+    calibration: &str,
+    observed: &Observed,
+    error: &EmtError,
+) -> msg::Estimate {
+    let gamma = observed.observation.conditions.gamma;
+    let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
+    without_values(model, calibration, gamma, error.is_of_input(), reasons)
+}
+
+/// The message of a model that was never asked, because there was nothing to ask it.
+pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
+    without_values(model, calibration, Gamma::ZERO, nothing.is_of_input(), vec![nothing.to_string()])
+}
+
+fn without_values(
+    model: &dyn Model,
+    calibration: &str,
+    gamma: Gamma,
+    of_input: bool,
+    reasons: Vec<String>,
+) -> msg::Estimate {
+    let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(model.uses_gamma().then_some(gamma));
+    let status = if of_input { msg::Estimate::STATUS_UNDETERMINED } else { msg::Estimate::STATUS_FAILED };
+    msg::Estimate {
+        model: model.name().to_owned(),
+        calibration: calibration.to_owned(),
+        status,
+        gamma_over_delta,
+        gamma_over_delta_source,
+        warnings: reasons,
+        ..Default::default()
+    }
+}

@@ -1,0 +1,41 @@
+//! Which models are asked.
+
+use crate::settings::SettingsError;
+use emt::Model;
+
+/// Models, each once, in the order of [`emt::models`].
+#[derive(Clone, Debug)]
+pub struct Models(Vec<&'static dyn Model>);
+
+impl Models {
+    /// Every model there is.
+    pub fn all() -> Self {
+        Self(emt::models().to_vec())
+    }
+
+    /// `all`, or names with commas between them, in any order.
+    pub fn named(text: &str) -> Result<Self, SettingsError> {
+        if text.trim() == "all" {
+            return Ok(Self::all());
+        }
+        let names: Vec<&str> = text.split(',').map(str::trim).collect();
+        if let Some(stranger) = names.iter().find(|n| emt::model(n).is_none()) {
+            let known: Vec<&str> = emt::models().iter().map(|m| m.name()).collect();
+            let (name, known) = ((*stranger).to_owned(), known.join(", "));
+            return Err(SettingsError::Model { name, known });
+        }
+        Ok(Self(emt::models().iter().copied().filter(|m| names.contains(&m.name())).collect()))
+    }
+
+    /// One after the other.
+    pub fn iter(&self) -> impl Iterator<Item = &'static dyn Model> + '_ {
+        self.0.iter().copied()
+    }
+}
+
+/// By name: it is what tells models apart.
+impl PartialEq for Models {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().map(Model::name).eq(other.iter().map(Model::name))
+    }
+}

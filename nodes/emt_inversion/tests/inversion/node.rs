@@ -1,0 +1,70 @@
+use crate::s1;
+use crate::speeds::upright;
+use emt_inversion::{EmtInversion, Settings, microstructure_message, microstructure_of_speeds};
+use grainlab_msgs::msg::{Microstructure, Moduli, WaveSpeeds};
+use grainlab_msgs::topics;
+use node_kit::{Bus, Demand, Hub, Level, Names, Node, Publisher, RosArgs, Subscription};
+
+#[test]
+fn a_latched_set_of_moduli_is_inverted_by_a_node_that_comes_late_and_a_broken_one_is_refused() {
+    let hub = Hub::new(1);
+    let mut bus = hub.bus(Names::new("source").unwrap());
+    let source: Publisher<Moduli> = Publisher::advertise(&mut bus, &topics::MODULI).unwrap();
+    let found: Subscription<Microstructure> =
+        Subscription::subscribe(&mut bus, &topics::MICROSTRUCTURE, Demand::reliable(8)).unwrap();
+    source.publish(&mut bus, &s1()).unwrap();
+    let mut node_bus = hub.bus(Names::new("emt_inversion").unwrap());
+    let mut node = EmtInversion::new(&mut node_bus, Settings::default()).unwrap();
+    node.step(&mut node_bus).unwrap();
+    let (message, _) = found.take_valid(&mut bus).unwrap().unwrap();
+    assert_eq!(message, microstructure_message(&s1(), &Settings::default()).unwrap());
+    source.publish(&mut bus, &Moduli { g12: f64::NAN, ..s1() }).unwrap();
+    node.step(&mut node_bus).unwrap();
+    assert!(found.take_valid(&mut bus).unwrap().is_none());
+    assert_eq!((node_bus.received()[0].refused, node.health().level), (1, Level::Warn));
+    source.publish(&mut bus, &s1()).unwrap();
+    node.step(&mut node_bus).unwrap();
+    assert_eq!(found.take_valid(&mut bus).unwrap().map(|(m, _)| m), Some(message));
+}
+
+#[test]
+fn moduli_and_the_wave_speeds_of_a_remapped_instrument_are_answered_side_by_side() {
+    let hub = Hub::new(1);
+    let mut instrument = hub.bus(Names::in_namespace("source", "/instrument").unwrap());
+    let mut lab = hub.bus(Names::new("analyzer").unwrap());
+    let speeds: Publisher<WaveSpeeds> = Publisher::advertise(&mut instrument, &topics::WAVE_SPEEDS).unwrap();
+    let moduli: Publisher<Moduli> = Publisher::advertise(&mut lab, &topics::MODULI).unwrap();
+    let found: Subscription<Microstructure> =
+        Subscription::subscribe(&mut lab, &topics::MICROSTRUCTURE, Demand::reliable(8)).unwrap();
+    let settings = Settings::default();
+    let remap = ["--ros-args", "-r", "wave_speeds:=/instrument/wave_speeds"].map(String::from);
+    let (remapped, _) = RosArgs::parse(&remap).unwrap();
+    let start = |names| {
+        let mut bus = hub.bus(names);
+        (EmtInversion::new(&mut bus, settings.clone()).unwrap(), bus)
+    };
+    let (mut node, mut bus) = start(Names::from_args("emt_inversion", &remapped).unwrap());
+    speeds.publish(&mut instrument, &upright()).unwrap();
+    moduli.publish(&mut lab, &s1()).unwrap();
+    node.step(&mut bus).unwrap();
+    let mut answers = Vec::new();
+    while let Some((answer, _)) = found.take_valid(&mut lab).unwrap() {
+        answers.push(answer);
+    }
+    let expected = [
+        microstructure_message(&s1(), &settings).unwrap(),
+        microstructure_of_speeds(&upright(), &settings).unwrap(),
+    ];
+    assert_eq!(answers, expected);
+    // A broken one is counted where it came from.
+    speeds.publish(&mut instrument, &WaveSpeeds { density: 0.0, ..upright() }).unwrap();
+    node.step(&mut bus).unwrap();
+    let refused: Vec<(String, u64)> = bus.received().into_iter().map(|r| (r.topic, r.refused)).collect();
+    assert_eq!(refused, [("/moduli".into(), 0), ("/instrument/wave_speeds".into(), 1)]);
+    assert_eq!(node.health().level, Level::Warn);
+    // Without the remap the instrument is not heard.
+    drop((node, bus));
+    let (mut deaf, mut bus) = start(Names::new("emt_inversion").unwrap());
+    deaf.step(&mut bus).unwrap();
+    assert_eq!(bus.received().iter().map(|r| r.taken).collect::<Vec<_>>(), [1, 0]);
+}

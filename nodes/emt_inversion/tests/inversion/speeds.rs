@@ -1,0 +1,190 @@
+//! S1 as an acoustic instrument hears it.
+
+use crate::moduli::{s1_medium, s1_stiffness};
+use crate::{corrected, of_ratio, s1};
+use emt_inversion::{Axis, Settings, microstructure_of_speeds};
+use grainlab_msgs::geometry_msgs::Vector3;
+use grainlab_msgs::msg::{Estimate, WaveSpeed, WaveSpeeds};
+use grains::{Stiffness, Vec3};
+use nalgebra::Rotation3;
+
+const DENSITY: f64 = 1590.0;
+
+fn wire(v: &Vec3) -> Vector3 {
+    Vector3 { x: v.x, y: v.y, z: v.z }
+}
+
+/// What the mode with this particle motion has for a speed in `stiffness`, known to half a percent.
+fn wave(stiffness: &Stiffness, direction: Vec3, motion: Vec3) -> WaveSpeed {
+    let (direction, motion) = (direction.normalize(), motion.normalize());
+    let speed = (stiffness.plane_waves(&direction).meant_by(&motion).modulus / DENSITY).sqrt();
+    WaveSpeed {
+        method: WaveSpeed::METHOD_DISPERSION,
+        direction: wire(&direction),
+        polarization: wire(&motion),
+        speed,
+        speed_stddev: 0.005 * speed,
+        ..WaveSpeed::default()
+    }
+}
+
+/// P and S along and across the axis, and P in between; the sample is turned by `turn`.
+fn heard(turn: &Rotation3<f64>) -> WaveSpeeds {
+    let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
+    let stiffness = s1_medium().rotated(turn.matrix());
+    let waves = [(z, z), (x, x), (z, x), (x, z), (x, y), (x + z, x + z)];
+    WaveSpeeds {
+        header: s1().header,
+        source_step: 42,
+        density: DENSITY,
+        pressure: 50e3,
+        solid_fraction: 0.636,
+        axis: wire(&(turn * z)),
+        grain_shear_modulus: 29e9,
+        grain_poisson_ratio: 0.2,
+        speeds: waves.iter().map(|(n, p)| wave(&stiffness, turn * n, turn * p)).collect(),
+        ..WaveSpeeds::default()
+    }
+}
+
+pub(crate) fn upright() -> WaveSpeeds {
+    heard(&Rotation3::identity())
+}
+
+fn answer(speeds: &WaveSpeeds, settings: &Settings) -> Estimate {
+    of_ratio(microstructure_of_speeds(speeds, settings).unwrap())
+}
+
+#[test]
+fn speeds_give_what_the_moduli_of_the_same_medium_give() {
+    let message = microstructure_of_speeds(&upright(), &Settings::default()).unwrap();
+    assert_eq!(
+        (&message.header, message.source_step, message.source.as_str()),
+        (&s1().header, 42, "wave_speeds")
+    );
+    let mut silent = s1_stiffness();
+    (silent.gamma_over_delta_total_known, silent.gamma_over_delta_contact_known) = (false, false);
+    let (heard, told) = (of_ratio(message), corrected(&silent, &Settings::default()));
+    assert!((heard.k - told.k).abs() < 1e-6 && (heard.k_hat - told.k_hat).abs() < 1e-6, "{heard:?}");
+    assert!((heard.eps - told.eps).abs() < 1e-7, "{} {}", heard.eps, told.eps);
+    assert_eq!(heard.gamma_over_delta_source, "zero", "an instrument knows no strain ratio");
+    // Six speeds, five moduli, of which the model takes three for its three unknowns.
+    assert_eq!(heard.degrees_of_freedom, 1);
+    assert!(heard.chi_square < 1e-9 && heard.status == Estimate::STATUS_OK, "{heard:?}");
+}
+
+#[test]
+fn the_error_is_that_of_the_speeds_and_the_density_else_that_of_the_settings() {
+    let none = Settings { modulus_error: 0.0, ..Settings::default() };
+    let stated = answer(&upright(), &none);
+    let mut twice = upright();
+    twice.speeds.iter_mut().for_each(|s| s.speed_stddev *= 2.0);
+    let ratio = answer(&twice, &none).covariance[0] / stated.covariance[0];
+    assert!((ratio - 4.0).abs() < 1e-6, "{ratio}");
+    // The density moves all moduli together: k follows them, and ε and k̂ only know their ratios.
+    let dense = answer(&WaveSpeeds { density_stddev: 0.02 * DENSITY, ..upright() }, &none);
+    assert!(dense.covariance[0] > stated.covariance[0] + 0.9 * (0.02 * dense.k).powi(2), "{dense:?}");
+    for at in [6, 18] {
+        assert!((dense.covariance[at] / stated.covariance[at] - 1.0).abs() < 1e-6, "{at}");
+    }
+    let mut unknown = upright();
+    unknown.speeds.iter_mut().for_each(|s| s.speed_stddev = 0.0);
+    assert_eq!(answer(&unknown, &none).credible_level, 0.0);
+    let assumed = answer(&unknown, &Settings::default());
+    let of_moduli = corrected(&s1_stiffness(), &Settings::default());
+    assert!(
+        (assumed.covariance[6] / of_moduli.covariance[6] - 1.0).abs() < 1e-4,
+        "as for moduli without errors"
+    );
+    // One alone without: the largest of the others, and a word on it.
+    let mut one = upright();
+    one.speeds[0].speed_stddev = 0.0;
+    let one = answer(&one, &Settings::default());
+    assert!(one.warnings.iter().any(|w| w.starts_with("1 of 6 wave speeds")), "{:?}", one.warnings);
+}
+
+#[test]
+fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
+    let whole = answer(&upright(), &Settings::default());
+    let without = |missing: &[usize]| {
+        let mut speeds = upright();
+        let mut index = 0..;
+        speeds.speeds.retain(|_| !missing.contains(&index.next().unwrap()));
+        answer(&speeds, &Settings::default())
+    };
+    // Without the wave between axis and plane there is no C13, no Θ, and so no coordination.
+    let e = without(&[5]);
+    assert_eq!((e.k_known, e.k_hat_known, e.eps_known), (false, false, true));
+    assert!((e.eps - whole.eps).abs() < 1e-7 && e.status == Estimate::STATUS_OK, "{e:?}");
+    assert!(
+        e.warnings.iter().any(|w| w == "the wave speeds do not determine Theta, C13"),
+        "{:?}",
+        e.warnings
+    );
+    // Without the S wave across the plane there is no G12, and nothing that `ratio` could say.
+    let e = without(&[4]);
+    assert_eq!((e.status, e.k_known, e.eps_known), (Estimate::STATUS_UNDETERMINED, false, false));
+    assert!(
+        e.warnings[0].contains("needs G12") && e.warnings[1].contains("do not determine"),
+        "{:?}",
+        e.warnings
+    );
+    let e = without(&[0, 1, 2, 3, 4, 5]);
+    assert!(e.status == Estimate::STATUS_UNDETERMINED && e.warnings[0].contains("no wave speeds"), "{e:?}");
+}
+
+#[test]
+fn speeds_that_contradict_each_other_say_so_and_name_the_worst() {
+    let mut speeds = upright();
+    // The same modulus G13 by two waves; one is off by eight of its sigma.
+    speeds.speeds[3].speed *= 1.04;
+    let e = answer(&speeds, &Settings::default());
+    let conflict =
+        e.warnings.iter().find(|w| w.contains("contradict each other")).unwrap_or_else(|| panic!("{e:?}"));
+    assert!(conflict.contains("speeds[2]") || conflict.contains("speeds[3]"), "{conflict}");
+    assert_eq!((e.status, e.degrees_of_freedom), (Estimate::STATUS_EXTRAPOLATED, 1));
+    // (8 sigma)² between two equals.
+    assert!((e.chi_square - 32.0).abs() < 2.0, "{}", e.chi_square);
+    // Within two sigma nothing is said.
+    let mut speeds = upright();
+    speeds.speeds[3].speed *= 1.01;
+    let e = answer(&speeds, &Settings::default());
+    assert!(e.status == Estimate::STATUS_OK && (e.chi_square - 2.0).abs() < 0.2, "{e:?}");
+}
+
+#[test]
+fn a_sample_on_its_side_is_heard_about_its_own_axis() {
+    let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.2);
+    let (standing, lying) = (upright(), heard(&turn));
+    let expected = answer(&standing, &Settings::default());
+    for axis in [Axis::Found, Axis::Given(turn * Vec3::z())] {
+        let e = answer(&lying, &Settings { axis, ..Settings::default() });
+        assert!((e.k - expected.k).abs() < 1e-5 && (e.eps - expected.eps).abs() < 1e-6, "{axis:?} {e:?}");
+    }
+    let nameless = WaveSpeeds { axis: Vector3::default(), ..standing.clone() };
+    assert_eq!(answer(&nameless, &Settings::default()), expected, "e3 is e3");
+    let e = answer(&nameless, &Settings { axis: Axis::Found, ..Settings::default() });
+    assert!(e.status == Estimate::STATUS_UNDETERMINED && e.warnings[0].contains("name none"), "{e:?}");
+}
+
+#[test]
+fn an_axis_that_is_not_the_one_the_instrument_names_is_mentioned() {
+    let other = WaveSpeeds { axis: wire(&Vec3::x()), ..upright() };
+    let e = answer(&other, &Settings::default());
+    assert!(e.warnings.iter().any(|w| w.contains("the data name (1.000, 0.000, 0.000)")), "{:?}", e.warnings);
+    let e = answer(&upright(), &Settings::default());
+    assert!(!e.warnings.iter().any(|w| w.contains("the data name")), "{:?}", e.warnings);
+}
+
+#[test]
+fn speeds_of_no_medium_fail_and_malformed_ones_are_refused_by_name() {
+    // P slower than S across the axis: C11 < G12.
+    let mut swapped = upright();
+    swapped.speeds[1].speed = 150.0;
+    let e = answer(&swapped, &Settings::default());
+    assert!(e.status == Estimate::STATUS_FAILED && !e.warnings.is_empty(), "{e:?}");
+    let mut broken = upright();
+    broken.speeds[2].speed = -1.0;
+    let refused = microstructure_of_speeds(&broken, &Settings::default()).unwrap_err().to_string();
+    assert!(refused.starts_with("WaveSpeeds.speeds[2].speed = -1.0 is refused"), "{refused}");
+}

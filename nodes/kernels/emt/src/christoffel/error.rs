@@ -1,0 +1,74 @@
+//! What makes wave speeds useless.
+
+/// Why wave speeds have no moduli.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChristoffelError {
+    /// Nothing was measured.
+    #[error("there are no wave speeds: give at least one")]
+    NoSpeeds,
+    /// The axis of symmetry is not known.
+    #[error("the symmetry axis is not known, and speeds are not enough to find it here: give the axis")]
+    AxisUnknown,
+    /// A vector that should be a unit vector.
+    #[error("{vector} has the length {length}, and must be a unit vector")]
+    NotUnit {
+        /// Which vector, with its index in the list of speeds.
+        vector: String,
+        /// The length found.
+        length: f64,
+    },
+    /// A speed is not positive and finite.
+    #[error(
+        "speeds[{index}].speed = {value} m/s must be positive and finite: leave out what was not measured"
+    )]
+    Speed {
+        /// Index in the list of speeds.
+        index: usize,
+        /// The value found, m/s.
+        value: f64,
+    },
+    /// A standard deviation of a speed is not positive and finite.
+    #[error("speeds[{index}].stddev = {value} m/s must be positive and finite, or not known")]
+    SpeedStddev {
+        /// Index in the list of speeds.
+        index: usize,
+        /// The value found, m/s.
+        value: f64,
+    },
+    /// The density is not positive and finite.
+    #[error(
+        "the density {value} kg/m3 must be positive and finite: that of the mass that moves with the wave"
+    )]
+    Density {
+        /// The value found, kg/m³.
+        value: f64,
+    },
+    /// The standard deviation of the density is negative or not finite.
+    #[error("the standard deviation of the density, {value} kg/m3, must be finite and 0 or more")]
+    DensityStddev {
+        /// The value found, kg/m³.
+        value: f64,
+    },
+    /// A polarisation that is between the modes of its direction.
+    #[error(
+        "speeds[{index}].polarization is {degrees:.0} degrees from the nearest mode of its direction, and beyond 30 it \
+         does not say which mode was measured: give the particle motion of one mode"
+    )]
+    Ambiguous {
+        /// Index in the list of speeds.
+        index: usize,
+        /// Angle between the motion given and the nearest mode's, degrees.
+        degrees: f64,
+    },
+    /// No stable medium has these speeds.
+    #[error(
+        "the speeds give {moduli}, which no stable medium has: look for a speed of another mode, axis or state"
+    )]
+    Unstable {
+        /// The moduli, as text.
+        moduli: String,
+    },
+    /// The search for the medium ended without one.
+    #[error("no medium was found for these speeds: look for a speed of another mode, axis or state")]
+    NoMedium,
+}

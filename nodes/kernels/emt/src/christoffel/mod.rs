@@ -1,0 +1,162 @@
+//! From wave speeds to moduli.
+//!
+//! A plane wave along the unit vector n obeys Γ p = ρ v² p with Γ_ik = C_ijkl n_j n_l (see [`grains::waves`]). In a medium
+//! that is isotropic about an axis, with θ between n and the axis, one mode moves across the plane of n and axis,
+//! ρ v² = C66 sin²θ + C44 cos²θ, and two in that plane: ρ v² are the eigenvalues of
+//!
+//! ```text
+//! | C11 sin²θ + C44 cos²θ    (C13 + C44) sin θ cos θ  |
+//! | (C13 + C44) sin θ cos θ  C44 sin²θ + C33 cos²θ    |
+//! ```
+//!
+//! So P and S speeds along and across the axis give C33, C11, C44 and C66, and C13, and with it the bulk modulus, needs a
+//! speed in between. These only know (C13 + C44)²: C13 + C44 > 0 is assumed, as it is in every packing.
+//!
+//! What the speeds leave open is left open. What they determine more than once is a weighted least-squares fit, and how
+//! well they agree is told. Where several media have the same speeds (without P speeds along and across the axis that
+//! happens), the moduli in which they differ are left open, too. The density is that of the mass that moves with the wave: rattlers do not.
+
+mod conflict;
+mod determined;
+mod error;
+mod fit;
+mod ray;
+mod search;
+
+pub use conflict::SpeedConflict;
+pub use error::ChristoffelError;
+
+use crate::conditions::{Conditions, Measured};
+use crate::moduli::{Moduli, Modulus};
+use crate::observation::Observation;
+use grains::{Vec3, WaveSpeed};
+use ray::Ray;
+
+/// Moduli from wave speeds, and how well the speeds agree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// The moduli that the speeds determine about the axis as e3, with their covariance if any speed has an uncertainty.
+    pub observation: Observation,
+    /// The moduli that they do not.
+    pub undetermined: Vec<Modulus>,
+    /// Weighted sum of squares of speeds measured less fitted; `None` if their uncertainty is not known.
+    pub chi_square: Option<f64>,
+    /// Speeds less combinations of moduli that they determine.
+    pub degrees_of_freedom: usize,
+    /// Of every speed: measured less fitted, over measured.
+    pub residuals: Vec<f64>,
+    /// Speeds without an uncertainty, where others have one; they were given the largest relative one of the others.
+    pub assumed: usize,
+    /// Whether the speeds contradict each other beyond their uncertainty, and which most.
+    pub conflict: Option<SpeedConflict>,
+}
+
+impl Fitted {
+    /// Root mean square of the relative residuals per degree of freedom: an estimate of the relative error of the speeds
+    /// that asks for no uncertainty; `None` without a degree of freedom.
+    pub fn scatter(&self) -> Option<f64> {
+        let sum: f64 = self.residuals.iter().map(|r| r * r).sum();
+        (self.degrees_of_freedom > 0).then(|| (sum / self.degrees_of_freedom as f64).sqrt())
+    }
+}
+
+/// The moduli of a medium that is isotropic about `axis` from the speeds of its waves, with the density of the mass that
+/// moves with them, kg/m³, in the state `conditions`.
+///
+/// The moduli are those of a frame with the axis as e3. Any set of speeds will do: [`Fitted::undetermined`] are the moduli
+/// it leaves open. Equal relative errors are taken if no speed has an uncertainty; the moduli then have none either.
+/// Errors of speeds are independent, that of the density moves all moduli together.
+///
+/// Refused: an axis that is not known, vectors that are not of unit length, numbers that are not positive and finite, a
+/// polarisation more than 30° from every mode of its direction, and speeds that only an unstable medium has.
+///
+/// ```
+/// use emt::{Conditions, Measured, Modulus, christoffel};
+/// use grains::{Vec3, WaveSpeed};
+/// let wave = |direction, polarization, speed| WaveSpeed { direction, polarization, speed, stddev: Some(0.003 * speed) };
+/// let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
+/// let speeds = [wave(z, z, 500.0), wave(x, x, 480.0), wave(z, x, 300.0), wave(x, z, 301.0), wave(x, y, 290.0)];
+/// let density = Measured { value: 1600.0, stddev: 8.0 };
+/// let fitted = christoffel::observation(&speeds, density, Some(z), Conditions::at(50e3)).unwrap();
+/// let c33 = fitted.observation.moduli.get(Modulus::C33).unwrap();
+/// assert!((c33 - 1600.0 * 500.0 * 500.0).abs() < 1e-3);
+/// assert_eq!(fitted.undetermined, [Modulus::Theta, Modulus::C13]);
+/// assert_eq!((fitted.degrees_of_freedom, fitted.conflict), (1, None));
+/// ```
+pub fn observation(
+    speeds: &[WaveSpeed],
+    density: Measured,
+    axis: Option<Vec3>,
+    conditions: Conditions,
+) -> Result<Fitted, ChristoffelError> {
+    let rays = rays(speeds, axis)?;
+    check_density(density)?;
+    let errors = errors(&rays);
+    let unit = errors.as_ref().map(|e| e.iter().copied().fold(f64::INFINITY, f64::min));
+    let weights = match (&errors, unit) {
+        (Some(errors), Some(unit)) => errors.iter().map(|e| (unit / e).powi(2)).collect(),
+        _ => vec![1.0; rays.len()],
+    };
+    let fit = fit::fit(&rays, &weights, unit)?;
+    // Where the motion said it all, a mode that moves otherwise is a matter of the speeds.
+    for (index, (ray, share)) in rays.iter().zip(&fit.shares).enumerate() {
+        if !ray.named && !ray::is_clear(*share) {
+            return Err(ray::ambiguous(index, *share));
+        }
+    }
+    let (moduli, covariance) = determined::moduli(&fit, density, unit);
+    if !moduli.known().all(|(_, value)| value.is_finite()) {
+        return Err(ChristoffelError::NoMedium);
+    }
+    if is_unstable(&moduli) {
+        return Err(ChristoffelError::Unstable { moduli: listed(&moduli) });
+    }
+    let sigmas: Option<Vec<f64>> =
+        errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| r / e).collect());
+    let degrees_of_freedom = rays.len().saturating_sub(fit.rank);
+    let chi_square = sigmas.as_ref().map(|s| s.iter().map(|s| s * s).sum());
+    Ok(Fitted {
+        observation: Observation { covariance, ..Observation::new(moduli, conditions) },
+        undetermined: Modulus::ALL.into_iter().filter(|m| moduli.get(*m).is_none()).collect(),
+        chi_square,
+        degrees_of_freedom,
+        assumed: if errors.is_some() { rays.iter().filter(|r| r.error.is_none()).count() } else { 0 },
+        conflict: sigmas.as_ref().and_then(|s| conflict::conflict(s, &fit.leverages, degrees_of_freedom)),
+        residuals: fit.residuals,
+    })
+}
+
+fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, ChristoffelError> {
+    if speeds.is_empty() {
+        return Err(ChristoffelError::NoSpeeds);
+    }
+    let axis = axis.ok_or(ChristoffelError::AxisUnknown)?;
+    let axis = ray::unit(&axis, || "the axis".to_owned())?;
+    speeds.iter().enumerate().map(|(index, speed)| Ray::new(index, speed, &axis)).collect()
+}
+
+fn check_density(density: Measured) -> Result<(), ChristoffelError> {
+    if !(density.value > 0.0 && density.value.is_finite()) {
+        return Err(ChristoffelError::Density { value: density.value });
+    }
+    if !(density.stddev >= 0.0 && density.stddev.is_finite()) {
+        return Err(ChristoffelError::DensityStddev { value: density.stddev });
+    }
+    Ok(())
+}
+
+/// Relative error of every speed; `None` if none is known.
+fn errors(rays: &[Ray]) -> Option<Vec<f64>> {
+    let largest = rays.iter().filter_map(|r| r.error).reduce(f64::max)?;
+    Some(rays.iter().map(|r| r.error.unwrap_or(largest)).collect())
+}
+
+fn is_unstable(moduli: &Moduli) -> bool {
+    let negative = moduli.known().any(|(modulus, value)| value <= 0.0 && modulus != Modulus::C13);
+    negative || moduli.unstable()
+}
+
+fn listed(moduli: &Moduli) -> String {
+    let parts: Vec<String> = moduli.known().map(|(m, v)| format!("{m} = {:.3} MPa", v / 1e6)).collect();
+    parts.join(", ")
+}

@@ -1,0 +1,217 @@
+//! The search for the medium: damped Gauss-Newton on relative speeds.
+//!
+//! Unknowns are the specific moduli, each over a scale of its own (the ρ v² of P or S waves), so that every number here
+//! is of order one.
+
+use super::ray::{Column, Ray, UNKNOWNS};
+use nalgebra::{SMatrix, SymmetricEigen};
+
+/// A combination of relative moduli that changes no speed by more than this part of its own change is left open: speeds
+/// known to 0.1 % then say nothing about it.
+const BLIND: f64 = 1e-3;
+
+/// The same, but below which other media may have the same speeds.
+const WEAK: f64 = 0.1;
+
+/// How far to go from a medium to look for another, in scales of its moduli.
+const FAR: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
+
+/// A matrix of the specific moduli.
+pub(super) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+
+/// Speeds, and how much each counts.
+pub(super) struct Problem<'a> {
+    rays: &'a [Ray],
+    weights: &'a [f64],
+    /// What to compare each specific modulus with: the v² of P or S waves, their difference for C13 + C44, m²/s².
+    pub(super) scale: Column,
+    guess: Column,
+}
+
+/// A medium, and what it says to every ray.
+pub(super) struct Point {
+    pub(super) specific: Column,
+    /// What the medium falls short of the speed by, over the speed, and the slopes of its own speed over the speed with each
+    /// modulus over its scale; one a ray.
+    pub(super) rows: Vec<(f64, Column)>,
+    /// cos² of the angle between the motion measured and that of the mode, one a ray.
+    pub(super) shares: Vec<f64>,
+    /// Weighted sum of squares.
+    pub(super) cost: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// With a weight for each ray.
+    pub(super) fn new(rays: &'a [Ray], weights: &'a [f64]) -> Self {
+        let mean_square = |compressional: bool| {
+            let squares = rays.iter().filter(|r| r.is_compressional() == compressional);
+            let (sum, count) = squares.fold((0.0, 0.0), |(s, n), r| (s + r.speed * r.speed, n + 1.0));
+            (count > 0.0).then(|| sum / count)
+        };
+        // Where one kind is missing: the ratio in isotropic packings.
+        let (p, s) = match (mean_square(true), mean_square(false)) {
+            (Some(p), Some(s)) => (p, s),
+            (Some(p), None) => (p, p / 3.0),
+            (None, s) => (3.0 * s.unwrap_or(1.0), s.unwrap_or(1.0)),
+        };
+        let coupling = (p - s).max(0.2 * p);
+        Self {
+            rays,
+            weights,
+            scale: Column::from([p, p, coupling, s, s]),
+            guess: Column::from([p, p, coupling - s, s, s]),
+        }
+    }
+
+    /// Whether the rays whose modes do not hang on the medium, and whose v² is linear in the moduli, leave nothing open but
+    /// C13 (or there are no others): every v² that hangs on C13 grows or falls with it throughout.
+    pub(super) fn has_one_minimum(&self) -> bool {
+        let plain: Vec<(f64, Column)> =
+            self.rays.iter().filter(|r| !r.is_coupled()).map(|r| (0.0, self.row_of_motion(r))).collect();
+        let (basis, rank) = seen(&plain);
+        let is_settled = |modulus: usize| (rank..UNKNOWNS).all(|k| basis[(modulus, k)].abs() < BLIND);
+        plain.len() == self.rays.len() || [0, 1, 3].into_iter().all(is_settled)
+    }
+
+    /// Relative slopes of a ray's speed for exactly the motion measured.
+    fn row_of_motion(&self, ray: &Ray) -> Column {
+        ray.slopes_of_motion().component_mul(&self.scale) / (2.0 * ray.speed * ray.speed)
+    }
+
+    /// The medium that gives each speed to exactly the motion measured, which is linear; then isotropic ones.
+    pub(super) fn starts(&self) -> impl Iterator<Item = Column> + '_ {
+        let rows: Vec<(f64, Column)> = (self.rays.iter())
+            .map(|ray| {
+                let square = ray.speed * ray.speed;
+                (0.5 * (1.0 - ray.slopes_of_motion().dot(&self.guess) / square), self.row_of_motion(ray))
+            })
+            .collect();
+        let (basis, rank) = seen(&rows);
+        let step = self.step(&rows, &basis, rank, 0.0);
+        let linear = step.map(|step| self.guess + step.component_mul(&self.scale));
+        let shears = [1.0, 0.4, 1.6].map(|shear| {
+            let [p, _, coupling, s, _] = self.scale.data.0[0];
+            Column::from([p, p, coupling - shear * s, shear * s, s])
+        });
+        linear.into_iter().chain(shears)
+    }
+
+    /// Media some way from `point` along what the speeds know least of, or nothing: what fits as well as the point is found
+    /// from there.
+    pub(super) fn around(&self, point: &Point) -> Vec<Column> {
+        let eigen = SymmetricEigen::new(normal_of(&point.rows));
+        let weak = (0..UNKNOWNS).filter(|i| eigen.eigenvalues[*i] < WEAK * WEAK);
+        let ways = weak.map(|i| eigen.eigenvectors.column(i).component_mul(&self.scale));
+        ways.flat_map(|way| FAR.map(|far| point.specific + far * way)).collect()
+    }
+
+    fn at(&self, specific: Column) -> Option<Point> {
+        if specific[2] + specific[3] <= 0.0 {
+            return None;
+        }
+        let mut point = Point { specific, rows: Vec::new(), shares: Vec::new(), cost: 0.0 };
+        for (ray, weight) in self.rays.iter().zip(self.weights) {
+            let answer = ray.answer(&specific)?;
+            let fitted = answer.square.sqrt();
+            let residual = 1.0 - fitted / ray.speed;
+            let slopes = answer.slopes.component_mul(&self.scale) / (2.0 * fitted * ray.speed);
+            point.cost += weight * residual * residual;
+            point.rows.push((residual, slopes));
+            point.shares.push(answer.share);
+        }
+        point.cost.is_finite().then_some(point)
+    }
+
+    /// The medium at the end of the way down from `start`; `None` if that is no medium.
+    pub(super) fn descend(&self, start: Column) -> Option<Point> {
+        let mut here = self.at(start)?;
+        let mut damping = 1e-4;
+        for _ in 0..100 {
+            let (basis, rank) = seen(&here.rows);
+            let step = self.step(&here.rows, &basis, rank, damping)?;
+            if step.amax() < 1e-13 {
+                break;
+            }
+            let mut specific = here.specific + step.component_mul(&self.scale);
+            // C13 + C44 = 0 is a wall; a step through it goes most of the way there.
+            let coupling = here.specific[2] + here.specific[3];
+            if specific[2] + specific[3] <= 0.0 {
+                specific[2] = 0.1 * coupling - specific[3];
+            }
+            match self.at(specific) {
+                Some(next) if next.cost < here.cost => {
+                    here = next;
+                    damping *= 0.01;
+                }
+                // The cost no longer tells a step from rounding.
+                _ if damping > 1e8 || step.amax() < 1e-9 => break,
+                _ => damping = 10.0 * damping.max(1e-8),
+            }
+        }
+        Some(self.polished(here))
+    }
+
+    /// A last undamped step or two, where they are too short for the cost to judge them.
+    fn polished(&self, mut point: Point) -> Point {
+        for _ in 0..2 {
+            let (basis, rank) = seen(&point.rows);
+            let step = self.step(&point.rows, &basis, rank, 0.0).filter(|step| step.amax() < 1e-6);
+            let next = step.and_then(|step| self.at(point.specific + step.component_mul(&self.scale)));
+            let Some(next) = next else { break };
+            point = next;
+        }
+        point
+    }
+
+    /// Weighted least squares in the directions that are seen.
+    fn step(&self, rows: &[(f64, Column)], basis: &Square, rank: usize, damping: f64) -> Option<Column> {
+        let mut right = Column::zeros();
+        for ((residual, row), weight) in rows.iter().zip(self.weights) {
+            right += *weight * *residual * (basis.transpose() * row);
+        }
+        right.rows_range_mut(rank..).fill(0.0);
+        let normal = self.normal(rows, basis, rank, damping);
+        Some(basis * normal.cholesky()?.solve(&right))
+    }
+
+    /// Normal matrix in the basis, with ones for what is not seen.
+    pub(super) fn normal(&self, rows: &[(f64, Column)], basis: &Square, rank: usize, damping: f64) -> Square {
+        let mut normal = Square::zeros();
+        for ((_, row), weight) in rows.iter().zip(self.weights) {
+            let row = basis.transpose() * row;
+            normal += *weight * row * row.transpose();
+        }
+        let damping = damping * normal.trace();
+        for i in 0..UNKNOWNS {
+            normal[(i, i)] += damping;
+            if i >= rank {
+                normal.row_mut(i).fill(0.0);
+                normal.column_mut(i).fill(0.0);
+                normal[(i, i)] = 1.0;
+            }
+        }
+        normal
+    }
+}
+
+/// Orthonormal directions of relative moduli, those first that some speed sees, and how many those are.
+pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
+    let normal = normal_of(rows);
+    if !normal.iter().all(|v| v.is_finite()) {
+        // Speeds of absurd scale; nothing will come of them.
+        return (Square::identity(), 0);
+    }
+    let eigen = SymmetricEigen::new(normal);
+    let is_seen = |i: &usize| eigen.eigenvalues[*i] > BLIND * BLIND;
+    let first = (0..UNKNOWNS).filter(is_seen);
+    let last = (0..UNKNOWNS).filter(|i| !is_seen(i));
+    let mut basis = Square::zeros();
+    for (to, from) in first.chain(last).enumerate() {
+        basis.set_column(to, &eigen.eigenvectors.column(from));
+    }
+    (basis, (0..UNKNOWNS).filter(is_seen).count())
+}
+
+fn normal_of(rows: &[(f64, Column)]) -> Square {
+    rows.iter().map(|(_, row)| row * row.transpose()).sum()
+}

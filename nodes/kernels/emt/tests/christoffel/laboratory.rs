@@ -1,0 +1,142 @@
+//! Waves in media that are known, by a dense eigenvalue solve of the full Christoffel tensor.
+
+use emt::christoffel::{self, ChristoffelError, Fitted};
+use emt::{Conditions, Measured, Modulus};
+use grains::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
+use nalgebra::{Rotation3, Unit};
+
+/// Density of the mass that moves, kg/m³.
+pub(crate) const DENSITY: f64 = 1573.0;
+
+/// A wave: angle between direction and axis, degrees, and the mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wave {
+    P(f64),
+    Sv(f64),
+    Sh(f64),
+}
+
+/// A medium about an axis of its own, in a frame of its own.
+pub(crate) struct Sample {
+    pub(crate) moduli: TransverseIsotropy,
+    pub(crate) stiffness: Stiffness,
+    pub(crate) frame: Rotation3<f64>,
+}
+
+impl Sample {
+    pub(crate) fn new(moduli: TransverseIsotropy, frame: Rotation3<f64>) -> Self {
+        Self { moduli, stiffness: moduli.stiffness().rotated(frame.matrix()), frame }
+    }
+
+    pub(crate) fn axis(&self) -> Vec3 {
+        self.frame * Vec3::z()
+    }
+
+    /// Direction, and the motion that someone would name who knows the axis and no moduli; `azimuth` in degrees.
+    pub(crate) fn nominal(&self, wave: Wave, azimuth: f64) -> (Vec3, Vec3) {
+        let (Wave::P(angle) | Wave::Sv(angle) | Wave::Sh(angle)) = wave;
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin_azimuth, cos_azimuth) = azimuth.to_radians().sin_cos();
+        let n = Vec3::new(sin * cos_azimuth, sin * sin_azimuth, cos);
+        let across = Vec3::new(-sin_azimuth, cos_azimuth, 0.0);
+        let p = match wave {
+            Wave::P(_) => n,
+            Wave::Sh(_) => across,
+            Wave::Sv(_) => across.cross(&n),
+        };
+        (self.frame * n, self.frame * p)
+    }
+
+    /// The speed of a wave, with its exact motion.
+    pub(crate) fn exact(&self, wave: Wave, azimuth: f64) -> WaveSpeed {
+        let (direction, nominal) = self.nominal(wave, azimuth);
+        let mode = self.mode(wave, direction, nominal);
+        WaveSpeed { direction, polarization: mode.1, speed: (mode.0 / DENSITY).sqrt(), stddev: None }
+    }
+
+    /// The same with the motion of someone who does not know the moduli.
+    pub(crate) fn named(&self, wave: Wave, azimuth: f64) -> WaveSpeed {
+        WaveSpeed { polarization: self.nominal(wave, azimuth).1, ..self.exact(wave, azimuth) }
+    }
+
+    /// ρ v² and motion; of the two modes in the plane, P is the stiffer.
+    fn mode(&self, wave: Wave, direction: Vec3, nominal: Vec3) -> (f64, Vec3) {
+        let waves = self.stiffness.plane_waves(&direction);
+        if let Wave::Sh(_) = wave {
+            let mode = waves.meant_by(&nominal);
+            assert!(mode.share > 1.0 - 1e-9, "{mode:?}");
+            return (mode.modulus, mode.polarization);
+        }
+        let across = direction.cross(&self.axis()).try_normalize(1e-9);
+        let in_plane = |p: &Vec3| across.is_none_or(|across| p.dot(&across).abs() < 0.5);
+        let k = match wave {
+            Wave::P(_) => (0..3).find(|k| in_plane(&waves.polarizations[*k])),
+            _ => (0..3).rfind(|k| in_plane(&waves.polarizations[*k])),
+        };
+        let k = k.expect("two modes move in the plane");
+        // On the axis any transverse motion is a mode's.
+        let polarization = if across.is_none() { nominal } else { waves.polarizations[k] };
+        (waves.moduli[k], polarization)
+    }
+
+    pub(crate) fn truth(&self, modulus: Modulus) -> f64 {
+        emt::Moduli::of_medium(&self.moduli).get(modulus).expect("a medium has all of them")
+    }
+
+    pub(crate) fn fit(&self, speeds: &[WaveSpeed]) -> Result<Fitted, ChristoffelError> {
+        let density = Measured::exact(DENSITY);
+        christoffel::observation(speeds, density, Some(self.axis()), Conditions::at(50e3))
+    }
+}
+
+/// The medium of a packing: the paper's S3, closely.
+pub(crate) const PACKING: TransverseIsotropy =
+    TransverseIsotropy { c11: 245e6, c12: 111e6, c13: 98e6, c33: 274e6, g13: 72e6, g12: 67e6, residual: 0.0 };
+
+/// Numbers that look random, the same every time.
+pub(crate) struct Numbers(u64);
+
+impl Numbers {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Between 0 and 1.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Of mean 0 and variance 1.
+    pub(crate) fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+
+    pub(crate) fn frame(&mut self) -> Rotation3<f64> {
+        let axis = Unit::new_normalize(Vec3::from_fn(|_, _| self.normal()));
+        Rotation3::from_axis_angle(&axis, self.between(0.0, 3.0))
+    }
+
+    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is positive.
+    /// `anisotropy` in (0, 1].
+    pub(crate) fn medium(&mut self, anisotropy: f64) -> TransverseIsotropy {
+        loop {
+            let mut about = |value: f64| value * (anisotropy * self.between(-1.0, 1.0)).exp();
+            let (c33, c11, g13, g12) = (about(300e6), about(300e6), about(90e6), about(90e6));
+            let c13 = about(190e6) - g13;
+            let c12 = c11 - 2.0 * g12;
+            let stable = c11 > g12 && c33 * (c11 - g12) > c13 * c13;
+            if stable && c13 + g13 > 0.2 * g13 && c11.min(c33) > 1.1 * g12.max(g13) {
+                return TransverseIsotropy { c11, c12, c13, c33, g13, g12, residual: 0.0 };
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Exact speeds give exact moduli.
+
+use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
+use emt::{Conditions, Measured, Modulus, christoffel};
+use grains::{TransverseIsotropy, WaveSpeed};
+use nalgebra::{DMatrix, Dyn, Rotation3, SVD};
+
+const WAVES: [Wave; 10] = [
+    Wave::P(0.0),
+    Wave::Sv(0.0),
+    Wave::P(90.0),
+    Wave::Sh(90.0),
+    Wave::Sv(90.0),
+    Wave::P(45.0),
+    Wave::Sv(45.0),
+    Wave::Sh(45.0),
+    Wave::P(25.0),
+    Wave::Sv(70.0),
+];
+
+fn subsets() -> impl Iterator<Item = Vec<Wave>> {
+    (1..1usize << WAVES.len())
+        .map(|mask| (0..WAVES.len()).filter(|i| mask >> i & 1 == 1).map(|i| WAVES[i]).collect())
+}
+
+/// The medium with its C11, C33, C13, C44 and C66 changed, Pa.
+fn changed(m: TransverseIsotropy, by: [f64; 5]) -> TransverseIsotropy {
+    let (c11, g12) = (m.c11 + by[0], m.g12 + by[4]);
+    let (c33, c13, g13) = (m.c33 + by[1], m.c13 + by[2], m.g13 + by[3]);
+    TransverseIsotropy { c11, c12: c11 - 2.0 * g12, c13, c33, g13, g12, residual: 0.0 }
+}
+
+fn ln_speeds(sample: &Sample, waves: &[Wave]) -> Vec<f64> {
+    waves.iter().map(|w| sample.exact(*w, 0.0).speed.ln()).collect()
+}
+
+/// Change of ln v of each wave with each modulus over its scale, by central differences of the dense solve.
+fn slopes(sample: &Sample, waves: &[Wave], scale: &[f64; 5]) -> Vec<[f64; 5]> {
+    let mut slopes = vec![[0.0; 5]; waves.len()];
+    for j in 0..5 {
+        let at = |relative: f64| {
+            let mut by = [0.0; 5];
+            by[j] = relative * scale[j];
+            ln_speeds(&Sample::new(changed(sample.moduli, by), sample.frame), waves)
+        };
+        let (up, down) = (at(1e-4), at(-1e-4));
+        for (row, (up, down)) in slopes.iter_mut().zip(up.iter().zip(down)) {
+            row[j] = (up - down) / 2e-4;
+        }
+    }
+    slopes
+}
+
+/// What part of each modulus, in the order of `Modulus::ALL`, is open to the speeds in the medium's neighbourhood; `None`
+/// if it is hard to say, because something has little influence on any speed, but some.
+fn open_parts(sample: &Sample, waves: &[Wave]) -> Option<[f64; 6]> {
+    let m = sample.moduli;
+    let scale = [m.c11, m.c33, m.c13 + m.g13, m.g13, m.g12];
+    let slopes = slopes(sample, waves, &scale);
+    // Square at least, so that the decomposition has all five directions.
+    let jacobian = DMatrix::from_fn(waves.len().max(5), 5, |i, j| slopes.get(i).map_or(0.0, |row| row[j]));
+    let svd: SVD<f64, Dyn, Dyn> = SVD::new(jacobian, false, true);
+    let directions = svd.v_t.expect("asked for");
+    let mut parts = [0.0f64; 6];
+    for (k, value) in svd.singular_values.iter().enumerate() {
+        match *value {
+            5e-3.. => continue,
+            1e-6.. => return None,
+            _ => {}
+        }
+        let v: [f64; 5] = std::array::from_fn(|j| directions[(k, j)] * scale[j]);
+        let theta = (4.0 * v[0] - 4.0 * v[4] + 4.0 * v[2] + v[1]) / 9.0;
+        for (part, change) in parts.iter_mut().zip([v[4], v[3], theta, v[0], v[1], v[2]]) {
+            *part = part.max(change.abs() / m.c33);
+        }
+    }
+    Some(parts)
+}
+
+/// Every subset of the waves gives back, from its speeds, what it determines, and leaves the rest open. `speed` makes the
+/// wave; at most `rivalled` of all subsets may leave more open, because another medium has the same speeds.
+fn every_subset_gives_back(
+    numbers: &mut Numbers,
+    anisotropy: f64,
+    rivalled: f64,
+    speed: impl Fn(&Sample, Wave, f64) -> WaveSpeed,
+) {
+    let (mut tried, mut complete, mut rivals) = (0, 0, 0);
+    for _ in 0..6 {
+        let sample = Sample::new(numbers.medium(anisotropy), numbers.frame());
+        for waves in subsets() {
+            let Some(open) = open_parts(&sample, &waves) else { continue };
+            let speeds: Vec<_> =
+                waves.iter().map(|w| speed(&sample, *w, numbers.between(0.0, 360.0))).collect();
+            let fitted =
+                sample.fit(&speeds).unwrap_or_else(|e| panic!("{e}: {waves:?} of {:?}", sample.moduli));
+            let all_known = open.iter().all(|o| *o == 0.0);
+            // Where something is open, up to 0.3 % of a modulus may be.
+            let allowed = if all_known { 1e-10 } else { 3e-3 };
+            let mut rivalled = false;
+            for (modulus, open) in Modulus::ALL.into_iter().zip(open) {
+                let case = || format!("{modulus} (open {open:.1e}) from {waves:?} of {:?}", sample.moduli);
+                match fitted.observation.moduli.get(modulus) {
+                    Some(value) => {
+                        assert!(open < 1e-2, "not open: {}", case());
+                        let error = (value - sample.truth(modulus)).abs() / sample.moduli.c33;
+                        assert!(error < allowed, "off by {error:.1e}: {}", case());
+                    }
+                    None => rivalled |= open < 1e-3,
+                }
+            }
+            // With both P speeds along the axes, one medium is left.
+            let unique = waves.contains(&Wave::P(0.0)) && waves.contains(&Wave::P(90.0)) && all_known;
+            assert!(!(rivalled && unique), "open without need: {waves:?} of {:?}", sample.moduli);
+            tried += 1;
+            complete += usize::from(fitted.undetermined.is_empty());
+            rivals += usize::from(rivalled);
+        }
+    }
+    assert!(tried > 5000 && complete > 2000, "{tried} subsets tried, {complete} complete");
+    assert!((rivals as f64) < rivalled * tried as f64, "{rivals} of {tried} leave open what they determine");
+}
+
+#[test]
+fn every_subset_gives_back_what_it_determines_and_leaves_the_rest_open() {
+    every_subset_gives_back(&mut Numbers::new(1), 0.3, 0.01, |sample, wave, azimuth| {
+        sample.exact(wave, azimuth)
+    });
+}
+
+#[test]
+fn motions_named_by_the_direction_alone_do_as_well_as_exact_ones() {
+    every_subset_gives_back(&mut Numbers::new(2), 0.3, 0.01, |sample, wave, azimuth| {
+        sample.named(wave, azimuth)
+    });
+}
+
+#[test]
+fn packings_are_recovered_from_waves_in_any_five_or_more_directions() {
+    let mut numbers = Numbers::new(3);
+    let mut complete = 0;
+    for _ in 0..300 {
+        let sample = Sample::new(numbers.medium(0.2), numbers.frame());
+        let speeds: Vec<_> = (0..12)
+            .map(|k| {
+                let angle = numbers.between(0.0, 90.0);
+                let wave = [Wave::P(angle), Wave::Sv(angle), Wave::Sh(angle)][k % 3];
+                sample.named(wave, numbers.between(0.0, 360.0))
+            })
+            .collect();
+        let fitted = sample.fit(&speeds).unwrap();
+        complete += usize::from(fitted.undetermined.is_empty());
+        for (modulus, value) in fitted.observation.moduli.known() {
+            let error = (value - sample.truth(modulus)).abs() / sample.moduli.c33;
+            assert!(error < 1e-10, "{modulus} is off by {error:.1e} in {:?}", sample.moduli);
+        }
+    }
+    assert!(complete > 290, "{complete}");
+}
+
+#[test]
+fn signs_of_directions_motions_and_axis_do_not_matter() {
+    let mut numbers = Numbers::new(4);
+    let sample = Sample::new(PACKING, numbers.frame());
+    let mut speeds: Vec<_> = WAVES.iter().map(|w| sample.exact(*w, numbers.between(0.0, 360.0))).collect();
+    let before = sample.fit(&speeds).unwrap().observation.moduli;
+    for (i, speed) in speeds.iter_mut().enumerate() {
+        if i % 2 == 0 {
+            speed.direction = -speed.direction;
+        }
+        if i % 3 == 0 {
+            speed.polarization = -speed.polarization;
+        }
+    }
+    let (density, conditions) = (Measured::exact(DENSITY), Conditions::at(50e3));
+    let after = christoffel::observation(&speeds, density, Some(-sample.axis()), conditions).unwrap();
+    for (modulus, value) in after.observation.moduli.known() {
+        assert!((value / before.get(modulus).unwrap() - 1.0).abs() < 1e-12, "{modulus}");
+    }
+}
+
+#[test]
+fn an_isotropic_medium_gives_isotropic_moduli() {
+    let glass = TransverseIsotropy {
+        c11: 250e6,
+        c12: 106e6,
+        c13: 106e6,
+        c33: 250e6,
+        g13: 72e6,
+        g12: 72e6,
+        residual: 0.0,
+    };
+    let mut numbers = Numbers::new(5);
+    let sample = Sample::new(glass, numbers.frame());
+    // The dense solve turns the S motions of an isotropic medium as it likes, so they are named.
+    let speeds: Vec<_> = WAVES
+        .iter()
+        .map(|wave| {
+            let (direction, polarization) = sample.nominal(*wave, numbers.between(0.0, 360.0));
+            let modulus = if matches!(wave, Wave::P(_)) { 250e6 } else { 72e6f64 };
+            WaveSpeed { direction, polarization, speed: (modulus / DENSITY).sqrt(), stddev: None }
+        })
+        .collect();
+    let fitted = sample.fit(&speeds).unwrap();
+    assert!(fitted.undetermined.is_empty());
+    for (modulus, value) in fitted.observation.moduli.known() {
+        assert!((value / sample.truth(modulus) - 1.0).abs() < 1e-12, "{modulus}");
+    }
+}
+
+#[test]
+fn a_fit_is_an_observation_that_every_model_takes() {
+    let sample = Sample::new(PACKING, Rotation3::identity());
+    let speeds: Vec<_> = WAVES
+        .iter()
+        .map(|w| sample.exact(*w, 0.0))
+        .map(|s| WaveSpeed { stddev: Some(0.003 * s.speed), ..s })
+        .collect();
+    let fitted = sample.fit(&speeds).unwrap();
+    let checked = fitted.observation.checked().unwrap();
+    assert!(checked.moduli.imbalance().unwrap().abs() < 1e-12);
+    let estimate = emt::model("ratio").unwrap().infer(&fitted.observation, &emt::Calibration::PAPER).unwrap();
+    let direct = emt::Observation::of_stiffness(&sample.stiffness, Conditions::at(50e3));
+    let direct = emt::model("ratio").unwrap().infer(&direct, &emt::Calibration::PAPER).unwrap();
+    let [found, expected] = [&estimate, &direct].map(|e| e.structure.k.unwrap());
+    assert!((found - expected).abs() < 1e-9 && estimate.stddev(emt::Quantity::K).unwrap() > 0.0);
+}
+
+/// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one number is left
+/// for an SV at 70°, and its speed is no function of that number that only grows.
+#[test]
+fn what_two_media_with_the_same_speeds_differ_in_is_left_open() {
+    let m = TransverseIsotropy {
+        c11: 220e6,
+        c12: 100e6,
+        c13: 133e6,
+        c33: 287e6,
+        g13: 87e6,
+        g12: 60e6,
+        residual: 0.0,
+    };
+    let waves = [Wave::P(0.0), Wave::Sh(90.0), Wave::P(45.0), Wave::Sv(45.0), Wave::Sv(70.0)];
+    let sample = Sample::new(m, Rotation3::identity());
+    let with_shear = |g13: f64| {
+        let c11 = m.c11 + 2.0 * (m.g13 - g13);
+        let fixed = 0.25 * (m.c11 - m.c33).powi(2) + (m.c13 + m.g13).powi(2);
+        let c13 = (fixed - 0.25 * (c11 - m.c33).powi(2)).sqrt() - g13;
+        Sample::new(changed(m, [c11 - m.c11, 0.0, c13 - m.c13, g13 - m.g13, 0.0]), sample.frame)
+    };
+    let too_fast = |g13: f64| with_shear(g13).exact(waves[4], 0.0).speed - sample.exact(waves[4], 0.0).speed;
+    let (mut low, mut high) = (100e6, 135e6);
+    assert!(too_fast(low) * too_fast(high) < 0.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if too_fast(middle) * too_fast(low) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let other = with_shear(low);
+    for wave in waves {
+        let [a, b] = [&sample, &other].map(|s| s.exact(wave, 0.0).speed);
+        assert!((a / b - 1.0).abs() < 1e-12, "{wave:?} has one speed in both: {a} {b}");
+    }
+    for speeds in [waves.map(|w| sample.exact(w, 0.0)), waves.map(|w| other.named(w, 0.0))] {
+        let fitted = sample.fit(&speeds).unwrap();
+        assert_eq!(fitted.undetermined, [Modulus::G13, Modulus::Theta, Modulus::C11, Modulus::C13]);
+        let value = fitted.observation.moduli.get(Modulus::G12).unwrap();
+        assert!((value / m.g12 - 1.0).abs() < 1e-10);
+    }
+    // An S speed along the axis decides.
+    let more: Vec<_> = waves.iter().chain(&[Wave::Sv(0.0)]).map(|w| sample.exact(*w, 0.0)).collect();
+    assert!(sample.fit(&more).unwrap().undetermined.is_empty());
+}

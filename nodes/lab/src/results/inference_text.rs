@@ -1,0 +1,142 @@
+//! What the models infer, as cells of a table or of a CSV.
+
+use super::inference::Inference;
+use crate::output::{Table, exact, fixed};
+
+impl Inference {
+    /// Names of the cells of [`Inference::cells`].
+    pub(crate) const COLUMNS: [&str; 11] =
+        ["model", "calibration", "k", "sigma", "k_hat", "sigma", "z", "sigma", "eps", "sigma", "status"];
+
+    /// As cells for people; a column that no row has a value for is better left out.
+    pub(crate) fn cells(&self) -> Vec<String> {
+        let (v, s) = (&self.values, &self.sigma);
+        let mut cells = vec![self.model.clone(), self.calibration.clone()];
+        for (value, sigma, digits) in [(v.k, s.k, 3), (v.k_hat, s.k_hat, 3), (v.z, s.z, 3), (v.eps, s.eps, 4)]
+        {
+            cells.extend([fixed(value, digits), fixed(sigma, digits)]);
+        }
+        cells.push(self.status.to_owned());
+        cells
+    }
+
+    /// Names of the cells of [`Inference::exact_cells`].
+    pub(crate) const EXACT_COLUMNS: [&str; 31] = [
+        "model",
+        "calibration",
+        "k",
+        "k_hat",
+        "z",
+        "eps",
+        "eps_stiffness",
+        "sigma_k",
+        "sigma_k_hat",
+        "sigma_z",
+        "sigma_eps",
+        "sigma_eps_stiffness",
+        "sigma_model_k",
+        "sigma_model_k_hat",
+        "sigma_model_z",
+        "sigma_model_eps",
+        "sigma_model_eps_stiffness",
+        "k_low",
+        "k_high",
+        "k_hat_low",
+        "k_hat_high",
+        "z_low",
+        "z_high",
+        "eps_low",
+        "eps_high",
+        "eps_stiffness_low",
+        "eps_stiffness_high",
+        "chi_square",
+        "degrees_of_freedom",
+        "condition_number",
+        "status",
+    ];
+
+    /// As cells at full precision.
+    pub(crate) fn exact_cells(&self) -> Vec<String> {
+        let mut cells = vec![self.model.clone(), self.calibration.clone()];
+        for numbers in [&self.values, &self.sigma, &self.sigma_model] {
+            cells.extend(numbers.all().map(exact));
+        }
+        for bound in self.interval.bounds.all() {
+            cells.extend([bound.map(|b| b[0]), bound.map(|b| b[1])].map(exact));
+        }
+        cells.push(exact(self.chi_square));
+        cells.push(self.degrees_of_freedom.map_or_else(String::new, |n| n.to_string()));
+        cells.extend([exact(self.condition_number), self.status.to_owned()]);
+        cells
+    }
+}
+
+/// The warnings of several results as lines, each with the models it comes from.
+pub(crate) fn warning_lines(results: &[Inference]) -> String {
+    let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
+    for r in results {
+        for w in &r.warnings {
+            match seen.iter_mut().find(|(known, _)| known == w) {
+                Some((_, models)) => models.push(&r.model),
+                None => seen.push((w, vec![&r.model])),
+            }
+        }
+    }
+    seen.iter().map(|(text, models)| format!("  {}: {text}\n", models.join(", "))).collect()
+}
+
+/// Results as a table for people, warnings below.
+pub(crate) fn table(results: &[Inference]) -> String {
+    let mut t = Table::new(Inference::COLUMNS);
+    results.iter().for_each(|r| t.row(r.cells()));
+    t.without_empty_columns().text() + &warning_lines(results)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use emt::{Calibration, Gamma, Observation};
+
+    fn s1(modulus_error: f64) -> Inference {
+        let observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::given(-0.0623))
+            .with_relative_error(modulus_error);
+        Inference::of(
+            "ratio",
+            "paper",
+            &emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER),
+        )
+    }
+
+    #[test]
+    fn the_table_for_people_leaves_out_what_no_model_knows() {
+        let failed = || Inference::failed("ours", "paper", "failed", vec!["because".into()]);
+        let text = table(&[s1(0.01), failed()]);
+        let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
+        assert_eq!(words, ["model", "calibration", "k", "sigma", "k_hat", "sigma", "eps", "sigma", "status"]);
+        assert!(text.contains("5.73") && text.ends_with("  ours: because\n"), "{text}");
+        let mut with_z = s1(0.01);
+        with_z.values.z = Some(5.9);
+        assert!(table(&[with_z, failed()]).contains("  5.900"), "one model that knows z brings its column");
+    }
+
+    #[test]
+    fn every_exact_cell_stands_under_its_name() {
+        let mut r = s1(0.01);
+        (r.values.z, r.values.eps_stiffness) = (Some(5.9), Some(0.02));
+        r.sigma_model.z = Some(0.04);
+        r.interval.bounds.eps_stiffness = Some([-0.01, 0.05]);
+        (r.chi_square, r.degrees_of_freedom) = (Some(1.5), Some(2));
+        let cells = r.exact_cells();
+        assert_eq!(cells.len(), Inference::EXACT_COLUMNS.len());
+        let cell = |name| cells[Inference::EXACT_COLUMNS.iter().position(|c| *c == name).unwrap()].as_str();
+        assert_eq!((cell("model"), cell("status")), ("ratio", "ok"));
+        assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "", "0.02"));
+        assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps")), ("0.04", ""));
+        assert_eq!((cell("eps_stiffness_low"), cell("eps_stiffness_high")), ("-0.01", "0.05"));
+        assert_eq!((cell("chi_square"), cell("degrees_of_freedom")), ("1.5", "2"));
+        assert_eq!(cell("k_low").parse::<f64>().ok(), r.interval.bounds.k.map(|b| b[0]));
+        assert_eq!(cell("eps_high").parse::<f64>().ok(), r.interval.bounds.eps.map(|b| b[1]));
+        assert_eq!(cell("sigma_eps").parse::<f64>().ok(), r.sigma.eps);
+        assert!(cell("condition_number").parse::<f64>().unwrap() >= 1.0);
+    }
+}
