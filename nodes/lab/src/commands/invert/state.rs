@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn of_a_projected_stiffness_five_moduli_are_measured_and_of_single_ones_all() {
-        let way = &ways(&["relaxed".to_owned()], &["own".to_owned()], None).unwrap()[0];
+        let way = &ways(&["relaxed".to_owned()], &["default".to_owned()], None).unwrap()[0];
         let variance = |state: &State| {
             let observation = state.observation(way).unwrap();
             let checked = observation.checked().unwrap();
