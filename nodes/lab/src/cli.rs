@@ -1,6 +1,6 @@
 //! The command line, as typed.
 
-use crate::commands::{analyze, bag, bench, invert, launch, run};
+use crate::commands::{analyze, bag, bench, calibrate, invert, launch, run};
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use node_kit::Exit;
@@ -32,6 +32,8 @@ enum Command {
     Bag(bag::Command),
     /// Infer the microstructure from moduli: numbers in, coordination and anisotropy with uncertainty out.
     Invert(invert::Args),
+    /// Learn the constants of the models from packings that were measured.
+    Calibrate(calibrate::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
     /// Measure speed on this machine.
@@ -48,6 +50,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
+        Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
     };

@@ -16,7 +16,7 @@ fn help_goes_to_stdout_and_lists_every_command_and_exit_code() {
     let help = grainlab(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let out = text(&help.stdout);
-    for word in ["launch", "run", "bag", "analyze", "invert", "bench", "130 interrupted"] {
+    for word in ["launch", "run", "bag", "analyze", "invert", "calibrate", "bench", "130 interrupted"] {
         assert!(out.contains(word), "{word} is missing:\n{out}");
     }
     let help = text(&grainlab(&["run", "--help"]).stdout);

@@ -24,12 +24,12 @@ mod way;
 use crate::failure::Failure;
 use crate::output::{Format, print, say};
 use answer::{Answer, More};
-use columns::Defaults;
+pub(super) use columns::{BadRow, Defaults, Row};
 use emt::{Measured, Modulus};
 use node_kit::Exit;
 use print::Printer;
-use rows::Rows;
-use state::State;
+pub(super) use rows::Rows;
+pub(super) use state::State;
 use std::path::PathBuf;
 use way::{GammaChoice, ways};
 
@@ -108,9 +108,9 @@ pub(crate) struct Args {
     /// These models alone, with commas between them [default: all of them]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     model: Vec<String>,
-    /// Which packings the constants of the models come from: a name, a file, or several, one after the other; own is the
-    /// paper's for the paper's models, grainlab for ours
-    #[arg(long, value_name = "NAME|FILE.toml", value_delimiter = ',', default_value = calibrations::OWN)]
+    /// Which packings the constants of the models come from: a name, a file, or several, one after the other; default is
+    /// the paper's for the paper's models, grainlab for ours
+    #[arg(long, value_name = "NAME|FILE.toml", value_delimiter = ',', default_value = calibrations::DEFAULT)]
     calibration: Vec<String>,
     /// Print how far the estimates are from the truth that the table says in its columns k, z, eps and eps_stiffness, for
     /// each model and gamma/Delta: bias, scatter, rms error, and how many of the 95 % intervals have the truth in them

@@ -76,5 +76,5 @@ pub(super) fn people(explained: &[Explained]) -> String {
     } else {
         "errors of the data are not known: shares are those of equal relative errors"
     };
-    format!("\n{}  {of_what}\n", t.text())
+    format!("\n{}  {of_what}\n", t.without_empty_columns().text())
 }

@@ -173,7 +173,7 @@ fn people(judged: &[Judged], by: &[String]) -> String {
         let counts = [s.rows.to_string(), s.solved.to_string()];
         t.row(j.group.iter().cloned().chain(cells).chain(counts).chain(numbers));
     }
-    t.text()
+    t.without_empty_columns().text()
 }
 
 fn csv(judged: &[Judged], by: &[String]) -> String {

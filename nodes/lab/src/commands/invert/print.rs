@@ -71,6 +71,6 @@ impl Printer<'_> {
                 warnings += &format!("{sample}{at}:\n{lines}");
             }
         }
-        t.text() + &warnings
+        t.without_empty_columns().text() + &warnings
     }
 }

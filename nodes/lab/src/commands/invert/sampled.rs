@@ -74,5 +74,5 @@ pub(super) fn people(sampled: &[Sampled]) -> String {
         let labels = [s.model, s.quantity].map(str::to_owned);
         t.row(labels.into_iter().chain(numbers).chain([fixed(s.skewness, 2), unsolved]));
     }
-    format!("\n{}", t.text())
+    format!("\n{}", t.without_empty_columns().text())
 }

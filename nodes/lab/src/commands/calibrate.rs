@@ -1,0 +1,75 @@
+//! `grainlab calibrate`: constants of the models, learned from packings that were measured.
+//!
+//! - [`packings`]: from the rows of a table to what the kernel learns from
+//! - [`report`]: constants, errors and ranges for people
+
+mod packings;
+mod report;
+
+use crate::failure::Failure;
+use crate::output::{print, say};
+use emt::learn;
+use node_kit::Exit;
+use packings::Naming;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  What the calibration grainlab was learned from:
+    nodes/launch/ensemble.sh nodes/scenes/ensemble/isotropic.toml \"0.01 0.05 0.1 0.3\" 41 48 > isotropic.csv
+    grainlab calibrate --isotropic isotropic.csv --anisotropic anisotropic.csv --name mine --out mine.toml
+    grainlab invert --table states.csv --calibration mine.toml
+
+Tables are those that `grainlab analyze --format csv` prints: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
+moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact where they
+are known; and columns that say how each packing was prepared, and which of them it is.";
+
+/// Packings to learn from.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Isotropic packings of many coordination numbers and pressures, CSV; - is the standard input
+    #[arg(long, value_name = "FILE.csv")]
+    isotropic: PathBuf,
+    /// Packings that are not isotropic, CSV: without them there are Eqs. 21 and 22 alone, and nothing for the model relaxed
+    #[arg(long, value_name = "FILE.csv")]
+    anisotropic: Option<PathBuf>,
+    /// Columns that say how a packing was prepared: the laws are judged on each preparation by the others
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2")]
+    preparation: Vec<String>,
+    /// Columns that say which packing it is: states of one at several pressures are no independent data
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2,seed")]
+    packing: Vec<String>,
+    /// Name of the calibration, reported with every estimate [default: the name of the file written]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Write the calibration here (TOML); - is the standard output, which is then nothing else
+    #[arg(long, value_name = "FILE.toml")]
+    out: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let naming = Naming { preparation: &args.preparation, packing: &args.packing };
+    let isotropic = packings::read(&args.isotropic, &naming)?;
+    let anisotropic = match &args.anisotropic {
+        Some(path) => packings::read(path, &naming)?,
+        None => Vec::new(),
+    };
+    let file_name = args.out.as_ref().and_then(|path| path.file_stem()).map(|n| n.to_string_lossy());
+    let file_name = file_name.filter(|n| n != "-").map_or_else(|| "unnamed".to_owned(), |n| n.into_owned());
+    let name = args.name.clone().unwrap_or(file_name);
+    let invalid = |e| Failure::new(Exit::PhysicsInvalid, format!("no calibration: {e}"));
+    let calibration = learn(&name, &isotropic, &anisotropic).map_err(invalid)?;
+    let toml = calibration.to_toml().map_err(Failure::failed)?;
+    match &args.out {
+        Some(path) if path.as_os_str() == "-" => print(&toml)?,
+        Some(path) => {
+            std::fs::write(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+            print(&report::text(&calibration, &isotropic, &anisotropic))?;
+            say!("grainlab: {} is written; take it with --calibration {0}", path.display());
+        }
+        None => print(&report::text(&calibration, &isotropic, &anisotropic))?,
+    }
+    Ok(Exit::Done)
+}

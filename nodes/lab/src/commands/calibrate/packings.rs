@@ -1,0 +1,73 @@
+//! From the rows of a table to the packings that a calibration is learned from.
+
+use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
+use crate::failure::Failure;
+use crate::output::say;
+use emt::{Modulus, Sample};
+use grains::Material;
+use std::path::Path;
+
+/// Which columns tell packings apart.
+pub(super) struct Naming<'a> {
+    pub(super) preparation: &'a [String],
+    pub(super) packing: &'a [String],
+}
+
+/// Every packing of a table. A row that is none is named, and then there is no calibration: one learned from the rest
+/// would say nothing of it.
+pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<Sample>, Failure> {
+    let by = [naming.preparation, naming.packing].concat();
+    let mut rows = Rows::open(path, &by, Defaults::default())?;
+    let (mut samples, mut bad) = (Vec::new(), 0);
+    let work = |number: u64, row: Result<Row, BadRow>| match row {
+        Ok(row) => sample(&row, naming.preparation.len()).map_err(|fault| format!("line {number}: {fault}")),
+        Err(row) => Err(format!("line {number}: {}", row.fault)),
+    };
+    while let Some(piece) = rows.next(work)? {
+        for found in piece {
+            match found {
+                Ok(sample) => samples.push(sample),
+                Err(fault) => {
+                    say!("grainlab: {}: {fault}", rows.name());
+                    bad += 1;
+                }
+            }
+        }
+    }
+    let name = rows.name();
+    if bad > 0 {
+        return Err(Failure::usage(format!("{name}: {bad} rows are no packings to learn from")));
+    }
+    if samples.is_empty() {
+        return Err(Failure::usage(format!("{name}: there is no packing below the header")));
+    }
+    Ok(samples)
+}
+
+/// The first `preparation` cells grouped by say how it was prepared, those behind them which packing it is.
+fn sample(row: &Row, preparation: usize) -> Result<Sample, String> {
+    let State { moduli, truth, phi, grains, grain_shear_modulus, poisson, .. } = &row.state;
+    let need = |value: Option<f64>, name: &str| value.ok_or_else(|| format!("{name} is not known"));
+    for modulus in Modulus::ALL {
+        need(moduli.get(modulus), modulus.name())?;
+    }
+    let (preparation, packing) = row.group.split_at(preparation);
+    Ok(Sample {
+        preparation: preparation.join(" "),
+        packing: packing.join(" "),
+        grains: need(*grains, "grains")? as u32,
+        material: Material {
+            shear_modulus: grain_shear_modulus.unwrap_or(Material::GLASS.shear_modulus),
+            poisson_ratio: poisson.unwrap_or(Material::GLASS.poisson_ratio),
+            ..Material::GLASS
+        },
+        pressure: row.state.pressure.value,
+        solid_fraction: need(phi.map(|p| p.value), "phi")?,
+        moduli: *moduli,
+        gamma: row.state.measured_gamma,
+        k: need(truth.k, "k")?,
+        z: need(truth.z, "z")?,
+        eps: need(truth.eps, "eps")?,
+        eps_stiffness: need(truth.eps_stiffness, "eps_stiffness")?,
+    })
+}

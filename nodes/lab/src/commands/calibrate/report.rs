@@ -1,0 +1,117 @@
+//! A calibration for people.
+
+use crate::output::Table;
+use emt::calibration::{Amplitude, Law, Network};
+use emt::{Calibration, Isotropic, Quantity, Sample};
+use std::collections::BTreeSet;
+
+/// Constants with their standard errors, scatter, and ranges.
+pub(super) fn text(calibration: &Calibration, isotropic: &[Sample], anisotropic: &[Sample]) -> String {
+    let mut text = format!("calibration {}\n", calibration.name());
+    for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic)] {
+        if !samples.is_empty() {
+            text += &format!("  {}\n", summary(kind, samples));
+        }
+    }
+    text += "\nEqs. 21 and 22, G = alpha (k + beta) p^(1/3), Theta = rho (k + zeta) p^(1/3), in MPa\n";
+    let lines = [Quantity::K, Quantity::Z].map(|q| calibration.with_abscissa(q));
+    text += &line_table(lines.iter().flatten().map(Calibration::isotropic));
+    if let Some(network) = calibration.network() {
+        text += &network_text(network);
+    }
+    text
+}
+
+fn summary(kind: &str, samples: &[Sample]) -> String {
+    let packings: BTreeSet<&str> = samples.iter().map(|s| s.packing.as_str()).collect();
+    let preparations: BTreeSet<&str> = samples.iter().map(|s| s.preparation.as_str()).collect();
+    let range = |value: fn(&Sample) -> f64| {
+        let values = samples.iter().map(value);
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
+    let ([p, q], [y, z], [a, b]) = (range(|s| s.pressure / 1e3), range(|s| s.z), range(|s| s.eps));
+    format!(
+        "{} states of {} packings {kind} ({}): p {p:.4} to {q:.4} kPa, z {y:.3} to {z:.3}, eps {a:.3} to {b:.3}",
+        samples.len(),
+        packings.len(),
+        preparations.into_iter().collect::<Vec<_>>().join(", "),
+    )
+}
+
+fn line_table<'a>(lines: impl Iterator<Item = &'a Isotropic>) -> String {
+    let columns = ["k is", "alpha", "+-", "beta", "+-", "rho", "+-", "zeta", "+-", "from", "to"];
+    let mut t = Table::new(columns.into_iter().chain(["scatter of G", "of Theta"]));
+    for line in lines {
+        let errors = line.covariance.map(|c| std::array::from_fn::<f64, 4, _>(|i| c[i][i].max(0.0).sqrt()));
+        let errors = errors.map_or_else(|| [(); 4].map(|()| "-".to_owned()), |e| e.map(significant));
+        let mut cells = vec![line.abscissa.name().to_owned()];
+        for (value, error) in line.constants().into_iter().zip(errors) {
+            cells.extend([format!("{value:.4}"), error]);
+        }
+        cells.extend(line.fitted.map(|v| format!("{v:.3}")));
+        match line.scatter {
+            Some(scatter) => cells.extend(scatter.map(|s| format!("{:.1} %", 100.0 * s))),
+            None => cells.extend([(); 2].map(|()| "-".to_owned())),
+        }
+        t.row(cells);
+    }
+    t.text()
+}
+
+fn network_text(n: &Network) -> String {
+    let mut laws = Table::new(["ln X =", "level", "ln z", "ln(z - z0)", "z0", "ln(phi/phi0)", "ln(p/p0)"]);
+    for (name, l) in [("bulk", &n.theta), ("shear", &n.shear)] {
+        let Law { level, by_z, by_excess, onset, by_solid_fraction, by_pressure } = *l;
+        let numbers = [level, by_z, by_excess, onset, by_solid_fraction, by_pressure];
+        laws.row(std::iter::once(name.to_owned()).chain(numbers.map(|v| format!("{v:.4}"))));
+    }
+    let mut amplitudes = Table::new(["over eps", "constant", "z/(z - 4)"]);
+    for (name, a) in [
+        ("dilatational deviator", &n.dilatation),
+        ("Voigt deviator", &n.voigt),
+        ("harmonic part", &n.harmonic),
+        ("eps by stiffness", &n.eps_stiffness),
+    ] {
+        let Amplitude { constant, critical } = *a;
+        amplitudes.row([name.to_owned(), format!("{constant:.4}"), format!("{critical:.4}")]);
+    }
+    let names = ["ln bulk", "ln shear", "dilatational", "Voigt", "harmonic", "eps by stiffness", "k"];
+    let mut scatter = Table::new(names);
+    scatter.row((0..names.len()).map(|i| format!("{:.4}", n.scatter[i][i].max(0.0).sqrt())));
+    let [z, eps] = [n.z, n.eps];
+    format!(
+        "\nRelaxed networks of {} grains, in units of E*^(2/3) p^(1/3): z {:.3} to {:.3}, eps {:.3} to {:.3}, phi0 = {:.4}, \
+         p0 = {} kPa\n{}{}Scatter of packings that the laws have not seen, times (z - 4)/z\n{}",
+        n.grains,
+        z[0],
+        z[1],
+        eps[0],
+        eps[1],
+        n.solid_fraction[0],
+        n.pressure / 1e3,
+        laws.text(),
+        amplitudes.text(),
+        scatter.text(),
+    )
+}
+
+/// An error to two digits.
+fn significant(value: f64) -> String {
+    if value <= 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = (1.0 - value.log10().floor()).clamp(0.0, 12.0) as usize;
+    format!("{value:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_told_to_two_digits() {
+        for (value, text) in [(0.000_123_4, "0.00012"), (1.808, "1.8"), (23.7, "24"), (0.0, "0")] {
+            assert_eq!(significant(value), text);
+        }
+    }
+}
