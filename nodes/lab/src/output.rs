@@ -107,15 +107,28 @@ impl Table {
 
     /// Comma-separated, quoted where need be (RFC 4180, but with bare newlines).
     pub(crate) fn csv(&self) -> String {
-        let quoted = |cell: &String| {
-            if cell.contains([',', '"', '\n', '\r']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.clone()
-            }
-        };
-        self.rows.iter().map(|r| r.iter().map(quoted).collect::<Vec<_>>().join(",") + "\n").collect()
+        let mut text = String::new();
+        self.rows.iter().for_each(|row| push_csv(&mut text, row));
+        text
     }
+}
+
+/// Adds a line of CSV to `text`, as [`Table::csv`] has it.
+pub(crate) fn push_csv<S: AsRef<str>>(text: &mut String, cells: impl IntoIterator<Item = S>) {
+    for (i, cell) in cells.into_iter().enumerate() {
+        let cell = cell.as_ref();
+        if i > 0 {
+            text.push(',');
+        }
+        if cell.contains([',', '"', '\n', '\r']) {
+            text.push('"');
+            text.push_str(&cell.replace('"', "\"\""));
+            text.push('"');
+        } else {
+            text.push_str(cell);
+        }
+    }
+    text.push('\n');
 }
 
 /// A number at full precision for CSV, empty if there is none.

@@ -4,7 +4,7 @@ use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
 use crate::failure::Failure;
-use crate::output::{Table, exact, json};
+use crate::output::{Table, exact, json, push_csv};
 use crate::results::inference::{self, Inference};
 
 /// What turns answers into text.
@@ -16,20 +16,24 @@ impl Printer<'_> {
     /// Names of the cells of [`Printer::csv`].
     pub(super) fn csv_header() -> String {
         let columns = ["sample", "pressure_pa"].into_iter().chain(Inference::EXACT_COLUMNS);
-        Table::new(columns.chain(["line", "reason"])).csv()
+        let mut text = String::new();
+        push_csv(&mut text, columns.chain(["gamma_over_delta", "gamma_over_delta_source", "line", "reason"]));
+        text
     }
 
     /// One line for each way.
     pub(super) fn csv(&self, answer: &Answer) -> String {
-        let sample = answer.sample().unwrap_or_default();
-        let pressure = exact(answer.state.as_ref().ok().map(|s| s.pressure.value));
+        let state = answer.state.as_ref().ok();
+        let label = [answer.sample().unwrap_or_default().to_owned(), exact(state.map(|s| s.pressure.value))];
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
         let mut text = String::new();
-        for result in answer.inferences(self.ways) {
+        for (result, way) in answer.inferences(self.ways).iter().zip(self.ways) {
             let without = matches!(result.status, "failed" | "undetermined");
             let reason = if without { result.warnings.join("; ") } else { String::new() };
-            let cells = [sample.to_owned(), pressure.clone()].into_iter().chain(result.exact_cells());
-            text += &Table::new(cells.chain([line.clone(), reason])).csv();
+            let gamma =
+                [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(way)).to_owned()];
+            let (cells, end) = (result.exact_cells(), [&line, &reason]);
+            push_csv(&mut text, label.iter().chain(&cells).chain(&gamma).chain(end));
         }
         text
     }
@@ -54,15 +58,16 @@ impl Printer<'_> {
 
     /// Many states, warnings below.
     pub(super) fn people(&self, answers: &[Answer]) -> String {
-        let mut t = Table::new(["sample", "p/kPa"].into_iter().chain(Inference::COLUMNS));
+        let mut t = Table::new(["sample", "p/kPa", "gamma/Delta"].into_iter().chain(Inference::COLUMNS));
         let mut warnings = String::new();
         for answer in answers {
             let line = answer.line.map_or_else(String::new, |l| format!("line {l}"));
             let sample = answer.sample().map_or_else(|| line.clone(), str::to_owned);
             let pressure = answer.state.as_ref().ok().map(|s| format!("{}", s.pressure.value / 1e3));
             let results = answer.inferences(self.ways);
-            for result in &results {
-                let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned())];
+            for (result, way) in results.iter().zip(self.ways) {
+                let asked = way.gamma.map_or("-", emt::GammaSource::name).to_owned();
+                let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned()), asked];
                 t.row(label.into_iter().chain(result.cells()));
             }
             let lines = inference::warning_lines(&results);

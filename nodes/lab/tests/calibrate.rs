@@ -1,0 +1,97 @@
+//! `grainlab calibrate`: from measured packings to a file that `grainlab invert` takes.
+
+use std::process::{Command, Output, Stdio};
+
+const ENSEMBLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/ensembles");
+const BUILTIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../kernels/emt/src/calibration/grainlab.toml");
+
+fn grainlab(arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn ensemble(name: &str) -> String {
+    format!("{ENSEMBLES}/{name}.csv")
+}
+
+/// Words and numbers of a text, apart.
+fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
+    let tokens = text.split(|c: char| c.is_whitespace() || "[],=".contains(c)).filter(|t| !t.is_empty());
+    let (numbers, words): (Vec<&str>, Vec<&str>) = tokens.partition(|t| t.parse::<f64>().is_ok());
+    (words.into_iter().map(str::to_owned).collect(), numbers.iter().map(|n| n.parse().unwrap()).collect())
+}
+
+#[test]
+fn the_calibration_built_in_is_what_its_packings_teach() {
+    let (isotropic, anisotropic) = (ensemble("isotropic"), ensemble("anisotropic"));
+    let tables =
+        ["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic, "--name", "grainlab"];
+    let learned = grainlab(&[&tables[..], &["--out", "-"]].concat());
+    assert_eq!(learned.status.code(), Some(0), "{}", text(&learned.stderr));
+    let (words, numbers) = words_and_numbers(&text(&learned.stdout));
+    let (known_words, known) = words_and_numbers(&std::fs::read_to_string(BUILTIN).unwrap());
+    assert_eq!(words, known_words);
+    assert_eq!(numbers.len(), known.len());
+    let largest = known.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert!(largest > 1e9, "the modulus of the grains is there");
+    for (i, (found, expected)) in numbers.iter().zip(&known).enumerate() {
+        // Another processor rounds otherwise, and the minimum of a fit is flat.
+        assert!((found - expected).abs() <= 1e-4 * expected.abs() + 1e-9, "number {i}: {found} {expected}");
+    }
+}
+
+#[test]
+fn the_report_names_constants_ranges_and_scatter() {
+    let report = grainlab(&["calibrate", "--isotropic", &ensemble("isotropic")]);
+    let report = text(&report.stdout);
+    for word in ["144 states of 24 packings", "kPa", "alpha", "zeta", "scatter of G", "+-"] {
+        assert!(report.contains(word), "{word:?} is missing:\n{report}");
+    }
+    assert!(!report.contains("Relaxed networks"), "isotropic packings say nothing of them:\n{report}");
+}
+
+#[test]
+fn a_calibration_written_is_one_to_invert_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml").to_string_lossy().into_owned();
+    let written = grainlab(&["calibrate", "--isotropic", &ensemble("isotropic"), "--out", &path]);
+    assert_eq!(written.status.code(), Some(0), "{}", text(&written.stderr));
+    let state = ["--g12=1.2e8", "--g13=1.25e8", "--theta=1.44e8", "--pressure=5e4", "--format=json"];
+    let inverted = grainlab(&[&["invert", "--model=ratio", "--calibration", &path][..], &state].concat());
+    let answer: serde_json::Value = serde_json::from_slice(&inverted.stdout).unwrap();
+    assert_eq!(answer["results"][0]["calibration"], "mine", "the name of the file");
+    let own = grainlab(&[&["invert", "--model=ratio", "--calibration=grainlab"][..], &state].concat());
+    let own: serde_json::Value = serde_json::from_slice(&own.stdout).unwrap();
+    let k = |a: &serde_json::Value| a["results"][0]["k"].as_f64().unwrap();
+    assert!((k(&answer) - k(&own)).abs() < 1e-6, "the same isotropic packings, the same constants");
+}
+
+#[test]
+fn packings_that_teach_nothing_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = std::fs::read_to_string(ensemble("isotropic")).unwrap();
+    let head = |lines: usize| whole.lines().take(lines).collect::<Vec<_>>().join("\n");
+    let third = whole.lines().nth(2).unwrap();
+    let (_, after_phi) = third.split_once(",0.64").unwrap();
+    let torn =
+        head(2) + "\n" + &third.replace(&format!(",0.64{}", after_phi.split(',').next().unwrap()), ",");
+    for (name, table, code, words) in [
+        ("few", head(3), 4, &["no calibration", "isotropic packings"][..]),
+        ("torn", torn, 2, &["line 3: phi is not known", "1 rows are no packings"]),
+        ("empty", head(1), 2, &["no packing below the header"]),
+        ("foreign", whole.replace("mu2", "friction"), 2, &["no column mu2 to group by"]),
+    ] {
+        let path = folder.path().join(name).to_string_lossy().into_owned();
+        std::fs::write(&path, table).unwrap();
+        let ended = grainlab(&["calibrate", "--isotropic", &path]);
+        let err = text(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(code), "{name}: {err}");
+        for word in words {
+            assert!(err.contains(word), "{name}: {word:?} is missing: {err}");
+        }
+    }
+}
