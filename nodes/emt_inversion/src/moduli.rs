@@ -37,6 +37,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         }
         None => return Err(Unobservable::NoStiffness { axis: axis.into() }),
     };
+    let observation = Observation { grains: reading.grains, ..observation };
     let error = settings.modulus_error;
     Ok(match covariance {
         None => with_error(observation, error).into(),

@@ -28,12 +28,14 @@ pub struct Observation {
     /// Part of the stiffness that no medium isotropic about the axis has, relative (Mandel norm); `None` if only the
     /// moduli are known.
     pub asymmetry: Option<f64>,
+    /// Grains in the sample, which decide how much of that is its own scatter; `None` if not known, or as good as infinite.
+    pub grains: Option<u32>,
 }
 
 impl Observation {
     /// Of unknown uncertainty.
     pub const fn new(moduli: Moduli, conditions: Conditions) -> Self {
-        Self { moduli, covariance: None, conditions, asymmetry: None }
+        Self { moduli, covariance: None, conditions, asymmetry: None, grains: None }
     }
 
     /// The paper's three moduli and the pressure, Pa.

@@ -10,9 +10,11 @@ use std::fmt;
 /// Coordination number of a close packing of equal spheres: more contacts than that find no room.
 const CLOSE_PACKING: f64 = 12.0;
 
-/// Asymmetry of a stiffness beyond which it is no medium isotropic about e3: packings of 2,000 grains that are scatter
-/// below 3 %.
+/// Asymmetry of a stiffness beyond which it is no medium isotropic about e3, whatever the number of grains.
 const ASYMMETRY: f64 = 0.05;
+
+/// Asymmetry times the root of the number of grains that packings which are isotropic about e3 stay below.
+const SCATTER: f64 = 2.2;
 
 /// Relative error of a modulus beyond which slopes no longer tell the error of an estimate: at 5 % the intervals still hold
 /// what they promise, at 30 % they do not.
@@ -237,7 +239,8 @@ pub(crate) fn common(
         add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
     }
     if let Some(asymmetry) = observation.asymmetry {
-        add(asymmetry > ASYMMETRY, Warning::NotTransverselyIsotropic { asymmetry });
+        let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
+        add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });
     }
     add(observation.moduli.unstable(), Warning::NotOneMedium);
     if let Some(covariance) = &observation.covariance {

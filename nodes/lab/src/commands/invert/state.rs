@@ -94,7 +94,8 @@ impl State {
         }
         let covariance = self.covariance(&moduli);
         let observation = Observation::new(moduli, conditions);
-        Ok(Observation { asymmetry: self.asymmetry, covariance, ..observation })
+        let grains = self.grains.map(|n| n as u32);
+        Ok(Observation { asymmetry: self.asymmetry, grains, covariance, ..observation })
     }
 
     /// Where the γ/Δ comes from that a model is fed with, or would be.
