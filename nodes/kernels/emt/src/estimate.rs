@@ -50,6 +50,8 @@ pub struct Estimate {
     /// What to keep in mind.
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
+    /// The quantities that the model is made of; the others follow from them.
+    unknowns: [bool; QUANTITIES],
 }
 
 impl Estimate {
@@ -75,18 +77,17 @@ impl Estimate {
         Some([middle - half, middle + half])
     }
 
-    /// Ratio of the largest to the smallest singular value of the slopes of what is determined, coordination numbers by
+    /// Ratio of the largest to the smallest singular value of the slopes of the model's unknowns, coordination numbers by
     /// their relative change: how much more one combination suffers from errors of the data than another.
     pub fn condition_number(&self) -> Option<f64> {
         let mut scaled = SMatrix::<f64, QUANTITIES, INPUTS>::zeros();
         let mut determined = 0;
         for (i, quantity) in Quantity::ALL.into_iter().enumerate() {
-            let Some(value) = self.structure.get(quantity) else { continue };
+            let Some(value) = self.structure.get(quantity).filter(|_| self.unknowns[i]) else { continue };
             let scale = if quantity.is_coordination() { 1.0 / value } else { 1.0 };
             scaled.set_row(determined, &(self.slopes.row(i) * scale));
             determined += 1;
         }
-        // Of what follows from one another (k from z) nothing new is learned.
         let mut singular: Vec<f64> =
             (scaled * scaled.transpose()).symmetric_eigenvalues().iter().map(|v| v.max(0.0).sqrt()).collect();
         singular.sort_by(f64::total_cmp);
@@ -148,6 +149,7 @@ pub(crate) fn assemble(
         status: if extrapolated { Status::Extrapolated } else { Status::Ok },
         warnings,
         inputs,
+        unknowns: domain.structure.map(|range| range.is_some()),
     })
 }
 

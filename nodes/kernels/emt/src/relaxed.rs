@@ -66,7 +66,7 @@ impl Model for Relaxed {
         let network = network(calibration)?;
         let found = self.domain(calibration).take(structure, conditions)?;
         let [z, eps] = [Quantity::Z, Quantity::Eps].map(|q| found[q as usize]);
-        let state = State::of(conditions, network, calibration);
+        let state = State::of(conditions, None, network, calibration);
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
         for (modulus, value) in Modulus::ALL.into_iter().zip(moduli) {
             if !(value > 0.0 && value.is_finite()) {
@@ -78,7 +78,7 @@ impl Model for Relaxed {
 
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<Solution, EmtError> {
         let network = network(calibration)?;
-        let state = State::of(&observation.conditions, network, calibration);
+        let state = State::of(&observation.conditions, observation.grains, network, calibration);
         let data = Data::of(observation, &state);
         if data.used == 0 {
             return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
@@ -110,10 +110,17 @@ struct State {
     ln_p: f64,
     /// Whether φ was given.
     phi_known: bool,
+    /// How much wider than those of the calibration samples of this size scatter, as a variance.
+    wider: f64,
 }
 
 impl State {
-    fn of(conditions: &Conditions, network: &Network, calibration: &Calibration) -> Self {
+    fn of(
+        conditions: &Conditions,
+        grains: Option<u32>,
+        network: &Network,
+        calibration: &Calibration,
+    ) -> Self {
         let own = calibration.material();
         let young = conditions.material.as_ref().unwrap_or(own).effective_young();
         let pressure = conditions.pressure.value;
@@ -127,6 +134,7 @@ impl State {
             ln_phi,
             ln_p: (pressure / network.pressure * (own.effective_young() / young)).ln(),
             phi_known: conditions.solid_fraction.is_some(),
+            wider: network.wider(grains),
         }
     }
 
@@ -145,6 +153,12 @@ fn solution(fit: &Fit, data: &Data, network: &Network, state: &State) -> Solutio
     let mut warnings = Vec::new();
     if !state.phi_known {
         warnings.push(Warning::SolidFractionAssumed { phi: network.solid_fraction[0] });
+    }
+    let phi = state.ln_phi[0].exp() * network.solid_fraction[0];
+    let [loosest, densest] = network.solid_fractions;
+    // A hair's breadth: φ went through a logarithm.
+    if !(loosest - 1e-9..=densest + 1e-9).contains(&phi) {
+        warnings.push(Warning::SolidFractionOutsideFit { phi, range: network.solid_fractions });
     }
     if !(network.z[0]..=network.z[1]).contains(&fit.z) {
         warnings.push(Warning::CoordinationOutsideFit {

@@ -78,6 +78,13 @@ pub enum Warning {
         /// Their mean.
         phi: f64,
     },
+    /// The solid fraction is outside the packings of the calibration: of k more than of z or ε it decides the rattlers.
+    SolidFractionOutsideFit {
+        /// φ.
+        phi: f64,
+        /// Lowest and highest of the calibration.
+        range: [f64; 2],
+    },
     /// The Poisson ratio of the grains is not that of the calibration's packings.
     OtherGrains {
         /// ν of the grains.
@@ -180,6 +187,11 @@ impl fmt::Display for Warning {
                     "the solid fraction is not known: {phi:.3} was taken, with the scatter of the calibration's packings"
                 )
             }
+            Warning::SolidFractionOutsideFit { phi, range: [low, high] } => write!(
+                f,
+                "the solid fraction {phi:.4} is outside {low:.3} to {high:.3}, which the calibration was fitted to: k is not to \
+                 be trusted"
+            ),
             Warning::OtherGrains { nu, calibrated } => write!(
                 f,
                 "the grains have a Poisson ratio of {nu}, the calibration is for {calibrated}: its moduli are scaled by \

@@ -43,7 +43,7 @@ impl Sample {
             material: Some(self.material),
             ..Conditions::at(self.pressure)
         };
-        Observation::new(self.moduli, conditions)
+        Observation { grains: Some(self.grains), ..Observation::new(self.moduli, conditions) }
     }
 
     /// Whether every number is one.

@@ -55,6 +55,7 @@ struct Relaxed {
     eps: [f64; 2],
     eps_spread: [f64; 2],
     solid_fraction: [f64; 2],
+    solid_fractions: [f64; 2],
     rattlers: [f64; 4],
     dilatation: [f64; 2],
     voigt: [f64; 2],
@@ -217,6 +218,7 @@ fn relaxed(r: Relaxed) -> Result<Network, CalibrationError> {
         eps: r.eps,
         eps_spread: r.eps_spread,
         solid_fraction: r.solid_fraction,
+        solid_fractions: r.solid_fractions,
         pressure: r.pressure,
         grains: r.grains,
     };
@@ -274,6 +276,7 @@ fn of_network(n: &Network) -> Relaxed {
         eps: n.eps,
         eps_spread: n.eps_spread,
         solid_fraction: n.solid_fraction,
+        solid_fractions: n.solid_fractions,
         rattlers: n.rattlers,
         dilatation: pair(&n.dilatation),
         voigt: pair(&n.voigt),

@@ -152,11 +152,13 @@ fn network(
         .collect();
     let (z_low, z_high) = bounds(all().map(|s| s.z));
     let (eps_low, eps_high) = bounds(all().map(|s| s.eps));
+    let (loosest, densest) = bounds(all().map(|s| s.solid_fraction));
     let ranges = Network {
         z: [z_low, z_high],
         eps: [eps_low, eps_high],
         eps_spread: moments(|s| s.eps),
         solid_fraction,
+        solid_fractions: [loosest, densest],
         pressure: REFERENCE_PRESSURE,
         grains: all().map(|s| s.grains).min().unwrap_or(0),
         ..fitted(&rows.iter().collect::<Vec<_>>())?
@@ -237,6 +239,7 @@ fn fitted(rows: &[&Reduced<'_>]) -> Result<Network, CalibrationError> {
         eps: [0.0; 2],
         eps_spread: [0.0; 2],
         solid_fraction: [1.0, 0.0],
+        solid_fractions: [0.0; 2],
         pressure: REFERENCE_PRESSURE,
         grains: 0,
     })

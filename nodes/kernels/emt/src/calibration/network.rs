@@ -43,6 +43,8 @@ pub struct Network {
     pub eps_spread: [f64; 2],
     /// Mean φ0 and standard deviation of the solid fraction over the packings.
     pub solid_fraction: [f64; 2],
+    /// Lowest and highest solid fraction of the packings.
+    pub solid_fractions: [f64; 2],
     /// Pressure p0 that the laws refer to, Pa.
     pub pressure: f64,
     /// Grains in each packing: the scatter is that of samples of this size.
@@ -119,9 +121,16 @@ impl Network {
         ((z - ISOSTATIC) / z).max(LEAST_EXCESS)
     }
 
-    pub(crate) fn scatter_at(&self, z: f64) -> Scatter {
+    /// Covariance of the scatter at this z, `wider` than that of the packings.
+    pub(crate) fn scatter_at(&self, z: f64, wider: f64) -> Scatter {
         let excess = Self::excess(z);
-        Scatter::from_fn(|i, j| self.scatter[i][j]) / (excess * excess)
+        Scatter::from_fn(|i, j| self.scatter[i][j]) * (wider / (excess * excess))
+    }
+
+    /// How much larger the variance of samples of this size is. Fewer grains scatter more, as their number; with more, what
+    /// preparations differ by is left, which no number of grains takes away.
+    pub(crate) fn wider(&self, grains: Option<u32>) -> f64 {
+        grains.map_or(1.0, |n| (f64::from(self.grains) / f64::from(n.max(1))).max(1.0))
     }
 
     /// ln(1 − k/z).

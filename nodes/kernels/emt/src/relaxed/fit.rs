@@ -94,7 +94,8 @@ impl Fit {
         let at_zero = data.masked(isotropic.slopes());
         let first = Moduli::from(isotropic.moduli());
         let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_ln_phi: &Moduli, by_eps: &Moduli| {
-            let scatter = network.scatter_at(z).fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned();
+            let scatter =
+                network.scatter_at(z, state.wider).fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned();
             let mut c = slopes * scatter * slopes.transpose() + data.covariance;
             c += by_ln_phi * by_ln_phi.transpose() * state.ln_phi[1].powi(2);
             if !fits_eps {
@@ -209,7 +210,7 @@ impl Fit {
     pub(super) fn inferred(&self, data: &Data, network: &Network, state: &State) -> Inferred {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_at(z);
+        let scatter = network.scatter_at(z, state.wider);
         let ln_rattlers = network.ln_rattlers(z, state.ln_phi[0], state.ln_p);
         let rattlers = ln_rattlers.exp();
         let [_, by_z, by_phi, by_p] = network.rattlers;

@@ -193,6 +193,24 @@ fn an_unknown_solid_fraction_is_assumed_and_costs_certainty() {
     assert!(off < 2.0 * assumed.stddev(Quantity::Z).unwrap());
 }
 
+#[test]
+fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
+    let sigma = |grains| {
+        let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
+        let o = Observation { grains, ..exact };
+        Relaxed.infer(&o, ours()).unwrap().stddev(Quantity::Eps).unwrap()
+    };
+    // A quarter of the grains, twice the standard deviation; more grains than in the calibration promise no more.
+    assert!((sigma(Some(500)) / sigma(Some(2000)) - 2.0).abs() < 1e-9);
+    assert_eq!(sigma(Some(1_000_000)), sigma(None));
+
+    let loose = Conditions { solid_fraction: Some(Measured::exact(0.6)), ..conditions() };
+    let there = Relaxed.predict(&structure(5.3, 0.05), &loose, ours()).unwrap();
+    let found = Relaxed.infer(&Observation::new(there, loose), ours()).unwrap();
+    let told = |w: &Warning| matches!(w, Warning::SolidFractionOutsideFit { .. });
+    assert!(found.warnings.iter().any(told) && found.status == emt::Status::Extrapolated);
+}
+
 /// Hertz contacts know no length and no pressure but in units of E*.
 #[test]
 fn stiffer_grains_at_as_much_higher_a_pressure_are_the_same_packing() {
