@@ -2,7 +2,7 @@
 //!
 //! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
 //! - [`lines`], [`cells`], [`columns`], [`rows`]: a table as it comes, each row a state
-//! - [`table`], [`print`]: answers in order, as text
+//! - [`table`], [`mod@print`]: answers in order, as text
 //! - [`explain`]: which datum decides which unknown; [`sampled`]: the posterior by sampling
 //! - [`judge`]: answers against the truth of a table
 //! - [`calibrations`]: by name
@@ -41,7 +41,7 @@ Examples:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
   How good the models are on packings whose structure was counted:
-    grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --judge --gamma all --by grains
+    grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
 A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
 columns are ignored:
@@ -103,7 +103,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
     /// Which gamma/Delta of a table feeds the models that use one [default: given, else total, else contact, else zero]
-    #[arg(long, value_enum, value_name = "WHICH", requires = "table", hide_possible_values = false)]
+    #[arg(long, value_enum, value_name = "WHICH", requires = "table")]
     gamma: Option<GammaChoice>,
     /// These models alone, with commas between them [default: all of them]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]

@@ -2,6 +2,10 @@
 
 use crate::{RATIO, grainlab, number, table, text};
 use serde_json::Value;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+use std::sync::mpsc;
+use std::time::Duration;
 
 #[test]
 fn a_bad_row_is_named_and_does_not_stop_the_rest() {
@@ -188,4 +192,29 @@ fn thousands_of_states_are_no_table_for_people() {
     let output = grainlab(&["invert", "--table", "-"], input.as_bytes());
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty() && text(&output.stderr).contains("--format csv"));
+}
+
+#[test]
+fn a_row_is_answered_before_the_next_one_is_there() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+    command.args(["invert", "--table=-", "--format=csv", "--model=ratio"]);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let (mut stdin, stdout) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    let (sender, lines) = mpsc::channel();
+    std::thread::spawn(move || {
+        BufReader::new(stdout).lines().try_for_each(|line| sender.send(line.unwrap()))
+    });
+    let next =
+        || lines.recv_timeout(Duration::from_secs(60)).expect("an answer while the input is still open");
+    stdin.write_all(b"sample,g12_pa,g13_pa,theta_pa,p_kpa\n").unwrap();
+    for name in ["first", "second", "third"] {
+        stdin.write_all(format!("{name},1e8,1.05e8,1.3e8,50\n").as_bytes()).unwrap();
+        if name == "first" {
+            assert!(next().starts_with("sample,"));
+        }
+        assert!(next().starts_with(name));
+    }
+    drop(stdin);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
 }

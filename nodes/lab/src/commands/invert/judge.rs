@@ -5,6 +5,7 @@
 mod score;
 
 use super::answer::Answer;
+use super::columns::BadRow;
 use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
@@ -49,9 +50,9 @@ pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -
     let mut board = Board::default();
     loop {
         let piece = rows.next(|number, row| {
-            let row = row.map_err(|bad| Answer::of_bad_row(bad, number))?;
+            let row = row.map_err(|bad| (number, bad))?;
             let verdicts = ways.iter().map(|way| Verdict::of(&row.state, way)).collect();
-            Ok::<(_, Vec<_>), Answer>((row.group, verdicts))
+            Ok::<(_, Vec<_>), (u64, BadRow)>((row.group, verdicts))
         })?;
         let Some(piece) = piece else { break };
         for row in piece {
@@ -61,7 +62,10 @@ pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -
                     board.enter(group, &verdicts);
                 }
                 // That a model has no estimate is what is judged. That a row is none is not.
-                Err(bad) => tally.add(bad.exit(), &bad.complaint(ways)),
+                Err((number, bad)) => {
+                    let answer = Answer::of_bad_row(bad, number);
+                    tally.add(answer.exit(), &answer.complaint(ways));
+                }
             }
         }
     }
@@ -93,14 +97,16 @@ fn against(quantity: Quantity, way: &Way) -> Quantity {
     }
 }
 
+/// Group, way, and γ/Δ.
+type Place = (usize, usize, &'static str);
+
 /// Scores by group, way and γ/Δ, each in the order of its first row.
 #[derive(Default)]
 struct Board {
     groups: Vec<Vec<String>>,
     index: HashMap<Vec<String>, usize>,
-    /// Group, way, γ/Δ.
-    scores: Vec<((usize, usize, &'static str), [Score; emt::QUANTITIES])>,
-    places: HashMap<(usize, usize, &'static str), usize>,
+    scores: Vec<(Place, [Score; emt::QUANTITIES])>,
+    places: HashMap<Place, usize>,
 }
 
 impl Board {
@@ -131,7 +137,7 @@ impl Board {
     fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
         self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
         let groups = self.groups;
-        let of = |((group, way, gamma), scores): ((usize, usize, _), [Score; emt::QUANTITIES])| {
+        let of = |((group, way, gamma), scores): (Place, [Score; emt::QUANTITIES])| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
             let speaks = move |(q, score): &(Quantity, Score)| {

@@ -67,7 +67,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Table => String::new(),
             };
             let (exit, complaint) = (answer.exit(), answer.complaint(printer.ways));
-            // An answer is a hundred times its text: only a table for people waits for the rest.
+            // Only a table for people waits for the rest, and keeps the answers.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;
         let Some(piece) = piece else { break };
