@@ -12,8 +12,8 @@ fn sent() -> msg::WaveSpeeds {
     let (x, z) = (Vector3 { x: 1.0, y: 0.0, z: 0.0 }, Vector3 { x: 0.0, y: 0.0, z: 1.0 });
     let compression = msg::WaveSpeed {
         method: msg::WaveSpeed::METHOD_DISPERSION,
-        direction: z.clone(),
-        polarization: z.clone(),
+        direction: z,
+        polarization: z,
         speed: 500.0,
         speed_stddev: 1.5,
         ..msg::WaveSpeed::default()
@@ -25,7 +25,7 @@ fn sent() -> msg::WaveSpeeds {
         speed_stddev: 0.0,
         frequency: 2e4,
         strain_amplitude: 1e-7,
-        ..compression.clone()
+        ..compression
     };
     msg::WaveSpeeds {
         header: header(),

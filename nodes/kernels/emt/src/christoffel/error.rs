@@ -72,3 +72,10 @@ pub enum ChristoffelError {
     #[error("no medium was found for these speeds: look for a speed of another mode, axis or state")]
     NoMedium,
 }
+
+impl ChristoffelError {
+    /// Whether the data are too few, or are no data, rather than at odds with the theory.
+    pub fn is_of_input(&self) -> bool {
+        !matches!(self, ChristoffelError::Unstable { .. } | ChristoffelError::NoMedium)
+    }
+}

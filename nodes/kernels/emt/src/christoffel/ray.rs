@@ -81,8 +81,8 @@ impl Ray {
         let nearest = along.max(shear);
         let named = is_clear(nearest);
         // Between the axes the medium may have turned the modes in the plane.
-        let is_between = !is_axial && cos * cos > AXIAL;
-        if !named && !(is_between && is_clear(along + upright)) {
+        let is_turned = !is_axial && cos * cos > AXIAL && is_clear(along + upright);
+        if !(named || is_turned) {
             return Err(ambiguous(index, nearest));
         }
         let horizontal = across > radially.max(axially);

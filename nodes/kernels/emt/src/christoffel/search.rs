@@ -4,7 +4,7 @@
 //! is of order one.
 
 use super::ray::{Column, Ray, UNKNOWNS};
-use nalgebra::{SMatrix, SymmetricEigen};
+use nalgebra::{Const, SMatrix, SymmetricEigen};
 
 /// A combination of relative moduli that changes no speed by more than this part of its own change is left open: speeds
 /// known to 0.1 % then say nothing about it.
@@ -99,7 +99,7 @@ impl<'a> Problem<'a> {
     /// Media some way from `point` along what the speeds know least of, or nothing: what fits as well as the point is found
     /// from there.
     pub(super) fn around(&self, point: &Point) -> Vec<Column> {
-        let eigen = SymmetricEigen::new(normal_of(&point.rows));
+        let Some(eigen) = directions(&point.rows) else { return Vec::new() };
         let weak = (0..UNKNOWNS).filter(|i| eigen.eigenvalues[*i] < WEAK * WEAK);
         let ways = weak.map(|i| eigen.eigenvectors.column(i).component_mul(&self.scale));
         ways.flat_map(|way| FAR.map(|far| point.specific + far * way)).collect()
@@ -196,12 +196,7 @@ impl<'a> Problem<'a> {
 
 /// Orthonormal directions of relative moduli, those first that some speed sees, and how many those are.
 pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
-    let normal = normal_of(rows);
-    if !normal.iter().all(|v| v.is_finite()) {
-        // Speeds of absurd scale; nothing will come of them.
-        return (Square::identity(), 0);
-    }
-    let eigen = SymmetricEigen::new(normal);
+    let Some(eigen) = directions(rows) else { return (Square::identity(), 0) };
     let is_seen = |i: &usize| eigen.eigenvalues[*i] > BLIND * BLIND;
     let first = (0..UNKNOWNS).filter(is_seen);
     let last = (0..UNKNOWNS).filter(|i| !is_seen(i));
@@ -212,6 +207,8 @@ pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
     (basis, (0..UNKNOWNS).filter(is_seen).count())
 }
 
-fn normal_of(rows: &[(f64, Column)]) -> Square {
-    rows.iter().map(|(_, row)| row * row.transpose()).sum()
+/// Directions of relative moduli and the squares of what they do to the speeds; `None` for numbers of absurd scale.
+fn directions(rows: &[(f64, Column)]) -> Option<SymmetricEigen<f64, Const<UNKNOWNS>>> {
+    let normal: Square = rows.iter().map(|(_, row)| row * row.transpose()).sum();
+    normal.iter().all(|v| v.is_finite()).then(|| SymmetricEigen::new(normal))
 }

@@ -63,7 +63,8 @@ fn directions_and_motions_have_unit_length() {
     assert!(matches!(fault(|s| s[0].direction.x = f64::NAN), ChristoffelError::NotUnit { .. }));
     // The rounding of a file is no fault.
     let mut speeds = speeds();
-    speeds[4].direction = Vec3::new(0.7071068, 0.0, 0.7071068);
+    speeds[4].polarization = Vec3::new(0.6, 0.0, 0.8);
+    speeds[4].direction = Vec3::new(0.6, 0.0, 0.7999998);
     assert!(sample().fit(&speeds).is_ok());
 }
 
@@ -88,7 +89,7 @@ fn is_ambiguous(error: &ChristoffelError, at: usize) -> bool {
 #[test]
 fn a_shear_motion_between_the_modes_is_refused_though_the_medium_may_be_isotropic() {
     let error = fault(|s| s[2].polarization = Vec3::new(0.0, 1.0, 1.0).normalize());
-    assert!(is_ambiguous(&error, 2), "{error}");
+    assert!(is_ambiguous(&error, 2) && error.is_of_input(), "{error}");
     assert!(error.to_string().contains("45 degrees from the nearest mode"), "{error}");
 }
 
@@ -135,7 +136,7 @@ fn speeds_that_no_stable_medium_has_are_refused() {
         s.truncate(4);
         (s[1].speed, s[2].speed) = (s[2].speed, s[1].speed);
     });
-    assert!(matches!(error, ChristoffelError::Unstable { .. }), "{error}");
+    assert!(matches!(error, ChristoffelError::Unstable { .. }) && !error.is_of_input(), "{error}");
     assert!(error.to_string().contains("C11 = 67.000 MPa"), "{error}");
     // SH at 45° slower than half of G13 allows.
     let slow = |s: &mut Vec<WaveSpeed>| {
@@ -151,7 +152,7 @@ fn numbers_of_absurd_scale_are_answered_or_refused() {
     for _ in 0..2000 {
         let mut speeds = speeds();
         for speed in &mut speeds {
-            speed.speed *= 10f64.powf(numbers.between(-200.0, 200.0) * numbers.uniform().powi(4));
+            speed.speed *= 10f64.powf(numbers.between(-320.0, 320.0) * numbers.uniform().powi(4));
             if numbers.uniform() < 0.5 {
                 speed.stddev = Some(10f64.powf(numbers.between(-300.0, 300.0)));
             }

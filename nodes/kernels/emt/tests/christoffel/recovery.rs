@@ -208,6 +208,37 @@ fn an_isotropic_medium_gives_isotropic_moduli() {
     }
 }
 
+/// Four azimuths see the projection of a stiffness that is a little orthotropic: what is not isotropic about the axis
+/// enters with its square only.
+#[test]
+fn equivalent_directions_average_to_the_projection_on_an_isotropic_plane() {
+    for asymmetry in [0.04, 0.02, 0.01] {
+        let mut stiffness = PACKING.stiffness();
+        for (i, sign) in [(0, 1.0), (1, -1.0), (3, 1.0), (4, -1.0), (5, -1.0)] {
+            stiffness.0[(i, i)] *= 1.0 + sign * asymmetry;
+        }
+        let projected = emt::Moduli::of_medium(&stiffness.transverse_isotropy());
+        let sample = Sample { moduli: PACKING, stiffness, frame: Rotation3::identity() };
+        let waves =
+            [Wave::P(0.0), Wave::Sv(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(90.0), Wave::P(45.0)];
+        let speeds: Vec<_> = waves
+            .iter()
+            .flat_map(|wave| [0.0, 45.0, 90.0, 135.0].map(|azimuth| sample.nominal(*wave, azimuth)))
+            .map(|(direction, polarization)| {
+                let modulus = stiffness.plane_waves(&direction).meant_by(&polarization).modulus;
+                WaveSpeed { direction, polarization, speed: (modulus / DENSITY).sqrt(), stddev: None }
+            })
+            .collect();
+        let fitted = sample.fit(&speeds).unwrap();
+        for (modulus, value) in fitted.observation.moduli.known() {
+            let error = value / projected.get(modulus).unwrap() - 1.0;
+            assert!(error.abs() < 3.0 * asymmetry * asymmetry, "{modulus} at {asymmetry}: {error:.1e}");
+        }
+        let scatter = fitted.scatter().unwrap();
+        assert!(scatter > 0.2 * asymmetry && scatter < asymmetry, "what is averaged shows: {scatter}");
+    }
+}
+
 #[test]
 fn a_fit_is_an_observation_that_every_model_takes() {
     let sample = Sample::new(PACKING, Rotation3::identity());
