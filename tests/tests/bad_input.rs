@@ -89,8 +89,7 @@ fn a_truncated_recording_is_read_as_far_as_it_goes_with_exit_code_3() {
 #[test]
 fn a_second_simulator_on_the_same_topic_is_refused_and_harms_nothing() {
     let lab = Lab::new();
-    // A run that lasts: the demo would be over before both were refused.
-    let launcher = lab.start(&["launch", "--scene", "s1"]);
+    let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     lab.until_recorded(200);
     let second = golden("scenes/tiny.toml");
     let parameter = format!("scene:={}", second.display());

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 use std::time::{Duration, Instant};
-use system_tests::lab::{LIMIT, Lab};
+use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{Process, children, send};
 
-/// A run of the demo, some seconds under way; the launcher and the pid of `node`.
+/// A run that would not end by itself, some seconds under way; the launcher and the pid of `node`.
 fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
-    let launcher = lab.start(&["launch", "--scene", "demo"]);
+    let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     let begin = Instant::now();
     loop {
         if let [pid] = children(launcher.pid(), &format!("run {node}")).as_slice() {

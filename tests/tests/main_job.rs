@@ -127,7 +127,8 @@ fn launches_without_a_domain_take_one_each_and_lose_nothing() {
 #[test]
 fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
-    let launcher: Process = lab.start(&["launch", "--scene", "demo"]);
+    let launcher: Process =
+        lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     let pid = launcher.pid();
     lab.until_recorded(200);
     let nodes: Vec<u32> = NODES.iter().flat_map(|n| children(pid, &format!("run {n}"))).collect();

@@ -67,12 +67,12 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
         };
         let calibration = Calibration::builtin(&answer(&m).calibration).unwrap();
         let mut structure = Structure::default();
-        for (q, range) in Quantity::ALL.into_iter().zip(model.domain(&calibration).structure) {
+        for (q, range) in Quantity::ALL.into_iter().zip(model.domain(calibration).structure) {
             if range.is_some() {
                 structure = structure.with(q, assumed[q as usize]);
             }
         }
-        let predicted = model.predict(&structure, &conditions, &calibration).unwrap();
+        let predicted = model.predict(&structure, &conditions, calibration).unwrap();
         let get = |modulus| predicted.get(modulus).unwrap_or_default();
         let [g12, g13, theta, c11, c33, c13] = Modulus::ALL.map(get);
         let mut moduli = Moduli { g12, g13, theta, ..m.clone() };
