@@ -124,8 +124,8 @@ pub(crate) fn assemble(
     let inputs = observation.input_covariance();
     let data_covariance = inputs.map(|input| slopes * input * slopes.transpose());
     let gamma = observation.conditions.gamma;
-    let model_covariance =
-        discrepancy.or_else(|| calibration.discrepancy(model, uses_gamma.then_some(gamma.source)));
+    let model_covariance = discrepancy
+        .or_else(|| calibration.discrepancy(model, uses_gamma.then_some(gamma.source), structure.eps));
     let model_covariance = model_covariance.map(|c| of_determined(c, &structure));
     // Finite inputs of absurd scale can still overflow.
     let values = structure.values();

@@ -84,6 +84,7 @@ struct Off {
     abscissa: String,
     gamma: String,
     mean_square: [[f64; 3]; 3],
+    by_eps: [f64; 2],
 }
 
 impl Calibration {
@@ -148,6 +149,7 @@ impl Calibration {
                     abscissa: d.abscissa.name().to_owned(),
                     gamma: d.gamma.map_or("none", GammaSource::name).to_owned(),
                     mean_square: d.mean_square,
+                    by_eps: d.by_eps,
                 })
                 .collect(),
         };
@@ -192,7 +194,10 @@ fn off(o: Off) -> Result<Discrepancy, CalibrationError> {
     let lowest = if m.iter().all(|v| v.is_finite()) { m.symmetric_eigenvalues().min() } else { f64::NAN };
     let valid = m == m.transpose() && lowest >= -1e-9 * m.amax();
     constant("discrepancy.mean_square", lowest, valid, "it must be symmetric without negative eigenvalue")?;
-    Ok(Discrepancy { model: o.model, abscissa: abscissa(&o.abscissa)?, gamma, mean_square: o.mean_square })
+    let [f0, f1] = o.by_eps;
+    constant("discrepancy.by_eps", f0.min(f1), f0 >= 0.0 && f1 >= 0.0, "no mean square is negative")?;
+    let Off { model, mean_square, by_eps, .. } = o;
+    Ok(Discrepancy { model, abscissa: abscissa(&o.abscissa)?, gamma, mean_square, by_eps })
 }
 
 fn relaxed(r: Relaxed) -> Result<Network, CalibrationError> {

@@ -36,7 +36,7 @@ pub fn learn(
     };
     if !anisotropic.is_empty() {
         calibration.network = Some(Box::new(network(isotropic, anisotropic, &material)?));
-        calibration.discrepancies = discrepancies(anisotropic, &calibration);
+        calibration.discrepancies = discrepancies(isotropic, anisotropic, &calibration);
     }
     Ok(calibration)
 }
@@ -265,9 +265,13 @@ fn residual(network: &Network, row: &Reduced<'_>) -> [f64; SCATTERED] {
     off.map(|v| v * row.weight)
 }
 
-/// How far every model that has no scatter of its own is from the packings, by each γ/Δ and coordination number. Isotropic
-/// packings, which every model gets right, are left out.
-fn discrepancies(samples: &[Sample], calibration: &Calibration) -> Vec<Discrepancy> {
+/// How far every model that has no scatter of its own is from the packings, by each γ/Δ and coordination number. Of
+/// isotropic packings the errors of ε alone count: in the rest every model gets them right.
+fn discrepancies(
+    isotropic: &[Sample],
+    anisotropic: &[Sample],
+    calibration: &Calibration,
+) -> Vec<Discrepancy> {
     const SOURCES: [GammaSource; 4] =
         [GammaSource::Zero, GammaSource::Total, GammaSource::Elastic, GammaSource::Contact];
     let mut learned = Vec::new();
@@ -276,30 +280,36 @@ fn discrepancies(samples: &[Sample], calibration: &Calibration) -> Vec<Discrepan
         for model in models() {
             let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
             for source in sources {
-                let mean_square = mean_square(*model, samples, *source, abscissa, &calibration);
-                let gamma = model.uses_gamma().then_some(*source);
-                let model = model.name().to_owned();
-                learned.extend(mean_square.map(|mean_square| Discrepancy {
-                    model,
+                let errors = |samples| errors(*model, samples, *source, abscissa, &calibration);
+                let Some((without, errors)) = errors(isotropic).zip(errors(anisotropic)) else { continue };
+                let mean = |i: usize, j: usize| {
+                    errors.iter().map(|(_, e)| e[i] * e[j]).sum::<f64>() / errors.len() as f64
+                };
+                learned.push(Discrepancy {
+                    model: model.name().to_owned(),
                     abscissa,
-                    gamma,
-                    mean_square,
-                }));
+                    gamma: model.uses_gamma().then_some(*source),
+                    mean_square: std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j))),
+                    by_eps: by_eps(&without, &errors),
+                });
             }
         }
     }
     learned
 }
 
+/// ε inferred, and the errors of coordination number, k̂ and ε.
+type Errors = Vec<(f64, [f64; 3])>;
+
 /// `None` if the model does not solve nine in ten.
-fn mean_square(
+fn errors(
     model: &dyn Model,
     samples: &[Sample],
     gamma: GammaSource,
     abscissa: Quantity,
     calibration: &Calibration,
-) -> Option<[[f64; 3]; 3]> {
-    let error = |s: &Sample| -> Result<Option<[f64; 3]>, EmtError> {
+) -> Option<Errors> {
+    let error = |s: &Sample| -> Result<Option<(f64, [f64; 3])>, EmtError> {
         let solution = model.solve(&s.observation(gamma).checked()?, calibration)?;
         if solution.discrepancy.is_some() {
             return Ok(None);
@@ -307,14 +317,23 @@ fn mean_square(
         let found = solution.structure;
         let truth = if abscissa == Quantity::Z { s.z } else { s.k };
         let k_hat = found.k_hat.map_or(0.0, |k_hat| k_hat - truth);
-        Ok(found.get(abscissa).zip(found.eps).map(|(n, eps)| [n - truth, k_hat, eps - s.eps]))
+        let both = found.get(abscissa).zip(found.eps);
+        Ok(both.map(|(n, eps)| (eps, [n - truth, k_hat, eps - s.eps])))
     };
     let known = |s: &&Sample| gamma == GammaSource::Zero || Gamma::is_known(&s.gamma, gamma);
     let asked: Vec<_> = samples.iter().filter(known).collect();
-    let errors: Vec<[f64; 3]> = asked.iter().filter_map(|s| error(s).ok().flatten()).collect();
-    if errors.is_empty() || errors.len() * 10 < asked.len() * 9 {
-        return None;
-    }
-    let mean = |i: usize, j: usize| errors.iter().map(|e| e[i] * e[j]).sum::<f64>() / errors.len() as f64;
-    Some(std::array::from_fn(|i| std::array::from_fn(|j| mean(i, j))))
+    let errors: Errors = asked.iter().filter_map(|s| error(s).ok().flatten()).collect();
+    (!errors.is_empty() && errors.len() * 10 >= asked.len() * 9).then_some(errors)
+}
+
+/// How the square of the error of ε grows with the ε inferred: f0 + f1 ε², f0 as packings without anisotropy have it and 1
+/// in the mean of those with.
+fn by_eps(without: &Errors, with: &Errors) -> [f64; 2] {
+    let mean = |errors: &Errors, f: fn(f64, f64) -> f64| {
+        errors.iter().map(|(eps, e)| f(*eps, e[2])).sum::<f64>() / errors.len() as f64
+    };
+    let error = mean(with, |_, e| e * e);
+    let square = mean(with, |eps, _| eps * eps);
+    let constant = (mean(without, |_, e| e * e) / error).min(1.0);
+    if constant.is_finite() && square > 0.0 { [constant, (1.0 - constant) / square] } else { [1.0, 0.0] }
 }

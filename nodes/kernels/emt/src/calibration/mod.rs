@@ -44,6 +44,18 @@ pub struct Discrepancy {
     pub gamma: Option<GammaSource>,
     /// Mean of error times error, the bias in it, of the coordination number, k̂ and ε; zero where the model has no k̂.
     pub mean_square: [[f64; 3]; 3],
+    /// What the mean square of the error of ε is multiplied by where ε is inferred: f0 + f1 ε², 1 in the mean.
+    pub by_eps: [f64; 2],
+}
+
+impl Discrepancy {
+    /// Mean of error times error where this ε is inferred.
+    fn at(&self, eps: Option<f64>) -> [[f64; 3]; 3] {
+        let [constant, square] = self.by_eps;
+        let wider = eps.map_or(1.0, |eps| (constant + square * eps * eps).sqrt());
+        let scale = [1.0, 1.0, wider];
+        std::array::from_fn(|i| std::array::from_fn(|j| scale[i] * scale[j] * self.mean_square[i][j]))
+    }
 }
 
 /// Why there is no calibration.
@@ -176,8 +188,13 @@ impl Calibration {
         needs_more.then(|| Self::builtin("grainlab")).flatten().unwrap_or(&PAPER)
     }
 
-    /// What was learned of a model fed with this γ/Δ.
-    pub(crate) fn discrepancy(&self, model: &str, gamma: Option<GammaSource>) -> Option<StructureCovariance> {
+    /// What was learned of a model fed with this γ/Δ, where it infers this ε.
+    pub(crate) fn discrepancy(
+        &self,
+        model: &str,
+        gamma: Option<GammaSource>,
+        eps: Option<f64>,
+    ) -> Option<StructureCovariance> {
         let abscissa = self.isotropic.abscissa;
         let learned = self
             .discrepancies
@@ -185,7 +202,7 @@ impl Calibration {
             .find(|d| d.model == model && d.gamma == gamma && d.abscissa == abscissa)?;
         let mut covariance = StructureCovariance::zeros();
         let order = [abscissa, Quantity::KHat, Quantity::Eps];
-        for (a, row) in order.into_iter().zip(learned.mean_square) {
+        for (a, row) in order.into_iter().zip(learned.at(eps)) {
             for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;
             }
