@@ -30,8 +30,8 @@ trap 'rm -rf "$work"' EXIT
 header=preparation,mu2,seed,$columns
 for mu2 in $frictions; do
     # A name has no point: 0.05 becomes 005.
-    name=$preparation-$(printf %s "$mu2" | tr -d .)
-    sed "s/^friction = .* # mu2/friction = $mu2/; s/^name = .*/name = \"$name\"/" "$scene" > "$work/$name.toml"
+    name=${preparation}_$(printf %s "$mu2" | tr -d .)
+    sed "s/^friction = .* # mu2/friction = $mu2/; 1,/^\[/s/^name = .*/name = \"$name\"/" "$scene" > "$work/$name.toml"
     seed=$first
     while [ "$seed" -le "$last" ]; do
         run=$(finished "$name-$seed")
