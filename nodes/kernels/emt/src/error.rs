@@ -106,7 +106,7 @@ pub enum EmtError {
     },
     /// The shear ratio is one that no distribution of contacts has.
     #[error(
-        "G13/G12 = {ratio} is outside (0, 2), where the theory lives: check that G13 is the shear along the axis"
+        "G13/G12 = {ratio:.4} is outside (0, 2), where the theory lives: check that G13 is the shear along the axis"
     )]
     RatioOutOfRange {
         /// r = G13/G12.
@@ -114,7 +114,7 @@ pub enum EmtError {
     },
     /// No contact anisotropy gives this shear ratio at this strain ratio.
     #[error(
-        "no contact anisotropy gives G13/G12 = {ratio} at gamma/Delta = {g}: the strain ratio is too far from that of \
+        "no contact anisotropy gives G13/G12 = {ratio:.4} at gamma/Delta = {g}: the strain ratio is too far from that of \
          the contacts; give the elastic or the contact-fitted ratio, or 0"
     )]
     NoAnisotropy {
@@ -138,7 +138,7 @@ pub enum EmtError {
     },
     /// No coordination of the calibration has such moduli.
     #[error(
-        "no coordination number in [{low}, {high}], where calibration `{calibration}` lives, fits the moduli ({nearest} \
+        "no coordination number in [{low:.3}, {high:.3}], where calibration `{calibration}` lives, fits the moduli ({nearest:.3} \
          comes nearest): check units, pressure and material"
     )]
     NoCoordination {

@@ -122,6 +122,13 @@ impl Moduli {
         Some(sum / (9.0 * self.get(Modulus::Theta)?))
     }
 
+    /// Standard deviation of [`Moduli::imbalance`] by the errors of the moduli; `None` unless all five are known.
+    pub(crate) fn imbalance_stddev(&self, covariance: &ModuliCovariance) -> Option<f64> {
+        let row: RowSVector<f64, MODULI> = RowSVector::from_fn(|_, j| Modulus::ALL[j].in_relation());
+        let variance = (row * covariance * row.transpose())[0].max(0.0);
+        Some(variance.sqrt() / (9.0 * self.get(Modulus::Theta)?))
+    }
+
     /// The same with the one modulus that the others leave no choice for, and its covariance with them.
     #[must_use]
     pub(crate) fn completed(

@@ -30,12 +30,14 @@ pub struct Observation {
     pub asymmetry: Option<f64>,
     /// Grains in the sample, which decide how much of that is its own scatter; `None` if not known, or as good as infinite.
     pub grains: Option<u32>,
+    /// The one of the moduli that was not measured but follows from the others ([`Observation::checked`]).
+    pub derived: Option<Modulus>,
 }
 
 impl Observation {
     /// Of unknown uncertainty.
     pub const fn new(moduli: Moduli, conditions: Conditions) -> Self {
-        Self { moduli, covariance: None, conditions, asymmetry: None, grains: None }
+        Self { moduli, covariance: None, conditions, asymmetry: None, grains: None, derived: None }
     }
 
     /// The paper's three moduli and the pressure, Pa.
@@ -94,7 +96,9 @@ impl Observation {
                 return Err(EmtError::Unstable { modulus: modulus.name(), value });
             }
         }
-        Ok(Self { moduli, covariance, ..self.clone() })
+        let is_new = |m: &Modulus| self.moduli.get(*m).is_none() && moduli.get(*m).is_some();
+        let derived = Modulus::ALL.into_iter().find(is_new).or(self.derived);
+        Ok(Self { moduli, covariance, derived, ..self.clone() })
     }
 
     /// The first number that is none, the covariance apart.

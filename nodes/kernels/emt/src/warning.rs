@@ -16,6 +16,12 @@ const ASYMMETRY: f64 = 0.05;
 /// Asymmetry times the root of the number of grains that packings which are isotropic about e3 stay below.
 const SCATTER: f64 = 2.2;
 
+/// Imbalance of moduli that were rounded to three or four digits.
+const ROUNDING: f64 = 5e-3;
+
+/// Standard deviations that chance does not reach once in a thousand.
+const CERTAIN: f64 = 3.3;
+
 /// Relative error of a modulus beyond which slopes no longer tell the error of an estimate: at 5 % the intervals still hold
 /// what they promise, at 30 % they do not.
 const LARGE_ERROR: f64 = 0.1;
@@ -99,6 +105,18 @@ pub enum Warning {
     },
     /// No stable medium has these moduli.
     NotOneMedium,
+    /// Θ is not what C11, C33, C13 and G12 make it, by more than the errors.
+    Imbalance {
+        /// Difference in parts of Θ.
+        relative: f64,
+    },
+    /// A coordination number is less than one contact a grain.
+    CoordinationAbsurd {
+        /// Which one.
+        quantity: Quantity,
+        /// Its value.
+        value: f64,
+    },
     /// The error of a modulus is too large for intervals that are linear in it.
     ErrorsLarge {
         /// The modulus of the largest.
@@ -152,7 +170,7 @@ impl fmt::Display for Warning {
             Warning::CoordinationImpossible { coordination } => {
                 write!(
                     f,
-                    "a coordination number of {coordination:.3} is more than equal spheres find room for (12)"
+                    "a coordination number of {coordination:.3} is more than equal spheres find room for (12): check the units (Pa)"
                 )
             }
             Warning::RatioUnusual { ratio } => {
@@ -208,6 +226,15 @@ impl fmt::Display for Warning {
                     "no stable medium has these moduli: they are not of one state, or the errors are large"
                 )
             }
+            Warning::Imbalance { relative } => write!(
+                f,
+                "Theta is {:.1} % off what C11, C33, C13 and G12 make it: they are not of one state, or one of them is wrong",
+                100.0 * relative.abs()
+            ),
+            Warning::CoordinationAbsurd { quantity, value } => write!(
+                f,
+                "{quantity} = {value:.3} is less than one contact a grain: check the units of moduli and pressure (Pa)"
+            ),
             Warning::ErrorsLarge { modulus, relative } => write!(
                 f,
                 "{modulus} is known to {:.0} % only: intervals are linear in the errors and too narrow here, draw samples",
@@ -255,6 +282,15 @@ pub(crate) fn common(
         add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });
     }
     add(observation.moduli.unstable(), Warning::NotOneMedium);
+    if let Some(relative) = observation.moduli.imbalance() {
+        let errors = observation.covariance.as_ref();
+        let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
+        add(relative.abs() > ROUNDING + CERTAIN * stddev, Warning::Imbalance { relative });
+    }
+    for quantity in [Quantity::K, Quantity::Z] {
+        let Some(value) = structure.get(quantity) else { continue };
+        add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
+    }
     if let Some(covariance) = &observation.covariance {
         let relative = |(modulus, value): (Modulus, f64)| {
             let i = modulus as usize;

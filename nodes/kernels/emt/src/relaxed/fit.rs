@@ -9,11 +9,15 @@ use crate::observation::Observation;
 use crate::structure::{Quantity, Structure, StructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
+/// Relative error of the relation between six moduli below which they are five.
+const NO_ROOM: f64 = 1e-6;
+
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
 
-/// The moduli used, in units of [`State::unit`]. One that follows from the others is left out; the rows of what is left out
-/// or not known are neutral: no residual, unit variance.
+/// The moduli used, in units of [`State::unit`]. The one that was not measured but follows from the others is left out; of
+/// six that were, Θ, if their errors leave no room for a sixth. The rows of what is left out or not known are neutral: no
+/// residual, unit variance.
 pub(super) struct Data {
     value: Moduli,
     covariance: Square,
@@ -24,9 +28,14 @@ pub(super) struct Data {
 impl Data {
     pub(super) fn of(observation: &Observation, state: &State) -> Self {
         let known = observation.moduli.values();
-        let complete = observation.moduli.imbalance().is_some();
+        let no_room = || {
+            let errors = observation.covariance.as_ref();
+            let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c));
+            observation.moduli.imbalance().is_some() && stddev.is_none_or(|s| s < NO_ROOM)
+        };
+        let left_out = observation.derived.or_else(|| no_room().then_some(Modulus::Theta));
         let is_used: [bool; MODULI] =
-            std::array::from_fn(|i| known[i].is_some() && !(complete && Modulus::ALL[i] == Modulus::Theta));
+            std::array::from_fn(|i| known[i].is_some() && left_out != Some(Modulus::ALL[i]));
         let covariance = observation.covariance.unwrap_or_default() / (state.unit * state.unit);
         Self {
             value: SVector::from_fn(|i, _| known[i].map_or(0.0, |m| m / state.unit)),

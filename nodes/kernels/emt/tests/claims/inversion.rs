@@ -4,7 +4,7 @@ use crate::{PAPER_MODELS, model, table3};
 use emt::{Calibration, Conditions, Form, Gamma, Measured, Medium, Observation, Structure, models};
 use grains::Material;
 
-/// 1e-6 is what the acceptance asks; the moduli are kept to 1 mPa, which costs 1e-9 at most.
+/// 1e-6 is what is promised; the moduli are kept to 1 mPa, which costs 1e-9 at most.
 #[test]
 fn every_row_of_table_iii_comes_back_from_its_implied_moduli() {
     let rows = table3::rows();

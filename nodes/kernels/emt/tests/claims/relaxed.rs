@@ -152,6 +152,30 @@ fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
     }
 }
 
+/// Six moduli are one more than a medium has: the sixth is a check, and is not thrown away.
+#[test]
+fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nobody_gave() {
+    let sound = moduli(5.2, 0.03);
+    let wrong = sound.with(Modulus::Theta, 1.3 * sound.get(Modulus::Theta).unwrap());
+    let imbalance = |w: &Warning| matches!(w, Warning::Imbalance { .. });
+    let conflict = |w: &Warning| matches!(w, Warning::Conflict { .. });
+    assert!(!infer(sound).unwrap().warnings.iter().any(imbalance));
+    let found = infer(wrong).unwrap();
+    assert!(found.warnings.iter().any(imbalance) && found.warnings.iter().any(conflict), "{found:?}");
+    // Without errors nothing can be weighed, and the five are taken; it is told all the same.
+    let exact = Relaxed.infer(&Observation::new(wrong, conditions()), ours()).unwrap();
+    assert!(exact.warnings.iter().any(imbalance));
+    assert!((exact.structure.eps.unwrap() - 0.03).abs() < 1e-9);
+
+    let found = infer(wrong.without(Modulus::C13)).unwrap();
+    let blamed = found.warnings.iter().find_map(|w| match w {
+        Warning::Conflict { worst, .. } => Some(worst.0),
+        _ => None,
+    });
+    assert!(blamed.is_some_and(|m| m != Modulus::C13), "{:?}", found.warnings);
+    assert_eq!(found.information(Quantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
+}
+
 #[test]
 fn an_orthotropic_medium_is_no_transversely_isotropic_one() {
     let m = moduli(5.2, 0.03);
