@@ -5,12 +5,20 @@
 #   nodes/launch/ensemble.sh SCENE "MU2 ..." FIRST_SEED LAST_SEED [RUNS] > measurements.csv
 #
 # SCENE is a file whose lines `friction = ... # mu2` take each MU2 in turn, such as those in nodes/scenes/ensemble.
-# GRAINLAB names the binary (default: grainlab on the PATH). Runs land in RUNS (default: recordings/runs); a run that is
-# there already, under the same scene, mu2 and seed, is measured and not repeated, so an interrupted ensemble goes on.
+# GRAINLAB names the binary (default: grainlab on the PATH). Runs land in RUNS (default: recordings/runs); one that is there
+# already, by the name of scene, mu2 and seed, is measured and not repeated, so an interrupted ensemble goes on: take another
+# folder for a scene that was edited.
 set -eu
 grainlab=${GRAINLAB:-grainlab}
 [ $# -ge 4 ] || { sed -n '5p' "$0" | cut -c 5- >&2; exit 2; }
 scene=$1 frictions=$2 first=$3 last=$4 runs=${5:-recordings/runs}
+fail() { echo "ensemble.sh: $1" >&2; exit 2; }
+for seed in "$first" "$last"; do
+    case $seed in '' | *[!0-9]*) fail "a seed is a whole number, not \"$seed\"" ;; esac
+done
+[ "$first" -le "$last" ] || fail "there is no seed from $first to $last"
+[ -f "$scene" ] || fail "there is no scene $scene"
+grep -q '^friction = .* # mu2' "$scene" || fail "$scene has no line \"friction = ... # mu2\": mu2 would change nothing"
 preparation=$(basename "$scene" .toml)
 columns=grains,phi,pressure_pa,k,z,eps,eps_stiffness,g_total,g_elastic,g_contact
 columns=$columns,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,grain_shear_modulus_pa,poisson
@@ -38,6 +46,7 @@ for mu2 in $frictions; do
         if [ -z "$run" ]; then
             "$grainlab" launch --scene "$work/$name.toml" --seed "$seed" --out "$runs" > /dev/null
             run=$(finished "$name-$seed")
+            [ -n "$run" ] || fail "no run $name-$seed came to its end in $runs"
         fi
         "$grainlab" analyze "$run" --format csv --columns "$columns" > "$work/run.csv"
         [ -z "$header" ] || { echo "$header"; header=; }

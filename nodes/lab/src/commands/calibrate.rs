@@ -16,7 +16,11 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   What the calibration grainlab was learned from:
-    nodes/launch/ensemble.sh nodes/scenes/ensemble/isotropic.toml \"0.01 0.05 0.1 0.3\" 41 48 > isotropic.csv
+    S=nodes/scenes/ensemble
+    nodes/launch/ensemble.sh $S/isotropic.toml \"0.01 0.03 0.1 0.2 0.4 1.0\" 41 44 > isotropic.csv
+    nodes/launch/ensemble.sh $S/uniaxial.toml \"0.05 0.1 0.15 0.3\" 11 26 > anisotropic.csv
+    nodes/launch/ensemble.sh $S/biaxial.toml \"0.05 0.1 0.15 0.3\" 31 34 | sed 1d >> anisotropic.csv
+    nodes/launch/ensemble.sh $S/overloaded.toml \"0.05 0.1 0.15 0.3\" 31 34 | sed 1d >> anisotropic.csv
     grainlab calibrate --isotropic isotropic.csv --anisotropic anisotropic.csv --name mine --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 

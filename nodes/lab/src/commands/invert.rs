@@ -121,7 +121,7 @@ pub(crate) struct Args {
     by: Vec<String>,
     /// Also sample the distribution of the estimates by this many draws of the data: for errors that are large, where those
     /// of the other columns, linear in the errors, are not to be trusted; 20000 is plenty
-    #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     samples: Option<u32>,
     /// Seed of the samples: the same one gives the same numbers
     #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
@@ -146,6 +146,14 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             return judge::run(rows, &args.by, &ways, args.format);
         }
         return table::run(rows, &printer, args.format);
+    }
+    // The parser of the command line waives what a flag requires where another one excludes it.
+    for (flag, given) in
+        [("--judge", args.judge), ("--by", !args.by.is_empty()), ("--gamma", args.gamma.is_some())]
+    {
+        if given {
+            return Err(Failure::usage(format!("{flag} is for --table")));
+        }
     }
     let answer = Answer::of(args.state(defaults)?, None, &ways);
     for fault in answer.faults(&ways) {

@@ -47,10 +47,17 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<Sample>, Fail
 /// The first `preparation` cells grouped by say how it was prepared, those behind them which packing it is.
 fn sample(row: &Row, preparation: usize) -> Result<Sample, String> {
     let State { moduli, truth, phi, grains, grain_shear_modulus, poisson, .. } = &row.state;
-    let need = |value: Option<f64>, name: &str| value.ok_or_else(|| format!("{name} is not known"));
+    let need = |value: Option<f64>, name: &str| match value {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(value) => Err(format!("{name} = {value} is not finite")),
+        None => Err(format!("{name} is not known")),
+    };
     for modulus in Modulus::ALL {
-        need(moduli.get(modulus), modulus.name())?;
+        if need(moduli.get(modulus), modulus.name())? <= 0.0 {
+            return Err(format!("{modulus} is not positive: there is no network"));
+        }
     }
+    need(Some(row.state.pressure.value), "the pressure")?;
     let (preparation, packing) = row.group.split_at(preparation);
     Ok(Sample {
         preparation: preparation.join(" "),

@@ -64,7 +64,12 @@ impl Columns {
         let there = || format!("there are: {}", names.join(", "));
         let mut pressure = None;
         for (name, unit) in [("pressure_pa", 1.0), ("p_pa", 1.0), ("p_kpa", 1e3)] {
-            pressure = pressure.or(find(name)?.map(|column| (column, unit)));
+            let Some(column) = find(name)? else { continue };
+            if let Some((other, _)) = pressure {
+                let other: &String = &names[other];
+                return Err(format!("columns {other} and {name} both say the pressure: which one is meant?"));
+            }
+            pressure = Some((column, unit));
         }
         let group = by
             .iter()
