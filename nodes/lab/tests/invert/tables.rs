@@ -36,7 +36,7 @@ fn a_bad_row_is_named_and_does_not_stop_the_rest() {
     for word in [
         "line 4: 3 cells under 6 columns",
         "line 6 (words): column theta_pa: \"stiff\" is not a number",
-        "line 7 (stiff): ratio: G13/G12 = 3 is outside (0, 2)",
+        "line 7 (stiff): ratio: G13/G12 = 3.0000 is outside (0, 2)",
         "line 8 (compressed): ratio: pressure = -5e4 Pa must be positive",
         "6 rows, 4 bad",
     ] {
