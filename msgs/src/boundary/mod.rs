@@ -24,7 +24,7 @@ pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;
-pub use wave_speeds::{WaveMethod, WaveSpeedReading, WaveSpeedsReading};
+pub use wave_speeds::WaveSpeedsReading;
 
 /// Why a message, or what should become one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -5,64 +5,19 @@ use super::check::Check;
 use crate::builtin_interfaces::Time;
 use crate::geometry_msgs::Vector3;
 use crate::msg;
-use grains::{Vec3, WaveSpeed};
+use grains::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
 
-/// How a speed was measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WaveMethod {
-    /// Onset of the first arrival.
-    FirstArrival,
-    /// Delay of greatest correlation.
-    CrossCorrelation,
-    /// Delay of the peak.
-    Peak,
-    /// Frequency of a standing wave.
-    StandingWave,
-    /// Slope of the dispersion relation.
-    Dispersion,
-}
-
-impl WaveMethod {
-    /// All of them, in the order of their codes.
-    pub const ALL: [WaveMethod; 5] =
-        [Self::FirstArrival, Self::CrossCorrelation, Self::Peak, Self::StandingWave, Self::Dispersion];
-
-    /// One word for it, as tables and files have it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::FirstArrival => "first_arrival",
-            Self::CrossCorrelation => "cross_correlation",
-            Self::Peak => "peak",
-            Self::StandingWave => "standing_wave",
-            Self::Dispersion => "dispersion",
-        }
+/// A method as messages have it.
+const fn code(method: WaveMethod) -> u8 {
+    match method {
+        WaveMethod::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
+        WaveMethod::CrossCorrelation => msg::WaveSpeed::METHOD_CROSS_CORRELATION,
+        WaveMethod::Peak => msg::WaveSpeed::METHOD_PEAK,
+        WaveMethod::StandingWave => msg::WaveSpeed::METHOD_STANDING_WAVE,
+        WaveMethod::Dispersion => msg::WaveSpeed::METHOD_DISPERSION,
     }
-
-    /// As messages have it.
-    pub const fn code(self) -> u8 {
-        match self {
-            Self::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
-            Self::CrossCorrelation => msg::WaveSpeed::METHOD_CROSS_CORRELATION,
-            Self::Peak => msg::WaveSpeed::METHOD_PEAK,
-            Self::StandingWave => msg::WaveSpeed::METHOD_STANDING_WAVE,
-            Self::Dispersion => msg::WaveSpeed::METHOD_DISPERSION,
-        }
-    }
-}
-
-/// One speed of one mode, and how it was measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaveSpeedReading {
-    /// Direction, particle motion, speed and its standard deviation.
-    pub measured: WaveSpeed,
-    /// How it was measured.
-    pub method: WaveMethod,
-    /// Dominant frequency, Hz; `None` if the speed is extrapolated to zero frequency.
-    pub frequency: Option<f64>,
-    /// Peak strain, 0 or more.
-    pub strain_amplitude: f64,
 }
 
 /// Wave speeds as an inversion takes them: checked, and with `None` for what the sender did not know.
@@ -87,13 +42,13 @@ pub struct WaveSpeedsReading {
     /// Poisson ratio of the grains, in [0, 0.5].
     pub grain_poisson_ratio: f64,
     /// The speeds, in the order of the message. There may be none.
-    pub speeds: Vec<WaveSpeedReading>,
+    pub speeds: Vec<MeasuredWave>,
 }
 
 impl WaveSpeedsReading {
     /// The speeds without how they were measured, as the kernels take them.
     pub fn measured(&self) -> Vec<WaveSpeed> {
-        self.speeds.iter().map(|s| s.measured).collect()
+        self.speeds.iter().map(|s| s.wave).collect()
     }
 }
 
@@ -119,16 +74,16 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
     }
 }
 
-fn speed(index: usize, s: &msg::WaveSpeed) -> Result<WaveSpeedReading, BoundaryError> {
+fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError> {
     let name = |field: &str| format!("speeds[{index}].{field}");
     let unit = |field: &str, vector: &Vector3| {
         let field = name(field);
         let known = CHECK.direction(&field, vector)?;
         known.map_or_else(|| CHECK.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
     };
-    Ok(WaveSpeedReading {
+    Ok(MeasuredWave {
         method: method(&name("method"), s.method)?,
-        measured: WaveSpeed {
+        wave: WaveSpeed {
             direction: unit("direction", &s.direction)?,
             polarization: unit("polarization", &s.polarization)?,
             speed: CHECK.positive(&name("speed"), s.speed)?,
@@ -139,9 +94,9 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<WaveSpeedReading, BoundaryE
     })
 }
 
-fn method(field: &str, code: u8) -> Result<WaveMethod, BoundaryError> {
-    WaveMethod::ALL.into_iter().find(|m| m.code() == code).ok_or_else(|| {
+fn method(field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
+    WaveMethod::ALL.into_iter().find(|m| code(*m) == number).ok_or_else(|| {
         let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";
-        CHECK.code(field, code, known)
+        CHECK.code(field, number, known)
     })
 }

@@ -12,7 +12,7 @@
 //! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
 //! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
 //! - [`control`]: what a loading path asks of each strain component, and the law that answers
-//! - [`waves`]: plane waves in a medium, and one measured speed of one
+//! - [`waves`]: plane waves in a medium, measured speeds of them
 //! - [`structure`]: what is measured on a contact network beyond coordination and fabric
 //! - [`results`]: what the kernels report
 
@@ -37,4 +37,4 @@ pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use structure::Structure;
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};
-pub use waves::{PlaneWaves, WaveMode, WaveSpeed};
+pub use waves::{MeasuredWave, PlaneWaves, WaveMethod, WaveMode, WaveSpeed};

@@ -24,6 +24,51 @@ pub struct WaveSpeed {
     pub stddev: Option<f64>,
 }
 
+/// How a speed was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WaveMethod {
+    /// Onset of the first arrival.
+    FirstArrival,
+    /// Delay of greatest correlation.
+    CrossCorrelation,
+    /// Delay of the peak.
+    Peak,
+    /// Frequency of a standing wave.
+    StandingWave,
+    /// Slope of the dispersion relation.
+    Dispersion,
+}
+
+impl WaveMethod {
+    /// All of them.
+    pub const ALL: [WaveMethod; 5] =
+        [Self::FirstArrival, Self::CrossCorrelation, Self::Peak, Self::StandingWave, Self::Dispersion];
+
+    /// One word for it, as tables and files have it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::FirstArrival => "first_arrival",
+            Self::CrossCorrelation => "cross_correlation",
+            Self::Peak => "peak",
+            Self::StandingWave => "standing_wave",
+            Self::Dispersion => "dispersion",
+        }
+    }
+}
+
+/// One speed of one mode, and how it was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeasuredWave {
+    /// Direction, particle motion, speed and its standard deviation.
+    pub wave: WaveSpeed,
+    /// How it was measured.
+    pub method: WaveMethod,
+    /// Dominant frequency, Hz; `None` if the speed is extrapolated to zero frequency.
+    pub frequency: Option<f64>,
+    /// Peak strain, 0 or more; 0 if nothing was moved (dispersion of the frozen network).
+    pub strain_amplitude: f64,
+}
+
 /// The three modes along one direction, the stiffest first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneWaves {

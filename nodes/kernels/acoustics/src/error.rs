@@ -1,0 +1,88 @@
+//! What can go wrong, typed.
+
+use micro::NoNetwork;
+
+/// Why a packing's wave speeds could not be measured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AcousticsError {
+    /// A setting is out of its range.
+    #[error("setting {name} = {value:e} is out of range: {requirement}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// Nothing carries a wave.
+    #[error(transparent)]
+    NoNetwork(#[from] NoNetwork),
+    /// Waves of this frequency do not travel through the packing.
+    #[error(
+        "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {direction:?} are two \
+         grains long and travel no more; send less than half of it"
+    )]
+    CutOff {
+        /// The frequency asked for, Hz.
+        frequency: f64,
+        /// The cut-off, Hz.
+        cutoff: f64,
+        /// Direction of propagation.
+        direction: [f64; 3],
+    },
+    /// The sample is too short for the wave.
+    #[error(
+        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed ({why}); use {enough} \
+         repetitions or a shorter wave"
+    )]
+    PathTooShort {
+        /// Repetitions asked for.
+        copies: u32,
+        /// Length of the path, m.
+        path: f64,
+        /// Length needed, m.
+        needed: f64,
+        /// What for.
+        why: &'static str,
+        /// Repetitions that suffice.
+        enough: u32,
+    },
+    /// The ray is not normal to lattice planes, so that the packing cannot be repeated along it.
+    #[error("the packing cannot be repeated along {direction:?}: not a normal of its lattice planes")]
+    NoLatticePlane {
+        /// Direction of propagation.
+        direction: [f64; 3],
+    },
+    /// The mode of a wave vector was not found to the accuracy asked for.
+    #[error(
+        "the mode along {direction:?} at a wavelength of {wavelength:.4e} m was not found: {reason}; raise max_iterations or \
+         tolerance, or use longer waves"
+    )]
+    NotConverged {
+        /// Direction of propagation.
+        direction: [f64; 3],
+        /// Wavelength, m.
+        wavelength: f64,
+        /// What went wrong.
+        reason: String,
+    },
+    /// No arrival, or no ringing, was recognised.
+    #[error("no {what} along {direction:?}, motion {motion:?}: {reason}")]
+    NoSignal {
+        /// What was looked for.
+        what: &'static str,
+        /// Direction of propagation.
+        direction: [f64; 3],
+        /// Particle motion.
+        motion: [f64; 3],
+        /// Why.
+        reason: String,
+    },
+    /// The network could not be built.
+    #[error(transparent)]
+    Network(#[from] micro::MicroError),
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] dem::DemError),
+}

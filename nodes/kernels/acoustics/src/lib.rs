@@ -1,0 +1,31 @@
+//! Virtual acoustic measurement of a packing.
+//!
+//! Three ways to measure the speed of a wave, which share [`ray`] (where a wave goes and how the grains move), [`curve`]
+//! (a speed at several wavelengths, extrapolated to long ones) and [`participation`] (the mass that moves with a wave):
+//!
+//! - [`dispersion`]: frequencies of the acoustic modes of the frozen contact network at Bloch wave vectors of any length
+//! - [`standing`]: the packing, repeated along the path, starts with the velocity of a plane wave; how it rings
+//! - [`flight`]: a burst is sent through the packing, repeated along the path; when it arrives
+//!
+//! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
+
+pub mod curve;
+pub mod dispersion;
+pub mod error;
+pub mod flight;
+pub mod instrument;
+pub mod measure;
+pub mod participation;
+pub mod ray;
+pub mod standing;
+pub mod survey;
+pub mod trace;
+
+pub use curve::Curve;
+pub use error::AcousticsError;
+pub use instrument::Instrument;
+pub use measure::{Measurement, Settings, Way, measure};
+pub use participation::Participation;
+pub use ray::Ray;
+pub use survey::{Modes, Survey};
+pub use trace::Trace;

@@ -1,0 +1,31 @@
+//! What a receiver hears.
+
+use grains::{Vec3, WaveMethod};
+
+/// Traces of one wave: particle velocity at several receivers, or the amplitude of a standing wave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Unit direction of propagation.
+    pub direction: Vec3,
+    /// Unit particle motion sent and received.
+    pub motion: Vec3,
+    /// What it is evaluated for.
+    pub method: WaveMethod,
+    /// Dominant frequency sent, Hz.
+    pub frequency: f64,
+    /// Samples a second, Hz.
+    pub sample_rate: f64,
+    /// Time of the first sample after the trigger, s.
+    pub start: f64,
+    /// Receivers, all with the same number of samples.
+    pub channels: Vec<Channel>,
+}
+
+/// One receiver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Distance from the source along the ray, m; the wavelength of a standing wave.
+    pub distance: f64,
+    /// Particle velocity along the motion, m/s.
+    pub samples: Vec<f64>,
+}
