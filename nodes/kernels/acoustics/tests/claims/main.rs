@@ -1,0 +1,3 @@
+//! Claims about the virtual acoustic measurement.
+
+mod sample;
