@@ -100,7 +100,7 @@ fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
         measure(&packing, &Settings { survey: Survey::Three, ..Settings::default() }).unwrap().participation;
     assert_eq!(p.rattlers, 97);
     let without = p.bulk * f64::from(2000 - 97) / 2000.0;
-    assert!(p.left_behind > 10 && p.mean() < without && p.mean() > 0.995 * without, "{p:?}");
+    assert!(p.left_behind > 5 && p.mean() < without && p.mean() > 0.999 * without, "{p:?}");
 }
 
 #[test]
