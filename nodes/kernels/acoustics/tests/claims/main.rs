@@ -1,3 +1,4 @@
 //! Claims about the virtual acoustic measurement.
 
+mod repeat;
 mod sample;
