@@ -16,11 +16,16 @@ pub mod flight;
 pub mod instrument;
 mod lattice;
 pub mod measure;
+mod noise;
 pub mod participation;
 pub mod ray;
 pub mod repeat;
+mod resonance;
+mod ringing;
+mod sample;
 pub mod standing;
 pub mod survey;
+mod tone;
 pub mod trace;
 
 pub use curve::Curve;

@@ -96,18 +96,27 @@ impl Sample {
     /// cent.
     pub(crate) fn affine_speed(&self, direction: &Vec3, motion: &Vec3) -> f64 {
         let p = &self.packing;
-        let modulus: f64 = p.contacts.iter().map(|c| {
-            let (normal, tangential) = p.contact_stiffness(c);
-            let along = c.normal.dot(motion).powi(2);
-            let tangential = if p.friction > 0.0 { tangential } else { 0.0 };
-            p.branch(c).dot(direction).powi(2) * (normal * along + tangential * (1.0 - along))
-        }).sum();
+        let modulus: f64 = p
+            .contacts
+            .iter()
+            .map(|c| {
+                let (normal, tangential) = p.contact_stiffness(c);
+                let along = c.normal.dot(motion).powi(2);
+                let tangential = if p.friction > 0.0 { tangential } else { 0.0 };
+                p.branch(c).dot(direction).powi(2) * (normal * along + tangential * (1.0 - along))
+            })
+            .sum();
         (modulus / self.mass()).sqrt()
+    }
+
+    /// Mass of each grain, kg; 0 if it carries no force.
+    pub(crate) fn masses(&self) -> Vec<f64> {
+        let mass = |r: &f64| self.packing.material.sphere_mass(*r);
+        self.packing.radii.iter().zip(&self.present).map(|(r, p)| if *p { mass(r) } else { 0.0 }).collect()
     }
 
     /// Mass of the grains that carry force, kg.
     fn mass(&self) -> f64 {
-        let carried = self.packing.radii.iter().zip(&self.present).filter(|(_, present)| **present);
-        carried.map(|(r, _)| self.packing.material.sphere_mass(*r)).sum()
+        self.masses().iter().sum()
     }
 }
