@@ -4,6 +4,7 @@ use crate::curve::{Curve, Point};
 use crate::error::AcousticsError;
 use crate::instrument::{Clock, Heard, Instrument};
 use crate::measure::Warning;
+use crate::ray::Ray;
 use crate::repeat::{Repeated, repeated};
 use crate::ringing::{Ringing, Strike};
 use crate::sample::Sample;
@@ -11,7 +12,7 @@ use crate::standing::Settings;
 use crate::tone::Tone;
 use crate::trace::{Channel, Trace};
 use grains::{Vec3, WaveMethod};
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 /// Fewest copies a period: nearer to two the packing scatters a wave back.
 const COPIES_PER_PERIOD: f64 = 2.5;
@@ -94,6 +95,7 @@ impl Resonance {
             mass: &mass,
             setting: sample.setting,
             motion: self.motion,
+            aside: self.aside(),
             velocity: settings.amplitude * ROUGH_SHARE * affine / f64::from(waves),
             waves,
             stride: (1.0 / (rate * time_step)).max(1.0) as u32,
@@ -103,7 +105,7 @@ impl Resonance {
         let heard = Heard {
             start: ringing.start(),
             interval: ringing.interval(),
-            channels: std::mem::take(&mut ringing.channels),
+            channels: ringing.channels.clone(),
         };
         let trace = self.trace(&heard, &repeated, longest, settings.periods, instrument)?;
         let tones = self.tones(&trace.channels, trace.start, trace.sample_rate, settings.periods, affine)?;
@@ -144,13 +146,30 @@ impl Resonance {
             }
         }
         let curve = Curve::through(self.direction, self.motion, points);
-        let curve = curve.ok_or_else(|| self.silent("its speeds at several wavelengths have no limit"))?;
+        let mut curve =
+            curve.ok_or_else(|| self.silent("its speeds at several wavelengths have no limit"))?;
+        // Half of what ρv² is uncertain by.
+        let modulus = sample.density() * curve.speed.powi(2);
+        let meaning = (sample.pressure() / modulus).hypot(ringing.aside());
+        curve.stddev = curve.stddev.hypot(0.5 * meaning * curve.speed);
         let relative = curve.stddev / curve.speed;
         if instrument.signal_to_noise.is_finite() && relative > NOISY {
             let (direction, motion) = (self.direction.into(), self.motion.into());
             warnings.push(Warning::Noisy { direction, motion, relative });
         }
         Ok(Found { curve, trace, warnings })
+    }
+
+    /// Motions of waves of another kind: across the ray for one along it, along the ray for one across.
+    fn aside(&self) -> [Vec3; 2] {
+        let others = |v: &Vec3| Ray::motions_about(v, &self.direction);
+        let along = self.motion.dot(&self.direction);
+        if 2.0 * along * along > 1.0 {
+            let [_, one, other] = others(&self.motion);
+            [one, other]
+        } else {
+            [(self.direction - self.motion * along).normalize(), Vec3::zeros()]
+        }
     }
 
     /// The packing, repeated as often as told, and as the path must be long.
@@ -262,8 +281,7 @@ fn tone(samples: &[f64], start: f64, interval: f64, periods: f64, range: [f64; 2
     let rough = Tone::found(samples, start, interval, range)?.omega;
     let tone = within(rough, LEFT_OUT, periods)?;
     let half = within(rough, LEFT_OUT, LEFT_OUT + 0.5 * (periods - LEFT_OUT))?;
-    // Of two halves of the same spread the mean is off by 1/√2 of what one of them is off the mean: by what all and half differ.
-    let apart = (tone.omega - half.omega).abs() / SQRT_2;
+    let apart = (tone.omega - half.omega).abs();
     Some(Tone { stddev: tone.stddev.hypot(apart).max(ROUNDING * tone.omega), ..tone })
 }
 

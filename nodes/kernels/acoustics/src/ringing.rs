@@ -21,6 +21,8 @@ pub(crate) struct Strike<'a> {
     pub(crate) setting: Setting,
     /// Unit particle motion.
     pub(crate) motion: Vec3,
+    /// Two perpendicular motions, unit or zero, that a wave of another kind would have.
+    pub(crate) aside: [Vec3; 2],
     /// Velocity amplitude of each wave, m/s.
     pub(crate) velocity: f64,
     /// The waves are those with 1, 2 … periods in the path, up to this.
@@ -37,6 +39,8 @@ pub(crate) struct Ringing<'a> {
     weights: Vec<Vec<f64>>,
     /// Amplitude of each wave over time, m/s.
     pub(crate) channels: Vec<Vec<f64>>,
+    /// Sum of the squares of the longest wave's amplitude along the motions aside, m²/s².
+    aside: f64,
     quiet: BTreeSet<Key>,
     /// Contacts that were gone at some look, and that were new.
     opened: BTreeSet<Key>,
@@ -72,6 +76,7 @@ impl<'a> Ringing<'a> {
             engine,
             weights,
             channels: vec![Vec::new(); strike.waves as usize],
+            aside: 0.0,
             quiet,
             opened: BTreeSet::new(),
             closed: BTreeSet::new(),
@@ -119,9 +124,19 @@ impl<'a> Ringing<'a> {
         (self.opened.len() as u32, self.closed.len() as u32)
     }
 
+    /// sin² of the angle between the motion sent and that of the mode it is meant for: with one mode of each kind the longest
+    /// wave's motion aside is sin θ cos θ (cos ω₁t − cos ω₂t). By about so much of itself ρv² of the mode is not that of the
+    /// motion.
+    pub(crate) fn aside(&self) -> f64 {
+        self.aside / self.samples().max(1) as f64 / self.strike.velocity.powi(2)
+    }
+
     fn hear(&mut self) {
-        let motion = self.strike.motion;
-        let along: Vec<f64> = self.engine.velocities().iter().map(|v| v.dot(&motion)).collect();
+        let Strike { motion, aside, .. } = self.strike;
+        let velocities = self.engine.velocities();
+        let mean: Vec3 = velocities.iter().zip(&self.weights[0]).map(|(v, w)| v * *w).sum();
+        self.aside += aside.map(|a| a.dot(&mean).powi(2)).iter().sum::<f64>();
+        let along: Vec<f64> = velocities.iter().map(|v| v.dot(&motion)).collect();
         for (channel, weights) in self.channels.iter_mut().zip(&self.weights) {
             channel.push(along.iter().zip(weights).map(|(v, w)| v * w).sum());
         }

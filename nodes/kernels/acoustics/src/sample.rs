@@ -115,6 +115,16 @@ impl Sample {
         self.packing.radii.iter().zip(&self.present).map(|(r, p)| if *p { mass(r) } else { 0.0 }).collect()
     }
 
+    /// Density of the grains that carry force, kg/m³.
+    pub(crate) fn density(&self) -> f64 {
+        self.mass() / self.packing.cell.volume()
+    }
+
+    /// Mean stress, Pa, positive in compression.
+    pub(crate) fn pressure(&self) -> f64 {
+        grains::stress::stress(&self.packing).tensor.mean()
+    }
+
     /// Mass of the grains that carry force, kg.
     fn mass(&self) -> f64 {
         self.masses().iter().sum()

@@ -2,3 +2,4 @@
 
 mod repeat;
 mod sample;
+mod standing;
