@@ -104,8 +104,7 @@ impl Fit {
             return 1.0;
         }
         let misfit = |p: &Point| {
-            let law: f64 =
-                (0..terms).map(|k| self.coefficients[k] * p.wavenumber.powi(2 * k as i32)).sum();
+            let law: f64 = (0..terms).map(|k| self.coefficients[k] * p.wavenumber.powi(2 * k as i32)).sum();
             ((p.speed.powi(2) - law) / (2.0 * p.speed * p.stddev)).powi(2)
         };
         points.iter().map(misfit).sum::<f64>() / freedom as f64

@@ -9,20 +9,33 @@
 //!
 //! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
 
+pub mod arrival;
+mod burst;
 pub mod curve;
 pub mod dispersion;
 pub mod error;
 pub mod flight;
 pub mod instrument;
 mod lattice;
+mod line;
+mod meaning;
 pub mod measure;
+mod mode;
+mod noise;
 pub mod participation;
+mod passage;
+mod pick;
 pub mod ray;
 pub mod repeat;
+mod sample;
+mod shot;
+mod slab;
+mod spectrum;
 pub mod standing;
 pub mod survey;
 pub mod trace;
 
+pub use arrival::Arrivals;
 pub use curve::Curve;
 pub use error::AcousticsError;
 pub use instrument::Instrument;

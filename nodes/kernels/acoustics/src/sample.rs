@@ -96,12 +96,16 @@ impl Sample {
     /// cent.
     pub(crate) fn affine_speed(&self, direction: &Vec3, motion: &Vec3) -> f64 {
         let p = &self.packing;
-        let modulus: f64 = p.contacts.iter().map(|c| {
-            let (normal, tangential) = p.contact_stiffness(c);
-            let along = c.normal.dot(motion).powi(2);
-            let tangential = if p.friction > 0.0 { tangential } else { 0.0 };
-            p.branch(c).dot(direction).powi(2) * (normal * along + tangential * (1.0 - along))
-        }).sum();
+        let modulus: f64 = p
+            .contacts
+            .iter()
+            .map(|c| {
+                let (normal, tangential) = p.contact_stiffness(c);
+                let along = c.normal.dot(motion).powi(2);
+                let tangential = if p.friction > 0.0 { tangential } else { 0.0 };
+                p.branch(c).dot(direction).powi(2) * (normal * along + tangential * (1.0 - along))
+            })
+            .sum();
         (modulus / self.mass()).sqrt()
     }
 
