@@ -1,5 +1,7 @@
 //! What commands find, in the forms in which it is printed and stored.
 
+pub(crate) mod acoustic;
+mod acoustic_text;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod probe;
