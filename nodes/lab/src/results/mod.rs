@@ -5,6 +5,7 @@ mod acoustic_text;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod probe;
+pub(crate) mod probed;
 pub(crate) mod read_back;
 pub(crate) mod state;
 pub(crate) mod state_text;
