@@ -48,7 +48,7 @@ fn rays() -> Vec<ParameterSpec> {
 fn ways() -> Vec<ParameterSpec> {
     let dispersion = dispersion::Settings::default();
     let flight = flight::Settings::default();
-    let strain = Range::Double { min: 1e-14, max: 1e-2 };
+    let strain = Range::Double { min: 1e-12, max: 1e-2 };
     vec![
         ParameterSpec::new(
             "wavelengths",

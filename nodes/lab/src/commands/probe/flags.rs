@@ -46,7 +46,11 @@ fn flag(spec: &ParameterSpec) -> Arg {
         ParameterValue::DoubleArray(_) => "NUMBER,...",
         _ => "TEXT",
     };
-    let mut help = format!("{} [default: {}", spec.description, spec.default);
+    let default = match &spec.default {
+        ParameterValue::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    let mut help = format!("{} [default: {default}", spec.description);
     if spec.range != Range::Any {
         help += &format!("; {}", spec.range);
     }
