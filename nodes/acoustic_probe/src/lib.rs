@@ -13,6 +13,6 @@ mod parameters;
 mod settings;
 
 pub use measure::{MeasureError, Measured, measure, messages};
-pub use node::{AcousticProbe, DECLINED_STEP};
+pub use node::{AcousticProbe, DECLINED_STEP, MEASURING};
 pub use parameters::parameters;
 pub use settings::{Settings, SettingsError};

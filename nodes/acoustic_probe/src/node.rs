@@ -19,6 +19,9 @@ const UNKNOWN: u64 = u64::MAX;
 /// Key of the diagnostics under which the step of the last packing without wave speeds stands.
 pub const DECLINED_STEP: &str = "declined_step";
 
+/// Key of the diagnostics under which the step of the packing that is being measured stands.
+pub const MEASURING: &str = "measuring";
+
 type Outcome = Result<Measured, MeasureError>;
 
 /// The probe: measures every packing, one after the other, on a thread of its own.
@@ -174,7 +177,7 @@ impl Node for AcousticProbe {
             .with("last_step", or_none(t.last_step))
             .with(DECLINED_STEP, or_none(t.declined_step))
             .with("last_measurement_s", self.seconds)
-            .with("measuring", or_none(step))
+            .with(MEASURING, or_none(step))
             .with("measuring_s", if self.worker.is_busy() { self.under_way } else { 0.0 })
             .with("waiting", self.packing.waiting())
     }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::network::bus_in;
-use acoustic_probe::DECLINED_STEP;
+use acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, RunState, WaveSpeeds};
@@ -32,6 +32,8 @@ pub(crate) enum Event {
     Measured(&'static str, u64),
     /// The packing of this step has nothing of this topic.
     Declined(&'static str, u64),
+    /// An acoustic probe measures the packing of this step, which may take long.
+    Probing(u64),
     /// The microstructure of the packing of this step was inferred from data of this topic.
     Microstructure(String, u64),
     /// The process of this id said its last word.
@@ -127,8 +129,11 @@ fn watch(
         }
         while let Some((message, _)) = reports.take_valid(bus)? {
             for report in Report::from_message(&message) {
-                if let Some(step) = declined(&report) {
+                if let Some(step) = step_under(DECLINED_STEP, &report) {
                     send(events, Event::Declined(topics::WAVE_SPEEDS.name, step));
+                }
+                if let Some(step) = step_under(MEASURING, &report) {
+                    send(events, Event::Probing(step));
                 }
                 if report.is_final() {
                     send(events, Event::Goodbye(report.pid));
@@ -140,9 +145,9 @@ fn watch(
     Ok(())
 }
 
-/// Step of the last packing that an acoustic probe found no wave speeds of.
-fn declined(report: &Report) -> Option<u64> {
-    let (_, step) = report.health.values.iter().find(|(key, _)| key == DECLINED_STEP)?;
+/// The step that an acoustic probe reports under this key, if it does.
+fn step_under(key: &str, report: &Report) -> Option<u64> {
+    let (_, step) = report.health.values.iter().find(|(k, _)| k == key)?;
     step.parse().ok()
 }
 
