@@ -1,19 +1,23 @@
 //! A speed at several wavelengths, and what it goes to at long ones.
+//!
+//! Grains of size D carry waves of wave number q at v² = v₀² (1 − b q² + O(q⁴)) with b of the order of D²/10: a chain has
+//! b = D²/12, packings .1 D² (S) to .2 D² (P).
 
 use grains::Vec3;
+use nalgebra::{DMatrix, DVector};
 
-/// ρ v² at one wavelength.
+/// A speed at one wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Wave number |q|, rad/m.
     pub wavenumber: f64,
-    /// Speed, m/s.
+    /// Phase speed, m/s.
     pub speed: f64,
     /// Standard deviation of the speed, m/s.
     pub stddev: f64,
 }
 
-/// Speeds of one mode, and their limit by v² = v₀² (1 − b q² + …).
+/// Speeds of one mode, and their limit by v² = v₀² (1 − b q²).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Unit direction of propagation.
@@ -28,4 +32,133 @@ pub struct Curve {
     pub stddev: f64,
     /// b, m².
     pub bend: f64,
+}
+
+impl Curve {
+    /// The law v² = v₀² (1 − b q²) through two or more points by weighted least squares.
+    ///
+    /// The standard deviation has three parts: that of the points; their scatter about the law, where it is more; and, from
+    /// three points on, how far a term in q⁴ would move v₀. `None` with fewer than two different wavelengths, or if a
+    /// number is not finite and positive, or if the law gives no speed.
+    pub fn through(direction: Vec3, motion: Vec3, mut points: Vec<Point>) -> Option<Self> {
+        let valid = |x: f64| x.is_finite() && x > 0.0;
+        if !points.iter().all(|p| valid(p.wavenumber) && valid(p.speed) && valid(p.stddev)) {
+            return None;
+        }
+        points.sort_by(|a, b| a.wavenumber.total_cmp(&b.wavenumber));
+        let straight = Fit::of(&points, 2)?;
+        let scale = straight.scatter(&points).max(1.0);
+        let mut variance = straight.variance * scale;
+        if let Some(bent) = Fit::of(&points, 3) {
+            let moved = bent.coefficients[0] - straight.coefficients[0];
+            // A q⁴ term that the points do not support moves v₀ by chance alone: that much is in the variance already.
+            variance += (moved * moved - (bent.variance * scale - variance).max(0.0)).max(0.0);
+        }
+        let square = straight.coefficients[0];
+        let speed = (square > 0.0).then(|| square.sqrt())?;
+        let stddev = variance.sqrt() / (2.0 * speed);
+        let bend = -straight.coefficients[1] / square;
+        stddev.is_finite().then_some(Self { direction, motion, points, speed, stddev, bend })
+    }
+
+    /// Speed at the wave number `q` (rad/m) by the law, m/s.
+    pub fn at(&self, q: f64) -> f64 {
+        self.speed * (1.0 - self.bend * q * q).max(0.0).sqrt()
+    }
+}
+
+/// v² as a polynomial in q².
+struct Fit {
+    coefficients: DVector<f64>,
+    /// Of the first coefficient, (m/s)⁴, by the points' own errors.
+    variance: f64,
+}
+
+impl Fit {
+    fn of(points: &[Point], terms: usize) -> Option<Self> {
+        let mut different: Vec<f64> = points.iter().map(|p| p.wavenumber).collect();
+        different.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *b);
+        if different.len() < terms {
+            return None;
+        }
+        // q² in units of the largest, so that all columns are alike.
+        let unit = points.last()?.wavenumber.powi(2);
+        let error = |p: &Point| 2.0 * p.speed * p.stddev;
+        let rows = DMatrix::from_fn(points.len(), terms, |i, k| {
+            (points[i].wavenumber.powi(2) / unit).powi(k as i32) / error(&points[i])
+        });
+        let sides = DVector::from_fn(points.len(), |i, _| points[i].speed.powi(2) / error(&points[i]));
+        let inverse = (rows.transpose() * &rows).try_inverse()?;
+        let mut coefficients = &inverse * rows.transpose() * sides;
+        for k in 1..terms {
+            coefficients[k] /= unit.powi(k as i32);
+        }
+        Some(Self { coefficients, variance: inverse[(0, 0)] })
+    }
+
+    /// χ² per degree of freedom; 1 without one.
+    fn scatter(&self, points: &[Point]) -> f64 {
+        let terms = self.coefficients.len();
+        let freedom = points.len().saturating_sub(terms);
+        if freedom == 0 {
+            return 1.0;
+        }
+        let misfit = |p: &Point| {
+            let law: f64 = (0..terms).map(|k| self.coefficients[k] * p.wavenumber.powi(2 * k as i32)).sum();
+            ((p.speed.powi(2) - law) / (2.0 * p.speed * p.stddev)).powi(2)
+        };
+        points.iter().map(misfit).sum::<f64>() / freedom as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(law: impl Fn(f64) -> f64, relative: f64) -> Vec<Point> {
+        let point = |q: f64| Point { wavenumber: q, speed: law(q), stddev: relative * law(q) };
+        [0.1, 0.2, 0.3, 0.4].map(point).to_vec()
+    }
+
+    fn through(points: Vec<Point>) -> Option<Curve> {
+        Curve::through(Vec3::z(), Vec3::z(), points)
+    }
+
+    #[test]
+    fn the_law_is_found_again() {
+        let law = |q: f64| 300.0 * (1.0 - 0.15 * q * q).sqrt();
+        let curve = through(points(law, 1e-3)).unwrap();
+        assert!((curve.speed - 300.0).abs() < 1e-9 && (curve.bend - 0.15).abs() < 1e-9, "{curve:?}");
+        assert!((curve.at(0.25) - law(0.25)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_the_law_leaves_out_is_in_the_uncertainty() {
+        // A chain: v² = (2/q)² sin²(q/2) = 1 − q²/12 + q⁴/360.
+        let chain = |q: f64| 2.0 / q * (0.5 * q).sin();
+        let far = |q: f64| chain(4.0 * q);
+        for law in [&chain as &dyn Fn(f64) -> f64, &far] {
+            let curve = through(points(law, 1e-9)).unwrap();
+            let off = (curve.speed - 1.0).abs();
+            assert!(off < 2.0 * curve.stddev && curve.stddev < 10.0 * off, "{off:e} {curve:?}");
+        }
+    }
+
+    #[test]
+    fn scatter_beyond_the_errors_widens_them() {
+        let mut noisy = points(|_| 100.0, 1e-6);
+        noisy[1].speed = 101.0;
+        assert!(through(noisy).unwrap().stddev > 0.3);
+    }
+
+    #[test]
+    fn what_has_no_law_is_none() {
+        assert!(through(points(|_| 100.0, 1e-3)[..1].to_vec()).is_none());
+        let same = vec![Point { wavenumber: 0.1, speed: 1.0, stddev: 0.1 }; 3];
+        assert!(through(same).is_none());
+        assert!(through(points(|_| f64::NAN, 1e-3)).is_none());
+        assert!(through(points(|_| 100.0, 0.0)).is_none());
+        // Faster and faster the longer the wave is not, but slower: no speed is left at q = 0.
+        assert!(through(points(|q| 100.0 * (q - 0.099), 1e-3)).is_none());
+    }
 }

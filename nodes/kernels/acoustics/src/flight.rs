@@ -6,7 +6,7 @@ use crate::instrument::Instrument;
 use crate::measure::Warning;
 use crate::ray::Ray;
 use crate::trace::Trace;
-use grains::Packing;
+use grains::{Packing, WaveMethod};
 use scene::Tangential;
 
 /// What is taken as the arrival.
@@ -19,6 +19,17 @@ pub enum Pick {
     CrossCorrelation,
     /// Delay of the peak.
     Peak,
+}
+
+impl Pick {
+    /// As results have it.
+    pub fn method(&self) -> WaveMethod {
+        match self {
+            Self::FirstArrival => WaveMethod::FirstArrival,
+            Self::CrossCorrelation => WaveMethod::CrossCorrelation,
+            Self::Peak => WaveMethod::Peak,
+        }
+    }
 }
 
 /// How time of flight is measured.

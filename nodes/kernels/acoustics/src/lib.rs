@@ -9,16 +9,24 @@
 //!
 //! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
 
+mod bloch;
+mod cluster;
 pub mod curve;
 pub mod dispersion;
 pub mod error;
 pub mod flight;
 pub mod instrument;
 pub mod measure;
+mod modes;
 pub mod participation;
 pub mod ray;
+mod row;
+mod solve;
 pub mod standing;
+mod subspace;
 pub mod survey;
+#[cfg(test)]
+mod tests_support;
 pub mod trace;
 
 pub use curve::Curve;

@@ -57,6 +57,6 @@ pub mod symmetry;
 
 pub use analyse::{Analysis, Settings, analyse};
 pub use error::{MicroError, NoNetwork, ProbeError};
-pub use network::{Motion, Network};
+pub use network::{Link, Motion, Network};
 pub use probe::{Probe, ProbeResult, Sides, probe};
 pub use solve::Solver;

@@ -46,6 +46,25 @@ pub(crate) struct Spring {
     pub(crate) geometric: f64,
 }
 
+/// One contact, for operators of another kind on the same network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Link {
+    /// First grain.
+    pub i: u32,
+    /// Second grain.
+    pub j: u32,
+    /// Branch vector from `i` to the image of `j` that is touched, m.
+    pub branch: [f64; 3],
+    /// Unit normal, along the branch.
+    pub normal: [f64; 3],
+    /// Lever of a scaled rotation φ: |l|/(2a) with a the [`Network::rotation_length`].
+    pub lever: f64,
+    /// k_t, N/m.
+    pub tangential: f64,
+    /// k_n − k_t, N/m.
+    pub excess: f64,
+}
+
 /// The frozen contact network of a packing: grains, springs, volume.
 #[derive(Clone, Debug)]
 pub struct Network {
@@ -137,6 +156,19 @@ impl Network {
     /// Volume of the cell, m³.
     pub fn volume(&self) -> f64 {
         self.volume
+    }
+
+    /// Every contact, in the order of the packing; prestress is not told.
+    pub fn links(&self) -> impl Iterator<Item = Link> {
+        self.springs.iter().map(|s| Link {
+            i: s.i,
+            j: s.j,
+            branch: s.normal.map(|n| 2.0 * s.half_branch * n),
+            normal: s.normal,
+            lever: s.lever,
+            tangential: s.tangential,
+            excess: s.excess,
+        })
     }
 
     pub(crate) fn springs(&self) -> &[Spring] {

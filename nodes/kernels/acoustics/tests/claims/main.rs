@@ -1,3 +1,5 @@
 //! Claims about the virtual acoustic measurement.
 
+mod crystals;
+mod dispersion;
 mod sample;
