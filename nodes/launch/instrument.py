@@ -4,7 +4,7 @@
    pip install cyclonedds==11.0.1       # no ROS, and nothing of this project but its message files
    ROS_DOMAIN_ID=77 instrument.py       # while `grainlab run emt_inversion` runs in the same domain
 
-With --json the answer is printed whole. CYCLONEDDS_URI, if set, chooses the network; else it is this host alone.
+With --json what was sent and what came back are printed whole. CYCLONEDDS_URI, if set, chooses the network; else it is this host alone.
 """
 import json
 import os
@@ -36,11 +36,15 @@ def measurement():
                       grain_shear_modulus=29e9, grain_poisson_ratio=0.2, speeds=speeds)
 
 
+def domain():
+    return int(os.environ.get("ROS_DOMAIN_ID", "0"))
+
+
 class Instrument:
     """A writer of wave speeds and a reader of what is inferred, once both have found the inversion."""
 
     def __init__(self, seconds=20.0):
-        self.participant = DomainParticipant(int(os.environ.get("ROS_DOMAIN_ID", "0")))
+        self.participant = DomainParticipant(domain())
         topic = lambda name, kind: Topic(self.participant, "rt/" + name, kind, qos=LATCHED)
         self.reader = DataReader(self.participant, topic("microstructure", Microstructure), qos=LATCHED)
         self.writer = DataWriter(self.participant, topic("wave_speeds", WaveSpeeds), qos=LATCHED)
@@ -62,9 +66,10 @@ class Instrument:
 
 
 def main():
-    found = Instrument().infer(measurement())
+    sent = measurement()
+    found = Instrument().infer(sent)
     if "--json" in sys.argv:
-        return print(json.dumps(asdict(found)))
+        return print(json.dumps({"sent": asdict(sent), "received": asdict(found)}))
     print(f"{'inferred by':<17} {'k':>15} {'z':>15} {'eps':>17}  status")
     status = ["ok", "extrapolated", "undetermined", "failed"]
     for e in found.estimates:
