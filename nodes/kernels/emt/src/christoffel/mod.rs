@@ -26,6 +26,7 @@ mod chance;
 mod determined;
 mod error;
 mod fit;
+mod hemisphere;
 mod profile;
 mod ray;
 mod search;
