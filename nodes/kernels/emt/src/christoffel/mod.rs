@@ -14,7 +14,10 @@
 //!
 //! What the speeds leave open is left open. What they determine more than once is a weighted least-squares fit, and how
 //! well they agree is told. Where several media have the same speeds (without P speeds along and across the axis that
-//! happens), the moduli in which they differ are left open, too. The density is that of the mass that moves with the wave: rattlers do not.
+//! happens), the moduli in which they differ are left open, too. A packing is not quite isotropic about any axis: speeds
+//! that scatter more than they err, and no more than those of a packing, are not at odds with each other, but their scatter
+//! is then their error. The axis is given, or [`find_axis`] finds it from speeds in enough directions. The density is that
+//! of the mass that moves with the wave: rattlers do not.
 
 mod agreement;
 mod axis;
@@ -23,6 +26,7 @@ mod chance;
 mod determined;
 mod error;
 mod fit;
+mod hemisphere;
 mod profile;
 mod ray;
 mod search;
