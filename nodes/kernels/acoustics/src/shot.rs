@@ -68,7 +68,8 @@ impl Shot<'_> {
 
         // A plane source of force per area f sends waves of velocity f/(2ρv) both ways.
         let acceleration = 2.0 * self.amplitude * self.speed * self.speed / self.thickness;
-        let stride = (1.0 / (self.rate.max(MOMENTS_PER_PERIOD * self.burst.frequency) * step)).max(1.0) as u32;
+        let stride =
+            (1.0 / (self.rate.max(MOMENTS_PER_PERIOD * self.burst.frequency) * step)).max(1.0) as u32;
         let moments = (self.duration / (f64::from(stride) * step)).ceil().max(1.0) as usize;
         let look = moments.div_ceil(LOOKS);
         let mut channels = vec![Vec::with_capacity(moments); receivers.len()];
@@ -94,7 +95,12 @@ impl Shot<'_> {
         }
         Ok(Answer {
             heard: Heard { start: f64::from(stride) * step, interval: f64::from(stride) * step, channels },
-            distances: self.receivers.iter().zip(&receivers).map(|(d, r)| d + r.offset - source.offset).collect(),
+            distances: self
+                .receivers
+                .iter()
+                .zip(&receivers)
+                .map(|(d, r)| d + r.offset - source.offset)
+                .collect(),
             opened: changes.opened.len() as u32,
             closed: changes.closed.len() as u32,
         })
