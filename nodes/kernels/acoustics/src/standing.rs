@@ -1,12 +1,13 @@
 //! Standing waves: the packing, repeated along the path, starts with the velocity of plane waves, and rings.
 //!
-//! With m periods in c copies of a packing of length L a wave has the Bloch wave number 2π m/(c L), so that all of m < c/2
-//! ring at once and apart ([`crate::ringing`] says why). The frequency of each gives a phase speed, and those of the longest
-//! waves the speed in the limit of long ones ([`Curve::through`]). Waves near m = c/2 are left out: the packing repeats with
-//! half their length and scatters them back.
+//! With m periods in c copies of a packing of length L a wave has the Bloch wave number 2π m/(c L). Waves of different m know
+//! nothing of each other while contacts answer in proportion, so that all of m < c/2 ring at once and apart, and the packing's
+//! own residual motion is in none of them. The frequency of each gives a phase speed, and those of the longest waves the speed
+//! in the limit of long ones ([`Curve::through`]). Waves near m = c/2 are left out: the packing repeats with half their length
+//! and scatters them back.
 //!
 //! What rings is the packing itself, by the whole contact law. Between strains of 1e-12 and 1e-8 packings of 2,000 grains at 50
-//! kPa answer in proportion; 1e-7 moves ρv² by 0.1 %, 1e-6 by 0.3 %, 1e-5 by 1 %, 1e-4 by 6 %, as feeble contacts open and
+//! kPa answer in proportion; 1e-7 moves ρv² by up to 0.1 %, 1e-6 by 0.3 %, 1e-5 by 1 %, 1e-4 by 6 %, as feeble contacts open and
 //! close.
 
 use crate::curve::Curve;
