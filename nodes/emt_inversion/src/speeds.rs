@@ -2,10 +2,10 @@
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
-use emt::christoffel::{self, Fitted};
+use emt::christoffel::{self, AxisError, Fitted};
 use emt::{Conditions, Gamma, Measured, Misfit, Modulus};
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use grains::{Material, Vec3};
+use grains::{Material, Vec3, WaveSpeed};
 
 /// Sine of the angle between the axis taken and the one named beyond which something is said: 6°.
 const APART: f64 = 0.1;
@@ -13,10 +13,15 @@ const APART: f64 = 0.1;
 /// The moduli that the speeds determine about the axis set, with the errors of speeds and density, or else that of the
 /// settings. γ/Δ is not among what an instrument knows.
 pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Result<Observed, Unobservable> {
+    let speeds = reading.measured();
+    let mut notes = Vec::new();
     let axis = match settings.axis {
         Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
-        Axis::Found => reading.axis.ok_or(Unobservable::NoAxis)?,
+        Axis::Found => match reading.axis {
+            Some(axis) => axis,
+            None => found(&speeds, &mut notes)?,
+        },
     };
     let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
     let conditions = Conditions {
@@ -30,25 +35,71 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             ..Material::GLASS
         }),
     };
-    let speeds = reading.measured();
     let fitted = christoffel::observation(&speeds, density, Some(axis), conditions)?;
-    let notes = notes(&fitted, speeds.len(), reading.axis, &axis);
+    notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
+    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
+    let other = other_axis(&fitted, &speeds, density, &axis);
+    let in_conflict = fitted.conflict.is_some() || other.is_some();
+    notes.extend(other);
     let freedom = fitted.degrees_of_freedom;
     let misfit = fitted.chi_square.map(|chi_square| Misfit { chi_square, degrees_of_freedom: freedom });
     let observation = match fitted.observation.covariance {
         Some(_) => fitted.observation,
         None => with_error(fitted.observation, settings.modulus_error),
     };
-    Ok(Observed {
-        observation,
-        misfit: misfit.filter(|m| m.degrees_of_freedom > 0),
-        in_conflict: fitted.conflict.is_some(),
-        notes,
+    Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })
+}
+
+/// The axis that the speeds tell, and a note on it. Of a medium that looks isotropic e3 is as good as any.
+fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobservable> {
+    let (axis, note) = match christoffel::find_axis(speeds) {
+        Ok(found) => {
+            let (axis, degrees, sigma) = (found.axis, found.stddev().to_degrees(), found.sigma);
+            let note = format!(
+                "no axis was named: ({:.4}, {:.4}, {:.4}) was found from the speeds, to {degrees:.1} degrees (one sigma), \
+                 preferred to isotropy by {sigma:.1} sigma",
+                axis.x, axis.y, axis.z
+            );
+            (axis, note)
+        }
+        Err(isotropic @ AxisError::Isotropic { .. }) => {
+            (Vec3::z(), format!("no axis was named, and e3 was taken: {isotropic}"))
+        }
+        Err(error) => return Err(error.into()),
+    };
+    notes.push(note);
+    Ok(axis)
+}
+
+/// A note on another axis about which speeds that depart from a medium scatter less than half as much: the axis taken is then
+/// the wrong one, and not the sample.
+fn other_axis(fitted: &Fitted, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
+    fitted.departure?;
+    let found = christoffel::find_axis(speeds).ok()?;
+    let axis = found.axis;
+    if axis.cross(taken).norm() < APART.max(3.0 * found.stddev()) {
+        return None;
+    }
+    let about = christoffel::observation(speeds, density, Some(axis), fitted.observation.conditions).ok()?;
+    let (before, after) = (2.0 * fitted.scatter()?, 2.0 * about.scatter()?);
+    (after < 0.5 * before).then(|| {
+        format!(
+            "the wave speeds fit another axis better: about ({:.4}, {:.4}, {:.4}) rho v^2 scatters by {:.2} %, about the one \
+             taken by {:.2} %; set the parameter axis",
+            axis.x, axis.y, axis.z, 100.0 * after, 100.0 * before
+        )
     })
 }
 
-fn notes(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
+fn notes_on(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
     let mut notes = Vec::new();
+    if let Some(departure) = &fitted.departure {
+        notes.push(format!(
+            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, {:.1} times what their \
+             errors do: the sample is not quite one, and the errors of its moduli were enlarged by as much",
+            100.0 * departure.scatter, departure.birge_ratio
+        ));
+    }
     if let Some(conflict) = &fitted.conflict {
         let (worst, sigma) = (conflict.worst, conflict.sigma);
         let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);

@@ -1,12 +1,25 @@
 //! Time of flight: a burst is sent through the packing, repeated along the path.
+//!
+//! A slab of grains across the path is pushed along the particle motion as a tone burst goes; slabs at several distances
+//! tell the mean velocity of their grains. The speed is the slope of distance against arrival ([`crate::arrival`]), for
+//! crests at each frequency ([`crate::meaning`]), and in the limit of long waves by [`Curve::through`].
+//!
+//! The wave leaves the source both ways, and the path is closed: it is as long as it takes for what goes the other way
+//! around to arrive when all is over. Receivers are whole periods of the packing apart, as far as that can be: there
+//! they see the same wave, later.
 
+use crate::arrival::Arrivals;
 use crate::curve::Curve;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
+use crate::meaning;
 use crate::measure::Warning;
+use crate::mode::Mode;
 use crate::ray::Ray;
+use crate::sample::Sample;
 use crate::trace::Trace;
 use grains::{Packing, WaveMethod};
+use rayon::prelude::*;
 use scene::Tangential;
 
 /// What is taken as the arrival.
@@ -43,9 +56,11 @@ pub struct Settings {
     pub copies: Option<u32>,
     /// Thickness of source and receivers along the ray, mean grain diameters.
     pub thickness: f64,
-    /// Receivers, and the distance of the first and the last from the source, wavelengths.
+    /// Receivers, 2 or more.
     pub receivers: u32,
+    /// Distance of the first, wavelengths.
     pub nearest: f64,
+    /// Distance of the last, wavelengths.
     pub furthest: f64,
     /// Peak strain.
     pub amplitude: f64,
@@ -75,13 +90,101 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The settings themselves, if they are in range.
+    pub fn validated(&self) -> Result<&Self, AcousticsError> {
+        let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let numbers =
+            [("thickness", self.thickness), ("nearest", self.nearest), ("amplitude", self.amplitude)];
+        if let Some((name, value)) = numbers.into_iter().find(|(_, x)| !positive(*x)) {
+            return fault(name, value, "more than 0 and finite");
+        }
+        if !(self.cycles.is_finite() && self.cycles >= 1.0) {
+            return fault("cycles", self.cycles, "1 or more and finite");
+        }
+        if !(self.furthest.is_finite() && self.furthest > self.nearest) {
+            return fault("furthest", self.furthest, "more than nearest and finite");
+        }
+        if self.amplitude > 1e-2 {
+            return fault("amplitude", self.amplitude, "0.01 or less");
+        }
+        if self.receivers < 2 {
+            return fault("receivers", self.receivers.into(), "2 or more");
+        }
+        if self.copies == Some(0) {
+            return fault("copies", 0.0, "1 or more");
+        }
+        for (k, frequency) in self.frequencies.iter().flatten().enumerate() {
+            if !positive(*frequency) {
+                return fault("frequencies", *frequency, "more than 0 and finite");
+            }
+            if self.frequencies.iter().flatten().take(k).any(|f| f == frequency) {
+                return fault("frequencies", *frequency, "each once");
+            }
+        }
+        if self.frequencies.as_ref().is_some_and(Vec::is_empty) {
+            return fault("frequencies", 0.0, "one or more");
+        }
+        Ok(self)
+    }
+}
+
 /// The curves of every ray's motions, in that order, and the traces behind them.
+///
+/// A motion whose arrivals noise hides is left out with a [`Warning::LeftOut`]; if all are, that is the error. The same
+/// bits for any number of threads.
 pub fn curves(
     packing: &Packing,
     rays: &[Ray],
     settings: &Settings,
     instrument: &Instrument,
 ) -> Result<(Vec<Curve>, Vec<Trace>, Vec<Warning>), AcousticsError> {
-    let _ = (packing, rays, settings, instrument);
-    Ok((Vec::new(), Vec::new(), Vec::new()))
+    settings.validated()?;
+    instrument.validated()?;
+    let sample = Sample::new(packing, settings.friction, settings.tangential)?;
+    let mut modes = Vec::new();
+    for (r, ray) in rays.iter().enumerate() {
+        let no_plane = AcousticsError::NoLatticePlane { direction: ray.direction.into() };
+        let indices = ray.indices.ok_or(no_plane)?;
+        for (m, motion) in ray.motions.iter().enumerate() {
+            modes.push(Mode {
+                direction: ray.direction,
+                motion: *motion,
+                indices,
+                place: [r as u64, m as u64],
+            });
+        }
+    }
+    let found: Vec<_> = modes.par_iter().map(|mode| mode.measured(&sample, settings, instrument)).collect();
+    let (mut curves, mut traces, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    for mode in found {
+        match mode {
+            Ok(mut found) => {
+                curves.push(found.curve);
+                traces.append(&mut found.traces);
+                warnings.append(&mut found.warnings);
+            }
+            Err(hidden @ AcousticsError::NoSignal { .. }) => warnings.push(Warning::LeftOut(hidden)),
+            Err(error) => return Err(error),
+        }
+    }
+    match warnings.first() {
+        Some(Warning::LeftOut(error)) if curves.is_empty() => Err(error.clone()),
+        _ => Ok((curves, traces, warnings)),
+    }
+}
+
+/// The curve that the traces of one mode give, one or more frequencies of bursts of so many `cycles`. `seed` is that of the
+/// noisy copies that tell the uncertainty; `diameter` (m, mean) tells how much one frequency alone may be off.
+pub fn curve(
+    traces: &[Trace],
+    cycles: f64,
+    pick: Pick,
+    diameter: f64,
+    seed: u64,
+) -> Result<Curve, AcousticsError> {
+    let arrivals: Vec<Arrivals> =
+        traces.iter().map(|t| Arrivals::picked(t, cycles, pick, seed)).collect::<Result<_, _>>()?;
+    meaning::curve(traces, &arrivals, cycles, pick, diameter)
 }

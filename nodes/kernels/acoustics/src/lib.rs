@@ -9,24 +9,41 @@
 //!
 //! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
 
+pub mod arrival;
 mod bloch;
+mod burst;
 mod cluster;
 pub mod curve;
 pub mod dispersion;
 pub mod error;
 pub mod flight;
 pub mod instrument;
+mod lattice;
+mod line;
+mod meaning;
 pub mod measure;
+mod mode;
 mod modes;
+mod noise;
 pub mod participation;
+mod passage;
+mod pick;
 pub mod ray;
+pub mod repeat;
+mod resonance;
+mod ringing;
 mod row;
+mod sample;
+mod shot;
+mod slab;
 mod solve;
+mod spectrum;
 pub mod standing;
 mod subspace;
 pub mod survey;
 #[cfg(test)]
 mod tests_support;
+mod tone;
 pub mod trace;
 
 pub use curve::Curve;
@@ -35,5 +52,6 @@ pub use instrument::Instrument;
 pub use measure::{Measurement, Settings, Way, measure};
 pub use participation::Participation;
 pub use ray::Ray;
+pub use repeat::{Repeated, repeated};
 pub use survey::{Modes, Survey};
 pub use trace::Trace;

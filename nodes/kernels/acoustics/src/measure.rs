@@ -4,6 +4,7 @@ use crate::curve::Curve;
 use crate::dispersion::Turn;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
+use crate::noise::Noise;
 use crate::participation::{Carrier, Participation};
 use crate::survey::{Modes, Survey};
 use crate::trace::Trace;
@@ -12,6 +13,9 @@ use grains::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// A speed that is less certain than this share of itself says little about a medium.
 const NOISY: f64 = 0.1;
+
+/// Place of the noise of speeds among that of all else.
+const SPEEDS: u64 = u64::MAX;
 
 /// How speeds are measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,7 +151,7 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
                 wave: WaveSpeed {
                     direction: curve.direction,
                     polarization: curve.motion,
-                    speed: curve.speed + error * instrument.normal(index as u64),
+                    speed: curve.speed + error * Noise::at(instrument.seed, &[SPEEDS, index as u64]).next(),
                     stddev: Some(curve.stddev.hypot(error)),
                 },
                 method,
@@ -173,8 +177,7 @@ fn check(settings: &Settings) -> Result<(), AcousticsError> {
         let length = axis.norm();
         range("|axis|", length, length.is_finite() && length > 0.0, "a direction: finite and not zero")?;
     }
-    let noise = settings.instrument.speed_noise;
-    range("speed_noise", noise, (0.0..=0.5).contains(&noise), "between 0 and 0.5")
+    settings.instrument.validated().map(|_| ())
 }
 
 /// Lowest and highest angular frequency that anything was measured at, rad/s.

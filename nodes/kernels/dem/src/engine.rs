@@ -171,6 +171,19 @@ impl Engine {
         self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
     }
 
+    /// Adds to the velocities of some grains, m/s.
+    pub fn kick(&mut self, kicks: impl IntoIterator<Item = (usize, Vec3)>) {
+        self.leave();
+        for (grain, by) in kicks {
+            self.state.twist[grain].0[..3].iter_mut().zip(by.iter()).for_each(|(v, by)| *v += by);
+        }
+    }
+
+    /// Velocities relative to the affine motion, m/s, one a grain: those half a step before the positions.
+    pub fn velocities(&self) -> Vec<Vec3> {
+        self.settled().velocities().collect()
+    }
+
     /// The setting in force.
     pub fn setting(&self) -> &Setting {
         &self.setting

@@ -2,4 +2,6 @@
 
 mod crystals;
 mod dispersion;
+mod repeat;
 mod sample;
+mod standing;

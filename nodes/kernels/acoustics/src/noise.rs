@@ -1,0 +1,27 @@
+//! Gaussian noise that depends on seed and place alone.
+
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+/// A seed for each place.
+pub(crate) fn seed_at(seed: u64, place: &[u64]) -> u64 {
+    place.iter().fold(seed, |state, index| Pcg64Mcg::seed_from_u64(state ^ index).next_u64())
+}
+
+/// Independent normal numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Noise(Pcg64Mcg);
+
+impl Noise {
+    /// The numbers of `seed` at a place, such as ray, motion and shot: other places have others, whatever the order in which
+    /// they are visited.
+    pub(crate) fn at(seed: u64, place: &[u64]) -> Self {
+        Self(Pcg64Mcg::seed_from_u64(seed_at(seed, place)))
+    }
+
+    /// A number of mean 0 and standard deviation 1.
+    pub(crate) fn next(&mut self) -> f64 {
+        StandardNormal.sample(&mut self.0)
+    }
+}

@@ -1,0 +1,150 @@
+//! Arrival times in the traces of one burst.
+
+use crate::burst::Burst;
+use crate::flight::Pick;
+use crate::spectrum::{Analytic, Spectrum, summit, vertex};
+use std::f64::consts::FRAC_PI_2;
+
+/// Fine samples a period.
+const FINE: f64 = 160.0;
+
+/// An envelope that stands out of the noise by less than this many standard deviations is no arrival: of a hundred
+/// independent looks at noise one in thirty does.
+const STANDS_OUT: f64 = 4.0;
+
+/// Share of its own greatest value at which a signal counts as having set in; more where the noise demands it.
+const ONSET: f64 = 0.1;
+
+/// How far beyond the noise an onset must be, standard deviations, and the share of the peak above which it is none.
+const ONSET_STANDS_OUT: f64 = 4.5;
+const LARGEST_ONSET: f64 = 0.6;
+
+/// Picks arrivals in traces of one length and sampling.
+#[derive(Clone)]
+pub(crate) struct Picker {
+    pick: Pick,
+    spectrum: Spectrum,
+    /// Shape of the burst's spectrum, and a low pass.
+    band: Vec<f64>,
+    low: Vec<f64>,
+    finer: usize,
+    /// Original samples a burst.
+    burst: f64,
+    /// Fine samples a period.
+    period: f64,
+}
+
+impl Picker {
+    /// For traces of so many `samples` taken at `rate`, Hz.
+    pub(crate) fn new(pick: Pick, burst: Burst, rate: f64, samples: usize) -> Self {
+        let finer = (FINE * burst.frequency / rate).ceil().max(1.0) as usize;
+        let spectrum = Spectrum::new(samples, finer);
+        let length = burst.duration() * rate;
+        let sent: Vec<f64> = (0..length.ceil() as usize).map(|k| burst.at(k as f64 / rate)).collect();
+        let band = spectrum.shape(&sent);
+        let low = |f: f64| (-0.5 * (f * rate / (1.5 * burst.frequency)).powi(2)).exp();
+        let low = spectrum.frequencies().map(low).collect();
+        let period = rate * finer as f64 / burst.frequency;
+        Self { pick, spectrum, band, low, finer, burst: length, period }
+    }
+
+    /// The arrival at each receiver, in samples from the first; of a correlation, from the peak of the first receiver's.
+    /// `noise` is the standard deviation of white noise in the samples. `Err` says what is missing.
+    pub(crate) fn times(&self, channels: &[&[f64]], noise: f64) -> Result<Vec<f64>, String> {
+        let signals: Vec<Vec<Analytic>> =
+            channels.iter().map(|c| self.spectrum.filtered(c, &self.band)).collect();
+        let noise_left = noise * Spectrum::passed(&self.band);
+        let mut peaks = Vec::with_capacity(signals.len());
+        for (receiver, signal) in signals.iter().enumerate() {
+            let (time, height) = summit(|k| signal[k].norm(), 0..signal.len()).unwrap_or((0.0, 0.0));
+            if height.is_nan() || height <= STANDS_OUT * noise_left {
+                let out = if noise_left > 0.0 { height / noise_left } else { 0.0 };
+                return Err(format!(
+                    "at receiver {receiver} the burst stands out of the noise by {out:.1} standard deviations, and \
+                     {STANDS_OUT} are needed"
+                ));
+            }
+            peaks.push(time);
+        }
+        let fine = match self.pick {
+            Pick::Peak => peaks,
+            Pick::CrossCorrelation => self.correlated(&signals, &peaks),
+            Pick::FirstArrival => self.onsets(channels, &peaks, noise)?,
+        };
+        Ok(fine.iter().map(|t| t / self.finer as f64).collect())
+    }
+
+    /// Delays of greatest correlation with the first receiver.
+    fn correlated(&self, signals: &[Vec<Analytic>], peaks: &[f64]) -> Vec<f64> {
+        let cut: Vec<Vec<Analytic>> = signals.iter().zip(peaks).map(|(s, p)| self.cut(s, *p)).collect();
+        let mut times = vec![peaks[0]];
+        for k in 1..cut.len() {
+            // Neighbours' correlation has one highest crest: between them the carrier slips little against the envelope.
+            let near = self.spectrum.correlation(&cut[k], &cut[k - 1]);
+            let step = crest(&near, self.period, None);
+            let far = self.spectrum.correlation(&cut[k], &cut[0]);
+            let expected = times[k - 1] - times[0] + step;
+            times.push(times[0] + crest(&far, self.period, Some(expected)));
+        }
+        times
+    }
+
+    /// A signal at the original times, and only around its peak.
+    fn cut(&self, signal: &[Analytic], peak: f64) -> Vec<Analytic> {
+        let peak = peak / self.finer as f64;
+        let flat = 0.75 * self.burst;
+        let taper = |from: f64| {
+            let beyond = ((from.abs() - flat) / (0.5 * self.burst)).clamp(0.0, 1.0);
+            (FRAC_PI_2 * beyond).cos().powi(2)
+        };
+        signal.iter().step_by(self.finer).enumerate().map(|(k, s)| s * taper(k as f64 - peak)).collect()
+    }
+
+    /// When each signal first exceeds a share of its peak, the same for all.
+    fn onsets(&self, channels: &[&[f64]], peaks: &[f64], noise: f64) -> Result<Vec<f64>, String> {
+        let noise = noise * Spectrum::passed(&self.low);
+        let signals: Vec<Vec<Analytic>> =
+            channels.iter().map(|c| self.spectrum.filtered(c, &self.low)).collect();
+        let length = self.burst * self.finer as f64;
+        let within = |peak: f64, signal: &[Analytic]| {
+            let from = (peak - 0.8 * length).max(0.0) as usize;
+            from..((peak + 0.3 * length) as usize).min(signal.len())
+        };
+        let mut share = ONSET;
+        let mut tops = Vec::with_capacity(signals.len());
+        for (signal, peak) in signals.iter().zip(peaks) {
+            let top = signal[within(*peak, signal)].iter().map(|s| s.re.abs()).fold(0.0, f64::max);
+            share = share.max(ONSET_STANDS_OUT * noise / top);
+            tops.push(top);
+        }
+        if share.is_nan() || share > LARGEST_ONSET {
+            return Err(format!("noise hides the onset: it would be taken at {share:.2} of the peak"));
+        }
+        let onset = |((signal, peak), top): ((&Vec<Analytic>, &f64), &f64)| {
+            let level = share * top;
+            let range = within(*peak, signal);
+            let first = range.clone().find(|k| signal[*k].re.abs() >= level).unwrap_or(range.end);
+            // Between this sample and the one before, on a straight line.
+            let (a, b) = (signal[first.saturating_sub(1)].re.abs(), signal[first].re.abs());
+            if first > range.start && b > a { first as f64 - (b - level) / (b - a) } else { first as f64 }
+        };
+        Ok(signals.iter().zip(peaks).zip(&tops).map(onset).collect())
+    }
+}
+
+/// The delay of the crest of a correlation that is nearest to `expected`, or to the peak of its envelope.
+fn crest(correlation: &[Analytic], period: f64, expected: Option<f64>) -> f64 {
+    let zero = (correlation.len() / 2) as f64;
+    let near = match expected {
+        Some(delay) => zero + delay,
+        None => summit(|k| correlation[k].norm(), 0..correlation.len()).map_or(zero, |(place, _)| place),
+    };
+    let reach = 0.75 * period;
+    let last = correlation.len().saturating_sub(2) as f64;
+    let range = (near - reach).clamp(1.0, last) as usize..(near + reach).clamp(1.0, last) as usize;
+    let of = |k: usize| correlation[k].re;
+    // A crest, not the end of the range on the slope of another.
+    let crests = range.filter(|k| of(*k) >= of(k - 1) && of(*k) > of(k + 1));
+    let nearest = crests.min_by(|a, b| (*a as f64 - near).abs().total_cmp(&(*b as f64 - near).abs()));
+    nearest.map_or(near, |k| vertex(&of, k).0) - zero
+}
