@@ -36,6 +36,8 @@ impl Qos {
     pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };
     /// States of which the latest is what counts.
     pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
+    /// States of which the latest is several messages: a late reader gets as many as make a whole one.
+    pub const LATCHED_SET: Self = Self { reliable: true, depth: 128, transient_local: true };
     /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it all the same.
     pub const CLOCK: Self = Self { reliable: true, depth: 10, transient_local: false };
     /// For parts of what is too large for one sample: nothing is repeated by the bus, because the readers ask for what is
@@ -168,14 +170,14 @@ pub const WAVE_SPEEDS: Topic = Topic {
     summary: "wave speeds by direction and polarisation; an instrument may write them, too",
 };
 
-/// Traces behind the wave speeds.
+/// Traces behind the wave speeds, a message a wave.
 pub const WAVEFORM: Topic = Topic {
     name: "waveform",
     info: TypeInfo::of::<msg::Waveform>(),
-    qos: Qos::LATCHED,
+    qos: Qos::LATCHED_SET,
     writer: "acoustic_probe",
     reproducible: true,
-    summary: "the traces behind the wave speeds",
+    summary: "the traces behind the wave speeds, a message a wave",
 };
 
 /// What was inferred.

@@ -13,6 +13,7 @@ mod strain_rate;
 mod stress;
 mod structure;
 mod wave_speeds;
+mod waveform;
 
 pub use estimate::{
     DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
@@ -24,7 +25,8 @@ pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
 pub use stress::StressRequest;
-pub use wave_speeds::WaveSpeedsReading;
+pub use wave_speeds::{WaveSpeedsReading, wave_speeds_message};
+pub use waveform::{TraceReading, WaveformReading, waveform_message};
 
 /// Why a message, or what should become one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,16 +1,17 @@
 //! `WaveSpeeds`: what an acoustic instrument, real or virtual, hands to an inversion.
 
 use super::BoundaryError;
-use super::check::Check;
+use super::check::{Check, vector_message};
 use crate::builtin_interfaces::Time;
 use crate::geometry_msgs::Vector3;
 use crate::msg;
+use crate::std_msgs::Header;
 use grains::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
 
 /// A method as messages have it.
-const fn code(method: WaveMethod) -> u8 {
+pub(super) const fn code(method: WaveMethod) -> u8 {
     match method {
         WaveMethod::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
         WaveMethod::CrossCorrelation => msg::WaveSpeed::METHOD_CROSS_CORRELATION,
@@ -43,12 +44,49 @@ pub struct WaveSpeedsReading {
     pub grain_poisson_ratio: f64,
     /// The speeds, in the order of the message. There may be none.
     pub speeds: Vec<MeasuredWave>,
+    /// What a reader should know; empty if there is nothing to say.
+    pub warnings: Vec<String>,
 }
 
 impl WaveSpeedsReading {
     /// The speeds without how they were measured, as the kernels take them.
     pub fn measured(&self) -> Vec<WaveSpeed> {
         self.speeds.iter().map(|s| s.wave).collect()
+    }
+}
+
+/// The message of what was measured; `header` is that of the packing probed, and stands for the reading's stamp.
+pub fn wave_speeds_message(
+    header: Header,
+    found: &WaveSpeedsReading,
+) -> Result<msg::WaveSpeeds, BoundaryError> {
+    let message = msg::WaveSpeeds {
+        header,
+        source_step: found.source_step.unwrap_or(0),
+        density: found.density,
+        density_stddev: found.density_stddev.unwrap_or(0.0),
+        pressure: found.pressure,
+        solid_fraction: found.solid_fraction.unwrap_or(0.0),
+        axis: vector_message(&found.axis.unwrap_or_default()),
+        grain_shear_modulus: found.grain_shear_modulus,
+        grain_poisson_ratio: found.grain_poisson_ratio,
+        speeds: found.speeds.iter().map(speed_message).collect(),
+        warnings: found.warnings.clone(),
+    };
+    WaveSpeedsReading::try_from(&message)?;
+    Ok(message)
+}
+
+fn speed_message(measured: &MeasuredWave) -> msg::WaveSpeed {
+    let wave = &measured.wave;
+    msg::WaveSpeed {
+        method: code(measured.method),
+        direction: vector_message(&wave.direction),
+        polarization: vector_message(&wave.polarization),
+        speed: wave.speed,
+        speed_stddev: wave.stddev.unwrap_or(0.0),
+        frequency: measured.frequency.unwrap_or(0.0),
+        strain_amplitude: measured.strain_amplitude,
     }
 }
 
@@ -70,22 +108,18 @@ impl TryFrom<&msg::WaveSpeeds> for WaveSpeedsReading {
             grain_shear_modulus: CHECK.positive(modulus, m.grain_shear_modulus)?,
             grain_poisson_ratio: CHECK.that(is_ratio, ratio, m.grain_poisson_ratio, "between 0 and 0.5")?,
             speeds: m.speeds.iter().enumerate().map(|(i, s)| speed(i, s)).collect::<Result<_, _>>()?,
+            warnings: m.warnings.clone(),
         })
     }
 }
 
 fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError> {
     let name = |field: &str| format!("speeds[{index}].{field}");
-    let unit = |field: &str, vector: &Vector3| {
-        let field = name(field);
-        let known = CHECK.direction(&field, vector)?;
-        known.map_or_else(|| CHECK.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
-    };
     Ok(MeasuredWave {
-        method: method(&name("method"), s.method)?,
+        method: method(CHECK, &name("method"), s.method)?,
         wave: WaveSpeed {
-            direction: unit("direction", &s.direction)?,
-            polarization: unit("polarization", &s.polarization)?,
+            direction: unit(CHECK, &name("direction"), &s.direction)?,
+            polarization: unit(CHECK, &name("polarization"), &s.polarization)?,
             speed: CHECK.positive(&name("speed"), s.speed)?,
             stddev: CHECK.known(&name("speed_stddev"), s.speed_stddev)?,
         },
@@ -94,9 +128,16 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
     })
 }
 
-fn method(field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
+/// A unit vector that must be known.
+pub(super) fn unit(check: Check, field: &str, vector: &Vector3) -> Result<Vec3, BoundaryError> {
+    let known = check.direction(field, vector)?;
+    known.map_or_else(|| check.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
+}
+
+/// The method that a message means.
+pub(super) fn method(check: Check, field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
     WaveMethod::ALL.into_iter().find(|m| code(*m) == number).ok_or_else(|| {
         let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";
-        CHECK.code(field, number, known)
+        check.code(field, number, known)
     })
 }

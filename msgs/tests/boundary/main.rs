@@ -6,6 +6,7 @@ mod packing;
 mod results;
 mod structure;
 mod wave_speeds;
+mod waveform;
 
 use grainlab_msgs::boundary::BoundaryError;
 

@@ -1,6 +1,6 @@
 use super::refuses;
 use super::results::header;
-use grainlab_msgs::boundary::WaveSpeedsReading;
+use grainlab_msgs::boundary::{WaveSpeedsReading, wave_speeds_message};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::{from_cdr, msg, stamp, to_cdr};
 use grains::{Vec3, WaveMethod, WaveSpeed};
@@ -38,6 +38,7 @@ fn sent() -> msg::WaveSpeeds {
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
         speeds: vec![compression, shear],
+        warnings: vec!["send less".to_owned()],
     }
 }
 
@@ -52,9 +53,22 @@ fn an_inversion_reads_the_speeds_that_were_sent() {
         WaveSpeed { direction: Vec3::z(), polarization: Vec3::z(), speed: 500.0, stddev: Some(1.5) };
     let shear = WaveSpeed { polarization: Vec3::x(), speed: 300.0, stddev: None, ..compression };
     assert_eq!(r.measured(), [compression, shear]);
+    assert_eq!(r.warnings, ["send less"]);
     let [p, s] = &r.speeds[..] else { panic!("two speeds") };
     assert_eq!((p.method, p.frequency, p.strain_amplitude), (WaveMethod::Dispersion, None, 0.0));
     assert_eq!((s.method, s.frequency, s.strain_amplitude), (WaveMethod::FirstArrival, Some(2e4), 1e-7));
+}
+
+#[test]
+fn what_was_read_is_sent_as_it_came_and_nothing_goes_out_that_would_be_refused() {
+    let message = msg::WaveSpeeds { axis: Vector3::default(), density_stddev: 0.0, ..sent() };
+    for message in [message, sent()] {
+        let mut reading = WaveSpeedsReading::try_from(&message).unwrap();
+        assert_eq!(wave_speeds_message(header(), &reading).unwrap(), message);
+        reading.speeds[1].wave.speed = NAN;
+        let error = wave_speeds_message(header(), &reading).unwrap_err().to_string();
+        assert!(error.starts_with("WaveSpeeds.speeds[1].speed = NaN is refused"), "{error}");
+    }
 }
 
 #[test]

@@ -68,6 +68,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new("min_readers", d.min_readers as i64, "readers that each topic of wait_for needs; clock needs one")
             .within(Range::Integer { min: 1, max: 1000 }),
         ParameterSpec::new(
+            "min_packing_readers",
+            0_i64,
+            "readers that packing needs where wait_for has it, 0 for min_readers",
+        )
+        .within(Range::Integer { min: 0, max: 1000 }),
+        ParameterSpec::new(
             "exit_when_finished",
             d.exit_when_finished,
             "end when the loading path is done; else stay, so that late readers get the last packing",
@@ -100,6 +106,8 @@ pub struct Settings {
     pub wait_for: Vec<Topic>,
     /// Readers that each topic of `wait_for` needs.
     pub min_readers: usize,
+    /// The same for `packing`, which more nodes read than the others; `None` for as many.
+    pub min_packing_readers: Option<usize>,
     /// End when the loading path is done.
     pub exit_when_finished: bool,
     /// Compute on with the answer that the servo's law gives while the answer is on its way.
@@ -130,6 +138,7 @@ impl Default for Settings {
             resend_at_most: Duration::from_millis(200),
             wait_for: Vec::new(),
             min_readers: 1,
+            min_packing_readers: None,
             exit_when_finished: false,
             ahead: true,
             threads: None,
@@ -156,6 +165,7 @@ impl From<&Parameters> for Settings {
                 .filter(|t| wait_for.iter().any(|name| name == t.name.trim_start_matches('/')))
                 .collect(),
             min_readers: count("min_readers") as usize,
+            min_packing_readers: Some(count("min_packing_readers") as usize).filter(|n| *n > 0),
             exit_when_finished: parameters.get("exit_when_finished"),
             ahead: parameters.get("ahead"),
             threads: NonZeroUsize::new(count("threads") as usize),

@@ -64,14 +64,15 @@ impl DemSimulator {
 
     /// What the start still lacks.
     fn missing(&self, bus: &dyn Bus) -> Option<String> {
+        let of_all = self.settings.min_readers;
         for topic in &self.settings.wait_for {
             let (publisher, needed) = match topic.name {
-                name if name == topics::STRESS.name => (self.stress.id(), self.settings.min_readers),
+                name if name == topics::STRESS.name => (self.stress.id(), of_all),
                 name if name == topics::PACKING.name => {
-                    (self.outbox.packings().id(), self.settings.min_readers)
+                    (self.outbox.packings().id(), self.settings.min_packing_readers.unwrap_or(of_all))
                 }
                 name if name == topics::CLOCK.name => (self.clock.id(), 1),
-                _ => (self.run_state.id(), self.settings.min_readers),
+                _ => (self.run_state.id(), of_all),
             };
             let found = bus.readers(publisher);
             if found < needed {

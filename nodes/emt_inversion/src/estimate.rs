@@ -68,8 +68,15 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
             .iter()
             .cloned()
             .chain(estimate.warnings.iter().map(ToString::to_string))
+            .chain(undetermined(estimate))
             .collect(),
     }
+}
+
+/// What the model speaks of and the data do not determine, where they determine something.
+fn undetermined(estimate: &Estimate) -> Option<String> {
+    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
+    (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }
 
 /// Misfit of data about moduli and of moduli about a structure: the squares and the freedoms add up.

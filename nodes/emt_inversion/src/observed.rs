@@ -1,5 +1,6 @@
 //! What the models are asked with, wherever it is from.
 
+use emt::christoffel::AxisError;
 use emt::{ChristoffelError, Misfit, Modulus, Observation};
 
 /// Moduli with their state, and what was seen on the way to them.
@@ -33,12 +34,18 @@ pub(crate) enum Unobservable {
     /// Wave speeds without a medium.
     #[error(transparent)]
     Speeds(#[from] ChristoffelError),
+    /// Wave speeds without an axis.
+    #[error("no axis was named, and none was found: {0}")]
+    Axis(#[from] AxisError),
 }
 
 impl Unobservable {
     /// Whether the data are too few, or are no data, rather than those of no medium.
     pub(crate) fn is_of_input(&self) -> bool {
-        !matches!(self, Unobservable::Speeds(ChristoffelError::Unstable { .. } | ChristoffelError::NoMedium))
+        match self {
+            Unobservable::Speeds(error) | Unobservable::Axis(AxisError::Speeds(error)) => error.is_of_input(),
+            _ => true,
+        }
     }
 }
 

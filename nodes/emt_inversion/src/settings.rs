@@ -21,8 +21,8 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "axis",
             "e3",
-            "axis of symmetry: e3, found (the one that the data name), or a direction x,y,z of any length; other than e3 \
-             needs the full stiffness",
+            "axis of symmetry: e3, found (the one that the data name; of wave speeds that name none, the one that they tell), \
+             or a direction x,y,z of any length; of moduli, other than e3 needs the full stiffness",
         ),
         ParameterSpec::new(
             "gamma_over_delta",
@@ -57,7 +57,7 @@ pub struct Settings {
 pub enum Axis {
     /// That of the scene.
     E3,
-    /// The one that comes with the data.
+    /// The one that comes with the data; of wave speeds that come with none, the one that they tell.
     Found,
     /// A unit vector in the frame of the cell.
     Given(Vec3),

@@ -2,10 +2,10 @@
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
-use emt::christoffel::{self, Fitted};
+use emt::christoffel::{self, AxisError, Fitted};
 use emt::{Conditions, Gamma, Measured, Misfit, Modulus};
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use grains::{Material, Vec3};
+use grains::{Material, Vec3, WaveSpeed};
 
 /// Sine of the angle between the axis taken and the one named beyond which something is said: 6°.
 const APART: f64 = 0.1;
@@ -13,10 +13,15 @@ const APART: f64 = 0.1;
 /// The moduli that the speeds determine about the axis set, with the errors of speeds and density, or else that of the
 /// settings. γ/Δ is not among what an instrument knows.
 pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Result<Observed, Unobservable> {
+    let speeds = reading.measured();
+    let mut notes = Vec::new();
     let axis = match settings.axis {
         Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
-        Axis::Found => reading.axis.ok_or(Unobservable::NoAxis)?,
+        Axis::Found => match reading.axis {
+            Some(axis) => axis,
+            None => found(&speeds, &mut notes)?,
+        },
     };
     let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
     let conditions = Conditions {
@@ -30,9 +35,9 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             ..Material::GLASS
         }),
     };
-    let speeds = reading.measured();
     let fitted = christoffel::observation(&speeds, density, Some(axis), conditions)?;
-    let notes = notes(&fitted, speeds.len(), reading.axis, &axis);
+    notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
+    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
     let freedom = fitted.degrees_of_freedom;
     let misfit = fitted.chi_square.map(|chi_square| Misfit { chi_square, degrees_of_freedom: freedom });
     let observation = match fitted.observation.covariance {
@@ -47,8 +52,36 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     })
 }
 
-fn notes(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
+/// The axis that the speeds tell, and a note on it. Of a medium that looks isotropic e3 is as good as any.
+fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobservable> {
+    let (axis, note) = match christoffel::find_axis(speeds) {
+        Ok(found) => {
+            let (axis, degrees, sigma) = (found.axis, found.stddev().to_degrees(), found.sigma);
+            let note = format!(
+                "no axis was named: ({:.4}, {:.4}, {:.4}) was found from the speeds, to {degrees:.1} degrees (one sigma), \
+                 preferred to isotropy by {sigma:.1} sigma",
+                axis.x, axis.y, axis.z
+            );
+            (axis, note)
+        }
+        Err(isotropic @ AxisError::Isotropic { .. }) => {
+            (Vec3::z(), format!("no axis was named, and e3 was taken: {isotropic}"))
+        }
+        Err(error) => return Err(error.into()),
+    };
+    notes.push(note);
+    Ok(axis)
+}
+
+fn notes_on(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
     let mut notes = Vec::new();
+    if let Some(departure) = &fitted.departure {
+        notes.push(format!(
+            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, {:.1} times what their \
+             errors do: the sample is not quite one, and the errors of its moduli were enlarged by as much",
+            100.0 * departure.scatter, departure.birge_ratio
+        ));
+    }
     if let Some(conflict) = &fitted.conflict {
         let (worst, sigma) = (conflict.worst, conflict.sigma);
         let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);

@@ -1,6 +1,6 @@
 //! The command line, as typed.
 
-use crate::commands::{analyze, bag, bench, calibrate, invert, launch, run};
+use crate::commands::{analyze, bag, bench, calibrate, invert, launch, probe, run};
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use node_kit::Exit;
@@ -36,6 +36,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
+    /// Send waves through packings from files: their speeds, and the moduli they mean.
+    Probe(probe::Args),
     /// Measure speed on this machine.
     #[command(subcommand)]
     Bench(bench::Command),
@@ -52,6 +54,7 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Invert(args)) => invert::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),
+        Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
     };
     match outcome {

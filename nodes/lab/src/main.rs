@@ -8,6 +8,7 @@
 //! - [`launch`]: launch files, processes and their supervision
 //! - [`lifeline`]: ends a node whose launcher died
 //! - [`recorder`]: the recorder node
+//! - [`tape`]: a recording of what a node would publish
 //! - [`network`]: buses of tools, free domains
 
 mod cli;
@@ -20,6 +21,7 @@ mod output;
 mod recorder;
 mod results;
 mod scenes;
+mod tape;
 
 fn main() -> std::process::ExitCode {
     cli::main()

@@ -29,13 +29,15 @@ pub struct WaveSpeeds {
     pub grain_poisson_ratio: f64,
     /// one per mode and direction
     pub speeds: Vec<WaveSpeed>,
+    /// what a reader should know, empty if there is nothing to say
+    pub warnings: Vec<String>,
 }
 
 impl Message for WaveSpeeds {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
-    const HASH: &'static str = "RIHS01_d785193bd0e82913d35da98b44711be71d19c471f9eaa9497c9f4cdc2ad74238";
+    const HASH: &'static str = "RIHS01_40fe8b2a58ee2c4c5120d6142ef4034b138f33be736eca8e0c7646952acb066b";
     const DEFINITION: &'static str = definition!(
         "msg/WaveSpeeds.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

@@ -2,6 +2,7 @@
 
 mod moduli;
 mod node;
+mod sets;
 mod settings;
 mod speeds;
 

@@ -10,7 +10,9 @@
 //! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
 
 pub mod arrival;
+mod bloch;
 mod burst;
+mod cluster;
 pub mod curve;
 pub mod dispersion;
 pub mod error;
@@ -20,22 +22,30 @@ mod lattice;
 mod line;
 mod meaning;
 pub mod measure;
-mod mode;
+mod modes;
 mod noise;
 pub mod participation;
 mod passage;
 mod pick;
 pub mod ray;
 pub mod repeat;
+mod resonance;
+mod ringing;
+mod row;
 mod sample;
 mod shot;
 mod slab;
+mod solve;
 mod spectrum;
 pub mod standing;
+mod subspace;
 pub mod survey;
+#[cfg(test)]
+mod tests_support;
+mod tone;
 pub mod trace;
+mod travel;
 
-pub use arrival::Arrivals;
 pub use curve::Curve;
 pub use error::AcousticsError;
 pub use instrument::Instrument;

@@ -1,13 +1,21 @@
 //! One measurement of one packing.
 
 use crate::curve::Curve;
+use crate::dispersion::Turn;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
-use crate::participation::Participation;
+use crate::noise::Noise;
+use crate::participation::{Carrier, Participation};
 use crate::survey::{Modes, Survey};
 use crate::trace::Trace;
 use crate::{dispersion, flight, standing};
-use grains::{MeasuredWave, Packing, Vec3};
+use grains::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
+
+/// A speed that is less certain than this share of itself says little about a medium.
+const NOISY: f64 = 0.1;
+
+/// Place of the noise of speeds among that of all else.
+const SPEEDS: u64 = u64::MAX;
 
 /// How speeds are measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +104,7 @@ pub struct Measurement {
     pub participation: Participation,
     /// Density to take with the speeds, kg/m³.
     pub density: f64,
-    /// Its standard deviation: what it differs by between motions.
+    /// Its standard deviation: what it differs by between motions, and between the frequencies that were sent.
     pub density_stddev: f64,
     /// The axis that the rays were sent about.
     pub axis: Option<Vec3>,
@@ -109,7 +117,84 @@ pub struct Measurement {
 }
 
 /// Measures the wave speeds of `packing`. The same packing and settings give the same bits, whatever the threads.
+///
+/// Dispersion is of the frozen network; the other two move the grains. A speed that only one ray's wave does not give is left
+/// out with a warning, unless none is left.
 pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, AcousticsError> {
-    let _ = (packing, settings);
-    Err(micro::NoNetwork::NoContacts { grains: packing.grains() }.into())
+    check(settings)?;
+    let carrier = Carrier::new(packing)?;
+    let axis = settings.axis.map(|a| a.normalize());
+    let about = axis.unwrap_or_else(Vec3::z);
+    let survey = if axis.is_some() { settings.survey } else { Survey::Everywhere };
+    let instrument = &settings.instrument;
+    let lattice = || survey.lattice_rays(&packing.cell, &about, settings.modes);
+    let (curves, traces, mut warnings) = match &settings.way {
+        Way::Dispersion(way) => {
+            dispersion::check(way)?;
+            let rays = survey.rays(&about, settings.modes);
+            let diameter = dispersion::mean_diameter(packing);
+            let turn = if axis.is_some() { Turn::InPlane } else { Turn::Freely };
+            (dispersion::curves_of(&carrier, diameter, &rays, turn, way)?, Vec::new(), Vec::new())
+        }
+        Way::Standing(way) => standing::curves(packing, &lattice(), way, instrument)?,
+        Way::Flight(way) => flight::curves(packing, &lattice(), way, instrument)?,
+    };
+    let (method, amplitude) = match &settings.way {
+        Way::Dispersion(_) => (WaveMethod::Dispersion, 0.0),
+        Way::Standing(way) => (WaveMethod::StandingWave, way.amplitude),
+        Way::Flight(way) => (way.pick.method(), way.amplitude),
+    };
+    let waves: Vec<MeasuredWave> = (curves.iter().enumerate())
+        .map(|(index, curve)| {
+            let error = instrument.speed_noise * curve.speed;
+            MeasuredWave {
+                wave: WaveSpeed {
+                    direction: curve.direction,
+                    polarization: curve.motion,
+                    speed: curve.speed + error * Noise::at(instrument.seed, &[SPEEDS, index as u64]).next(),
+                    stddev: Some(curve.stddev.hypot(error)),
+                },
+                method,
+                // Extrapolated to long waves.
+                frequency: None,
+                strain_amplitude: amplitude,
+            }
+        })
+        .collect();
+    warnings.extend(noisy(&waves));
+    let [least, most] = frequencies(&curves);
+    let participation = carrier.participation(least);
+    let density = participation.mean();
+    let density_stddev = participation.spread().hypot(density - carrier.participation(most).mean());
+    Ok(Measurement { waves, participation, density, density_stddev, axis, curves, traces, warnings })
+}
+
+fn check(settings: &Settings) -> Result<(), AcousticsError> {
+    let range = |name, value: f64, valid: bool, requirement| {
+        if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
+    };
+    if let Some(axis) = settings.axis {
+        let length = axis.norm();
+        range("|axis|", length, length.is_finite() && length > 0.0, "a direction: finite and not zero")?;
+    }
+    settings.instrument.validated().map(|_| ())
+}
+
+/// Lowest and highest angular frequency that anything was measured at, rad/s.
+fn frequencies(curves: &[Curve]) -> [f64; 2] {
+    let all = || curves.iter().flat_map(|c| &c.points).map(|p| p.speed * p.wavenumber);
+    [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
+}
+
+/// Speeds that noise leaves next to nothing of.
+fn noisy(waves: &[MeasuredWave]) -> Vec<Warning> {
+    let of = |m: &MeasuredWave| {
+        let relative = m.wave.stddev? / m.wave.speed;
+        (relative > NOISY).then(|| Warning::Noisy {
+            direction: m.wave.direction.into(),
+            motion: m.wave.polarization.into(),
+            relative,
+        })
+    };
+    waves.iter().filter_map(of).collect()
 }

@@ -89,6 +89,9 @@ impl Sample {
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
         let present = participating(&rested);
+        if present.iter().all(|p| !p) {
+            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(friction) }.into());
+        }
         Ok(Self { packing: rested, present, setting, diameter })
     }
 
@@ -109,9 +112,24 @@ impl Sample {
         (modulus / self.mass()).sqrt()
     }
 
+    /// Mass of each grain, kg; 0 if it carries no force.
+    pub(crate) fn masses(&self) -> Vec<f64> {
+        let mass = |r: &f64| self.packing.material.sphere_mass(*r);
+        self.packing.radii.iter().zip(&self.present).map(|(r, p)| if *p { mass(r) } else { 0.0 }).collect()
+    }
+
+    /// Density of the grains that carry force, kg/m³.
+    pub(crate) fn density(&self) -> f64 {
+        self.mass() / self.packing.cell.volume()
+    }
+
+    /// Mean stress, Pa, positive in compression.
+    pub(crate) fn pressure(&self) -> f64 {
+        grains::stress::stress(&self.packing).tensor.mean()
+    }
+
     /// Mass of the grains that carry force, kg.
     fn mass(&self) -> f64 {
-        let carried = self.packing.radii.iter().zip(&self.present).filter(|(_, present)| **present);
-        carried.map(|(r, _)| self.packing.material.sphere_mass(*r)).sum()
+        self.masses().iter().sum()
     }
 }

@@ -1,22 +1,24 @@
 //! Sets of rays.
 //!
-//! A packing of a few thousand grains is not quite isotropic about any axis. What its transversely isotropic projection is,
-//! an average over azimuths tells: three rays across the axis and five at 45° to it average out all harmonics that a stiffness
-//! has (up to the fourth), so that P and S speeds along them and along the axis have exactly the moduli of the projection.
+//! A packing of a few thousand grains is not quite isotropic about any axis: moduli along different azimuths differ by some
+//! per cent. The transversely isotropic projection of its stiffness is their average over all azimuths, and a stiffness has
+//! harmonics up to the fourth. So do three rays across the axis, 60° apart (their opposites are the same rays), and five at
+//! 45° to it, 72° apart, have the projection's moduli in the mean, exactly. Lattice planes are where they are: rays normal to
+//! them have four azimuths across the axis, and twice four between, whose fourth harmonics have opposite signs.
 
 use crate::ray::Ray;
 use grains::{Cell, Vec3};
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Which rays are sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Survey {
-    /// One along the axis, three across, five at 45°; along the lattice planes nearest to these, and more of them, where
-    /// the packing must be repeated along the path.
+    /// One along the axis, three across, five at 45°; of lattice planes one, four and eight.
     #[default]
     Complete,
-    /// One along the axis, one across, one at 45°: what a laboratory has transducers for.
+    /// One along the axis, one across, one between: what a laboratory has transducers for.
     Three,
-    /// Thirteen over the hemisphere, for an axis that is not known.
+    /// Thirteen over the hemisphere, for an axis that is not known: edges, face diagonals and body diagonals of a cube.
     Everywhere,
 }
 
@@ -32,16 +34,69 @@ pub enum Modes {
     Shear,
 }
 
+impl Modes {
+    fn of(&self, [along, in_plane, across]: [Vec3; 3]) -> Vec<Vec3> {
+        match self {
+            Self::All => vec![along, in_plane, across],
+            Self::Compression => vec![along],
+            Self::Shear => vec![in_plane, across],
+        }
+    }
+}
+
+/// Edges, face diagonals, body diagonals of a cell: of two opposite ones, one.
+const EVERYWHERE: [[i32; 3]; 13] = [
+    [0, 0, 1],
+    [1, 0, 0],
+    [0, 1, 0],
+    [1, 1, 0],
+    [1, -1, 0],
+    [1, 0, 1],
+    [-1, 0, 1],
+    [0, 1, 1],
+    [0, -1, 1],
+    [1, 1, 1],
+    [1, -1, 1],
+    [-1, 1, 1],
+    [-1, -1, 1],
+];
+
+const THREE: [[i32; 3]; 3] = [[0, 0, 1], [1, 0, 0], [1, 0, 1]];
+
 impl Survey {
-    /// Rays in any directions, about `axis`.
+    /// Rays in the directions wanted, about the unit vector `axis`.
     pub fn rays(&self, axis: &Vec3, modes: Modes) -> Vec<Ray> {
-        let _ = (axis, modes);
-        Vec::new()
+        let [axis, across, other] = Ray::motions_about(axis, axis);
+        let at = |from_axis: f64, azimuth: f64| {
+            from_axis.cos() * axis + from_axis.sin() * (azimuth.cos() * across + azimuth.sin() * other)
+        };
+        let directions: Vec<Vec3> = match self {
+            Self::Complete => std::iter::once(axis)
+                .chain((0..3).map(|k| at(0.5 * PI, f64::from(k) * PI / 3.0)))
+                .chain((0..5).map(|k| at(FRAC_PI_4, f64::from(k) * TAU / 5.0)))
+                .collect(),
+            Self::Three => vec![axis, at(0.5 * PI, 0.0), at(FRAC_PI_4, 0.0)],
+            Self::Everywhere => EVERYWHERE.map(|i| Vec3::from(i.map(f64::from)).normalize()).to_vec(),
+        };
+        let ray = |direction: Vec3| Ray {
+            direction,
+            indices: None,
+            motions: modes.of(Ray::motions_about(&direction, &axis)),
+        };
+        directions.into_iter().map(ray).collect()
     }
 
-    /// Rays normal to lattice planes of `cell`, about `axis`.
+    /// Rays normal to lattice planes of `cell`, with the motions of a medium that is isotropic about `axis`.
     pub fn lattice_rays(&self, cell: &Cell, axis: &Vec3, modes: Modes) -> Vec<Ray> {
-        let _ = (cell, axis, modes);
-        Vec::new()
+        let indices: &[[i32; 3]] = match self {
+            Self::Complete | Self::Everywhere => &EVERYWHERE,
+            Self::Three => &THREE,
+        };
+        let ray = |indices: &[i32; 3]| {
+            let direction = Ray::normal(cell, *indices)?;
+            let motions = modes.of(Ray::motions_about(&direction, axis));
+            Some(Ray { direction, indices: Some(*indices), motions })
+        };
+        indices.iter().filter_map(ray).collect()
     }
 }

@@ -63,6 +63,12 @@ impl Estimate {
         }
     }
 
+    /// What the model is made of and the data do not determine.
+    pub fn undetermined(&self) -> impl Iterator<Item = Quantity> + '_ {
+        let is_open = |q: &Quantity| self.unknowns[*q as usize] && self.structure.get(*q).is_none();
+        Quantity::ALL.into_iter().filter(is_open)
+    }
+
     /// Standard deviation of a quantity; `None` if it is undetermined or its uncertainty is not known.
     pub fn stddev(&self, quantity: Quantity) -> Option<f64> {
         self.structure.get(quantity)?;

@@ -1,23 +1,24 @@
 //! `grainlab analyze`: measures packings from files, without DDS, or from a live topic.
 //!
-//! - [`files`]: many files at once; [`live`]: a topic
+//! - [`live`]: a topic; files are read as [`super::packings`] does
 //! - [`measure`]: one packing
-//! - [`sink`]: results in order, to stdout and into a recording
+//! - [`outlet`]: results to stdout and into a recording
 
-mod bar;
-mod files;
 mod live;
 mod measure;
-mod record;
-mod sink;
+mod outlet;
 
+use super::packings::import::{self, in_range};
+use super::packings::{files, printer::Printer};
 use crate::failure::Failure;
 use crate::output::{Format, print};
-use grains::{Mat3, Vec3};
-use measure::Measure;
+use crate::tape::Tape;
+use grainlab_msgs::topics;
+use grains::Vec3;
+use measure::Analysis;
 use node_kit::Exit;
-use recordings::import::{ImportOptions, yade};
-use sink::Sink;
+use outlet::Outlet;
+use recordings::import::yade;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -33,18 +34,11 @@ Examples:
   What a running simulator publishes, until Ctrl-C, and the messages of the analyzer node about it:
     grainlab analyze --live --record measured
   The same stiffness by straining the packing itself, to see what the linear response leaves out:
-    grainlab analyze recordings/runs/demo-1-1 --method probe
-
-A file that cannot be read is named and the others are measured; the exit code is that of the worst file. Ctrl-C prints what
-is finished and ends with 130. Formats are told by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
-c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
-(atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
-comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
-from positions, with Hertz normal forces and no tangential ones.";
+    grainlab analyze recordings/runs/demo-1-1 --method probe";
 
 /// Files to measure, and what they do not say. A flag goes before what a file or its sidecar says.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
     /// as .gz
@@ -62,30 +56,8 @@ pub(crate) struct Args {
     /// Print a script for YADE that exports a packing with its contacts and forces
     #[arg(long, exclusive = true)]
     yade_script: bool,
-    /// Shear modulus of the grains, Pa
-    #[arg(long, value_name = "PA")]
-    shear_modulus: Option<f64>,
-    /// Poisson ratio of the grains
-    #[arg(long, value_name = "NU")]
-    poisson: Option<f64>,
-    /// Density of the grains, kg/m3
-    #[arg(long, value_name = "KG_PER_M3")]
-    density: Option<f64>,
-    /// Friction coefficient; inf is allowed
-    #[arg(long, value_name = "MU")]
-    friction: Option<f64>,
-    /// Radius of every grain, m, for files that have none
-    #[arg(long, value_name = "M")]
-    radius: Option<f64>,
-    /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
-    #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
-    cell: Vec<f64>,
-    /// Topic of recordings to read, or with --live to subscribe to
-    #[arg(long, value_name = "NAME", default_value = "packing")]
-    topic: String,
-    /// LAMMPS `dump local` with the contact forces of a single-frame dump
-    #[arg(long, value_name = "FILE")]
-    contact_forces: Option<PathBuf>,
+    #[command(flatten)]
+    import: import::Args,
     /// Axis of eps and of the ratios gamma/Delta; stiffnesses stay in the frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
@@ -141,59 +113,17 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         print(yade::EXPORTER)?;
         return Ok(Exit::Done);
     }
-    let (options, measure) = (options(args)?, Measure { settings: settings(args)?, scan: scan(args)? });
-    let recorder = args.record.as_deref().map(record::Recorder::create).transpose()?;
-    let sink = Sink::new(args.format, args.columns.clone(), recorder)?;
+    let options = args.import.options()?;
+    let measure = Analysis { settings: settings(args)?, scan: scan(args)? };
+    let printer = Printer::new(args.format, args.columns.clone())?;
+    let recorded = [topics::FABRIC, topics::MODULI];
+    let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;
+    let outlet = Outlet::new(printer, tape);
     if args.live {
-        live::run(&args.topic, args.count, &measure, sink)
+        live::run(&args.import.topic, args.count, &measure, outlet)
     } else {
-        files::run(&args.files, &options, &measure, sink)
+        files::run(&args.files, &options, &measure, outlet)
     }
-}
-
-/// Refuses a flag whose value is out of range, by its name.
-fn in_range(
-    flag: &str,
-    value: Option<f64>,
-    requirement: &str,
-    accept: fn(f64) -> bool,
-) -> Result<(), Failure> {
-    match value.filter(|v| !accept(*v)) {
-        Some(v) => Err(Failure::usage(format!("--{flag} {v} is out of range: {requirement}"))),
-        None => Ok(()),
-    }
-}
-
-fn options(args: &Args) -> Result<ImportOptions, Failure> {
-    let positive = |v: f64| v > 0.0 && v.is_finite();
-    in_range("shear-modulus", args.shear_modulus, "a modulus in Pa, more than 0", positive)?;
-    in_range("poisson", args.poisson, "from 0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
-    in_range("density", args.density, "a density in kg/m3, more than 0", positive)?;
-    in_range("friction", args.friction, "0 or more", |v| v >= 0.0)?;
-    in_range("radius", args.radius, "a length in m, more than 0", positive)?;
-    let cell = match args.cell.as_slice() {
-        [] => None,
-        [x, y, z] => Some(Mat3::from_diagonal(&Vec3::new(*x, *y, *z))),
-        nine if nine.len() == 9 => Some(Mat3::from_row_slice(nine)),
-        other => return Err(Failure::usage(format!("--cell has {} numbers; it takes 3 or 9", other.len()))),
-    };
-    let contact_forces = match &args.contact_forces {
-        Some(path) => {
-            let text = std::fs::read_to_string(path);
-            Some(text.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?)
-        }
-        None => None,
-    };
-    Ok(ImportOptions {
-        cell,
-        shear_modulus: args.shear_modulus,
-        poisson_ratio: args.poisson,
-        density: args.density,
-        friction: args.friction,
-        radius: args.radius,
-        topic: Some(args.topic.clone()),
-        contact_forces,
-    })
 }
 
 fn settings(args: &Args) -> Result<micro::Settings, Failure> {

@@ -1,7 +1,7 @@
 //! `grainlab launch`: the main job.
 
 use crate::failure::{Failure, worse};
-use crate::launch::plan::{DEFAULT, LaunchFile, NodePlan};
+use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use crate::launch::supervisor::{Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
@@ -21,6 +21,8 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab                                  the demo scene
   grainlab launch --scene s2 --seed 3       a scene of the paper
+  grainlab launch acoustic                  the same, with wave speeds measured and inverted beside the moduli
+  grainlab launch acoustic method:=standing_wave speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
 
@@ -31,8 +33,8 @@ Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Launch file, in the YAML form of ROS 2 launch [default: the laboratory with the demo scene], and values for its
-    /// arguments, as in threads:=2
+    /// Launch file: demo (the laboratory), acoustic (the same with an acoustic probe) or a file in the YAML form of ROS 2
+    /// launch [default: demo], and values for its arguments, as in threads:=2
     #[arg(value_name = "FILE or NAME:=VALUE")]
     words: Vec<String>,
     /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
@@ -106,10 +108,24 @@ fn split(words: &[String]) -> Result<(Option<&Path>, BTreeMap<&str, String>), Fa
     Ok((file, values))
 }
 
+/// A built-in launch file or one on disk; the default without a name.
 fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
-    let Some(path) = path else { return LaunchFile::parse(DEFAULT).map_err(Failure::usage) };
-    let text =
-        std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    let (default, _) = BUILT_IN[0];
+    let path = path.unwrap_or(Path::new(default));
+    let text = match BUILT_IN.iter().find(|(name, _)| path.as_os_str() == *name) {
+        Some((_, text)) => (*text).to_owned(),
+        None if path.components().count() == 1 && !path.exists() => {
+            let known = BUILT_IN.map(|(name, _)| name).join(", ");
+            let message = format!(
+                "no launch file {}: neither a file nor built in; built in are: {known}",
+                path.display()
+            );
+            return Err(Failure::usage(message));
+        }
+        None => {
+            std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?
+        }
+    };
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 

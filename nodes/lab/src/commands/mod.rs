@@ -6,4 +6,6 @@ pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod invert;
 pub(crate) mod launch;
+pub(crate) mod packings;
+pub(crate) mod probe;
 pub(crate) mod run;

@@ -5,6 +5,7 @@ use crate::lifeline;
 use crate::output::print;
 use crate::recorder::{self, Recorder};
 use crate::scenes;
+use acoustic_probe::AcousticProbe;
 use dem_simulator::DemSimulator;
 use emt_inversion::EmtInversion;
 use fabric_analyzer::FabricAnalyzer;
@@ -25,6 +26,11 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
         node("servo_controller", "answers every stress with a strain rate", servo_controller::parameters()),
         node("fabric_analyzer", "turns packings into fabric and moduli", fabric_analyzer::parameters()),
         node(
+            "acoustic_probe",
+            "sends waves through packings: turns them into wave speeds",
+            acoustic_probe::parameters(),
+        ),
+        node(
             "emt_inversion",
             "turns moduli and wave speeds into microstructure",
             emt_inversion::parameters(),
@@ -37,7 +43,7 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
 #[derive(Debug, clap::Args)]
 #[command(after_help = help(), override_usage = "grainlab run NODE [--ros-args -p NAME:=VALUE -r FROM:=TO ...]")]
 pub(crate) struct Args {
-    /// dem_simulator, servo_controller, fabric_analyzer, emt_inversion or recorder
+    /// dem_simulator, servo_controller, fabric_analyzer, acoustic_probe, emt_inversion or recorder
     #[arg(value_name = "NODE")]
     node: String,
     /// ROS 2 arguments: --ros-args -p, -r, --params-file, --log-level
@@ -86,6 +92,11 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let settings = fabric_analyzer::Settings::try_from(parameters);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(FabricAnalyzer::new(bus, settings)?)
+            }
+            "acoustic_probe" => {
+                let settings = acoustic_probe::Settings::try_from(parameters);
+                let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+                Box::new(AcousticProbe::new(bus, settings)?)
             }
             _ => {
                 let read = |path: &str| std::fs::read_to_string(path).map_err(|e| e.to_string());

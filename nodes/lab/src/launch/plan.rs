@@ -3,8 +3,11 @@
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// The launch file that is run without another.
-pub(crate) const DEFAULT: &str = include_str!("../../../launch/demo.launch.yaml");
+/// The launch files built in; the first is run without another.
+pub(crate) const BUILT_IN: [(&str, &str); 2] = [
+    ("demo", include_str!("../../../launch/demo.launch.yaml")),
+    ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
+];
 
 /// Why a launch file cannot be run here.
 #[derive(Debug, PartialEq, thiserror::Error)]

@@ -28,6 +28,14 @@ impl Progress {
         crate::output::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
     }
 
+    /// A line, unless there was one for what takes long just now.
+    pub(crate) fn still(&mut self, text: &str) {
+        if self.said.elapsed() >= STILL {
+            self.said = Instant::now();
+            self.say(text);
+        }
+    }
+
     /// A line if a phase began or takes long.
     pub(crate) fn show(&mut self, state: &RunStateReading) {
         let step = state.step;

@@ -1,6 +1,7 @@
 //! Who is restarted, whose death ends the run, and in which order all end.
 
 use super::child::{Child, Ended};
+use super::debts::{Debts, Standing};
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::watch::{Event, Watch};
@@ -20,7 +21,7 @@ const RESTART_WINDOW: Duration = Duration::from_secs(30);
 /// Pause before a start after an end.
 const RESTART_PAUSE: Duration = Duration::from_millis(100);
 
-/// How long the last packing may take to be measured, and its moduli to be inverted.
+/// How long the last packing may take to be measured, and what was measured to be inverted.
 const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(10);
 
@@ -31,6 +32,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const RECORDER: &str = "recorder";
 /// The node whose end is the end of the run.
 const SIMULATOR: &str = "dem_simulator";
+/// The node that sends waves.
+const PROBE: &str = "acoustic_probe";
 
 /// A run from its first process to its last.
 pub(crate) struct Supervisor<'a> {
@@ -49,8 +52,9 @@ pub(crate) struct Supervisor<'a> {
     failed: Option<String>,
     /// The watch failed: nobody would notice the end of the run.
     blind: bool,
-    measured: BTreeSet<u64>,
-    inverted: BTreeSet<u64>,
+    debts: Debts,
+    /// The probe was heard at work since the last look.
+    probing: bool,
     /// Processes that said their last word.
     left: BTreeSet<u32>,
 }
@@ -88,6 +92,7 @@ impl<'a> Supervisor<'a> {
     ) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
+        let debts = Debts::of(&plans);
         Ok(Self {
             children: plans.into_iter().map(Child::new).collect(),
             domain,
@@ -102,8 +107,8 @@ impl<'a> Supervisor<'a> {
             finished: None,
             failed: None,
             blind: false,
-            measured: BTreeSet::new(),
-            inverted: BTreeSet::new(),
+            debts,
+            probing: false,
             left: BTreeSet::new(),
         })
     }
@@ -153,9 +158,10 @@ impl<'a> Supervisor<'a> {
 
     /// Follows the run until it is over; the children still run then.
     async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
-        let mut deadline: Option<(tokio::time::Instant, Exit, &str)> = None;
+        let mut deadline: Option<(tokio::time::Instant, Exit, String)> = None;
         loop {
-            let due = deadline.map_or_else(|| tokio::time::Instant::now() + PATIENCE, |(at, ..)| at);
+            let due =
+                deadline.as_ref().map_or_else(|| tokio::time::Instant::now() + PATIENCE, |(at, ..)| *at);
             tokio::select! {
                 event = events.recv() => {
                     self.take(event.unwrap_or_else(|| Event::Failed("the watch ended".into())));
@@ -179,28 +185,31 @@ impl<'a> Supervisor<'a> {
                 }
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
-            match last {
-                None => return Exit::Done,
-                Some(step) if self.inverted.contains(&step) => return Exit::Done,
-                Some(step) => {
-                    let now = tokio::time::Instant::now();
-                    let measured = self.measured.contains(&step);
-                    deadline = match deadline {
-                        Some(known @ (_, Exit::PhysicsInvalid, _)) => Some(known),
-                        _ if measured => Some((
-                            now + INVERTED_WITHIN,
-                            Exit::PhysicsInvalid,
-                            "the last packing has no stiffness to invert: see logs/fabric_analyzer.log",
-                        )),
-                        None => Some((
-                            now + MEASURED_WITHIN,
-                            Exit::Failure,
-                            "the last packing was not measured: see logs/fabric_analyzer.log",
-                        )),
-                        other => other,
-                    };
+            let Some(step) = last else { return Exit::Done };
+            let now = tokio::time::Instant::now();
+            let probing = std::mem::take(&mut self.probing);
+            deadline = match (self.debts.standing(step), deadline) {
+                (Standing::Complete, _) => return Exit::Done,
+                (Standing::Declined(node), _) => {
+                    crate::output::say!("grainlab: the last packing has no {}", nothing(node));
+                    return Exit::PhysicsInvalid;
                 }
-            }
+                (Standing::Measured(_), Some(known @ (_, Exit::PhysicsInvalid, _))) => Some(known),
+                (Standing::Measured(node), _) => {
+                    let message = format!("the last packing has no {}", nothing(node));
+                    Some((now + INVERTED_WITHIN, Exit::PhysicsInvalid, message))
+                }
+                // Bursts through a long path take as long as they take; who is at work is waited for.
+                (Standing::Open(node), Some(known @ (_, Exit::Failure, _)))
+                    if !(probing && node == PROBE) =>
+                {
+                    Some(known)
+                }
+                (Standing::Open(node), _) => {
+                    let message = format!("the last packing was not measured: see logs/{node}.log");
+                    Some((now + MEASURED_WITHIN, Exit::Failure, message))
+                }
+            };
         }
     }
 
@@ -218,12 +227,18 @@ impl<'a> Supervisor<'a> {
                 self.left.insert(pid);
             }
             Event::Clear | Event::Rival(_) => {}
-            Event::Fabric(step) => {
-                self.measured.insert(step);
+            Event::Measured(topic, step) => self.debts.measured(topic, step),
+            Event::Declined(topic, step) => self.debts.declined(topic, step),
+            Event::Probing(step) => {
+                self.probing = true;
+                if self.finished.is_some() {
+                    self.progress.still(&format!("waves are sent through the packing of step {step}"));
+                }
             }
-            Event::Microstructure(step) => {
-                self.inverted.insert(step);
-                self.progress.say(&format!("packing of step {step} measured and inverted"));
+            Event::Microstructure(source, step) => {
+                self.debts.inverted(&source, step);
+                let data = source.replace('_', " ");
+                self.progress.say(&format!("packing of step {step} measured and inverted, by its {data}"));
             }
             Event::Failed(message) => {
                 crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
@@ -345,4 +360,10 @@ impl<'a> Supervisor<'a> {
         }
         hurried
     }
+}
+
+/// What a node did not find of a packing, and where it says why.
+fn nothing(node: &str) -> String {
+    let data = if node == PROBE { "wave speeds" } else { "stiffness" };
+    format!("{data} to invert: see logs/{node}.log")
 }

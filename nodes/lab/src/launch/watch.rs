@@ -2,9 +2,10 @@
 
 use crate::failure::Failure;
 use crate::network::bus_in;
+use acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::msg::{Fabric, Microstructure, RunState};
+use grainlab_msgs::msg::{Fabric, Microstructure, RunState, WaveSpeeds};
 use grainlab_msgs::topics;
 use node_kit::{Bus, BusError, DdsBus, Demand, Report, Subscription, WriterId};
 use std::sync::Arc;
@@ -27,10 +28,14 @@ const LOOK_AROUND: Duration = Duration::from_millis(600);
 pub(crate) enum Event {
     /// Where the run stands.
     State(RunStateReading),
-    /// The structure of the packing of this step was measured.
-    Fabric(u64),
-    /// The microstructure of the packing of this step was inferred.
-    Microstructure(u64),
+    /// The packing of this step was measured: everything that it has of this topic is there.
+    Measured(&'static str, u64),
+    /// The packing of this step has nothing of this topic.
+    Declined(&'static str, u64),
+    /// An acoustic probe measures the packing of this step, which may take long.
+    Probing(u64),
+    /// The microstructure of the packing of this step was inferred from data of this topic.
+    Microstructure(String, u64),
     /// The process of this id said its last word.
     Goodbye(u32),
     /// Nobody else simulates in this domain; the first event, unless a rival does.
@@ -92,6 +97,7 @@ fn watch(
     let demand = Demand::reliable(BACKLOG);
     let states = Subscription::<RunState>::subscribe(bus, &topics::RUN_STATE, demand)?;
     let fabrics = Subscription::<Fabric>::subscribe(bus, &topics::FABRIC, demand)?;
+    let speeds = Subscription::<WaveSpeeds>::subscribe(bus, &topics::WAVE_SPEEDS, demand)?;
     let microstructures = Subscription::<Microstructure>::subscribe(bus, &topics::MICROSTRUCTURE, demand)?;
     let heard = Demand::best_effort(BACKLOG);
     let reports = Subscription::<DiagnosticArray>::subscribe(bus, &topics::DIAGNOSTICS, heard)?;
@@ -113,18 +119,36 @@ fn watch(
             }
         }
         while let Some((fabric, _)) = fabrics.take_valid(bus)? {
-            send(events, Event::Fabric(fabric.source_step));
+            send(events, Event::Measured(topics::MODULI.name, fabric.source_step));
+        }
+        while let Some((found, _)) = speeds.take_valid(bus)? {
+            send(events, Event::Measured(topics::WAVE_SPEEDS.name, found.source_step));
         }
         while let Some((found, _)) = microstructures.take_valid(bus)? {
-            send(events, Event::Microstructure(found.source_step));
+            send(events, Event::Microstructure(found.source, found.source_step));
         }
         while let Some((message, _)) = reports.take_valid(bus)? {
-            let last = Report::from_message(&message).into_iter().filter(Report::is_final);
-            last.for_each(|report| send(events, Event::Goodbye(report.pid)));
+            for report in Report::from_message(&message) {
+                if let Some(step) = step_under(DECLINED_STEP, &report) {
+                    send(events, Event::Declined(topics::WAVE_SPEEDS.name, step));
+                }
+                if let Some(step) = step_under(MEASURING, &report) {
+                    send(events, Event::Probing(step));
+                }
+                if report.is_final() {
+                    send(events, Event::Goodbye(report.pid));
+                }
+            }
         }
         bus.wait(LOOK);
     }
     Ok(())
+}
+
+/// The step that an acoustic probe reports under this key, if it does.
+fn step_under(key: &str, report: &Report) -> Option<u64> {
+    let (_, step) = report.health.values.iter().find(|(k, _)| k == key)?;
+    step.parse().ok()
 }
 
 /// Nobody listens any more only when the launcher ends.

@@ -1,8 +1,11 @@
 //! What commands find, in the forms in which it is printed and stored.
 
+pub(crate) mod acoustic;
+mod acoustic_text;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod probe;
+pub(crate) mod probed;
 pub(crate) mod read_back;
 pub(crate) mod state;
 pub(crate) mod state_text;

@@ -1,8 +1,9 @@
 //! What a recording of a run says: its states, and the counters of its nodes.
 
+use super::acoustic::AcousticView;
 use super::inference::Inference;
 use super::state::State;
-use grainlab_msgs::boundary::MicrostructureReading;
+use grainlab_msgs::boundary::{MicrostructureReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grains::{Fabric, Moduli, Packing};
@@ -16,6 +17,8 @@ use std::collections::BTreeMap;
 pub(crate) struct InvertedState {
     #[serde(flatten)]
     pub(crate) state: State,
+    /// Null where no wave speeds were published.
+    pub(crate) acoustic: Option<AcousticView>,
     pub(crate) results: Vec<Inference>,
 }
 
@@ -36,6 +39,7 @@ struct About {
     packing: Option<Packing>,
     fabric: Option<Fabric>,
     moduli: Option<Moduli>,
+    wave_speeds: Option<WaveSpeedsReading>,
     /// By the topic the data came from.
     results: BTreeMap<String, Vec<Inference>>,
 }
@@ -43,8 +47,14 @@ struct About {
 /// Reads a recording back.
 pub(crate) fn read(recording: &Recording) -> ReadBack {
     let mut back = ReadBack::default();
-    let wanted =
-        [topics::PACKING, topics::FABRIC, topics::MODULI, topics::MICROSTRUCTURE, topics::DIAGNOSTICS];
+    let wanted = [
+        topics::PACKING,
+        topics::FABRIC,
+        topics::MODULI,
+        topics::WAVE_SPEEDS,
+        topics::MICROSTRUCTURE,
+        topics::DIAGNOSTICS,
+    ];
     let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
     let channels = recording.channels();
     let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
@@ -76,8 +86,9 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
                 if about.moduli.is_none() {
                     state.warnings.push("no moduli were published for this packing".to_owned());
                 }
+                let acoustic = about.wave_speeds.as_ref().map(|w| AcousticView::new(&packing, w));
                 let results = about.results.into_values().flatten().collect();
-                back.states.push(InvertedState { state, results });
+                back.states.push(InvertedState { state, acoustic, results });
             }
             // An instrument's data are of no packing of the run.
             (None, None) if step == 0 => {}
@@ -110,6 +121,11 @@ fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Res
             let message: msg::Moduli = decoded(payload)?;
             let about = about.entry(message.source_step).or_default();
             about.moduli = Some(Moduli::try_from(&message).map_err(text)?);
+        }
+        name if name == topics::WAVE_SPEEDS.name => {
+            let message: msg::WaveSpeeds = decoded(payload)?;
+            let reading = WaveSpeedsReading::try_from(&message).map_err(text)?;
+            about.entry(message.source_step).or_default().wave_speeds = Some(reading);
         }
         _ => {
             let message: msg::Microstructure = decoded(payload)?;

@@ -149,13 +149,20 @@ impl State {
         (self.pressure_pa > 0.0).then(|| q / self.pressure_pa)
     }
 
+    /// The relaxed stiffness.
+    pub(crate) fn stiffness(&self) -> Option<Stiffness> {
+        self.stiffness_pa.as_ref().map(of_rows)
+    }
+
     /// G12, G13 and Theta: relaxed and affine, Pa.
     pub(crate) fn moduli(&self) -> Option<([f64; 3], [f64; 3])> {
-        let of = |rows: &[[f64; 6]; 6]| {
-            three_moduli(&Stiffness::from_row_major(&std::array::from_fn(|n| rows[n / 6][n % 6])))
-        };
-        Some((of(self.stiffness_pa.as_ref()?), of(self.stiffness_affine_pa.as_ref()?)))
+        let affine = self.stiffness_affine_pa.as_ref().map(of_rows)?;
+        Some((three_moduli(&self.stiffness()?), three_moduli(&affine)))
     }
+}
+
+fn of_rows(rows: &[[f64; 6]; 6]) -> Stiffness {
+    Stiffness::from_row_major(&std::array::from_fn(|n| rows[n / 6][n % 6]))
 }
 
 const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];

@@ -1,10 +1,13 @@
 //! A launched run for people.
 
+use super::acoustic;
 use super::inference::{Inference, warning_lines};
 use super::read_back::InvertedState;
 use super::state_text::{self, indented};
 use super::summary::Summary;
 use crate::output::{Table, fixed};
+use grainlab_msgs::topics;
+use std::collections::BTreeSet;
 
 /// The result table of a run.
 pub(crate) fn text(s: &Summary) -> String {
@@ -13,6 +16,9 @@ pub(crate) fn text(s: &Summary) -> String {
         let (number, of, step) = (n + 1, s.states.len(), state.state.step);
         text += &format!("State {number} of {of}: scene {}, seed {}, step {step}\n", s.scene, s.seed);
         text += &state_text::text(&state.state);
+        if let Some(a) = &state.acoustic {
+            text += &acoustic::text(a, &state.state);
+        }
         text += &inferred(state);
         text.push('\n');
     }
@@ -39,14 +45,33 @@ pub(crate) fn text(s: &Summary) -> String {
     text
 }
 
-/// What each model infers, with its error against what was measured.
+/// What each model infers, a block for each kind of data.
 fn inferred(s: &InvertedState) -> String {
-    if s.results.is_empty() {
-        return String::new();
+    let sources: BTreeSet<Option<&str>> = s.results.iter().map(|r| r.source.as_deref()).collect();
+    let mut text = String::new();
+    for source in &sources {
+        let results: Vec<Inference> =
+            s.results.iter().filter(|r| r.source.as_deref() == *source).cloned().collect();
+        if sources.len() > 1 {
+            let data = match (*source, &s.acoustic) {
+                (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic::heading(a),
+                (Some(name), _) if name == topics::MODULI.name => {
+                    let method = s.state.method.unwrap_or("given");
+                    format!("moduli ({})", method.replace('_', " "))
+                }
+                (name, _) => name.unwrap_or("data").to_owned(),
+            };
+            text += &format!("  from {data}\n");
+        }
+        text += &block(&results, s);
     }
+    text
+}
+
+/// What each model infers from one kind of data, with its error against what was measured.
+fn block(results: &[Inference], s: &InvertedState) -> String {
     let mut t = Table::new([
         "inferred by",
-        "from",
         "k",
         "sigma",
         "error",
@@ -63,13 +88,10 @@ fn inferred(s: &InvertedState) -> String {
     let off = |found: Option<f64>, truth: f64, digits: usize| {
         found.map_or_else(|| "-".to_owned(), |v| format!("{:+.digits$}", v - truth))
     };
-    let source = |r: &Inference| r.source.clone().unwrap_or_else(|| "-".to_owned());
-    let one_source = s.results.iter().all(|r| r.source == s.results[0].source);
-    for r in &s.results {
+    for r in results {
         let (v, sigma) = (&r.values, &r.sigma);
         t.row([
             r.model.clone(),
-            if one_source { "-".to_owned() } else { source(r) },
             fixed(v.k, 3),
             fixed(sigma.k, 3),
             off(v.k, s.state.k, 3),
@@ -86,9 +108,9 @@ fn inferred(s: &InvertedState) -> String {
     }
     let mut text = indented(&t.without_empty_columns().text());
     text += "  errors against k, z and eps measured";
-    let taken = s.results.iter().find_map(|r| r.gamma_over_delta.zip(r.gamma_over_delta_source.as_ref()));
+    let taken = results.iter().find_map(|r| r.gamma_over_delta.zip(r.gamma_over_delta_source.as_ref()));
     if let Some((g, source)) = taken {
         text += &format!("; gamma/Delta taken, by the models that need it: {g:.4} ({source})");
     }
-    text + "\n" + &warning_lines(&s.results)
+    text + "\n" + &warning_lines(results)
 }

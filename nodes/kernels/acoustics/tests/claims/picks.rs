@@ -1,10 +1,11 @@
 //! Claims about arrivals, on traces made on paper.
 
+use acoustics::arrival::Arrivals;
 use acoustics::error::AcousticsError;
 use acoustics::flight::{Pick, curve};
 use acoustics::instrument::{Clock, Heard};
 use acoustics::trace::Channel;
-use acoustics::{Arrivals, Instrument, Trace};
+use acoustics::{Instrument, Trace};
 use grains::{Vec3, WaveMethod};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};

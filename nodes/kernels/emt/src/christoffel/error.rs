@@ -7,7 +7,7 @@ pub enum ChristoffelError {
     #[error("there are no wave speeds: give at least one")]
     NoSpeeds,
     /// The axis of symmetry is not known.
-    #[error("the symmetry axis is not known, and speeds are not enough to find it here: give the axis")]
+    #[error("the symmetry axis is not known: give it, or find it first")]
     AxisUnknown,
     /// A vector that should be a unit vector.
     #[error("{vector} has the length {length}, and must be a unit vector")]

@@ -16,19 +16,26 @@
 //! well they agree is told. Where several media have the same speeds (without P speeds along and across the axis that
 //! happens), the moduli in which they differ are left open, too. The density is that of the mass that moves with the wave: rattlers do not.
 
-mod conflict;
+mod agreement;
+mod axis;
+mod axis_error;
+mod chance;
 mod determined;
 mod error;
 mod fit;
+mod profile;
 mod ray;
 mod search;
 
-pub use conflict::SpeedConflict;
+pub use agreement::{Departure, SpeedConflict};
+pub use axis::{AxisFound, find_axis};
+pub use axis_error::AxisError;
 pub use error::ChristoffelError;
 
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
+use agreement::Agreement;
 use grains::{Vec3, WaveSpeed};
 use ray::Ray;
 
@@ -47,8 +54,12 @@ pub struct Fitted {
     pub residuals: Vec<f64>,
     /// Speeds without an uncertainty, where others have one; they were given the largest relative one of the others.
     pub assumed: usize,
-    /// Whether the speeds contradict each other beyond their uncertainty, and which most.
+    /// Whether the speeds contradict each other beyond their uncertainty and what a sample of some thousand grains differs
+    /// from a transversely isotropic medium, and which most.
     pub conflict: Option<SpeedConflict>,
+    /// Whether they differ beyond their uncertainty, but by no more than such a sample does. The covariance is then that of
+    /// their scatter.
+    pub departure: Option<Departure>,
 }
 
 impl Fitted {
@@ -65,10 +76,14 @@ impl Fitted {
 ///
 /// The moduli are those of a frame with the axis as e3. Any set of speeds will do: [`Fitted::undetermined`] are the moduli
 /// it leaves open. Equal relative errors are taken if no speed has an uncertainty; the moduli then have none either.
-/// Errors of speeds are independent, that of the density moves all moduli together.
+/// Errors of speeds are independent, that of the density moves all moduli together. Where speeds scatter more than they may,
+/// but no more than those of a packing do, which is never quite isotropic about an axis, their covariance is enlarged by
+/// χ² per degree of freedom ([`Fitted::departure`]).
 ///
 /// Refused: an axis that is not known, vectors that are not of unit length, numbers that are not positive and finite, a
-/// polarisation more than 30° from every mode of its direction, and speeds that only an unstable medium has.
+/// polarisation more than 30° from every mode of its direction, and speeds that only an unstable medium has. Of two S waves
+/// along one direction that were both measured, the motions may be any perpendicular ones: a sample that is not quite
+/// isotropic about the axis turns them, for their speeds are nearly the same.
 ///
 /// ```
 /// use emt::{Conditions, Measured, Modulus, christoffel};
@@ -91,12 +106,8 @@ pub fn observation(
 ) -> Result<Fitted, ChristoffelError> {
     let rays = rays(speeds, axis)?;
     check_density(density)?;
-    let errors = errors(&rays);
-    let unit = errors.as_ref().map(|e| e.iter().copied().fold(f64::INFINITY, f64::min));
-    let weights = match (&errors, unit) {
-        (Some(errors), Some(unit)) => errors.iter().map(|e| (unit / e).powi(2)).collect(),
-        _ => vec![1.0; rays.len()],
-    };
+    let errors = errors(rays.iter().map(|r| r.error));
+    let (weights, unit) = weights(errors.as_deref(), rays.len());
     let fit = fit::fit(&rays, &weights, unit)?;
     // Where the motion said it all, a mode that moves otherwise is a matter of the speeds.
     for (index, (ray, share)) in rays.iter().zip(&fit.shares).enumerate() {
@@ -104,24 +115,34 @@ pub fn observation(
             return Err(ray::ambiguous(index, *share));
         }
     }
-    let (moduli, covariance) = determined::moduli(&fit, density, unit);
+    let degrees_of_freedom = rays.len().saturating_sub(fit.rank);
+    let agreement = errors.as_ref().map_or(Agreement::Within, |errors| {
+        agreement::agreement(&fit.residuals, errors, &fit.leverages, degrees_of_freedom)
+    });
+    let (conflict, departure) = match agreement {
+        Agreement::Within => (None, None),
+        Agreement::Departure(departure) => (None, Some(departure)),
+        Agreement::Conflict(conflict) => (Some(conflict), None),
+    };
+    // The sample's own scatter is an error of every speed, where it is the larger one.
+    let error = unit.map(|unit| unit * departure.map_or(1.0, |d| d.birge_ratio));
+    let (moduli, covariance) = determined::moduli(&fit, density, error);
     if !moduli.known().all(|(_, value)| value.is_finite()) {
         return Err(ChristoffelError::NoMedium);
     }
     if is_unstable(&moduli) {
         return Err(ChristoffelError::Unstable { moduli: listed(&moduli) });
     }
-    let sigmas: Option<Vec<f64>> =
-        errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| r / e).collect());
-    let degrees_of_freedom = rays.len().saturating_sub(fit.rank);
-    let chi_square = sigmas.as_ref().map(|s| s.iter().map(|s| s * s).sum());
+    let chi_square =
+        errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| (r / e).powi(2)).sum());
     Ok(Fitted {
         observation: Observation { covariance, ..Observation::new(moduli, conditions) },
         undetermined: Modulus::ALL.into_iter().filter(|m| moduli.get(*m).is_none()).collect(),
         chi_square,
         degrees_of_freedom,
         assumed: if errors.is_some() { rays.iter().filter(|r| r.error.is_none()).count() } else { 0 },
-        conflict: sigmas.as_ref().and_then(|s| conflict::conflict(s, &fit.leverages, degrees_of_freedom)),
+        conflict,
+        departure,
         residuals: fit.residuals,
     })
 }
@@ -132,7 +153,9 @@ fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, Christoffe
     }
     let axis = axis.ok_or(ChristoffelError::AxisUnknown)?;
     let axis = ray::unit(&axis, || "the axis".to_owned())?;
-    speeds.iter().enumerate().map(|(index, speed)| Ray::new(index, speed, &axis)).collect()
+    let paired = ray::paired(speeds);
+    let ray = |(index, (speed, paired))| Ray::new(index, speed, &axis, paired);
+    speeds.iter().zip(paired).enumerate().map(ray).collect()
 }
 
 fn check_density(density: Measured) -> Result<(), ChristoffelError> {
@@ -146,9 +169,17 @@ fn check_density(density: Measured) -> Result<(), ChristoffelError> {
 }
 
 /// Relative error of every speed; `None` if none is known.
-fn errors(rays: &[Ray]) -> Option<Vec<f64>> {
-    let largest = rays.iter().filter_map(|r| r.error).reduce(f64::max)?;
-    Some(rays.iter().map(|r| r.error.unwrap_or(largest)).collect())
+fn errors(known: impl Iterator<Item = Option<f64>> + Clone) -> Option<Vec<f64>> {
+    let largest = known.clone().flatten().reduce(f64::max)?;
+    Some(known.map(|error| error.unwrap_or(largest)).collect())
+}
+
+/// Weights of `speeds` speeds with these relative errors, and the error of a speed of weight 1; all of weight 1 if no error
+/// is known.
+fn weights(errors: Option<&[f64]>, speeds: usize) -> (Vec<f64>, Option<f64>) {
+    let Some(errors) = errors else { return (vec![1.0; speeds], None) };
+    let unit = errors.iter().copied().fold(f64::INFINITY, f64::min);
+    (errors.iter().map(|e| (unit / e).powi(2)).collect(), Some(unit))
 }
 
 fn is_unstable(moduli: &Moduli) -> bool {

@@ -31,6 +31,9 @@ pub(super) struct Ray {
     motion: [f64; 3],
     /// Whether it is the S mode that moves across the plane.
     horizontal: bool,
+    /// Whether it is one of two S modes, both measured, that are turned from those of the medium: its v² is theirs, each by
+    /// its share of the motion. Of a medium that is nearly isotropic about the axis that holds to first order.
+    mixed: bool,
     /// Whether direction and motion alone say which mode it is: in no packing are the modes turned far from theirs in an
     /// isotropic medium.
     pub(super) named: bool,
@@ -48,8 +51,31 @@ pub(super) struct Answer {
 }
 
 impl Ray {
-    /// Checks one measured speed; `axis` is a unit vector.
-    pub(super) fn new(index: usize, measured: &WaveSpeed, axis: &Vec3) -> Result<Self, ChristoffelError> {
+    /// Checks one measured speed; `axis` is a unit vector. A motion between two modes is refused, unless these are the S
+    /// modes and both were measured (`paired`).
+    pub(super) fn new(
+        index: usize,
+        measured: &WaveSpeed,
+        axis: &Vec3,
+        paired: bool,
+    ) -> Result<Self, ChristoffelError> {
+        let (ray, share) = Self::about(index, measured, axis)?;
+        if is_clear(share) {
+            Ok(ray)
+        } else if paired && ray.is_transverse() {
+            Ok(ray.mixed())
+        } else {
+            Err(ambiguous(index, share))
+        }
+    }
+
+    /// The same about an axis that may be the wrong one, where a motion may well be between two modes: it is taken for the
+    /// nearest. With cos² of the angle to the nearest that the direction has in some medium.
+    pub(super) fn about(
+        index: usize,
+        measured: &WaveSpeed,
+        axis: &Vec3,
+    ) -> Result<(Self, f64), ChristoffelError> {
         let WaveSpeed { direction, polarization, speed, stddev } = *measured;
         if !(speed > 0.0 && speed.is_finite()) {
             return Err(ChristoffelError::Speed { index, value: speed });
@@ -82,21 +108,35 @@ impl Ray {
         let named = is_clear(nearest);
         // Between the axes the medium may have turned the modes in the plane.
         let is_turned = !is_axial && cos * cos > AXIAL && is_clear(along + upright);
-        if !(named || is_turned) {
-            return Err(ambiguous(index, nearest));
-        }
         let horizontal = across > radially.max(axially);
-        Ok(Self { speed, error: stddev.map(|s| s / speed), sin, cos, motion, horizontal, named })
+        let error = stddev.map(|s| s / speed);
+        let ray = Self { speed, error, sin, cos, motion, horizontal, mixed: false, named };
+        Ok((ray, if is_turned { 1.0 } else { nearest }))
+    }
+
+    /// The same as one of two S modes that may be turned from those of the medium.
+    pub(super) fn mixed(self) -> Self {
+        Self { mixed: true, named: true, ..self }
+    }
+
+    /// cos² of the angle between motion and direction.
+    fn along(&self) -> f64 {
+        (self.sin * self.motion[0] + self.cos * self.motion[2]).powi(2)
     }
 
     /// Whether the grains move more along the direction than across it.
     pub(super) fn is_compressional(&self) -> bool {
-        (self.sin * self.motion[0] + self.cos * self.motion[2]).powi(2) > 0.5
+        self.along() > 0.5
+    }
+
+    /// Whether they move clearly across it.
+    pub(super) fn is_transverse(&self) -> bool {
+        is_clear(1.0 - self.along())
     }
 
     /// Whether the motion of the mode, and with it v², hangs on C13 and on how the moduli compare.
     pub(super) fn is_coupled(&self) -> bool {
-        !self.horizontal && (self.sin * self.cos).powi(2) > AXIAL
+        (self.mixed || !self.horizontal) && (self.sin * self.cos).powi(2) > AXIAL
     }
 
     /// v² of a mode with exactly the motion measured, as a sum over the specific moduli: p·Γ p/ρ.
@@ -113,6 +153,12 @@ impl Ray {
     /// `[[C11 sin² + C44 cos², (C13 + C44) sin cos], [., C44 sin² + C33 cos²]]` over ρ.
     pub(super) fn answer(&self, specific: &Column) -> Option<Answer> {
         let (radial, axial) = self.nearest_in_plane(specific);
+        if self.mixed {
+            let across = self.motion[1].powi(2) / (1.0 - self.along());
+            let slopes = across * self.slopes_across() + (1.0 - across) * self.slopes_in_plane(radial, axial);
+            let square = slopes.dot(specific);
+            return (square > 0.0).then_some(Answer { square, slopes, share: 1.0 });
+        }
         let in_plane = (radial * self.motion[0] + axial * self.motion[2]).powi(2);
         let (slopes, mut share) = if self.horizontal {
             (self.slopes_across(), self.motion[1].powi(2))
@@ -137,7 +183,12 @@ impl Ray {
         let coupling = (c13 + c44) * self.sin * self.cos;
         // The stiffer mode moves at this angle from the plane of isotropy.
         let (sin, cos) = (0.5 * coupling.atan2(half_difference)).sin_cos();
-        let [radial, _, axial] = self.motion;
+        let [radial, axial] = if self.mixed {
+            // An S mode, whatever little of the motion is in the plane.
+            [self.cos, -self.sin]
+        } else {
+            [self.motion[0], self.motion[2]]
+        };
         if (cos * radial + sin * axial).abs() >= (cos * axial - sin * radial).abs() {
             (cos, sin)
         } else {
@@ -160,6 +211,19 @@ impl Ray {
     fn slopes_across(&self) -> Column {
         Column::from([0.0, 0.0, 0.0, self.cos * self.cos, self.sin * self.sin])
     }
+}
+
+/// Of every speed, whether it is one of two S modes of its direction that were both measured: with motions perpendicular to
+/// each other and to it.
+pub(super) fn paired(speeds: &[WaveSpeed]) -> Vec<bool> {
+    const ALIKE: f64 = 1e-3;
+    const PERPENDICULAR: f64 = 0.1;
+    let across = |s: &WaveSpeed| is_clear(1.0 - s.direction.dot(&s.polarization).powi(2));
+    let is_pair = |a: &WaveSpeed, b: &WaveSpeed| {
+        a.direction.cross(&b.direction).norm_squared() < ALIKE
+            && a.polarization.dot(&b.polarization).powi(2) < PERPENDICULAR
+    };
+    speeds.iter().map(|a| across(a) && speeds.iter().any(|b| across(b) && is_pair(a, b))).collect()
 }
 
 /// Whether a motion with this cos² of the angle to a mode's is that mode's.

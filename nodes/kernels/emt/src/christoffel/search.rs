@@ -29,6 +29,7 @@ pub(super) struct Problem<'a> {
 }
 
 /// A medium, and what it says to every ray.
+#[derive(Clone)]
 pub(super) struct Point {
     pub(super) specific: Column,
     /// What the medium falls short of the speed by, over the speed, and the slopes of its own speed over the speed with each
@@ -78,8 +79,9 @@ impl<'a> Problem<'a> {
         ray.slopes_of_motion().component_mul(&self.scale) / (2.0 * ray.speed * ray.speed)
     }
 
-    /// The medium that gives each speed to exactly the motion measured, which is linear; then isotropic ones.
-    pub(super) fn starts(&self) -> impl Iterator<Item = Column> + '_ {
+    /// The medium that gives each speed to exactly the motion measured, which is linear, and the weighted sum of squares
+    /// that it leaves.
+    pub(super) fn linear(&self) -> Option<(Column, f64)> {
         let rows: Vec<(f64, Column)> = (self.rays.iter())
             .map(|ray| {
                 let square = ray.speed * ray.speed;
@@ -87,8 +89,15 @@ impl<'a> Problem<'a> {
             })
             .collect();
         let (basis, rank) = seen(&rows);
-        let step = self.step(&rows, &basis, rank, 0.0);
-        let linear = step.map(|step| self.guess + step.component_mul(&self.scale));
+        let step = self.step(&rows, &basis, rank, 0.0)?;
+        let left = rows.iter().map(|(residual, row)| residual - row.dot(&step));
+        let cost = left.zip(self.weights).map(|(left, weight)| weight * left * left).sum();
+        Some((self.guess + step.component_mul(&self.scale), cost))
+    }
+
+    /// The medium that is linear in the speeds; then isotropic ones.
+    pub(super) fn starts(&self) -> impl Iterator<Item = Column> + '_ {
+        let linear = self.linear().map(|(medium, _)| medium);
         let shears = [1.0, 0.4, 1.6].map(|shear| {
             let [p, _, coupling, s, _] = self.scale.data.0[0];
             Column::from([p, p, coupling - shear * s, shear * s, s])

@@ -93,6 +93,32 @@ impl Sample {
 pub(crate) const PACKING: TransverseIsotropy =
     TransverseIsotropy { c11: 245e6, c12: 111e6, c13: 98e6, c33: 274e6, g13: 72e6, g12: 67e6, residual: 0.0 };
 
+/// Along the edges, face diagonals and body diagonals of a cube.
+pub(crate) fn thirteen() -> Vec<Vec3> {
+    let steps = || (-1..=1).map(f64::from);
+    let all = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+    all.filter(|v| *v > [0.0; 3]).map(|v| Vec3::from(v).normalize()).collect()
+}
+
+/// P and both S along each direction, with the motions of the modes and this relative error.
+pub(crate) fn every_mode(
+    stiffness: &Stiffness,
+    directions: &[Vec3],
+    relative: f64,
+    numbers: &mut Numbers,
+) -> Vec<WaveSpeed> {
+    let mut speeds = Vec::new();
+    for direction in directions {
+        let waves = stiffness.plane_waves(direction);
+        for (modulus, polarization) in waves.moduli.into_iter().zip(waves.polarizations) {
+            let exact = (modulus / DENSITY).sqrt();
+            let (speed, stddev) = (exact * (1.0 + relative * numbers.normal()), Some(relative * exact));
+            speeds.push(WaveSpeed { direction: *direction, polarization, speed, stddev });
+        }
+    }
+    speeds
+}
+
 /// Numbers that look random, the same every time.
 pub(crate) struct Numbers(u64);
 

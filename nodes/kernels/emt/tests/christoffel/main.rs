@@ -1,5 +1,7 @@
 //! What the moduli from wave speeds claim, one file a subject.
 
+mod axis;
+mod departure;
 mod faults;
 mod incomplete;
 mod laboratory;

@@ -1,7 +1,9 @@
 //! Packings as they are published.
 
-use super::measure::Measure;
-use super::sink::{Ending, Sink};
+use super::measure::Analysis;
+use super::outlet::Outlet;
+use crate::commands::packings::Measure;
+use crate::commands::packings::sink::{Ending, Sink};
 use crate::failure::{Failure, worse};
 use crate::network::tool_bus;
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
@@ -21,9 +23,10 @@ const IDLE: Duration = Duration::from_secs(3600);
 pub(super) fn run(
     topic: &str,
     count: Option<u64>,
-    measure: &Measure,
-    mut sink: Sink,
+    measure: &Analysis,
+    outlet: Outlet,
 ) -> Result<Exit, Failure> {
+    let mut sink = Sink::new(outlet);
     let mut source = Source::subscribe(topic)?;
     let (mut taken, mut exit) = (0, Exit::Done);
     while count.is_none_or(|count| (taken as u64) < count) {

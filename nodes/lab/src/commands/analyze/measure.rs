@@ -1,5 +1,6 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
+use crate::commands::packings::Measure;
 use crate::results::probe::{ProbeView, ScanView};
 use crate::results::state::State;
 use fabric_analyzer::{Measured, messages};
@@ -16,7 +17,7 @@ const ONE_SIDED: f64 = 0.01;
 
 /// How packings are measured.
 #[derive(Clone, Debug)]
-pub(super) struct Measure {
+pub(super) struct Analysis {
     pub(super) settings: micro::Settings,
     /// Amplitudes to probe with, beside the measurement proper.
     pub(super) scan: Vec<f64>,
@@ -34,9 +35,10 @@ pub(super) struct Found {
     pub(super) messages: Result<Measured, String>,
 }
 
-impl Measure {
-    /// Measures one packing of `source`.
-    pub(super) fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
+impl Measure for Analysis {
+    type Found = Found;
+
+    fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
         let began = Instant::now();
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
@@ -58,7 +60,7 @@ impl Measure {
     }
 }
 
-impl Measure {
+impl Analysis {
     /// Probes of all amplitudes beside the frozen network.
     fn scanned(&self, packing: &Packing) -> Result<ScanView, MicroError> {
         let probe = super::explicit(self.settings.tangential);

@@ -73,7 +73,7 @@ impl Answer {
             (Ok(_), Some(outcome)) => {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
                 match outcome {
-                    Ok(estimate) => inference.warnings.extend(undetermined(estimate, way)),
+                    Ok(estimate) => inference.warnings.extend(undetermined(estimate)),
                     Err(error) if error.is_of_input() => inference.status = "undetermined",
                     Err(_) => {}
                 }
@@ -149,11 +149,7 @@ fn is_lacking(error: &EmtError) -> bool {
 }
 
 /// What the model speaks of and the data do not determine.
-fn undetermined(estimate: &Estimate, way: &Way) -> Option<String> {
-    let domain = way.model.domain(&way.calibration);
-    let of_model = |q: &Quantity| domain.structure[*q as usize].is_some();
-    let unknown = |q: &Quantity| estimate.structure.get(*q).is_none();
-    let names: Vec<&str> =
-        Quantity::ALL.into_iter().filter(|q| of_model(q) && unknown(q)).map(Quantity::name).collect();
+fn undetermined(estimate: &Estimate) -> Option<String> {
+    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
     (!names.is_empty()).then(|| format!("what is given does not determine {}", names.join(", ")))
 }

@@ -1,5 +1,8 @@
 use super::*;
 
+const DEFAULT: &str = BUILT_IN[0].1;
+const ACOUSTIC: &str = BUILT_IN[1].1;
+
 fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, PlanError> {
     let values = values.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
     LaunchFile::parse(text)?.nodes(&values)
@@ -24,6 +27,25 @@ fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
         let same = nodes(DEFAULT, &[("scene", scene)]).unwrap();
         assert_eq!(plans, same, "{scene}");
         assert!(plans.iter().all(|p| p.respawn != ["recorder", "dem_simulator"].contains(&p.node.as_str())));
+    }
+}
+
+#[test]
+fn the_acoustic_file_is_the_default_one_with_a_probe_that_the_run_waits_for() {
+    let file = LaunchFile::parse(ACOUSTIC).unwrap();
+    let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new()).unwrap());
+    let (probe, others): (Vec<_>, Vec<_>) = acoustic.iter().partition(|p| p.node == "acoustic_probe");
+    let [probe] = probe.as_slice() else { panic!("{} probes", probe.len()) };
+    assert!(probe.respawn && probe.arguments.contains(&"speed_noise:=0.003".to_owned()), "{probe:?}");
+    let without_wait = |plan: &NodePlan| {
+        let words = plan.arguments.join(" ").replace(" -p min_packing_readers:=3", "");
+        (plan.name.clone(), words, plan.respawn)
+    };
+    let [default, others] = [default.iter().collect(), others]
+        .map(|p: Vec<&NodePlan>| p.into_iter().map(without_wait).collect::<Vec<_>>());
+    assert_eq!(default, others);
+    for (name, text) in BUILT_IN {
+        assert_eq!(LaunchFile::parse(text).unwrap().default_of("scene"), Some("demo"), "{name}");
     }
 }
 

@@ -1,8 +1,8 @@
 //! Many files at once, a few packings of them in memory.
 
 use super::bar::Bar;
-use super::measure::Measure;
 use super::sink::{Ending, Place, Sink};
+use super::{Measure, Outlet};
 use crate::failure::{Failure, worse};
 use node_kit::Exit;
 use node_kit::signals::Signals;
@@ -16,12 +16,17 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Measures every packing of every file, on every core. Whoever has nothing to measure reads the next file; a reader
 /// measures what it reads itself once two packings a core wait: more are never in memory.
-pub(super) fn run(
+pub(crate) fn run<M, O>(
     files: &[PathBuf],
     options: &ImportOptions,
-    measure: &Measure,
-    mut sink: Sink,
-) -> Result<Exit, Failure> {
+    measure: &M,
+    outlet: O,
+) -> Result<Exit, Failure>
+where
+    M: Measure,
+    O: Outlet<Found = M::Found>,
+{
+    let mut sink = Sink::new(outlet);
     let signals = Signals::install().map_err(Failure::failed)?;
     let stop = signals.flag();
     sink.bar = Bar::of(files.len());
@@ -81,21 +86,21 @@ enum Task {
     Read(usize),
 }
 
-struct Shop<'a> {
+struct Shop<'a, M, O: Outlet> {
     files: &'a [PathBuf],
     options: &'a ImportOptions,
-    measure: &'a Measure,
+    measure: &'a M,
     /// A signal came, or results go nowhere.
     stop: &'a AtomicBool,
     /// Packings that may wait.
     room: usize,
     desk: Mutex<Desk>,
     news: Condvar,
-    sink: Mutex<Sink>,
+    sink: Mutex<Sink<O>>,
     failure: Mutex<Option<Failure>>,
 }
 
-impl Shop<'_> {
+impl<M: Measure, O: Outlet<Found = M::Found>> Shop<'_, M, O> {
     fn work(&self) {
         while let Some(task) = self.task() {
             match task {
@@ -134,7 +139,7 @@ impl Shop<'_> {
     }
 
     fn read(&self, file: usize) {
-        let mut reading = Reading { shop: self, to_end: false };
+        let mut reading = Reading { desk: &self.desk, news: &self.news, to_end: false };
         let mut packings = 0;
         let (complaints, exit) = read(&self.files[file], self.options, &mut |imported| {
             let job = Job { place: (file, packings), imported };
@@ -176,18 +181,19 @@ impl Shop<'_> {
 }
 
 /// A file that is being read: those who wait for its packings learn when no more will come, whatever happens.
-struct Reading<'a, 'b> {
-    shop: &'a Shop<'b>,
+struct Reading<'a> {
+    desk: &'a Mutex<Desk>,
+    news: &'a Condvar,
     to_end: bool,
 }
 
-impl Drop for Reading<'_, '_> {
+impl Drop for Reading<'_> {
     fn drop(&mut self) {
-        let mut desk = self.shop.desk();
+        let mut desk = lock(self.desk);
         desk.reading -= 1;
         desk.read_to_end += usize::from(self.to_end);
         drop(desk);
-        self.shop.news.notify_all();
+        self.news.notify_all();
     }
 }
 

@@ -7,16 +7,16 @@ use std::time::Duration;
 const TICK: Duration = Duration::from_millis(250);
 
 /// A bar on stderr; nothing where that is no terminal.
-pub(super) struct Bar(ProgressBar);
+pub(crate) struct Bar(ProgressBar);
 
 impl Bar {
     /// None at all.
-    pub(super) fn hidden() -> Self {
+    pub(crate) fn hidden() -> Self {
         Self(ProgressBar::hidden())
     }
 
     /// Of this many files.
-    pub(super) fn of(files: usize) -> Self {
+    pub(crate) fn of(files: usize) -> Self {
         let bar = ProgressBar::new(files as u64);
         let template = "{bar:30} {pos} of {len} files, {msg}, {elapsed}";
         if let Ok(style) = ProgressStyle::with_template(template) {
@@ -27,25 +27,25 @@ impl Bar {
         Self(bar)
     }
 
-    pub(super) fn packings(&self, count: usize) {
+    pub(crate) fn packings(&self, count: usize) {
         self.0.set_message(format!("{count} packings"));
     }
 
-    pub(super) fn file_done(&self) {
+    pub(crate) fn file_done(&self) {
         self.0.inc(1);
     }
 
     /// Runs `print` while the bar is away.
-    pub(super) fn around<T>(&self, print: impl FnOnce() -> T) -> T {
+    pub(crate) fn around<T>(&self, print: impl FnOnce() -> T) -> T {
         self.0.suspend(print)
     }
 
     /// A line on stderr.
-    pub(super) fn say(&self, line: &str) {
+    pub(crate) fn say(&self, line: &str) {
         self.around(|| crate::output::say!("{line}"));
     }
 
-    pub(super) fn clear(&self) {
+    pub(crate) fn clear(&self) {
         self.0.finish_and_clear();
     }
 }

@@ -1,0 +1,128 @@
+//! From one `Packing` to one `WaveSpeeds` and the `Waveform`s behind it.
+
+use crate::Settings;
+use acoustics::{AcousticsError, Measurement, Trace};
+use grainlab_msgs::boundary::{
+    BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
+};
+use grainlab_msgs::std_msgs::Header;
+use grainlab_msgs::{DecodeError, msg};
+use grains::{Packing, WaveMethod, stress};
+use micro::NoNetwork;
+
+/// What is published about one packing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its wave speeds.
+    pub wave_speeds: msg::WaveSpeeds,
+    /// The traces behind them, one message a wave; none behind a dispersion.
+    pub waveforms: Vec<msg::Waveform>,
+}
+
+/// Why a packing has no wave speeds.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasureError {
+    /// The bytes are no message.
+    #[error("a packing cannot be decoded: {0}")]
+    Undecodable(#[from] DecodeError),
+    /// The message is not a packing.
+    #[error(transparent)]
+    Refused(BoundaryError),
+    /// Nothing carries a wave. Not a fault: sound does not cross a gas of grains.
+    #[error("packing of step {step} has no wave speeds: {reason}")]
+    NoNetwork {
+        /// Its step.
+        step: u64,
+        /// What it lacks.
+        reason: NoNetwork,
+    },
+    /// The measurement failed.
+    #[error("wave speeds of the packing of step {step} are not measured: {reason}")]
+    Acoustics {
+        /// Its step.
+        step: u64,
+        /// What went wrong.
+        reason: AcousticsError,
+    },
+    /// What was measured is nothing that a reader would accept.
+    #[error("wave speeds of the packing of step {step} are measured, but cannot be published: {reason}")]
+    Result {
+        /// Its step.
+        step: u64,
+        /// What a reader would object to.
+        reason: BoundaryError,
+    },
+}
+
+impl MeasureError {
+    /// Step of the packing that was read and has no wave speeds.
+    pub fn step(&self) -> Option<u64> {
+        match self {
+            Self::Undecodable(_) | Self::Refused(_) => None,
+            Self::NoNetwork { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
+                Some(*step)
+            }
+        }
+    }
+}
+
+/// Measures one packing. Header and step are copied; nothing but the two arguments enters.
+pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
+    let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
+    let step = packing.step;
+    let found = acoustics::measure(&packing, &settings.0).map_err(|e| match e {
+        AcousticsError::NoNetwork(reason) => MeasureError::NoNetwork { step, reason },
+        reason => MeasureError::Acoustics { step, reason },
+    })?;
+    messages(&message.header, &packing, &found).map_err(|reason| MeasureError::Result { step, reason })
+}
+
+/// The messages about a packing that has been measured; `header` is that of the packing's own message.
+pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
+    let source_step = Some(packing.step).filter(|step| *step > 0);
+    let reading = WaveSpeedsReading {
+        stamp: header.stamp,
+        source_step,
+        density: found.density,
+        density_stddev: Some(found.density_stddev).filter(|s| *s > 0.0),
+        pressure: stress::stress(packing).tensor.mean(),
+        solid_fraction: Some(packing.solid_fraction()),
+        axis: found.axis,
+        grain_shear_modulus: packing.material.shear_modulus,
+        grain_poisson_ratio: packing.material.poisson_ratio,
+        speeds: found.waves.clone(),
+        warnings: found.warnings.iter().map(ToString::to_string).collect(),
+    };
+    let wave_speeds = wave_speeds_message(header.clone(), &reading)?;
+    let traces = found.traces.iter().map(|trace| waveform(header, source_step, trace));
+    Ok(Measured { wave_speeds, waveforms: traces.collect::<Result<_, _>>()? })
+}
+
+fn waveform(
+    header: &Header,
+    source_step: Option<u64>,
+    trace: &Trace,
+) -> Result<msg::Waveform, BoundaryError> {
+    let word = match trace.method {
+        WaveMethod::StandingWave => "standing wave",
+        _ => "receiver",
+    };
+    // Single precision is that of a good digitiser, and far finer than any noise.
+    let channels = (1..).zip(&trace.channels).map(|(n, c)| TraceReading {
+        name: format!("{word} {n}"),
+        distance: c.distance,
+        samples: c.samples.iter().map(|s| *s as f32).collect(),
+    });
+    let reading = WaveformReading {
+        stamp: header.stamp,
+        source_step,
+        method: trace.method,
+        direction: trace.direction,
+        polarization: trace.motion,
+        frequency: trace.frequency,
+        sample_rate: trace.sample_rate,
+        start: trace.start,
+        channels: channels.collect(),
+    };
+    waveform_message(header.clone(), &reading)
+}

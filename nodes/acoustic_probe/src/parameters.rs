@@ -1,0 +1,117 @@
+//! What can be set.
+
+use acoustics::{Instrument, dispersion, flight};
+use node_kit::{ParameterSpec, Range};
+
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    let mut all = rays();
+    all.extend(ways());
+    all.extend(instrument());
+    all
+}
+
+/// Which waves.
+fn rays() -> Vec<ParameterSpec> {
+    vec![
+        ParameterSpec::new(
+            "method",
+            "dispersion",
+            "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), standing_wave (the \
+             packing rings), or time of flight by first_arrival, cross_correlation or peak",
+        )
+        .within(Range::Choice(&[
+            "dispersion",
+            "standing_wave",
+            "first_arrival",
+            "cross_correlation",
+            "peak",
+        ])),
+        ParameterSpec::new(
+            "axis",
+            "e3",
+            "axis of symmetry that the rays are sent about: e3, unknown, or a direction x,y,z of any length",
+        ),
+        ParameterSpec::new(
+            "survey",
+            "complete",
+            "which rays are sent: complete (along the axis, and enough across and at 45 degrees to average over azimuths), \
+             three (one of each), everywhere (over the hemisphere; always, where the axis is unknown)",
+        )
+        .within(Range::Choice(&["complete", "three", "everywhere"])),
+        ParameterSpec::new("modes", "all", "which motions are sent along each ray: all, compression, shear")
+            .within(Range::Choice(&["all", "compression", "shear"])),
+    ]
+}
+
+/// How they are sent.
+fn ways() -> Vec<ParameterSpec> {
+    let dispersion = dispersion::Settings::default();
+    let flight = flight::Settings::default();
+    let strain = Range::Double { min: 1e-12, max: 1e-2 };
+    vec![
+        ParameterSpec::new(
+            "wavelengths",
+            dispersion.wavelengths,
+            "wavelengths of dispersion, mean grain diameters: three or more, each above 2",
+        )
+        .within(Range::Double { min: 2.000_001, max: 1e6 }),
+        ParameterSpec::new("tolerance", dispersion.tolerance, "relative error allowed to the squared frequencies of \
+             dispersion, 1")
+            .within(Range::Double { min: 1e-13, max: 1e-2 }),
+        ParameterSpec::new(
+            "max_iterations",
+            i64::from(dispersion.max_iterations),
+            "iterations after which a mode of dispersion is given up",
+        )
+        .within(Range::Integer { min: 1, max: 10_000_000 }),
+        ParameterSpec::new(
+            "copies",
+            0_i64,
+            "repetitions of the packing along the path, 0 for 4 (standing_wave, which needs 3) or as many as are needed \
+             (time of flight)",
+        )
+        .within(Range::Integer { min: 0, max: 256 }),
+        ParameterSpec::new(
+            "frequencies",
+            Vec::<f64>::new(),
+            "centre frequencies of time of flight, Hz; empty for those whose waves are some 20, 30 and 40 mean grain \
+             diameters long",
+        )
+        .within(Range::Positive),
+        ParameterSpec::new("cycles", flight.cycles, "periods of a burst of time of flight")
+            .within(Range::Double { min: 0.5, max: 100.0 }),
+        ParameterSpec::new("amplitude", flight.amplitude, "peak strain that is sent, 1").within(strain),
+    ]
+}
+
+/// What stands between a wave and a number.
+fn instrument() -> Vec<ParameterSpec> {
+    let d = Instrument::default();
+    vec![
+        ParameterSpec::new("sample_rate", 0.0, "samples a second, Hz; 0 for forty a period")
+            .within(Range::Double { min: 0.0, max: 1e12 }),
+        ParameterSpec::new(
+            "signal_to_noise",
+            d.signal_to_noise,
+            "signal to noise of one shot, dB; inf for no noise",
+        )
+        .within(Range::Double { min: -60.0, max: f64::INFINITY }),
+        ParameterSpec::new(
+            "jitter",
+            d.jitter,
+            "standard deviation of the trigger's time from shot to shot, s",
+        )
+        .within(Range::Double { min: 0.0, max: 1.0 }),
+        ParameterSpec::new("shots", i64::from(d.shots), "shots that are averaged")
+            .within(Range::Integer { min: 1, max: 1_000_000 }),
+        ParameterSpec::new(
+            "speed_noise",
+            d.speed_noise,
+            "relative standard deviation of every speed beyond all that, 1: alignment, lengths",
+        )
+        .within(Range::Double { min: 0.0, max: 0.5 }),
+        ParameterSpec::new("seed", d.seed as i64, "seed of all noise")
+            .within(Range::Integer { min: 0, max: i64::MAX }),
+    ]
+}

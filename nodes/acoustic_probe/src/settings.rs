@@ -1,0 +1,116 @@
+//! The parameters, typed.
+
+use acoustics::flight::Pick;
+use acoustics::{Instrument, Modes, Survey, Way, dispersion, flight, standing};
+use grains::Vec3;
+use node_kit::Parameters;
+
+/// How a packing is measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings(pub acoustics::Settings);
+
+/// Parameters that each are in range and together make no sense. The process then ends with [`node_kit::Exit::Usage`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// Not an axis.
+    #[error(
+        "parameter \"axis\" = {0:?} is no axis: e3, unknown, or three numbers x,y,z that are finite and not all zero"
+    )]
+    Axis(String),
+    /// Too few wavelengths for their law.
+    #[error(
+        "parameter \"wavelengths\" has {0} entries: three or more are needed to extrapolate to long waves"
+    )]
+    Wavelengths(usize),
+    /// Too few repetitions for a standing wave.
+    #[error(
+        "parameter \"copies\" = {0}: a standing wave needs 3 or more repetitions of the packing, or 0 for 4"
+    )]
+    Copies(u32),
+}
+
+impl TryFrom<&Parameters> for Settings {
+    type Error = SettingsError;
+
+    fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
+        let text = |name| parameters.get::<String>(name);
+        Ok(Self(acoustics::Settings {
+            way: way(parameters)?,
+            axis: axis(&text("axis"))?,
+            survey: match text("survey").as_str() {
+                "three" => Survey::Three,
+                "everywhere" => Survey::Everywhere,
+                _ => Survey::Complete,
+            },
+            modes: match text("modes").as_str() {
+                "compression" => Modes::Compression,
+                "shear" => Modes::Shear,
+                _ => Modes::All,
+            },
+            instrument: Instrument {
+                sample_rate: Some(parameters.get("sample_rate")).filter(|rate| *rate > 0.0),
+                signal_to_noise: parameters.get("signal_to_noise"),
+                jitter: parameters.get("jitter"),
+                shots: count(parameters, "shots"),
+                speed_noise: parameters.get("speed_noise"),
+                seed: parameters.get::<i64>("seed").unsigned_abs(),
+            },
+        }))
+    }
+}
+
+/// A range keeps every one of them below what 32 bits hold.
+fn count(parameters: &Parameters, name: &str) -> u32 {
+    u32::try_from(parameters.get::<i64>(name)).unwrap_or(u32::MAX)
+}
+
+fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
+    let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
+    let amplitude = parameters.get("amplitude");
+    let pick = match parameters.get::<String>("method").as_str() {
+        "dispersion" => {
+            let wavelengths: Vec<f64> = parameters.get("wavelengths");
+            if wavelengths.len() < 3 {
+                return Err(SettingsError::Wavelengths(wavelengths.len()));
+            }
+            return Ok(Way::Dispersion(dispersion::Settings {
+                wavelengths,
+                tolerance: parameters.get("tolerance"),
+                max_iterations: count(parameters, "max_iterations"),
+            }));
+        }
+        "standing_wave" => {
+            let default = standing::Settings::default();
+            let copies = copies.unwrap_or(default.copies);
+            if copies < 3 {
+                return Err(SettingsError::Copies(copies));
+            }
+            return Ok(Way::Standing(standing::Settings { copies, amplitude, ..default }));
+        }
+        "first_arrival" => Pick::FirstArrival,
+        "peak" => Pick::Peak,
+        _ => Pick::CrossCorrelation,
+    };
+    Ok(Way::Flight(flight::Settings {
+        frequencies: Some(parameters.get::<Vec<f64>>("frequencies")).filter(|f| !f.is_empty()),
+        cycles: parameters.get("cycles"),
+        copies,
+        amplitude,
+        pick,
+        ..flight::Settings::default()
+    }))
+}
+
+fn axis(text: &str) -> Result<Option<Vec3>, SettingsError> {
+    match text.trim() {
+        "e3" => return Ok(Some(Vec3::z())),
+        "unknown" => return Ok(None),
+        _ => {}
+    }
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    let direction = numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(Vec3::from);
+    let valid = direction.filter(|v| v.iter().all(|n| n.is_finite()) && v.amax() > 0.0);
+    // Scaled first: the square of a large component is no number any more.
+    let unit = valid.map(|v| (v / v.amax()).normalize());
+    unit.map(Some).ok_or_else(|| SettingsError::Axis(text.to_owned()))
+}

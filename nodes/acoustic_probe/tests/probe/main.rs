@@ -1,0 +1,5 @@
+//! Claims about the acoustic node, on the bus in memory.
+
+mod node;
+mod sample;
+mod settings;

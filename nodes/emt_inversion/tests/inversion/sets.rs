@@ -1,0 +1,151 @@
+//! Sets of speeds of every kind: without an axis, of one kind of wave, and of a sample that is no medium.
+
+use crate::moduli::s1_medium;
+use crate::speeds::{DENSITY, answer, upright, wire};
+use emt_inversion::{Axis, Settings, microstructure_of_speeds};
+use grainlab_msgs::geometry_msgs::Vector3;
+use grainlab_msgs::msg::{Estimate, WaveSpeed, WaveSpeeds};
+use grains::{Stiffness, TransverseIsotropy, Vec3};
+use nalgebra::Rotation3;
+
+const FOUND: Axis = Axis::Found;
+
+/// P and both S of `stiffness` in thirteen directions, to 0.1 %; no axis is named.
+fn everywhere(stiffness: &Stiffness) -> WaveSpeeds {
+    let steps = || (-1..=1).map(f64::from);
+    let all = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+    let mut speeds = Vec::new();
+    for direction in all.filter(|v| *v > [0.0; 3]).map(|v| Vec3::from(v).normalize()) {
+        let waves = stiffness.plane_waves(&direction);
+        for (modulus, motion) in waves.moduli.into_iter().zip(waves.polarizations) {
+            let speed = (modulus / DENSITY).sqrt();
+            let (direction, polarization) = (wire(&direction), wire(&motion));
+            let speed_stddev = 0.001 * speed;
+            speeds.push(WaveSpeed { direction, polarization, speed, speed_stddev, ..WaveSpeed::default() });
+        }
+    }
+    WaveSpeeds { axis: Vector3::default(), speeds, ..upright() }
+}
+
+fn says(estimate: &Estimate, words: &str) -> bool {
+    estimate.warnings.iter().any(|w| w.contains(words))
+}
+
+/// Of every model, with what it is named.
+fn all(speeds: &WaveSpeeds) -> impl Fn(&str) -> Estimate + use<> {
+    let message = microstructure_of_speeds(speeds, &Settings::default()).unwrap();
+    move |model| message.estimates.iter().find(|e| e.model == model).unwrap().clone()
+}
+
+fn only(keep: impl Fn(&WaveSpeed) -> bool) -> WaveSpeeds {
+    let mut speeds = upright();
+    speeds.speeds.retain(keep);
+    speeds
+}
+
+fn is_compressional(s: &WaveSpeed) -> bool {
+    let (n, p) = (&s.direction, &s.polarization);
+    (n.x * p.x + n.y * p.y + n.z * p.z).abs() > 0.7
+}
+
+#[test]
+fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() {
+    let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.2);
+    let lying = everywhere(&s1_medium().rotated(turn.matrix()));
+    let expected = answer(&upright(), &Settings::default());
+    let e = answer(&lying, &Settings { axis: FOUND, ..Settings::default() });
+    assert!((e.k - expected.k).abs() < 1e-5 && (e.eps - expected.eps).abs() < 1e-6, "{e:?}");
+    assert_eq!(e.status, Estimate::STATUS_OK);
+    let axis = turn * Vec3::z();
+    let named = format!("no axis was named: ({:.4}, {:.4}, {:.4}) was found", axis.x, axis.y, axis.z);
+    assert!(says(&e, &named) && says(&e, "degrees (one sigma)"), "{:?}", e.warnings);
+    // Unasked, e3 is taken as ever, and the speeds contradict it or depart from it.
+    let e = answer(&lying, &Settings::default());
+    assert!(!says(&e, "was found") && (e.eps - expected.eps).abs() > 1e-3, "{e:?}");
+    // An axis that is named is taken.
+    let named = WaveSpeeds { axis: wire(&axis), ..lying };
+    assert!(!says(&answer(&named, &Settings { axis: FOUND, ..Settings::default() }), "no axis was named"));
+}
+
+#[test]
+fn of_a_medium_that_looks_isotropic_e3_is_taken_and_that_is_said() {
+    let (p, s) = (300e6, 120e6);
+    let isotropic = TransverseIsotropy {
+        c11: p,
+        c12: p - 2.0 * s,
+        c13: p - 2.0 * s,
+        c33: p,
+        g13: s,
+        g12: s,
+        residual: 0.0,
+    };
+    let e = answer(&everywhere(&isotropic.stiffness()), &Settings { axis: FOUND, ..Settings::default() });
+    assert!(e.eps_known && e.eps.abs() < 1e-6 && e.status == Estimate::STATUS_OK, "{e:?}");
+    assert!(says(&e, "e3 was taken") && says(&e, "any axis would serve"), "{:?}", e.warnings);
+}
+
+#[test]
+fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
+    // A percent and a half of one shear modulus: the azimuths of a packing of some thousand grains differ so.
+    let mut stiffness = s1_medium();
+    stiffness.0[(3, 3)] *= 1.015;
+    stiffness.0[(4, 4)] /= 1.015;
+    let e = answer(&everywhere(&stiffness), &Settings::default());
+    assert!(says(&e, "the sample is not quite one") && !says(&e, "contradict"), "{:?}", e.warnings);
+    assert_eq!(e.status, Estimate::STATUS_OK);
+    let exact = answer(&everywhere(&s1_medium()), &Settings::default());
+    assert!(e.covariance[18] > 4.0 * exact.covariance[18], "{} {}", e.covariance[18], exact.covariance[18]);
+    assert!((e.eps - exact.eps).abs() < 3.0 * e.covariance[18].sqrt());
+}
+
+#[test]
+fn shear_waves_alone_tell_eps_to_the_ratios_and_all_to_the_relaxed_network() {
+    let shear = all(&only(|s| !is_compressional(s)));
+    let ratio = shear("ratio");
+    assert_eq!((ratio.status, ratio.k_known, ratio.eps_known), (Estimate::STATUS_OK, false, true));
+    assert!(
+        says(&ratio, "do not determine k, k_hat") && says(&ratio, "do not determine Theta, C11, C33, C13")
+    );
+    let (relaxed, directional) = (shear("relaxed"), shear("directional"));
+    assert!(relaxed.z_known && relaxed.k_known && relaxed.eps_known, "{relaxed:?}");
+    assert!(directional.k_known && directional.eps_known, "{directional:?}");
+    assert!(!says(&relaxed, "the data do not determine"), "{:?}", relaxed.warnings);
+}
+
+#[test]
+fn compression_alone_tells_the_relaxed_network_something_and_the_ratios_say_what_they_lack() {
+    let compression = all(&only(is_compressional));
+    let ratio = compression("ratio");
+    assert_eq!(ratio.status, Estimate::STATUS_UNDETERMINED);
+    assert!(says(&ratio, "needs G12") && says(&ratio, "do not determine G12, G13, Theta, C13"), "{ratio:?}");
+    let relaxed = compression("relaxed");
+    assert!(relaxed.z_known && relaxed.eps_known, "{relaxed:?}");
+    // Less well than with all of them.
+    let whole = all(&upright())("relaxed");
+    assert!(relaxed.covariance[12] > whole.covariance[12] && relaxed.covariance[18] > whole.covariance[18]);
+}
+
+#[test]
+fn one_wave_tells_the_relaxed_network_z_and_that_eps_is_open() {
+    for at in [0, 1, 2, 4] {
+        let mut one = upright();
+        one.speeds = vec![one.speeds.swap_remove(at)];
+        let of = all(&one);
+        let relaxed = of("relaxed");
+        assert!(relaxed.z_known && !relaxed.eps_known && !relaxed.eps_stiffness_known, "{at} {relaxed:?}");
+        assert!(says(&relaxed, "the data do not determine eps"), "{at} {:?}", relaxed.warnings);
+        for model in ["ratio", "directional", "emt"] {
+            let e = of(model);
+            assert!(e.status == Estimate::STATUS_UNDETERMINED && says(&e, "needs"), "{at} {e:?}");
+        }
+    }
+}
+
+#[test]
+fn what_the_instrument_warns_of_reaches_every_estimate() {
+    let warned = WaveSpeeds { warnings: vec!["speeds[3] was picked by hand".into()], ..upright() };
+    let message = microstructure_of_speeds(&warned, &Settings::default()).unwrap();
+    for e in &message.estimates {
+        assert!(says(e, "the instrument says: speeds[3] was picked by hand"), "{e:?}");
+    }
+}

@@ -1,0 +1,226 @@
+//! The frozen network as an operator on Bloch waves.
+//!
+//! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. A contact with the
+//! branch l feels, up to a factor of modulus one, c (w_j − w_i) + is (w_j + w_i) of displacements and c (φ_j + φ_i) + is (φ_j − φ_i)
+//! of rotations, with c = cos(q·l/2) and s = sin(q·l/2). In these amplitudes a uniform motion is a plane wave, and a long
+//! wave changes little from grain to grain.
+
+use crate::participation::Carrier;
+use crate::row::{Amplitude, Row};
+use grains::Vec3;
+use micro::Link;
+use micro::preconditioner::{Block, generalised_inverse};
+
+/// One contact.
+#[derive(Clone, Copy, Debug)]
+struct Joint {
+    i: u32,
+    j: u32,
+    normal: [f64; 3],
+    lever: f64,
+    tangential: f64,
+    excess: f64,
+    cos: f64,
+    sin: f64,
+}
+
+/// K(q), with the inverses of its diagonal blocks.
+#[derive(Debug)]
+pub(crate) struct Bloch<'a> {
+    pub(crate) carrier: &'a Carrier,
+    q: Vec3,
+    joints: Vec<Joint>,
+    inverses: Vec<Block>,
+}
+
+impl<'a> Bloch<'a> {
+    pub(crate) fn new(carrier: &'a Carrier, q: &Vec3) -> Self {
+        let joint = |l: Link| {
+            let half = 0.5 * q.dot(&Vec3::from(l.branch));
+            let Link { i, j, normal, lever, tangential, excess, .. } = l;
+            Joint { i, j, normal, lever, tangential, excess, cos: half.cos(), sin: half.sin() }
+        };
+        let joints: Vec<Joint> = carrier.network.links().map(joint).collect();
+        let mut blocks = vec![[[0.0; 6]; 6]; carrier.mass.len()];
+        for joint in &joints {
+            for (grain, block) in joint.blocks() {
+                let sum = &mut blocks[grain as usize];
+                for row in 0..6 {
+                    for column in 0..6 {
+                        sum[row][column] += block[row][column];
+                    }
+                }
+            }
+        }
+        Self { carrier, q: *q, joints, inverses: blocks.iter().map(generalised_inverse).collect() }
+    }
+
+    /// y = K x.
+    #[inline(always)]
+    pub(crate) fn apply(&self, x: &[Amplitude], y: &mut [Amplitude]) {
+        y.fill(Amplitude::STILL);
+        for joint in &self.joints {
+            let (i, j) = (joint.i as usize, joint.j as usize);
+            let (on_i, on_j) = joint.forces(&x[i], &x[j]);
+            for (grain, force) in [(i, on_i), (j, on_j)] {
+                for k in 0..6 {
+                    y[grain].re[k] += force.re[k];
+                    y[grain].im[k] += force.im[k];
+                }
+            }
+        }
+    }
+
+    /// y = M x.
+    #[inline(always)]
+    pub(crate) fn weigh(&self, x: &[Amplitude], y: &mut [Amplitude]) {
+        for (g, (x, y)) in x.iter().zip(y).enumerate() {
+            let (mass, inertia) = (self.carrier.mass[g], self.carrier.inertia[g]);
+            for k in 0..6 {
+                let weight = if k < 3 { mass } else { inertia };
+                y.re[k] = weight * x.re[k];
+                y.im[k] = weight * x.im[k];
+            }
+        }
+    }
+
+    /// y = D⁻¹ x with the blocks D of single grains.
+    #[inline(always)]
+    pub(crate) fn precondition(&self, x: &[Amplitude], y: &mut [Amplitude]) {
+        for ((inverse, x), y) in self.inverses.iter().zip(x).zip(y) {
+            for k in 0..6 {
+                let (mut re, mut im) = (inverse[k][0] * x.re[0], inverse[k][0] * x.im[0]);
+                for c in 1..6 {
+                    re += inverse[k][c] * x.re[c];
+                    im += inverse[k][c] * x.im[c];
+                }
+                (y.re[k], y.im[k]) = (re, im);
+            }
+        }
+    }
+
+    /// Takes the motions that meet no resistance out of x. Those of several grains are Bloch waves, too: a phase from
+    /// grain to grain.
+    pub(crate) fn purge(&self, x: &mut [Amplitude]) {
+        let carrier = self.carrier;
+        for cluster in carrier.clusters.iter().filter(|c| c.motions.iter().any(|m| m.is_free)) {
+            let turns: Vec<(f64, f64)> = cluster.offsets.iter().map(|o| self.q.dot(o).sin_cos()).collect();
+            for z in cluster.motions.iter().filter(|m| m.is_free).map(|m| &m.shape) {
+                let (mut re, mut im) = (Row::ZERO, Row::ZERO);
+                for (at, g) in cluster.grains.iter().enumerate() {
+                    let (g, (sin, cos)) = (*g as usize, turns[at]);
+                    for k in 0..6 {
+                        let weight = z[6 * at + k] * if k < 3 { carrier.mass[g] } else { carrier.inertia[g] };
+                        re += weight * (cos * x[g].re[k] - sin * x[g].im[k]);
+                        im += weight * (cos * x[g].im[k] + sin * x[g].re[k]);
+                    }
+                }
+                for (at, g) in cluster.grains.iter().enumerate() {
+                    let (g, (sin, cos)) = (*g as usize, turns[at]);
+                    for k in 0..6 {
+                        x[g].re[k] -= z[6 * at + k] * (cos * re + sin * im);
+                        x[g].im[k] -= z[6 * at + k] * (cos * im - sin * re);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Joint {
+    /// K x of the two grains by this contact alone.
+    #[inline(always)]
+    fn forces(&self, a: &Amplitude, b: &Amplitude) -> (Amplitude, Amplitude) {
+        let (c, s) = (self.cos, self.sin);
+        // c (b − a) + is (b + a) of displacements, c (b + a) + is (b − a) of rotations.
+        let mut felt = Amplitude::STILL;
+        for k in 0..3 {
+            felt.re[k] = c * (b.re[k] - a.re[k]) - s * (b.im[k] + a.im[k]);
+            felt.im[k] = c * (b.im[k] - a.im[k]) + s * (b.re[k] + a.re[k]);
+        }
+        for k in 3..6 {
+            felt.re[k] = c * (b.re[k] + a.re[k]) - s * (b.im[k] - a.im[k]);
+            felt.im[k] = c * (b.im[k] + a.im[k]) + s * (b.re[k] - a.re[k]);
+        }
+        let (re, im) = (self.spring(&felt.re), self.spring(&felt.im));
+        // The adjoint: ∓c − is … on i and j for displacements, c ± is for rotations.
+        let (mut on_i, mut on_j) = (Amplitude::STILL, Amplitude::STILL);
+        for k in 0..6 {
+            let side = if k < 3 { -1.0 } else { 1.0 };
+            on_j.re[k] = c * re[k] + s * im[k];
+            on_j.im[k] = c * im[k] - s * re[k];
+            on_i.re[k] = side * (c * re[k] - s * im[k]);
+            on_i.im[k] = side * (c * im[k] + s * re[k]);
+        }
+        (on_i, on_j)
+    }
+
+    /// Force and torque that what the contact feels makes.
+    #[inline(always)]
+    fn spring(&self, felt: &[Row; 6]) -> [Row; 6] {
+        let [nx, ny, nz] = self.normal;
+        let (mx, my, mz) = (self.lever * nx, self.lever * ny, self.lever * nz);
+        let wx = felt[0] - (mz * felt[4] - my * felt[5]);
+        let wy = felt[1] - (mx * felt[5] - mz * felt[3]);
+        let wz = felt[2] - (my * felt[3] - mx * felt[4]);
+        let along = self.excess * (nx * wx + ny * wy + nz * wz);
+        let fx = self.tangential * wx + nx * along;
+        let fy = self.tangential * wy + ny * along;
+        let fz = self.tangential * wz + nz * along;
+        // −m×f, the torque on either grain.
+        [fx, fy, fz, mz * fy - my * fz, mx * fz - mz * fx, my * fx - mx * fy]
+    }
+
+    /// What this contact adds to the diagonal blocks: real parts, which are not negative where the blocks are not.
+    fn blocks(&self) -> Vec<(u32, Block)> {
+        let unit = |moves: bool, column: usize| {
+            let mut x = Amplitude::STILL;
+            x.re[column] = Row::of([f64::from(u8::from(moves)), 0.0, 0.0]);
+            x
+        };
+        let block = |on_i: bool, on_j: bool| -> Block {
+            let mut block = [[0.0; 6]; 6];
+            for column in 0..6 {
+                let (i, j) = self.forces(&unit(on_i, column), &unit(on_j, column));
+                for row in 0..6 {
+                    let own = |moves: bool, force: &Amplitude| if moves { force.re[row].0[0] } else { 0.0 };
+                    block[row][column] += own(on_i, &i) + own(on_j, &j);
+                }
+            }
+            block
+        };
+        if self.i == self.j {
+            vec![(self.i, block(true, true))]
+        } else {
+            vec![(self.i, block(true, false)), (self.j, block(false, true))]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::WAVES;
+    use crate::subspace::product;
+
+    #[test]
+    fn the_operator_is_hermitian() {
+        let packing = crate::tests_support::lattice();
+        let carrier = Carrier::new(&packing).unwrap();
+        let bloch = Bloch::new(&carrier, &Vec3::new(3e3, -1e4, 5e3));
+        let random = |seed: usize| -> Vec<Amplitude> {
+            let value = |k: usize| ((seed * 7919 + k * 104_729) % 1009) as f64 / 1009.0 - 0.5;
+            let rows =
+                |g: usize| std::array::from_fn(|r| Row::of([0, 1, 2].map(|w| value(100 * g + 8 * r + w))));
+            (0..packing.grains()).map(|g| Amplitude { re: rows(g), im: rows(g + 50) }).collect()
+        };
+        let (x, y) = (random(1), random(2));
+        let (mut kx, mut ky) = (vec![Amplitude::STILL; x.len()], vec![Amplitude::STILL; x.len()]);
+        bloch.apply(&x, &mut kx);
+        bloch.apply(&y, &mut ky);
+        for wave in 0..WAVES {
+            let (one, other) = (product(&x, wave, &ky, wave), product(&kx, wave, &y, wave));
+            assert!((one - other).norm() < 1e-12 * one.norm(), "{one} {other}");
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! K y = M x by conjugate gradients, compiled for each instruction set. Every operation is rounded as it is written, so all
+//! give the same bits.
+
+use crate::bloch::Bloch;
+use crate::modes::Stopped;
+use crate::row::{Amplitude, Block, Row, WAVES, products};
+use pulp::WithSimd;
+
+/// K y = M x, wave by wave, from y = x/ω²: conjugate gradients preconditioned by the blocks of single grains.
+#[derive(Debug)]
+pub(crate) struct Solve<'a> {
+    pub(crate) bloch: &'a Bloch<'a>,
+    pub(crate) x: &'a Block,
+    /// ω² of each wave.
+    pub(crate) squares: &'a [f64; WAVES],
+    /// Residual over the load.
+    pub(crate) tolerance: f64,
+    /// Iterations left.
+    pub(crate) budget: &'a mut u32,
+}
+
+impl WithSimd for Solve<'_> {
+    type Output = Result<Block, Stopped>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        self.run()
+    }
+}
+
+impl Solve<'_> {
+    #[inline(always)]
+    fn run(self) -> Result<Block, Stopped> {
+        let Self { bloch, x, squares, tolerance, budget } = self;
+        let zero = || vec![Amplitude::STILL; x.len()];
+        let (mut y, mut rest, mut image) = (x.clone(), zero(), zero());
+        let softness = Row::of(squares.map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }));
+        for row in y.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
+            *row = softness * *row;
+        }
+        bloch.weigh(x, &mut rest);
+        let loads = products(&rest, &rest);
+        bloch.apply(&y, &mut image);
+        advance(Row::of([-1.0; WAVES]), &image, &mut rest);
+        let (mut search, mut better) = (zero(), zero());
+        bloch.precondition(&rest, &mut better);
+        search.copy_from_slice(&better);
+        let mut rho = products(&rest, &better);
+        let start = *budget;
+        loop {
+            let left = products(&rest, &rest);
+            let ratio = |k: usize| if loads[k] > 0.0 { (left[k] / loads[k]).sqrt() } else { 0.0 };
+            let residual = (0..WAVES)
+                .map(ratio)
+                .fold(0.0, |worst: f64, r| if r.is_nan() || r > worst { r } else { worst });
+            if residual <= tolerance {
+                break;
+            }
+            if *budget == 0 || residual.is_nan() {
+                return Err(Stopped::NotConverged { residual, iterations: start - *budget });
+            }
+            *budget -= 1;
+            bloch.apply(&search, &mut image);
+            let energy = products(&search, &image);
+            let mut alpha = [0.0; WAVES];
+            for k in 0..WAVES {
+                // A wave that is done stands still.
+                if ratio(k) > 0.5 * tolerance && rho[k] > 0.0 {
+                    if energy[k] <= 0.0 {
+                        return Err(Stopped::NoResistance);
+                    }
+                    alpha[k] = rho[k] / energy[k];
+                }
+            }
+            let alpha = Row::of(alpha);
+            advance(alpha, &search, &mut y);
+            advance(Row::ZERO - alpha, &image, &mut rest);
+            bloch.precondition(&rest, &mut better);
+            let next = products(&rest, &better);
+            let grown = |k: usize| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 };
+            let beta = Row::of([grown(0), grown(1), grown(2)]);
+            rho = next;
+            for (search, better) in search.iter_mut().zip(&better) {
+                for k in 0..6 {
+                    search.re[k] = better.re[k] + beta * search.re[k];
+                    search.im[k] = better.im[k] + beta * search.im[k];
+                }
+            }
+        }
+        bloch.purge(&mut y);
+        Ok(y)
+    }
+}
+
+/// y += share × x, wave by wave.
+#[inline(always)]
+fn advance(share: Row, x: &[Amplitude], y: &mut [Amplitude]) {
+    for (x, y) in x.iter().zip(y) {
+        y.add(share, x);
+    }
+}

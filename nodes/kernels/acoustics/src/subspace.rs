@@ -1,0 +1,172 @@
+//! The best modes that a few motions can be combined to (Rayleigh–Ritz).
+
+use crate::bloch::Bloch;
+use crate::row::{Amplitude, Block, Row, WAVES};
+use nalgebra::{Complex, DMatrix, Matrix3, SymmetricEigen};
+
+type C = Complex<f64>;
+
+/// Combinations whose share of the motions is below this (squared norm, of unit motions) are rounding.
+const DEPENDENT: f64 = 1e-12;
+
+/// Softer modes that are kept at most.
+const SOFTER: usize = 24;
+
+/// Blocks of waves with their images.
+#[derive(Debug)]
+pub(crate) struct Subspace {
+    waves: usize,
+    blocks: Vec<Held>,
+}
+
+#[derive(Debug)]
+struct Held {
+    x: Block,
+    /// K x.
+    image: Block,
+    /// M x.
+    weighed: Block,
+}
+
+/// The modes found.
+#[derive(Debug)]
+pub(crate) struct Ritz {
+    /// ω², 1/s², of each wave.
+    pub(crate) squares: [f64; WAVES],
+    /// The modes, of unit kinetic energy: x* M x = 1.
+    pub(crate) waves: Block,
+    /// What of each mode (column) is along each reference (row).
+    pub(crate) overlaps: Complex3,
+    /// Softer modes, of unit kinetic energy: nearly free motions of a few grains, which have to be kept apart.
+    pub(crate) softer: Vec<Block>,
+}
+
+/// Three by three complex numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Complex3(Matrix3<C>);
+
+impl Complex3 {
+    /// Real part of Σ ω² p p* over the first `count` modes, with their motions p made perpendicular.
+    pub(crate) fn resistance(&self, squares: &[f64; WAVES], count: usize) -> Matrix3<f64> {
+        let w = self.0.view((0, 0), (count, count)).into_owned();
+        // W (W*W)^-½: the nearest perpendicular motions.
+        let eigen = SymmetricEigen::new(w.adjoint() * &w);
+        let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| C::from(1.0 / v.sqrt())));
+        let vectors = DMatrix::from_fn(count, count, |i, j| eigen.eigenvectors[(i, j)]);
+        let w = DMatrix::from_fn(count, count, |i, j| w[(i, j)]);
+        let motions = w * &vectors * root * vectors.adjoint();
+        let mut sum = Matrix3::zeros();
+        for a in 0..count {
+            for b in 0..count {
+                let term = |k: usize| squares[k] * (motions[(a, k)] * motions[(b, k)].conj()).re;
+                sum[(a, b)] = (0..count).map(term).sum();
+            }
+        }
+        sum
+    }
+}
+
+impl Subspace {
+    /// For modes of `waves` waves.
+    pub(crate) fn new(waves: usize) -> Self {
+        Self { waves, blocks: Vec::new() }
+    }
+
+    /// Adds the waves of a block, each brought to unit kinetic energy; a wave of none stays zero.
+    pub(crate) fn add(&mut self, bloch: &Bloch<'_>, mut x: Block) {
+        let zero = || vec![Amplitude::STILL; x.len()];
+        let (mut image, mut weighed) = (zero(), zero());
+        bloch.weigh(&x, &mut weighed);
+        let norm = |k: usize| product(&x, k, &weighed, k).re.sqrt();
+        let inverse = |k: usize| Some(1.0 / norm(k)).filter(|s| s.is_finite()).unwrap_or(0.0);
+        let share = Row::of([inverse(0), inverse(1), inverse(2)]);
+        for row in (x.iter_mut().chain(&mut weighed)).flat_map(|x| x.re.iter_mut().chain(&mut x.im)) {
+            *row = share * *row;
+        }
+        bloch.apply(&x, &mut image);
+        self.blocks.push(Held { x, image, weighed });
+    }
+
+    /// As many combinations as there are waves, of those that make ω² stationary: the ones that are most along the
+    /// references, whose M x is `references`. `None` where these are none, or meet no resistance.
+    pub(crate) fn best(&self, references: &[Amplitude]) -> Option<Ritz> {
+        let (waves, size) = (self.waves, self.waves * self.blocks.len());
+        let at = |k: usize| (&self.blocks[k / waves], k % waves);
+        let matrix = |of: fn(&Held) -> &Block| {
+            let full = DMatrix::from_fn(size, size, |a, b| {
+                let ((one, wave), (other, next)) = (at(a), at(b));
+                product(&one.x, wave, of(other), next)
+            });
+            (&full + full.adjoint()) * C::from(0.5)
+        };
+        let (stiffness, mass) = (matrix(|h| &h.image), matrix(|h| &h.weighed));
+        let gram = SymmetricEigen::new(mass);
+        let kept: Vec<usize> = (0..size).filter(|k| gram.eigenvalues[*k] > DEPENDENT).collect();
+        let basis = DMatrix::from_fn(size, kept.len(), |i, k| {
+            gram.eigenvectors[(i, kept[k])] / C::from(gram.eigenvalues[kept[k]].sqrt())
+        });
+        let eigen = SymmetricEigen::new(basis.adjoint() * stiffness * &basis);
+        let combinations = basis * &eigen.eigenvectors;
+        // What of each combination is along each reference.
+        let along = DMatrix::from_fn(waves, size, |reference, b| {
+            let (held, wave) = at(b);
+            product(references, reference, &held.x, wave)
+        }) * &combinations;
+        let share = |k: &usize| along.column(*k).norm_squared();
+        let mut order: Vec<usize> = (0..kept.len()).collect();
+        order.sort_by(|a, b| share(b).total_cmp(&share(a)));
+        let others = order.split_off(waves.min(order.len()));
+        order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+        let resisted = |k: &usize| eigen.eigenvalues[*k] > 0.0 && share(k) > 0.0;
+        if order.len() < waves || !order.iter().all(resisted) {
+            return None;
+        }
+        let stiffest = eigen.eigenvalues[order[waves - 1]];
+        let mut softer: Vec<usize> =
+            others.into_iter().filter(|k| eigen.eigenvalues[*k] < stiffest).collect();
+        softer.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+        softer.truncate(SOFTER);
+        let (mut squares, mut overlaps) = ([0.0; WAVES], Matrix3::zeros());
+        for (wave, k) in order.iter().enumerate() {
+            squares[wave] = eigen.eigenvalues[*k];
+            (0..waves).for_each(|reference| overlaps[(reference, wave)] = along[(reference, *k)]);
+        }
+        let combine = |chosen: &[usize]| self.combine(&combinations, chosen);
+        let softer = softer.chunks(waves).map(combine).collect();
+        Some(Ritz { squares, waves: combine(&order), overlaps: Complex3(overlaps), softer })
+    }
+
+    /// The waves that the `chosen` columns of `combinations` make of the blocks.
+    fn combine(&self, combinations: &DMatrix<C>, chosen: &[usize]) -> Block {
+        let mut x = vec![Amplitude::STILL; self.blocks[0].x.len()];
+        for (wave, k) in chosen.iter().enumerate() {
+            for (held, block) in self.blocks.iter().enumerate() {
+                for from in 0..self.waves {
+                    let share = combinations[(held * self.waves + from, *k)];
+                    for (sum, x) in x.iter_mut().zip(&block.x) {
+                        for row in 0..6 {
+                            let value = share * C::new(x.re[row].0[from], x.im[row].0[from]);
+                            sum.re[row].0[wave] += value.re;
+                            sum.im[row].0[wave] += value.im;
+                        }
+                    }
+                }
+            }
+        }
+        x
+    }
+}
+
+/// x* y of wave `a` of x and wave `b` of y.
+pub(crate) fn product(x: &[Amplitude], a: usize, y: &[Amplitude], b: usize) -> C {
+    let mut sum = C::new(0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        for k in 0..6 {
+            let (xr, xi) = (x.re[k].0[a], x.im[k].0[a]);
+            let (yr, yi) = (y.re[k].0[b], y.im[k].0[b]);
+            sum.re += xr * yr + xi * yi;
+            sum.im += xr * yi - xi * yr;
+        }
+    }
+    sum
+}

@@ -1,0 +1,153 @@
+//! Dispersion of real packings goes to the static stiffness at long waves.
+
+use crate::sample;
+use acoustics::dispersion::{self, curves};
+use acoustics::{AcousticsError, Curve, Modes, Ray, Settings, Survey, Way, measure};
+use emt::{Conditions, Measured, Modulus, christoffel};
+use grains::{Packing, Stiffness, Vec3};
+
+fn stiffness(packing: &Packing) -> Stiffness {
+    micro::analyse(packing, &micro::Settings::default()).unwrap().moduli.unwrap().stiffness
+}
+
+/// ρ v² of the stiffness for this curve's direction and motion, Pa.
+fn modulus(c: &Stiffness, curve: &Curve) -> f64 {
+    curve.motion.dot(&(c.christoffel(&curve.direction) * curve.motion))
+}
+
+#[test]
+fn long_waves_have_the_static_stiffness_and_every_speed_is_inside_its_uncertainty() {
+    for packing in [sample::isotropic(), sample::anisotropic()] {
+        let (m, c) = (measure(&packing, &Settings::default()).unwrap(), stiffness(&packing));
+        assert_eq!((m.curves.len(), m.warnings.len()), (27, 0));
+        for curve in &m.curves {
+            let (found, expected) = (m.density * curve.speed.powi(2), modulus(&c, curve));
+            let error = (found / expected - 1.0).abs();
+            let sigma = (2.0 * curve.stddev / curve.speed).hypot(m.density_stddev / m.density);
+            assert!(error < 4e-4, "{error:e} {curve:?}");
+            assert!(error < 2.5 * sigma, "{error:e} stated {sigma:e} {curve:?}");
+        }
+    }
+}
+
+#[test]
+fn christoffel_gives_the_moduli_of_the_transversely_isotropic_projection() {
+    for packing in [sample::isotropic(), sample::anisotropic()] {
+        let m = measure(&packing, &Settings::default()).unwrap();
+        let speeds: Vec<_> = m.waves.iter().map(|w| w.wave).collect();
+        let density = Measured { value: m.density, stddev: m.density_stddev };
+        let fitted = christoffel::observation(&speeds, density, m.axis, Conditions::at(50e3)).unwrap();
+        let t = stiffness(&packing).transverse_isotropy();
+        for (modulus, expected) in [
+            (Modulus::C33, t.c33),
+            (Modulus::C11, t.c11),
+            (Modulus::G13, t.g13),
+            (Modulus::G12, t.g12),
+            (Modulus::C13, t.c13),
+        ] {
+            let found = fitted.observation.moduli.get(modulus).unwrap();
+            assert!((found / expected - 1.0).abs() < 3e-3, "{modulus:?} {found:e} {expected:e}");
+        }
+    }
+}
+
+#[test]
+fn the_law_of_the_extrapolation_holds_at_all_long_waves() {
+    let packing = sample::anisotropic();
+    let rays = Survey::Three.rays(&Vec3::z(), Modes::All);
+    let far = dispersion::Settings::default();
+    let near = dispersion::Settings { wavelengths: vec![60.0, 100.0, 130.0, 640.0], ..far.clone() };
+    let (far, near) = (curves(&packing, &rays, &far).unwrap(), curves(&packing, &rays, &near).unwrap());
+    for (law, seen) in far.iter().zip(&near) {
+        for point in &seen.points {
+            // Soft grains are left behind, one after the other, from 100 diameters down.
+            let allowed = if point.wavenumber * 2e-4 < 0.06 { 5e-5 } else { 2e-3 };
+            let off = point.speed / law.at(point.wavenumber) - 1.0;
+            assert!(off.abs() < allowed, "{off:e} {point:?} {law:?}");
+        }
+    }
+}
+
+#[test]
+fn without_an_axis_every_mode_is_measured_as_it_is() {
+    let packing = sample::anisotropic();
+    let m = measure(&packing, &Settings { axis: None, ..Settings::default() }).unwrap();
+    assert_eq!((m.curves.len(), m.axis), (39, None));
+    let c = stiffness(&packing);
+    for curve in &m.curves {
+        let mode = c.plane_waves(&curve.direction).meant_by(&curve.motion);
+        assert!(mode.share > 1.0 - 1e-4, "{curve:?} {mode:?}");
+        let error = (m.density * curve.speed.powi(2) / mode.modulus - 1.0).abs();
+        assert!(error < 1e-4, "{error:e} {curve:?}");
+    }
+}
+
+#[test]
+fn what_was_asked_for_is_measured_and_nothing_else() {
+    let packing = sample::isotropic();
+    let of =
+        |modes| measure(&packing, &Settings { modes, survey: Survey::Three, ..Settings::default() }).unwrap();
+    let (p, s) = (of(Modes::Compression), of(Modes::Shear));
+    assert_eq!((p.waves.len(), s.waves.len()), (3, 6));
+    assert!(p.waves.iter().all(|w| w.wave.direction.dot(&w.wave.polarization) > 0.99));
+    assert!(s.waves.iter().all(|w| w.wave.direction.dot(&w.wave.polarization).abs() < 1e-9));
+}
+
+#[test]
+fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
+    let packing = sample::isotropic();
+    let p =
+        measure(&packing, &Settings { survey: Survey::Three, ..Settings::default() }).unwrap().participation;
+    assert_eq!(p.rattlers, 97);
+    let without = p.bulk * f64::from(2000 - 97) / 2000.0;
+    assert!(p.left_behind > 5 && p.mean() < without && p.mean() > 0.999 * without, "{p:?}");
+}
+
+#[test]
+fn two_threads_give_the_bits_of_one() {
+    let packing = sample::anisotropic();
+    let settings = Settings { survey: Survey::Three, ..Settings::default() };
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| measure(&packing, &settings).unwrap())
+    };
+    assert_eq!(with(1), with(2));
+}
+
+#[test]
+fn what_carries_no_wave_is_refused_with_the_reason() {
+    let mut gas = sample::isotropic();
+    gas.contacts.clear();
+    let error = measure(&gas, &Settings::default()).unwrap_err();
+    assert!(error.to_string().contains("none of the 2000 grains touches another"), "{error}");
+    // A chain of grains of which each touches the next, and no more than that.
+    let mut loose = sample::isotropic();
+    loose.contacts.truncate(3);
+    let error = measure(&loose, &Settings::default()).unwrap_err();
+    assert!(error.to_string().contains("are rattlers"), "{error}");
+}
+
+#[test]
+fn settings_out_of_range_are_refused_by_name() {
+    let packing = sample::isotropic();
+    let refused = |way: dispersion::Settings, what: &str| {
+        let error =
+            measure(&packing, &Settings { way: Way::Dispersion(way), ..Settings::default() }).unwrap_err();
+        assert!(
+            matches!(error, AcousticsError::Setting { .. }) && error.to_string().contains(what),
+            "{error}"
+        );
+    };
+    let usual = dispersion::Settings::default;
+    refused(dispersion::Settings { wavelengths: vec![100.0], ..usual() }, "number of wavelengths");
+    refused(dispersion::Settings { wavelengths: vec![100.0, 1.9], ..usual() }, "wavelength = 1.9e0");
+    refused(dispersion::Settings { wavelengths: vec![100.0, f64::NAN], ..usual() }, "wavelength = NaN");
+    refused(dispersion::Settings { tolerance: 0.0, ..usual() }, "tolerance");
+    let axis = Some(Vec3::new(0.0, f64::NAN, 1.0));
+    let error = measure(&packing, &Settings { axis, ..Settings::default() }).unwrap_err();
+    assert!(error.to_string().contains("|axis|"), "{error}");
+    let short = dispersion::Settings { max_iterations: 3, ..usual() };
+    let ray = Ray { direction: Vec3::z(), indices: None, motions: vec![Vec3::z()] };
+    let error = curves(&packing, &[ray], &short).unwrap_err();
+    assert!(matches!(error, AcousticsError::NotConverged { .. }), "{error}");
+}

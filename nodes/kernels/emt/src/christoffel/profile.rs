@@ -1,0 +1,119 @@
+//! How well the best medium about each axis fits.
+
+use super::ChristoffelError;
+use super::ray::{Column, Ray};
+use super::search::{Point, Problem};
+use grains::{Mat3, Vec3, WaveSpeed};
+use nalgebra::{Matrix2, Vector2};
+
+/// Angle over which slopes by the axis are taken, rad.
+const TILT: f64 = 1e-4;
+
+/// Most steps of a descent.
+const STEPS: usize = 40;
+
+/// Speeds, and how much each counts.
+#[derive(Clone, Copy)]
+pub(super) struct Speeds<'a> {
+    pub(super) measured: &'a [WaveSpeed],
+    pub(super) weights: &'a [f64],
+    /// Whether a speed is one of two S modes of its direction.
+    pub(super) paired: &'a [bool],
+}
+
+/// An axis, and the best medium about it.
+#[derive(Clone)]
+pub(super) struct Stand {
+    pub(super) axis: Vec3,
+    pub(super) point: Point,
+}
+
+/// What a tilt of the axis towards two perpendicular directions does.
+pub(super) struct Tilts {
+    /// The directions.
+    pub(super) towards: [Vec3; 2],
+    /// Curvature of half the weighted sum of squares, with the medium always the best, 1/rad².
+    pub(super) curvature: Matrix2<f64>,
+    gradient: Vector2<f64>,
+}
+
+impl<'a> Speeds<'a> {
+    /// Seen from this axis, whether or not it is the right one.
+    pub(super) fn rays(&self, axis: &Vec3) -> Result<Vec<Ray>, ChristoffelError> {
+        let ray = |(index, (speed, paired)): (usize, (&WaveSpeed, &bool))| {
+            let (ray, _) = Ray::about(index, speed, axis)?;
+            Ok(if *paired { ray.mixed() } else { ray })
+        };
+        self.measured.iter().zip(self.paired).enumerate().map(ray).collect()
+    }
+
+    /// The medium that is linear in the speeds, taking every motion for exactly that of a mode, and its sum of squares.
+    pub(super) fn linear(&self, axis: &Vec3) -> Option<(Column, f64)> {
+        Problem::new(&self.rays(axis).ok()?, self.weights).linear()
+    }
+
+    /// The best medium about `axis`, from `start` down.
+    pub(super) fn stand(&self, axis: Vec3, start: Column) -> Option<Stand> {
+        let rays = self.rays(&axis).ok()?;
+        let problem = Problem::new(&rays, self.weights);
+        let point = problem.descend(start).or_else(|| problem.starts().find_map(|s| problem.descend(s)))?;
+        Some(Stand { axis, point })
+    }
+
+    /// The axis at the end of the way down from `start`.
+    pub(super) fn descend(&self, start: Stand) -> Stand {
+        let mut here = start;
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            let Some(tilts) = self.tilts(&here) else { break };
+            let damped = tilts.curvature + Matrix2::identity() * damping * tilts.curvature.trace().max(1e-12);
+            let Some(step) = damped.cholesky().map(|c| -c.solve(&tilts.gradient)) else { break };
+            // Beyond a radian a tilt is none.
+            let step = step * (0.3 / step.norm()).min(1.0);
+            if step.norm() < 1e-9 {
+                break;
+            }
+            match self.stand(tilts.tilted(&here.axis, &step), here.point.specific) {
+                Some(next) if next.point.cost < here.point.cost => {
+                    here = next;
+                    damping *= 0.1;
+                }
+                _ if damping > 1e6 => break,
+                _ => damping *= 10.0,
+            }
+        }
+        here
+    }
+
+    /// What tilts do at `here`; `None` if there is no medium beside it.
+    pub(super) fn tilts(&self, here: &Stand) -> Option<Tilts> {
+        let one = here.axis.cross(&Mat3::identity().column(here.axis.iamin())).normalize();
+        let mut tilts = Tilts {
+            towards: [one, here.axis.cross(&one)],
+            curvature: Matrix2::zeros(),
+            gradient: Vector2::zeros(),
+        };
+        let residuals = |step: Vector2<f64>| {
+            let stand = self.stand(tilts.tilted(&here.axis, &step), here.point.specific)?;
+            Some(stand.point.rows.into_iter().map(|(residual, _)| residual))
+        };
+        let slopes = |step: Vector2<f64>| {
+            let pairs = residuals(step)?.zip(residuals(-step)?);
+            Some(pairs.map(|(up, down)| (up - down) / (2.0 * TILT)).collect::<Vec<f64>>())
+        };
+        let (a, b) = (slopes(Vector2::x() * TILT)?, slopes(Vector2::y() * TILT)?);
+        for (i, ((residual, _), weight)) in here.point.rows.iter().zip(self.weights).enumerate() {
+            let slope = Vector2::new(a[i], b[i]);
+            tilts.curvature += *weight * slope * slope.transpose();
+            tilts.gradient += *weight * *residual * slope;
+        }
+        Some(tilts)
+    }
+}
+
+impl Tilts {
+    /// The axis tilted by this much towards each direction, rad.
+    pub(super) fn tilted(&self, axis: &Vec3, step: &Vector2<f64>) -> Vec3 {
+        (axis + self.towards[0] * step.x + self.towards[1] * step.y).normalize()
+    }
+}

@@ -1,0 +1,161 @@
+//! Packings, which are not quite isotropic about any axis.
+
+use super::laboratory::{DENSITY, Numbers, every_mode, thirteen};
+use emt::christoffel::{self, Fitted};
+use emt::{Conditions, Measured, Modulus};
+use grains::{Stiffness, Vec3, WaveSpeed};
+use nalgebra::Matrix6;
+
+/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures it.
+#[rustfmt::skip]
+const ANISOTROPIC: [f64; 36] = [
+    267.923, 62.331, 65.989, -2.193, -0.769, 2.731,
+    62.331, 272.813, 63.711, -1.013, -1.647, 0.792,
+    65.989, 63.711, 285.615, 2.828, 0.824, -3.589,
+    -2.193, -1.013, 2.828, 108.234, -2.219, -1.946,
+    -0.769, -1.647, 0.824, -2.219, 109.547, -1.424,
+    2.731, 0.792, -3.589, -1.946, -1.424, 106.131,
+];
+#[rustfmt::skip]
+const ISOTROPIC: [f64; 36] = [
+    297.571, 60.278, 58.784, 0.316, -3.669, 2.293,
+    60.278, 294.613, 60.044, 3.769, 1.119, 0.598,
+    58.784, 60.044, 299.169, -0.524, 1.424, -0.264,
+    0.316, 3.769, -0.524, 117.958, 0.613, 1.185,
+    -3.669, 1.119, 1.424, 0.613, 119.167, 0.279,
+    2.293, 0.598, -0.264, 1.185, 0.279, 116.652,
+];
+
+fn packing(megapascals: &[f64; 36]) -> Stiffness {
+    Stiffness(Matrix6::from_row_slice(megapascals) * 1e6)
+}
+
+fn fit(speeds: &[WaveSpeed]) -> Fitted {
+    let density = Measured::exact(DENSITY);
+    christoffel::observation(speeds, density, Some(Vec3::z()), Conditions::at(50e3)).unwrap()
+}
+
+/// Measured to 0.05 %.
+fn sharp(packing: &Stiffness, directions: &[Vec3]) -> Vec<WaveSpeed> {
+    every_mode(packing, directions, 0.0005, &mut Numbers::new(1))
+}
+
+fn deviations(fitted: &Fitted, packing: &Stiffness) -> Vec<(Modulus, f64)> {
+    let truth = emt::Moduli::of_medium(&packing.transverse_isotropy());
+    let covariance = fitted.observation.covariance.unwrap();
+    let sigma = |m: Modulus| covariance[(m as usize, m as usize)].sqrt();
+    let known = fitted.observation.moduli.known();
+    known.map(|(m, value)| (m, (value - truth.get(m).unwrap()) / sigma(m))).collect()
+}
+
+#[test]
+fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_within_their_larger_errors() {
+    for (stiffness, scatter) in [(ANISOTROPIC, 0.020), (ISOTROPIC, 0.0114)] {
+        let packing = packing(&stiffness);
+        let fitted = fit(&sharp(&packing, &thirteen()));
+        assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
+        let departure = fitted.departure.expect("a packing is no medium");
+        assert!((departure.scatter / scatter - 1.0).abs() < 0.05, "{departure:?}");
+        // All speeds have the same error, 0.1 % of ρ v².
+        assert!((departure.birge_ratio * 0.001 / departure.scatter - 1.0).abs() < 1e-3, "{departure:?}");
+        assert!((departure.scatter / 2.0 / fitted.scatter().unwrap() - 1.0).abs() < 1e-3, "{departure:?}");
+        for (modulus, sigma) in deviations(&fitted, &packing) {
+            assert!(sigma.abs() < 3.0, "{modulus} is off by {sigma} sigma");
+        }
+    }
+}
+
+#[test]
+fn a_departure_enlarges_the_covariance_by_chi_square_per_degree_of_freedom_but_not_that_of_the_density() {
+    let packing = packing(&ANISOTROPIC);
+    let mut speeds = sharp(&packing, &thirteen());
+    let variances = |speeds: &[WaveSpeed], density| {
+        let axis = Some(Vec3::z());
+        let fitted = christoffel::observation(speeds, density, axis, Conditions::at(50e3)).unwrap();
+        (fitted.observation.covariance.unwrap(), fitted.observation.moduli)
+    };
+    let exact = Measured::exact(DENSITY);
+    let (departed, moduli) = variances(&speeds, exact);
+    let stated = fit(&speeds).chi_square.unwrap() / fit(&speeds).degrees_of_freedom as f64;
+    // With errors as large as the scatter nothing departs, and the covariance is the same.
+    speeds.iter_mut().for_each(|s| s.stddev = s.stddev.map(|e| e * stated.sqrt()));
+    assert_eq!(fit(&speeds).departure, None);
+    let (agreed, _) = variances(&speeds, exact);
+    assert!((departed - agreed).amax() < 1e-9 * agreed.amax());
+    let blurred = Measured { value: DENSITY, stddev: 0.01 * DENSITY };
+    let c33 = Modulus::C33 as usize;
+    let (with_density, _) = variances(&sharp(&packing, &thirteen()), blurred);
+    let expected = (0.01 * moduli.get(Modulus::C33).unwrap()).powi(2);
+    assert!(((with_density - departed)[(c33, c33)] / expected - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_a_packing_is_inferred_to_be_holds_although_it_departs() {
+    let packing = packing(&ANISOTROPIC);
+    let fitted = fit(&sharp(&packing, &thirteen()));
+    let relaxed = emt::model("relaxed").unwrap();
+    let estimate = relaxed.infer(&fitted.observation, emt::Calibration::default_for(relaxed)).unwrap();
+    // Counted: z 5.266, eps 0.0464.
+    let covariance = estimate.covariance().unwrap();
+    let (z, eps) = (estimate.structure.z.unwrap(), estimate.structure.eps.unwrap());
+    assert!((z - 5.266).abs() < 3.0 * covariance[(2, 2)].sqrt(), "{z} {}", covariance[(2, 2)].sqrt());
+    assert!((eps - 0.0464).abs() < 3.0 * covariance[(3, 3)].sqrt(), "{eps} {}", covariance[(3, 3)].sqrt());
+    assert!(estimate.warnings.iter().all(|w| !w.is_extrapolation()), "{:?}", estimate.warnings);
+}
+
+#[test]
+fn speeds_that_scatter_more_than_those_of_a_packing_are_a_conflict() {
+    let mut speeds = sharp(&packing(&ANISOTROPIC), &thirteen());
+    let mut numbers = Numbers::new(2);
+    speeds.iter_mut().for_each(|s| s.speed *= 1.0 + 0.04 * numbers.normal());
+    let fitted = fit(&speeds);
+    assert!(fitted.departure.is_none() && fitted.conflict.is_some(), "{fitted:?}");
+}
+
+#[test]
+fn one_speed_that_is_off_where_all_others_agree_is_no_departure() {
+    let medium = packing(&ANISOTROPIC).transverse_isotropy().stiffness();
+    let mut speeds = every_mode(&medium, &thirteen(), 0.0005, &mut Numbers::new(3));
+    assert_eq!((fit(&speeds).conflict, fit(&speeds).departure), (None, None));
+    // 1 % is 20 of its sigma, and less than a packing scatters.
+    speeds[9].speed *= 1.01;
+    let conflict = fit(&speeds).conflict.expect("38 speeds say otherwise");
+    assert!(conflict.worst == 9 && conflict.sigma > 15.0, "{conflict:?}");
+}
+
+/// The S modes of a packing move as its own scatter turns them; one of them alone could be either of the medium's.
+#[test]
+fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_alone_may_not() {
+    let mut numbers = Numbers::new(4);
+    let medium = packing(&ANISOTROPIC).transverse_isotropy();
+    let stiffness = medium.stiffness();
+    let mut speeds = every_mode(&stiffness, &thirteen(), 0.0005, &mut numbers);
+    let exact = fit(&speeds);
+    let turned = |speeds: &mut Vec<WaveSpeed>, at: [usize; 2], angle: f64| {
+        let [a, b] = at.map(|i| speeds[i].polarization);
+        let (sin, cos) = angle.sin_cos();
+        let of = |p: &Vec3, n: &Vec3| (p.dot(&(stiffness.christoffel(n) * p)) / DENSITY).sqrt();
+        for (i, p) in at.into_iter().zip([cos * a + sin * b, cos * b - sin * a]) {
+            speeds[i].speed = of(&p, &speeds[i].direction);
+            speeds[i].polarization = p;
+        }
+    };
+    // Two S waves across the axis, at 45° between its modes.
+    let across: Vec<usize> = (0..speeds.len())
+        .filter(|i| {
+            let s = &speeds[*i];
+            s.direction.z.abs() < 1e-9 && s.direction.dot(&s.polarization).abs() < 0.1
+        })
+        .collect();
+    turned(&mut speeds, [across[0], across[1]], std::f64::consts::FRAC_PI_4);
+    let mixed = fit(&speeds);
+    assert_eq!((mixed.conflict, mixed.departure), (None, None));
+    for (modulus, value) in mixed.observation.moduli.known() {
+        let off = value / exact.observation.moduli.get(modulus).unwrap() - 1.0;
+        assert!(off.abs() < 2e-3, "{modulus} {off}");
+    }
+    speeds.remove(across[1]);
+    let alone =
+        christoffel::observation(&speeds, Measured::exact(DENSITY), Some(Vec3::z()), Conditions::at(50e3));
+    assert!(alone.unwrap_err().to_string().contains("45 degrees from the nearest mode"));
+}

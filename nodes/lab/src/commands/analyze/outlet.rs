@@ -1,0 +1,72 @@
+//! Results to stdout and, if asked for, into a recording.
+
+use super::measure::Found;
+use crate::commands::packings;
+use crate::commands::packings::bar::Bar;
+use crate::commands::packings::printer::{Printed, Printer};
+use crate::failure::Failure;
+use crate::output::{Table, print};
+use crate::results::state::{self, State};
+use crate::results::state_text;
+use crate::tape::Tape;
+use grainlab_msgs::topics;
+use node_kit::Exit;
+
+/// Prints and records results.
+pub(super) struct Outlet {
+    printer: Printer<State>,
+    tape: Option<Tape>,
+    /// Packings without a stiffness.
+    without: usize,
+}
+
+impl Outlet {
+    pub(super) fn new(printer: Printer<State>, tape: Option<Tape>) -> Self {
+        Self { printer, tape, without: 0 }
+    }
+}
+
+impl packings::Outlet for Outlet {
+    type Found = Found;
+
+    fn emit(&mut self, found: Found, bar: &Bar) -> Result<Exit, Failure> {
+        self.without += usize::from(found.state.stiffness_pa.is_none());
+        let text = self.printer.next(&found.state)?;
+        bar.around(|| print(&text))?;
+        let Some(tape) = &mut self.tape else { return Ok(Exit::Done) };
+        match &found.messages {
+            Ok(measured) => {
+                let fabric = &measured.fabric;
+                tape.put(&topics::FABRIC, &fabric.header, fabric)?;
+                if let Ok(moduli) = &measured.moduli {
+                    tape.put(&topics::MODULI, &moduli.header, moduli)?;
+                }
+                Ok(Exit::Done)
+            }
+            Err(message) => {
+                bar.say(&format!("grainlab: {message}"));
+                Ok(Exit::PhysicsInvalid)
+            }
+        }
+    }
+
+    fn finish(self) -> Result<Exit, Failure> {
+        print(&self.printer.end()?)?;
+        if let Some(tape) = self.tape {
+            tape.finish()?;
+        }
+        let printed = self.printer.printed();
+        let none = printed > 0 && self.without == printed;
+        Ok(if none { Exit::PhysicsInvalid } else { Exit::Done })
+    }
+}
+
+impl Printed for State {
+    fn text(&self) -> String {
+        format!("{}, step {}\n{}", self.source, self.step, state_text::text(self))
+    }
+
+    fn table(states: &[Self]) -> Table {
+        state::table(states)
+    }
+}

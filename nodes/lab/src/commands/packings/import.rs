@@ -1,0 +1,94 @@
+//! What files do not say, as flags.
+
+use crate::failure::Failure;
+use grains::{Mat3, Vec3};
+use recordings::import::ImportOptions;
+use std::path::PathBuf;
+
+/// Formats, for the help of a command.
+pub(crate) const FORMATS: &str = "\
+A file that cannot be read is named and the others are measured; the exit code is that of the worst file. Ctrl-C prints what
+is finished and ends with 130. Formats are told by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
+c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
+(atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
+comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
+from positions, with Hertz normal forces and no tangential ones.";
+
+/// A flag goes before what a file or its sidecar says.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Shear modulus of the grains, Pa
+    #[arg(long, value_name = "PA")]
+    shear_modulus: Option<f64>,
+    /// Poisson ratio of the grains
+    #[arg(long, value_name = "NU")]
+    poisson: Option<f64>,
+    /// Density of the grains, kg/m3
+    #[arg(long, value_name = "KG_PER_M3")]
+    density: Option<f64>,
+    /// Friction coefficient; inf is allowed
+    #[arg(long, value_name = "MU")]
+    friction: Option<f64>,
+    /// Radius of every grain, m, for files that have none
+    #[arg(long, value_name = "M")]
+    radius: Option<f64>,
+    /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
+    #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
+    cell: Vec<f64>,
+    /// Topic that holds the packings: of recordings, or of a live run
+    #[arg(long, value_name = "NAME", default_value = "packing")]
+    pub(crate) topic: String,
+    /// LAMMPS `dump local` with the contact forces of a single-frame dump
+    #[arg(long, value_name = "FILE")]
+    contact_forces: Option<PathBuf>,
+}
+
+impl Args {
+    /// The same, checked.
+    pub(crate) fn options(&self) -> Result<ImportOptions, Failure> {
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        in_range("shear-modulus", self.shear_modulus, "a modulus in Pa, more than 0", positive)?;
+        in_range("poisson", self.poisson, "from 0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
+        in_range("density", self.density, "a density in kg/m3, more than 0", positive)?;
+        in_range("friction", self.friction, "0 or more", |v| v >= 0.0)?;
+        in_range("radius", self.radius, "a length in m, more than 0", positive)?;
+        let cell = match self.cell.as_slice() {
+            [] => None,
+            [x, y, z] => Some(Mat3::from_diagonal(&Vec3::new(*x, *y, *z))),
+            nine if nine.len() == 9 => Some(Mat3::from_row_slice(nine)),
+            other => {
+                return Err(Failure::usage(format!("--cell has {} numbers; it takes 3 or 9", other.len())));
+            }
+        };
+        let contact_forces = match &self.contact_forces {
+            Some(path) => {
+                let text = std::fs::read_to_string(path);
+                Some(text.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?)
+            }
+            None => None,
+        };
+        Ok(ImportOptions {
+            cell,
+            shear_modulus: self.shear_modulus,
+            poisson_ratio: self.poisson,
+            density: self.density,
+            friction: self.friction,
+            radius: self.radius,
+            topic: Some(self.topic.clone()),
+            contact_forces,
+        })
+    }
+}
+
+/// Refuses a flag whose value is out of range, by its name.
+pub(crate) fn in_range(
+    flag: &str,
+    value: Option<f64>,
+    requirement: &str,
+    accept: fn(f64) -> bool,
+) -> Result<(), Failure> {
+    match value.filter(|v| !accept(*v)) {
+        Some(v) => Err(Failure::usage(format!("--{flag} {v} is out of range: {requirement}"))),
+        None => Ok(()),
+    }
+}

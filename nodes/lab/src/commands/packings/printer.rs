@@ -1,0 +1,131 @@
+//! Results that, printed one after the other, are one table, one JSON array or one CSV.
+
+use crate::failure::Failure;
+use crate::output::{Format, Table};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::marker::PhantomData;
+
+/// A result that can be printed in every format.
+pub(crate) trait Printed: Serialize + Sized {
+    /// For people.
+    fn text(&self) -> String;
+
+    /// Results as a table, one a row, at full precision.
+    fn table(results: &[Self]) -> Table;
+}
+
+/// Prints results one after the other.
+pub(crate) struct Printer<R> {
+    format: Format,
+    /// Of CSV; none for all.
+    columns: Vec<String>,
+    printed: usize,
+    of: PhantomData<fn(&R)>,
+}
+
+impl<R: Printed> Printer<R> {
+    /// `columns` of CSV; none for all. An unknown column is better refused before the work than after it.
+    pub(crate) fn new(format: Format, columns: Vec<String>) -> Result<Self, Failure> {
+        if !columns.is_empty() && format != Format::Csv {
+            return Err(Failure::usage("--columns is for --format csv"));
+        }
+        let printer = Self { format, columns, printed: 0, of: PhantomData };
+        printer.csv(&[])?;
+        Ok(printer)
+    }
+
+    /// Results printed so far.
+    pub(crate) fn printed(&self) -> usize {
+        self.printed
+    }
+
+    /// The text of the next one.
+    pub(crate) fn next(&mut self, result: &R) -> Result<String, Failure> {
+        let first = self.printed == 0;
+        self.printed += 1;
+        Ok(match self.format {
+            Format::Table => result.text(),
+            Format::Csv => {
+                let text = self.csv(std::slice::from_ref(result))?;
+                match text.split_once('\n') {
+                    Some((_, row)) if !first => row.to_owned(),
+                    _ => text,
+                }
+            }
+            Format::Json => {
+                let element = serde_json::to_string_pretty(result)
+                    .map_err(|e| Failure::failed(format!("JSON: {e}")))?;
+                let mut text = String::from(if first { "[" } else { "," });
+                for line in element.lines() {
+                    // Writing to a String cannot fail.
+                    let _ = write!(text, "\n  {line}");
+                }
+                text
+            }
+        })
+    }
+
+    /// What comes after the last one.
+    pub(crate) fn end(&self) -> Result<String, Failure> {
+        Ok(match (self.format, self.printed) {
+            (Format::Json, 0) => "[]\n".to_owned(),
+            (Format::Json, _) => "\n]\n".to_owned(),
+            (Format::Csv, 0) => self.csv(&[])?,
+            _ => String::new(),
+        })
+    }
+
+    fn csv(&self, results: &[R]) -> Result<String, Failure> {
+        let table = R::table(results);
+        if self.columns.is_empty() {
+            return Ok(table.csv());
+        }
+        let unknown = |name| {
+            let known = table.header().join(", ");
+            Failure::usage(format!("--columns: there is no column {name:?}; there are: {known}"))
+        };
+        Ok(table.select(&self.columns).map_err(unknown)?.csv())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::state::{self, State};
+    use grains::{Cell, Mat3, Material, Packing, Vec3};
+
+    fn state(step: u64) -> State {
+        let packing = Packing {
+            step,
+            time: 0.0,
+            cell: Cell::cube(1.0).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![0],
+            radii: vec![0.1],
+            positions: vec![Vec3::zeros()],
+            velocities: vec![Vec3::zeros()],
+            spins: vec![Vec3::zeros()],
+            contacts: Vec::new(),
+            material: Material::GLASS,
+            friction: 0.1,
+            time_step: 0.0,
+        };
+        let found = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        State::new("a, \"b\"".into(), &packing, &found.fabric, None)
+    }
+
+    #[test]
+    fn results_printed_one_by_one_are_the_text_of_all() {
+        for count in 0..4 {
+            let states: Vec<State> = (0..count).map(state).collect();
+            let text = |format| {
+                let mut printer = Printer::new(format, Vec::new()).unwrap();
+                let parts: String = states.iter().map(|s| printer.next(s).unwrap()).collect();
+                parts + &printer.end().unwrap()
+            };
+            assert_eq!(text(Format::Json), crate::output::json(&states).unwrap());
+            assert_eq!(text(Format::Csv), state::csv(&states));
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Results in the order asked for: each goes out as soon as all before it have.
+
+use super::Outlet;
+use super::bar::Bar;
+use crate::failure::{Failure, worse};
+use node_kit::Exit;
+use std::collections::BTreeMap;
+
+/// Which packing of which file.
+pub(crate) type Place = (usize, usize);
+
+/// What there was to say of a source that has been read to its end.
+#[derive(Debug)]
+pub(crate) struct Ending {
+    /// Packings it gave.
+    pub(crate) packings: usize,
+    pub(crate) complaints: Vec<String>,
+    pub(crate) exit: Exit,
+}
+
+/// Hands results on. What comes too early waits; a result is small.
+pub(crate) struct Sink<O: Outlet> {
+    outlet: O,
+    /// The first that has not been handed on.
+    next: Place,
+    waiting: BTreeMap<Place, Result<O::Found, String>>,
+    endings: BTreeMap<usize, Ending>,
+    exit: Exit,
+    measured: usize,
+    /// Where lines on stderr must make way for a bar.
+    pub(super) bar: Bar,
+}
+
+impl<O: Outlet> Sink<O> {
+    /// Nothing is there yet.
+    pub(crate) fn new(outlet: O) -> Self {
+        Self {
+            outlet,
+            next: (0, 0),
+            waiting: BTreeMap::new(),
+            endings: BTreeMap::new(),
+            exit: Exit::Done,
+            measured: 0,
+            bar: Bar::hidden(),
+        }
+    }
+
+    /// Takes what was found of one packing.
+    pub(crate) fn put(&mut self, place: Place, found: Result<O::Found, String>) -> Result<(), Failure> {
+        self.waiting.insert(place, found);
+        self.measured += 1;
+        self.advance()
+    }
+
+    /// Takes the end of a source: its packings are known now.
+    pub(crate) fn end(&mut self, file: usize, ending: Ending) -> Result<(), Failure> {
+        self.endings.insert(file, ending);
+        self.bar.file_done();
+        self.advance()
+    }
+
+    /// Packings measured so far.
+    pub(crate) fn measured(&self) -> usize {
+        self.measured
+    }
+
+    fn advance(&mut self) -> Result<(), Failure> {
+        self.bar.packings(self.measured);
+        loop {
+            if let Some(found) = self.waiting.remove(&self.next) {
+                self.next.1 += 1;
+                self.emit(found)?;
+            } else if self.endings.get(&self.next.0).is_some_and(|e| e.packings == self.next.1) {
+                if let Some(ending) = self.endings.remove(&self.next.0) {
+                    self.complain(ending);
+                }
+                self.next = (self.next.0 + 1, 0);
+            } else {
+                return Ok(());
+            }
+        }
+    }
+
+    fn complain(&mut self, ending: Ending) {
+        for line in ending.complaints {
+            self.bar.say(&format!("grainlab: {line}"));
+        }
+        self.exit = worse(self.exit, ending.exit);
+    }
+
+    fn emit(&mut self, found: Result<O::Found, String>) -> Result<(), Failure> {
+        let exit = match found {
+            Ok(found) => self.outlet.emit(found, &self.bar)?,
+            Err(message) => {
+                self.bar.say(&format!("grainlab: {message}"));
+                Exit::PhysicsInvalid
+            }
+        };
+        self.exit = worse(self.exit, exit);
+        Ok(())
+    }
+
+    /// Hands on whatever still waits behind a gap, and completes the output.
+    pub(crate) fn finish(mut self) -> Result<Exit, Failure> {
+        for (_, found) in std::mem::take(&mut self.waiting) {
+            self.emit(found)?;
+        }
+        for (_, ending) in std::mem::take(&mut self.endings) {
+            self.complain(ending);
+        }
+        self.bar.clear();
+        Ok(worse(self.exit, self.outlet.finish()?))
+    }
+}

@@ -1,0 +1,63 @@
+//! `grainlab probe`: sends waves through packings from files, without DDS.
+//!
+//! - [`flags`]: the parameters of the node acoustic_probe as flags
+//! - [`measure`]: one packing; [`outlet`]: results to stdout and into a recording
+
+mod flags;
+mod measure;
+mod outlet;
+
+use super::packings::{files, import, printer::Printer};
+use crate::failure::Failure;
+use crate::output::Format;
+use crate::tape::Tape;
+use flags::Flags;
+use grainlab_msgs::topics;
+use measure::Probe;
+use node_kit::Exit;
+use outlet::Outlet;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  Wave speeds of every packing of a recorded run, and the moduli they mean, beside those of the contact network:
+    grainlab probe recordings/runs/demo-1-1
+  A packing of LAMMPS through an instrument that errs by 0.3 %:
+    grainlab probe packing.data --shear-modulus 29e9 --poisson 0.2 --friction 0.3 --speed-noise 0.003
+  Bursts through the packing, their arrivals picked, the traces kept:
+    grainlab probe packing.csv --method cross_correlation --signal-to-noise 20 --shots 64 --record heard
+  What the inversion makes of the speeds, judged by what was counted:
+    grainlab probe recordings/runs/* --format csv | grainlab invert --table - --judge --model relaxed";
+
+/// Files to send waves through, and what they do not say.
+#[derive(Debug, clap::Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
+pub(crate) struct Args {
+    /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
+    /// as .gz
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    import: import::Args,
+    /// Also record the WaveSpeeds and Waveform messages that the node acoustic_probe would publish, into this new directory
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// Columns of --format csv, in this order [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    columns: Vec<String>,
+    #[command(flatten)]
+    flags: Flags,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let options = args.import.options()?;
+    let settings = args.flags.settings()?;
+    let printer = Printer::new(args.format, args.columns.clone())?;
+    let recorded = [topics::WAVE_SPEEDS, topics::WAVEFORM];
+    let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "probe")).transpose()?;
+    files::run(&args.files, &options, &Probe { settings }, Outlet::new(printer, tape))
+}

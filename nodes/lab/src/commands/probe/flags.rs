@@ -1,0 +1,134 @@
+//! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
+
+use crate::failure::Failure;
+use acoustic_probe::{Settings, parameters};
+use clap::{Arg, ArgMatches, Command, FromArgMatches};
+use node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
+
+const NODE: &str = "acoustic_probe";
+
+/// What was given, by the name of the parameter.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Flags(Vec<(&'static str, String)>);
+
+impl Flags {
+    /// The settings of the node with these parameters.
+    pub(super) fn settings(&self) -> Result<Settings, Failure> {
+        let specs = parameters();
+        let mut words = vec!["--ros-args".to_owned()];
+        for (name, text) in &self.0 {
+            let Some(spec) = specs.iter().find(|s| s.name == *name) else { continue };
+            words.extend(["-p".to_owned(), format!("{name}:={}", yaml(spec, text))]);
+        }
+        let (ros, _) = RosArgs::parse(&words).map_err(Failure::usage)?;
+        let names = Names::new(NODE).map_err(Failure::usage)?;
+        let parameters = Parameters::resolve(&specs, NODE, &names, &ros);
+        // Whoever typed a flag did not type -p.
+        let named = |e: &dyn std::fmt::Display| Failure::usage(e.to_string().replacen("-p: ", "", 1));
+        Settings::try_from(&parameters.map_err(|e| named(&e))?).map_err(|e| named(&e))
+    }
+}
+
+/// A value as a shell gives it, as YAML.
+fn yaml(spec: &ParameterSpec, text: &str) -> String {
+    match &spec.default {
+        ParameterValue::String(_) => serde_json::Value::from(text).to_string(),
+        ParameterValue::DoubleArray(_) if !text.starts_with('[') => format!("[{text}]"),
+        ParameterValue::Double(_) if text == "inf" => ".inf".to_owned(),
+        _ => text.to_owned(),
+    }
+}
+
+fn flag(spec: &ParameterSpec) -> Arg {
+    let value = match &spec.default {
+        ParameterValue::Double(_) => "NUMBER",
+        ParameterValue::Integer(_) => "N",
+        ParameterValue::DoubleArray(_) => "NUMBER,...",
+        _ => "TEXT",
+    };
+    let default = match &spec.default {
+        ParameterValue::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    let mut help = format!("{} [default: {default}", spec.description);
+    if spec.range != Range::Any {
+        help += &format!("; {}", spec.range);
+    }
+    Arg::new(spec.name)
+        .long(spec.name.replace('_', "-"))
+        .value_name(value)
+        .help(help + "]")
+        .help_heading("Measurement, as the parameters of the node acoustic_probe")
+}
+
+impl clap::Args for Flags {
+    fn augment_args(command: Command) -> Command {
+        command.args(parameters().iter().map(flag))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Flags {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = |spec: ParameterSpec| Some((spec.name, matches.get_one::<String>(spec.name)?.clone()));
+        Ok(Self(parameters().into_iter().filter_map(given).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use acoustics::Way;
+    use clap::Args as _;
+
+    fn settings(words: &[&str]) -> Result<Settings, String> {
+        let command = Flags::augment_args(Command::new("probe"));
+        let matches =
+            command.try_get_matches_from([&["probe"], words].concat()).map_err(|e| e.to_string())?;
+        Flags::from_arg_matches(&matches).unwrap().settings().map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn every_parameter_is_a_flag_and_none_given_are_the_defaults() {
+        assert_eq!(settings(&[]).unwrap(), Settings::default());
+        for spec in parameters() {
+            let flag = format!("--{}", spec.name.replace('_', "-"));
+            let text = match &spec.default {
+                ParameterValue::String(text) => text.clone(),
+                ParameterValue::DoubleArray(list) if list.is_empty() => continue,
+                ParameterValue::Double(v) if v.is_infinite() => "inf".to_owned(),
+                other => other.to_string().replace(['[', ']', ' '], ""),
+            };
+            assert_eq!(settings(&[&flag, &text]).unwrap(), Settings::default(), "{flag} {text}");
+        }
+    }
+
+    #[test]
+    fn lists_and_axes_are_typed_as_elsewhere() {
+        let s = settings(&["--wavelengths", "30,40,60", "--axis", "0,0,2", "--seed", "7"]).unwrap().0;
+        let Way::Dispersion(d) = s.way else { panic!("the default") };
+        assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grains::Vec3::z())));
+        assert_eq!(s.instrument.seed, 7);
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_named() {
+        for (words, part) in [
+            (["--speed-noise", "2"], "\"speed_noise\" = 2"),
+            (["--method", "ear"], "\"method\""),
+            (["--wavelengths", "60,80"], "\"wavelengths\" has 2"),
+            (["--shots", "many"], "\"shots\""),
+        ] {
+            let error = settings(&words).unwrap_err();
+            assert!(error.contains(part) && !error.starts_with("-p"), "{error}");
+        }
+    }
+}

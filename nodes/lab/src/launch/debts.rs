@@ -1,0 +1,153 @@
+//! What the run still owes of its last packing: one microstructure from every kind of data that its nodes measure.
+
+use super::plan::NodePlan;
+use grainlab_msgs::topics;
+use std::collections::BTreeSet;
+
+/// One kind of data, by the topic that carries it.
+#[derive(Debug)]
+struct Kind {
+    /// Topic of the data: the `source` of a microstructure.
+    topic: &'static str,
+    /// Node that writes it.
+    node: &'static str,
+    measured: BTreeSet<u64>,
+    inverted: BTreeSet<u64>,
+    declined: BTreeSet<u64>,
+}
+
+/// Where the run stands with one packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Standing {
+    /// Every kind of data is inverted.
+    Complete,
+    /// Nothing is to come any more, and this node found nothing to invert.
+    Declined(&'static str),
+    /// What is there is not inverted yet; this node measured it.
+    Measured(&'static str),
+    /// This node has not measured it yet.
+    Open(&'static str),
+}
+
+/// What is known of every kind of data.
+#[derive(Debug)]
+pub(crate) struct Debts(Vec<Kind>);
+
+impl Debts {
+    /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
+    /// without analyzer and probe gets to know that nothing is inferred.
+    pub(crate) fn of(plans: &[NodePlan]) -> Self {
+        let kind = |topic: &grainlab_msgs::Topic| Kind {
+            topic: topic.name,
+            node: topic.writer,
+            measured: BTreeSet::new(),
+            inverted: BTreeSet::new(),
+            declined: BTreeSet::new(),
+        };
+        let has = |node: &str| plans.iter().any(|p| p.node == node);
+        let mut kinds = Vec::new();
+        let (moduli, speeds) = (kind(&topics::MODULI), kind(&topics::WAVE_SPEEDS));
+        let probe = has(speeds.node);
+        if has(moduli.node) || !probe {
+            kinds.push(moduli);
+        }
+        if probe {
+            kinds.push(speeds);
+        }
+        Self(kinds)
+    }
+
+    /// The data of this topic about the packing of `step` are there, or it is known that there are none but a fabric.
+    pub(crate) fn measured(&mut self, topic: &str, step: u64) {
+        self.of_topic(topic).for_each(|k| {
+            k.measured.insert(step);
+        });
+    }
+
+    /// A microstructure from the data of this topic is there.
+    pub(crate) fn inverted(&mut self, topic: &str, step: u64) {
+        self.of_topic(topic).for_each(|k| {
+            k.inverted.insert(step);
+        });
+    }
+
+    /// There are no data of this topic about the packing of `step`, and there will be none.
+    pub(crate) fn declined(&mut self, topic: &str, step: u64) {
+        self.of_topic(topic).for_each(|k| {
+            k.declined.insert(step);
+        });
+    }
+
+    fn of_topic<'a>(&'a mut self, topic: &str) -> impl Iterator<Item = &'a mut Kind> {
+        self.0.iter_mut().filter(move |k| k.topic == topic)
+    }
+
+    /// Where the run stands with the packing of `step`: by what takes longest.
+    pub(crate) fn standing(&self, step: u64) -> Standing {
+        let owed = || self.0.iter().filter(|k| !k.inverted.contains(&step));
+        let due = || owed().filter(|k| !k.declined.contains(&step));
+        if let Some(open) = due().find(|k| !k.measured.contains(&step)) {
+            return Standing::Open(open.node);
+        }
+        if let Some(measured) = due().next() {
+            return Standing::Measured(measured.node);
+        }
+        owed().next().map_or(Standing::Complete, |k| Standing::Declined(k.node))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ANALYZER: &str = "fabric_analyzer";
+    const PROBE: &str = "acoustic_probe";
+
+    fn debts(nodes: &[&str]) -> Debts {
+        let plan = |node: &&str| NodePlan {
+            name: (*node).to_owned(),
+            node: (*node).to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        Debts::of(&nodes.iter().map(plan).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn with_a_probe_both_kinds_of_data_must_be_inverted() {
+        let mut d = debts(&[ANALYZER, PROBE]);
+        assert_eq!(d.standing(7), Standing::Open(ANALYZER));
+        d.measured("moduli", 7);
+        d.inverted("moduli", 7);
+        assert_eq!(d.standing(7), Standing::Open(PROBE));
+        d.measured("wave_speeds", 7);
+        assert_eq!(d.standing(7), Standing::Measured(PROBE));
+        d.inverted("wave_speeds", 6);
+        assert_eq!(d.standing(7), Standing::Measured(PROBE), "another packing");
+        d.inverted("wave_speeds", 7);
+        assert_eq!(d.standing(7), Standing::Complete);
+    }
+
+    #[test]
+    fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
+        let mut d = debts(&[ANALYZER]);
+        d.inverted("wave_speeds", 7);
+        assert_eq!(d.standing(7), Standing::Open(ANALYZER));
+        d.inverted("moduli", 7);
+        assert_eq!(d.standing(7), Standing::Complete);
+        assert_eq!(debts(&[]).standing(7), Standing::Open(ANALYZER));
+        let mut d = debts(&[PROBE]);
+        d.inverted("wave_speeds", 7);
+        assert_eq!(d.standing(7), Standing::Complete);
+    }
+
+    #[test]
+    fn a_probe_that_declines_is_not_waited_for() {
+        let mut d = debts(&[ANALYZER, PROBE]);
+        d.declined("wave_speeds", 7);
+        d.measured("moduli", 7);
+        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
+        d.inverted("moduli", 7);
+        assert_eq!(d.standing(7), Standing::Declined(PROBE));
+    }
+}

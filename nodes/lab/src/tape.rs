@@ -1,0 +1,73 @@
+//! A recording of what a node would publish, made without the node.
+
+use crate::failure::Failure;
+use grainlab_msgs::std_msgs::Header;
+use grainlab_msgs::{Message, Topic, to_cdr};
+use recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use std::path::Path;
+
+/// Writes messages. Their log times are their stamps, moved forward where that takes it: two recordings of the same
+/// packings are the same.
+pub(crate) struct Tape {
+    writer: RunWriter,
+    /// Stands for the writer, which no network has named.
+    guid: Guid,
+    command: &'static str,
+    /// Messages of every topic so far.
+    counts: Vec<(Topic, i64)>,
+}
+
+impl Tape {
+    /// Begins a recording of these topics in this directory, made by `grainlab command`.
+    pub(crate) fn create(directory: &Path, topics: &[Topic], command: &'static str) -> Result<Self, Failure> {
+        let name = directory.file_name().map(|n| n.to_string_lossy().into_owned());
+        let Some(name) = name.filter(|_| directory.extension().is_none_or(|e| e != "mcap")) else {
+            let shown = directory.display();
+            return Err(Failure::usage(format!(
+                "--record {shown} must name a directory, as bag record -o does"
+            )));
+        };
+        let specs: Vec<TopicSpec> =
+            topics.iter().map(|t| TopicSpec::of_contract(t, &t.absolute_name())).collect();
+        let mut writer =
+            RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
+        writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        let mut guid = Guid([b' '; 16]);
+        let title = format!("grainlab {command}");
+        guid.0.iter_mut().zip(title.bytes()).for_each(|(to, from)| *to = from);
+        Ok(Self { writer, guid, command, counts: topics.iter().map(|t| (*t, 0)).collect() })
+    }
+
+    /// Records the next message of one of its topics.
+    pub(crate) fn put<T: Message>(
+        &mut self,
+        topic: &Topic,
+        header: &Header,
+        message: &T,
+    ) -> Result<(), Failure> {
+        let Some((_, count)) = self.counts.iter_mut().find(|(t, _)| t.name == topic.name) else {
+            return Err(Failure::failed(format!("{} is not among the topics recorded", topic.name)));
+        };
+        *count += 1;
+        let seconds = u64::try_from(header.stamp.sec).unwrap_or(0);
+        let time = seconds * 1_000_000_000 + u64::from(header.stamp.nanosec);
+        let payload = to_cdr(message);
+        let sample = Incoming {
+            guid: self.guid,
+            sequence: *count,
+            source_time: Some(time),
+            receive_time: time,
+            payload: &payload,
+        };
+        self.writer.write(&topic.absolute_name(), &sample).map(drop).map_err(Failure::failed)
+    }
+
+    /// Completes the recording.
+    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+        for (topic, count) in &self.counts {
+            self.writer.ledger_mut().report(&topic.absolute_name(), self.guid, *count as u64);
+        }
+        self.writer.ledger_mut().name(self.guid, self.command);
+        self.writer.finish().map(drop).map_err(Failure::failed)
+    }
+}

@@ -1,0 +1,99 @@
+//! An instrument that shares no code with ours, but the message files: CycloneDDS, from Python.
+
+use emt_inversion::{Settings, microstructure_of_speeds};
+use grainlab_msgs::msg::{Microstructure, WaveSpeeds};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use system_tests::lab::{LIMIT, Lab, grainlab};
+use system_tests::process::{Ended, Process};
+use system_tests::python;
+
+fn here(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A program of the peer's, in the domain of the laboratory and on loopback.
+fn peer(lab: &Lab, command: &mut Command) -> Ended {
+    let ended = Process::start(
+        command
+            .current_dir(lab.folder())
+            .env("ROS_DOMAIN_ID", lab.domain.to_string())
+            .env_remove("ROS_STATIC_PEERS")
+            .env_remove("ROS_LOCALHOST_ONLY")
+            .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
+            .env_remove("CYCLONEDDS_URI"),
+    )
+    .ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    ended
+}
+
+/// What the inversion answers to a message that the peer says it sent.
+fn expected(sent: &Value) -> Microstructure {
+    let sent: WaveSpeeds =
+        serde_json::from_value(sent.clone()).expect("the fields of our message, all of them");
+    assert!(sent.speeds.len() >= 5 && sent.density > 0.0, "{sent:?}");
+    microstructure_of_speeds(&sent, &Settings::default()).unwrap()
+}
+
+fn received(message: &Value) -> Microstructure {
+    serde_json::from_value(message.clone()).expect("the fields of our message, all of them")
+}
+
+#[test]
+fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_mean() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let script = here("../nodes/launch/instrument.sh");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new("sh");
+        peer(&lab, command.arg(&script).args(arguments).env("GRAINLAB", grainlab()).env("PYTHON", &python))
+    };
+    let whole: Value = serde_json::from_str(&run(&["--json"]).stdout).unwrap();
+    let answer = received(&whole["received"]);
+    assert_eq!(answer, expected(&whole["sent"]));
+    assert_eq!((answer.source.as_str(), answer.estimates.len()), ("wave_speeds", emt_models()));
+    // For people, a line a model, with the same numbers.
+    let printed = run(&[]).stdout;
+    for estimate in &answer.estimates {
+        let line = printed.lines().find(|l| l.split_whitespace().next() == Some(&estimate.model));
+        let line = line.unwrap_or_else(|| panic!("no line of {}:\n{printed}", estimate.model));
+        assert!(!estimate.k_known || line.contains(&format!("{:.4} +- ", estimate.k)), "{line}");
+        assert!(!estimate.z_known || line.contains(&format!("{:.4} +- ", estimate.z)), "{line}");
+    }
+}
+
+fn emt_models() -> usize {
+    Settings::default().models.iter().count()
+}
+
+#[test]
+fn what_a_broken_instrument_sends_is_refused_by_name_and_counted_and_the_next_good_message_answered() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let mut node = lab.start(&["run", "emt_inversion"]);
+    let script = here("tools/bad_instrument.py");
+    let ended = peer(&lab, Command::new(&python).arg(&script));
+    let said: Value = serde_json::from_str(&ended.stdout).unwrap();
+    for case in ["good", "nameless"] {
+        assert_eq!(received(&said[case]["received"]), expected(&said[case]["sent"]), "{case}");
+    }
+    assert_eq!(said["nameless"]["sent"]["axis"]["z"], 0.0);
+    assert_eq!(said["refused"], 6);
+    assert_eq!(said["again"], said["good"]["received"], "the node lives on");
+    assert!(node.runs());
+    node.signal(libc::SIGINT);
+    let node = node.ended(LIMIT);
+    assert_eq!(node.code, Some(0), "{}", node.stderr);
+    for word in [
+        "WaveSpeeds.speeds[2].speed = NaN is refused",
+        "WaveSpeeds.density = -1498.0 is refused",
+        "WaveSpeeds.|axis| = 2.0 is refused",
+        "WaveSpeeds.speeds[0].method = 250 is refused",
+        "refused: grainlab_msgs/msg/WaveSpeeds: ",
+    ] {
+        assert!(node.stderr.contains(word), "{word:?} is missing:\n{}", node.stderr);
+    }
+    assert!(!node.stderr.contains("panicked"), "{}", node.stderr);
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""What a broken instrument sends to the inversion, and what becomes of it: one JSON object on standard output.
+
+   bad_instrument.py        with ROS_DOMAIN_ID as the inversion has it
+
+good: sent and received before; nameless: the same without an axis; refused: how many messages the inversion says it refused,
+after six bad ones; again: received after them.
+"""
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "nodes" / "launch"))
+import instrument as lab  # noqa: E402 (the path above; sets CYCLONEDDS_URI)
+from cyclonedds.core import Policy, Qos  # noqa: E402
+from cyclonedds.domain import DomainParticipant  # noqa: E402
+from cyclonedds.idl import IdlStruct  # noqa: E402
+from cyclonedds.idl.annotations import final  # noqa: E402
+from cyclonedds.idl.types import uint32  # noqa: E402
+from ros_messages import LATCHED, message  # noqa: E402
+
+TYPE = "grainlab_msgs::msg::dds_::WaveSpeeds_"
+
+
+@dataclass
+@final
+class Torn(IdlStruct, typename=TYPE):
+    """Ends in the middle of the message."""
+    header: message("std_msgs/msg/Header") = None
+    source_step: lab.WaveSpeeds.__annotations__["source_step"] = 7
+
+
+@dataclass
+@final
+class Endless(IdlStruct, typename=TYPE):
+    """Has a string that is said to be 4 GB long."""
+    sec: uint32 = 0
+    nanosec: uint32 = 0
+    length: uint32 = 0xFFFFFFF0
+
+
+def bad():
+    nan, negative, twice = lab.measurement(), lab.measurement(), lab.measurement()
+    nan.speeds[2].speed = float("nan")
+    negative.density = -1498.0
+    twice.axis = lab.Vector3(0.0, 0.0, 2.0)
+    unknown = lab.measurement()
+    unknown.speeds[0].method = 250
+    return [nan, negative, twice, unknown]
+
+
+def send_as(kind, sample):
+    """From a participant of its own: in one participant a topic has one type."""
+    participant = DomainParticipant(lab.domain())
+    topic = lab.Topic(participant, "rt/wave_speeds", kind, qos=LATCHED)
+    writer = lab.DataWriter(participant, topic, qos=LATCHED)
+    peer.until(writer.get_matched_subscriptions, 20.0, f"nobody reads {kind.__name__}")
+    writer.write(sample)
+    return participant, writer
+
+
+def refused():
+    """The count in the node's latest health report."""
+    for report in diagnostics.take(64):
+        for status in getattr(report, "status", []):
+            values = {pair.key: pair.value for pair in status.values}
+            if "refused /wave_speeds" in values:
+                latest[0] = int(values["refused /wave_speeds"])
+    return latest[0]
+
+
+peer = lab.Instrument()
+qos = Qos(Policy.Reliability.BestEffort, Policy.Durability.Volatile, Policy.History.KeepLast(64))
+DiagnosticArray = message("diagnostic_msgs/msg/DiagnosticArray")
+diagnostics = lab.DataReader(
+    peer.participant, lab.Topic(peer.participant, "rt/diagnostics", DiagnosticArray, qos=qos), qos=qos)
+latest = [0]
+
+sent = lab.measurement()
+result = {"good": {"sent": asdict(sent), "received": asdict(peer.infer(sent))}}
+nameless = lab.measurement()
+nameless.axis = lab.Vector3()
+result["nameless"] = {"sent": asdict(nameless), "received": asdict(peer.infer(nameless))}
+for sample in bad():
+    peer.writer.write(sample)
+kept = [send_as(Torn, Torn(header=sent.header)), send_as(Endless, Endless())]
+end = time.monotonic() + 20.0
+while refused() < 6 and time.monotonic() < end:
+    time.sleep(0.05)
+result["refused"] = refused()
+result["again"] = asdict(peer.infer(sent))
+print(json.dumps(result))
