@@ -22,7 +22,6 @@ mod lattice;
 mod line;
 mod meaning;
 pub mod measure;
-mod mode;
 mod modes;
 mod noise;
 pub mod participation;
@@ -45,6 +44,7 @@ pub mod survey;
 mod tests_support;
 mod tone;
 pub mod trace;
+mod travel;
 
 pub use curve::Curve;
 pub use error::AcousticsError;

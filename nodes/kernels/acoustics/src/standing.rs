@@ -121,7 +121,7 @@ pub fn curves(
 }
 
 /// The lattice planes across a ray.
-fn planes(packing: &Packing, ray: &Ray) -> Result<[i32; 3], AcousticsError> {
+pub(crate) fn planes(packing: &Packing, ray: &Ray) -> Result<[i32; 3], AcousticsError> {
     let across = |indices: &[i32; 3]| {
         let normal = Ray::normal(&packing.cell, *indices).unwrap_or_else(Vec3::zeros);
         (normal.dot(&ray.direction).abs() - 1.0).abs() < 1e-9

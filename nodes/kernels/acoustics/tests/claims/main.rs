@@ -3,6 +3,9 @@
 mod chain;
 mod crystals;
 mod dispersion;
+mod flight;
+mod instrument;
+mod picks;
 mod repeat;
 mod sample;
 mod standing;
