@@ -38,18 +38,16 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     let fitted = christoffel::observation(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
     notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
+    let other = other_axis(&fitted, &speeds, density, &axis);
+    let in_conflict = fitted.conflict.is_some() || other.is_some();
+    notes.extend(other);
     let freedom = fitted.degrees_of_freedom;
     let misfit = fitted.chi_square.map(|chi_square| Misfit { chi_square, degrees_of_freedom: freedom });
     let observation = match fitted.observation.covariance {
         Some(_) => fitted.observation,
         None => with_error(fitted.observation, settings.modulus_error),
     };
-    Ok(Observed {
-        observation,
-        misfit: misfit.filter(|m| m.degrees_of_freedom > 0),
-        in_conflict: fitted.conflict.is_some(),
-        notes,
-    })
+    Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })
 }
 
 /// The axis that the speeds tell, and a note on it. Of a medium that looks isotropic e3 is as good as any.
@@ -73,13 +71,33 @@ fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobserv
     Ok(axis)
 }
 
+/// A note on another axis about which speeds that depart from a medium scatter less than half as much: the axis taken is then
+/// the wrong one, and not the sample.
+fn other_axis(fitted: &Fitted, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
+    fitted.departure?;
+    let found = christoffel::find_axis(speeds).ok()?;
+    let axis = found.axis;
+    if axis.cross(taken).norm() < APART.max(3.0 * found.stddev()) {
+        return None;
+    }
+    let about = christoffel::observation(speeds, density, Some(axis), fitted.observation.conditions).ok()?;
+    let (before, after) = (2.0 * fitted.scatter()?, 2.0 * about.scatter()?);
+    (after < 0.5 * before).then(|| {
+        format!(
+            "the wave speeds fit another axis better: about ({:.4}, {:.4}, {:.4}) rho v^2 scatters by {:.2} %, about the one \
+             taken by {:.2} %; set the parameter axis",
+            axis.x, axis.y, axis.z, 100.0 * after, 100.0 * before
+        )
+    })
+}
+
 fn notes_on(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(departure) = &fitted.departure {
         notes.push(format!(
-            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, {:.1} times what their \
-             errors do: the sample is not quite one, and the errors of its moduli were enlarged by as much",
-            100.0 * departure.scatter, departure.birge_ratio
+            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, more than their errors \
+             do: the sample is not quite one, and {:.2} % were added to the error of every speed",
+            100.0 * departure.scatter, 50.0 * departure.scatter
         ));
     }
     if let Some(conflict) = &fitted.conflict {

@@ -16,11 +16,15 @@ fn help_goes_to_stdout_and_lists_every_command_and_exit_code() {
     let help = grainlab(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let out = text(&help.stdout);
-    for word in ["launch", "run", "bag", "analyze", "invert", "calibrate", "bench", "130 interrupted"] {
+    for word in
+        ["launch", "run", "bag", "analyze", "probe", "invert", "calibrate", "bench", "130 interrupted"]
+    {
         assert!(out.contains(word), "{word} is missing:\n{out}");
     }
     let help = text(&grainlab(&["run", "--help"]).stdout);
-    for word in ["dem_simulator", "look_around", "tolerance", "modulus_error", "recorder", "Examples"] {
+    for word in
+        ["dem_simulator", "look_around", "tolerance", "speed_noise", "modulus_error", "recorder", "Examples"]
+    {
         assert!(help.contains(word), "{word} is missing:\n{help}");
     }
 }

@@ -59,9 +59,10 @@ fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() 
     let axis = turn * Vec3::z();
     let named = format!("no axis was named: ({:.4}, {:.4}, {:.4}) was found", axis.x, axis.y, axis.z);
     assert!(says(&e, &named) && says(&e, "degrees (one sigma)"), "{:?}", e.warnings);
-    // Unasked, e3 is taken as ever, and the speeds contradict it or depart from it.
+    // Unasked, e3 is taken as ever; that it is the wrong axis is seen.
     let e = answer(&lying, &Settings::default());
     assert!(!says(&e, "was found") && (e.eps - expected.eps).abs() > 1e-3, "{e:?}");
+    assert!(says(&e, "fit another axis better") && e.status == Estimate::STATUS_EXTRAPOLATED, "{e:?}");
     // An axis that is named is taken.
     let named = WaveSpeeds { axis: wire(&axis), ..lying };
     assert!(!says(&answer(&named, &Settings { axis: FOUND, ..Settings::default() }), "no axis was named"));
@@ -92,6 +93,7 @@ fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
     stiffness.0[(4, 4)] /= 1.015;
     let e = answer(&everywhere(&stiffness), &Settings::default());
     assert!(says(&e, "the sample is not quite one") && !says(&e, "contradict"), "{:?}", e.warnings);
+    assert!(!says(&e, "fit another axis better"), "{:?}", e.warnings);
     assert_eq!(e.status, Estimate::STATUS_OK);
     let exact = answer(&everywhere(&s1_medium()), &Settings::default());
     assert!(e.covariance[18] > 4.0 * exact.covariance[18], "{} {}", e.covariance[18], exact.covariance[18]);

@@ -1,5 +1,6 @@
 //! Claims about the virtual acoustic measurement.
 
+mod chain;
 mod crystals;
 mod dispersion;
 mod flight;

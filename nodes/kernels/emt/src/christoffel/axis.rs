@@ -7,6 +7,7 @@
 use super::agreement::{Agreement, agreement};
 use super::axis_error::AxisError;
 use super::chance::score;
+use super::hemisphere::{angle, hemisphere, upward, widest_gap};
 use super::profile::{Speeds, Stand};
 use super::ray::{Ray, paired};
 use super::search::seen;
@@ -14,8 +15,9 @@ use super::{ChristoffelError, errors, weights};
 use grains::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 
-/// Axes of the grid: 10° apart.
+/// Axes of the grid: 10° apart; and directions to measure next, 5° apart.
 const GRID: usize = 200;
+const FINE: usize = 800;
 
 /// Axes that are refined, and the least angle between them, rad.
 const REFINED: usize = 8;
@@ -77,7 +79,7 @@ impl AxisFound {
 ///     }
 /// }
 /// let found = christoffel::find_axis(&speeds).unwrap();
-/// assert!(found.axis.x.abs() > 0.999_999 && found.stddev() < 0.01);
+/// assert!(found.axis.x.abs() > 0.999_999 && found.stddev() < 0.02);
 /// ```
 pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
     if speeds.is_empty() {
@@ -96,13 +98,13 @@ pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
     let scatter = errors.is_none();
     let unknowns = rank + 2 + usize::from(scatter);
     if speeds.measured.len() < unknowns {
-        let direction = widest_gap(speeds.measured);
+        let direction = widest_gap(speeds.measured, FINE);
         return Err(AxisError::TooFew { speeds: speeds.measured.len(), unknowns, scatter, direction });
     }
     let noise = Noise::new(&speeds, best, errors.as_deref(), unit, rank + 2);
     let (isotropic, kinds) = isotropic(&speeds);
     let sigma = noise.score(isotropic - best.point.cost, rank + 2 - kinds);
-    if !(sigma >= PREFERRED) {
+    if sigma.is_nan() || sigma < PREFERRED {
         return Err(AxisError::Isotropic { sigma, needed: PREFERRED });
     }
     let tilts = speeds.tilts(best).ok_or(ChristoffelError::NoMedium)?;
@@ -218,34 +220,10 @@ fn telling(speeds: &Speeds<'_>, one: &Stand, other: &Stand) -> (Vec3, Option<f64
     };
     let difference = |n: &Vec3| Some((0.5 * (square(one, n)? / square(other, n)?).ln()).abs());
     let compressional = |s: &WaveSpeed| s.direction.dot(&s.polarization).powi(2) > 0.5;
-    let differences = hemisphere(4 * GRID).filter_map(|n| Some((n, difference(&n)?)));
+    let differences = hemisphere(FINE).filter_map(|n| Some((n, difference(&n)?)));
     let most = differences.max_by(|a, b| a.1.total_cmp(&b.1));
     match most.filter(|_| speeds.measured.iter().any(compressional)) {
         Some((n, difference)) => (n, Some(difference)),
-        None => (widest_gap(speeds.measured), None),
+        None => (widest_gap(speeds.measured, FINE), None),
     }
-}
-
-fn widest_gap(speeds: &[WaveSpeed]) -> Vec3 {
-    let nearest = |n: &Vec3| speeds.iter().map(|s| s.direction.dot(n).abs()).fold(0.0, f64::max);
-    hemisphere(4 * GRID).min_by(|a, b| nearest(a).total_cmp(&nearest(b))).unwrap_or_else(Vec3::z)
-}
-
-/// Unit vectors spread evenly over the hemisphere (a spiral of the golden angle).
-fn hemisphere(count: usize) -> impl Iterator<Item = Vec3> {
-    (0..count).map(move |k| {
-        let z = (k as f64 + 0.5) / count as f64;
-        let (sin, cos) = (std::f64::consts::TAU * k as f64 * 0.618_033_988_749_894_9).sin_cos();
-        let flat = (1.0 - z * z).sqrt();
-        Vec3::new(flat * cos, flat * sin, z)
-    })
-}
-
-/// Between two axes, from 0 to a right angle, rad.
-fn angle(a: &Vec3, b: &Vec3) -> f64 {
-    a.cross(b).norm().atan2(a.dot(b).abs())
-}
-
-fn upward(axis: Vec3) -> Vec3 {
-    if axis.z < 0.0 { -axis } else { axis }
 }

@@ -12,6 +12,10 @@ const TILT: f64 = 1e-4;
 /// Most steps of a descent.
 const STEPS: usize = 40;
 
+/// Longest and shortest of them, rad.
+const LONGEST: f64 = 0.3;
+const SHORTEST: f64 = 1e-8;
+
 /// Speeds, and how much each counts.
 #[derive(Clone, Copy)]
 pub(super) struct Speeds<'a> {
@@ -63,20 +67,23 @@ impl<'a> Speeds<'a> {
     /// The axis at the end of the way down from `start`.
     pub(super) fn descend(&self, start: Stand) -> Stand {
         let mut here = start;
+        let Some(mut tilts) = self.tilts(&here) else { return here };
         let mut damping = 1e-3;
         for _ in 0..STEPS {
-            let Some(tilts) = self.tilts(&here) else { break };
             let damped = tilts.curvature + Matrix2::identity() * damping * tilts.curvature.trace().max(1e-12);
             let Some(step) = damped.cholesky().map(|c| -c.solve(&tilts.gradient)) else { break };
-            // Beyond a radian a tilt is none.
-            let step = step * (0.3 / step.norm()).min(1.0);
-            if step.norm() < 1e-9 {
+            let step = step * (LONGEST / step.norm()).min(1.0);
+            if step.norm() < SHORTEST {
                 break;
             }
             match self.stand(tilts.tilted(&here.axis, &step), here.point.specific) {
                 Some(next) if next.point.cost < here.point.cost => {
                     here = next;
                     damping *= 0.1;
+                    tilts = match self.tilts(&here) {
+                        Some(tilts) => tilts,
+                        None => break,
+                    };
                 }
                 _ if damping > 1e6 => break,
                 _ => damping *= 10.0,
