@@ -1,8 +1,8 @@
 //! Time of flight: a burst is sent through the packing, repeated along the path.
 //!
 //! A slab of grains across the path is pushed along the particle motion as a tone burst goes; slabs at several distances
-//! tell the mean velocity of their grains. The speed is the slope of distance against arrival ([`crate::arrival`]), for
-//! crests at each frequency ([`crate::meaning`]), and in the limit of long waves by [`Curve::through`].
+//! tell the mean velocity of their grains. The slope of arrival against distance ([`crate::arrival`]) is turned into the
+//! phase speed at each frequency, whatever is picked, and [`Curve::through`] extrapolates those to long waves.
 //!
 //! The wave leaves the source both ways, and the path is closed: it is as long as it takes for what goes the other way
 //! around to arrive when all is over. Receivers are whole periods of the packing apart, as far as that can be: there
@@ -136,6 +136,7 @@ impl Settings {
 ///
 /// A motion whose arrivals noise hides is left out with a [`Warning::LeftOut`]; if all are, that is the error. The same
 /// bits for any number of threads.
+#[allow(clippy::type_complexity)]
 pub fn curves(
     packing: &Packing,
     rays: &[Ray],

@@ -96,7 +96,7 @@ pub(crate) fn curve(
         let requirement = "one or more";
         return Err(AcousticsError::Setting { name: "frequencies", value: 0.0, requirement });
     };
-    let crests = of_crests(traces, arrivals, cycles, pick);
+    let crests = of_crests(traces, arrivals, cycles, pick, diameter);
     let points = traces.iter().zip(arrivals).zip(&crests).map(|((trace, a), (slowness, more))| Point {
         wavenumber: TAU * trace.frequency * slowness,
         speed: 1.0 / slowness,
@@ -122,7 +122,13 @@ pub(crate) fn curve(
 
 /// Slownesses of several frequencies as those of crests: what [`Arrivals::slowness`] becomes at each centre frequency, and by
 /// how much more its standard deviation is, s/m.
-pub(crate) fn of_crests(traces: &[Trace], arrivals: &[Arrivals], cycles: f64, pick: Pick) -> Vec<(f64, f64)> {
+fn of_crests(
+    traces: &[Trace],
+    arrivals: &[Arrivals],
+    cycles: f64,
+    pick: Pick,
+    diameter: f64,
+) -> Vec<(f64, f64)> {
     let squares: Vec<f64> = traces.iter().map(|t| (TAU * t.frequency).powi(2)).collect();
     let weights: Vec<f64> =
         arrivals.iter().map(|a| (a.slowness_stddev.max(1e-6 * a.slowness)).powi(-2)).collect();
@@ -147,7 +153,9 @@ pub(crate) fn of_crests(traces: &[Trace], arrivals: &[Arrivals], cycles: f64, pi
     }
     let turn = |k: usize| {
         let slip = (kappas[k] - 1.0) * squares[k];
-        let law = distrust(pick) * kappas[k] * bend * squares[k];
+        // A bend that happens to come out as nothing is not believed.
+        let usual = 0.5 * SINGLE_BEND * squares[k] * (measured[k] * diameter).powi(2) * long;
+        let law = distrust(pick) * kappas[k] * (bend * squares[k]).abs().max(usual);
         (measured[k] - slip * bend, (slip * error).hypot(law))
     };
     (0..traces.len()).map(turn).collect()

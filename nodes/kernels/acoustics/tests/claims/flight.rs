@@ -279,20 +279,22 @@ fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
 
 #[test]
 fn speeds_through_packings_are_those_of_the_frozen_network() {
-    for (packing, indices, motion) in
-        [(sample::anisotropic(), [0, 0, 1], Vec3::z()), (sample::isotropic(), [1, 0, 0], Vec3::z())]
-    {
-        let ray = along(&packing, indices, motion);
-        let settings = Settings::default();
+    // Two wavelengths, not as long as by default, which leave the peaks of P uncertain, and take half of the time.
+    for (packing, indices, speed, waves) in [
+        (sample::anisotropic(), [0, 0, 1], 440.0, [26.0, 34.0]),
+        (sample::isotropic(), [1, 0, 0], 280.0, [20.0, 28.0]),
+    ] {
+        let ray = along(&packing, indices, Vec3::z());
+        let frequencies = Some(waves.map(|w| speed / (w * DIAMETER)).to_vec());
+        let settings = Settings { frequencies, ..Settings::default() };
         let sent = curves(&packing, std::slice::from_ref(&ray), &settings, &Instrument::default()).unwrap();
         assert!(sent.2.is_empty(), "{:?}", sent.2);
         let truth = square_speed(&packing, &ray);
-        for (pick, limit) in [(Pick::FirstArrival, 0.02), (Pick::CrossCorrelation, 0.005), (Pick::Peak, 0.02)]
-        {
+        for pick in [Pick::FirstArrival, Pick::CrossCorrelation, Pick::Peak] {
             let found = curve(&sent.1, settings.cycles, pick, DIAMETER, 1).unwrap();
             let (off, stddev) = (found.speed.powi(2) / truth - 1.0, 2.0 * found.stddev / found.speed);
-            assert!(off.abs() < limit && off.abs() < 2.0 * stddev, "{indices:?} {pick:?}: {off} ± {stddev}");
-            assert!(stddev < 0.02, "{indices:?} {pick:?}: {stddev}");
+            assert!(off.abs() < 0.04 && off.abs() < 2.0 * stddev, "{indices:?} {pick:?}: {off} ± {stddev}");
+            assert!(stddev < 0.06, "{indices:?} {pick:?}: {stddev}");
         }
     }
 }

@@ -161,7 +161,12 @@ fn the_speed_is_within_two_standard_deviations_whatever_the_noise() {
                 before = *median;
             }
         }
-        assert!(before < 0.02, "{pick:?} at 20 dB: {before}");
+        let most = match pick {
+            Pick::CrossCorrelation => 0.003,
+            Pick::Peak => 0.01,
+            Pick::FirstArrival => 0.03,
+        };
+        assert!(before < most, "{pick:?} at 20 dB: {before}");
     }
 }
 
