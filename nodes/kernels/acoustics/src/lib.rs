@@ -49,7 +49,7 @@ mod travel;
 pub use curve::Curve;
 pub use error::AcousticsError;
 pub use instrument::Instrument;
-pub use measure::{Measurement, Settings, Way, measure};
+pub use measure::{Measurement, Settings, Way, measure, with_speed_noise};
 pub use participation::Participation;
 pub use ray::Ray;
 pub use repeat::{Repeated, repeated};

@@ -2,6 +2,7 @@
 
 mod curves;
 mod measure;
+mod noise;
 mod plot;
 mod report;
 
@@ -23,7 +24,9 @@ Examples:
   Every way on one packing along three rays, with the pictures (some minutes):
     grainlab bench acoustics --packing recordings/runs/s2-1-1 --out acoustics
   A full set of speeds by dispersion:
-    grainlab bench acoustics --survey complete --method dispersion";
+    grainlab bench acoustics --survey complete --method dispersion
+  What speeds with errors of 0 to 3 % tell of the microstructure, beside moduli of the network (every packing of every file):
+    grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
 
 /// What to measure, and how.
 #[derive(Debug, clap::Args)]
@@ -45,6 +48,12 @@ pub(crate) struct Args {
     /// Repetitions of the packing along the path of a standing wave
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "5,8,12", value_parser = clap::value_parser!(u32).range(5..=200))]
     copies: Vec<u32>,
+    /// Instead: infer the microstructure from speeds by dispersion with these relative errors, and compare with what is counted
+    #[arg(long, value_name = "REL", value_delimiter = ',', value_parser = noise, conflicts_with_all = ["method", "out"])]
+    noise: Vec<f64>,
+    /// Draws of the noise for each packing
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    draws: u32,
     /// Folder for acoustics.json, acoustics.svg (time against error) and dispersion.svg
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -112,7 +121,15 @@ fn tolerance(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "a number from 1e-12 to 1e-2".to_owned())
 }
 
+fn noise(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|v| (0.0..=0.5).contains(v));
+    value.ok_or_else(|| "a number from 0 to 0.5".to_owned())
+}
+
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    if !args.noise.is_empty() {
+        return noise::run(args);
+    }
     let mut packings = args.packing.iter().map(|path| load(Some(path))).collect::<Result<Vec<_>, _>>()?;
     if packings.is_empty() {
         packings.push(load(None)?);

@@ -8,9 +8,8 @@ use grains::{Packing, Vec3};
 use node_kit::Exit;
 use std::f64::consts::TAU;
 
-/// Wavelengths shown, mean diameters: from where the law is taken to where packings have none.
-const SHOWN: [f64; 14] =
-    [8.0, 10.0, 14.0, 20.0, 28.0, 40.0, 56.0, 80.0, 112.0, 160.0, 240.0, 320.0, 480.0, 640.0];
+/// Wavelengths shown, mean diameters: down to where packings hardly have waves any more.
+const SHOWN: [f64; 11] = [20.0, 28.0, 40.0, 56.0, 80.0, 112.0, 160.0, 240.0, 320.0, 480.0, 640.0];
 
 /// A wave that is surely one, beside each of them, mean diameters.
 const LONG: f64 = 800.0;
@@ -65,7 +64,7 @@ fn draw(laws: &[Curve], seen: &[Vec<Point>], rung: &[Curve], diameter: f64) -> S
         let bent = |wavelength: f64| law.bend * (TAU / (wavelength * diameter)).powi(2);
         if law.bend > 0.0 {
             let [from, to] = ends.map(|w| [x.at(w), y.at(bent(w))]);
-            line(&mut svg, [from[0], from[1].max(AXES[2]), to[0], to[1].min(AXES[3])], colour);
+            line(&mut svg, [from[0], from[1], to[0], to[1]], colour);
         }
         let name = NAMES.get(k).copied().unwrap_or("mode");
         for (set, fill) in [(&points[k], colour), (rings.get(k).unwrap_or(&points[k]), "white")] {
