@@ -55,7 +55,7 @@ pub(crate) fn measurement() -> Measurement {
             density: Mat3::identity() * 1500.0,
             bulk: 1550.0,
             rattlers: 0,
-            floppy: 0,
+            left_behind: 0,
         },
         density: 1500.0,
         density_stddev: 5.0,

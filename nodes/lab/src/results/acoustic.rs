@@ -20,9 +20,10 @@ pub(crate) struct AcousticView {
     pub(crate) pressure_pa: f64,
     /// The axis that the rays were sent about; null if it was not known.
     pub(crate) axis: Option<[f64; 3]>,
+    /// The axis that the moduli are about: that one, else the one that the speeds tell, else e3.
+    pub(crate) moduli_axis: [f64; 3],
     pub(crate) speeds: Vec<SpeedView>,
-    /// Of a medium isotropic about that axis, else about e3, by Christoffel's equation; null where the speeds do not
-    /// determine one.
+    /// Of a medium isotropic about that axis, by Christoffel's equation; null where the speeds do not determine one.
     pub(crate) moduli: ModuliView,
     /// Their standard deviations.
     pub(crate) sigma: ModuliView,
@@ -32,6 +33,9 @@ pub(crate) struct AcousticView {
     pub(crate) degrees_of_freedom: Option<usize>,
     /// Root mean square of the relative residuals of the speeds per degree of freedom.
     pub(crate) scatter: Option<f64>,
+    /// What the errors of the speeds were multiplied with, more than 1, because a packing is not quite isotropic about any
+    /// axis; null where they were not.
+    pub(crate) birge_ratio: Option<f64>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -93,10 +97,12 @@ impl AcousticView {
     /// Of the speeds of this packing.
     pub(crate) fn new(packing: &Packing, found: &WaveSpeedsReading) -> Self {
         let mut warnings = found.warnings.clone();
-        let axis = found.axis.unwrap_or_else(Vec3::z);
+        let speeds = found.measured();
+        let told = || christoffel::find_axis(&speeds).ok().map(|found| found.axis);
+        let axis = found.axis.or_else(told).unwrap_or_else(Vec3::z);
         let density = Measured { value: found.density, stddev: found.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(found.pressure);
-        let fitted = christoffel::observation(&found.measured(), density, Some(axis), conditions);
+        let fitted = christoffel::observation(&speeds, density, Some(axis), conditions);
         let (mut moduli, mut sigma) = (ModuliView::default(), ModuliView::default());
         match &fitted {
             Ok(fitted) => {
@@ -128,12 +134,14 @@ impl AcousticView {
             density_bulk: packing.solid_fraction() * packing.material.density,
             pressure_pa: found.pressure,
             axis: found.axis.map(Into::into),
+            moduli_axis: axis.into(),
             speeds: found.speeds.iter().map(SpeedView::from).collect(),
             moduli,
             sigma,
             chi_square: fitted.as_ref().and_then(|f| f.chi_square),
             degrees_of_freedom: fitted.as_ref().map(|f| f.degrees_of_freedom),
             scatter: fitted.as_ref().and_then(christoffel::Fitted::scatter),
+            birge_ratio: fitted.as_ref().and_then(|f| Some(f.departure?.birge_ratio)),
             warnings,
         }
     }

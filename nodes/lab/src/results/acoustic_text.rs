@@ -24,14 +24,26 @@ pub(crate) fn text(a: &AcousticView, state: &State) -> String {
         a.scatter
             .map_or_else(String::new, |s| format!("; speeds scatter by {:.2} % about one medium", 100.0 * s)),
     );
+    if a.axis.is_none() {
+        let [x, y, z] = a.moduli_axis;
+        text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), for no axis was named\n");
+    }
     text += &indented(&moduli(a, state.stiffness().as_ref()).without_empty_columns().text());
     a.warnings.iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }
 
-/// The projection of the stiffness on media isotropic about the axis of the rays, and the moduli from the speeds.
+/// How far the speeds are from those of one medium, and what that does to the errors.
+fn scatter(a: &AcousticView) -> String {
+    let Some(scatter) = a.scatter else { return String::new() };
+    let enlarged =
+        a.birge_ratio.map_or_else(String::new, |b| format!(", which enlarges the errors {b:.1} times"));
+    format!("; speeds scatter by {:.2} % about one medium{enlarged}", 100.0 * scatter)
+}
+
+/// The projection of the stiffness on media isotropic about the axis taken, and the moduli from the speeds.
 fn moduli(a: &AcousticView, stiffness: Option<&Stiffness>) -> Table {
-    let axis = a.axis.map_or_else(Vec3::z, Vec3::from);
+    let axis = Vec3::from(a.moduli_axis);
     let medium = stiffness.map(|c| c.transverse_isotropy_about(&axis));
     let (m, s) = (&a.moduli, &a.sigma);
     let mut t = Table::new(["modulus", "network/MPa", "acoustic/MPa", "sigma", "difference", "in sigma"]);

@@ -77,7 +77,7 @@ impl Probed {
         let (s, a) = (&self.state, self.acoustic.as_ref());
         let (m, sigma) = (a.map(|a| a.moduli).unwrap_or_default(), a.map(|a| a.sigma).unwrap_or_default());
         let count = |n: usize| n.to_string();
-        let axis = a.and_then(|a| a.axis);
+        let axis = a.map(|a| a.moduli_axis);
         // A table has no way to say that Theta follows from moduli of which one is missing.
         let whole = [m.g13_pa, m.g12_pa, m.c11_pa, m.c33_pa, m.c13_pa].iter().all(Option::is_some);
         [
