@@ -4,10 +4,18 @@
 //! acoustic modes are found to rounding; ω²/q² bends as 1 − b q² and is extrapolated to long waves ([`crate::curve`]).
 //! Nothing moves: amplitudes are infinitely small, contacts neither open nor slide.
 
-use crate::bloch::Bloch;
+mod bloch;
+#[cfg(test)]
+mod lattice_sample;
+mod modes;
+mod row;
+mod solve;
+mod subspace;
+
 use crate::curve::{Curve, Point};
+use crate::dispersion::bloch::Bloch;
+use crate::dispersion::modes::{Stopped, modes};
 use crate::error::AcousticsError;
-use crate::modes::{Stopped, modes};
 use crate::participation::Carrier;
 use crate::ray::Ray;
 use grains::{Mat3, Packing, Vec3};

@@ -1,24 +1,34 @@
 //! Time of flight: a burst is sent through the packing, repeated along the path.
 //!
 //! A slab of grains across the path is pushed along the particle motion as a tone burst goes; slabs at several distances
-//! tell the mean velocity of their grains. The slope of arrival against distance ([`crate::arrival`]) is turned into the
+//! tell the mean velocity of their grains. The slope of arrival against distance ([`arrival`]) is turned into the
 //! phase speed at each frequency, whatever is picked, and [`Curve::through`] extrapolates those to long waves.
 //!
 //! The wave leaves the source both ways, and the path is closed: it is as long as it takes for what goes the other way
 //! around to arrive when all is over. Receivers are whole periods of the packing apart, as far as that can be: there
 //! they see the same wave, later.
 
-use crate::arrival::Arrivals;
+pub mod arrival;
+mod burst;
+mod line;
+mod meaning;
+mod passage;
+mod pick;
+mod shot;
+mod slab;
+mod spectrum;
+mod travel;
+
 use crate::curve::Curve;
 use crate::error::AcousticsError;
+use crate::flight::arrival::Arrivals;
+use crate::flight::travel::Travel;
 use crate::instrument::Instrument;
-use crate::meaning;
 use crate::measure::Warning;
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::planes;
 use crate::trace::Trace;
-use crate::travel::Travel;
 use grains::{Packing, WaveMethod};
 use rayon::prelude::*;
 use scene::Tangential;

@@ -9,42 +9,20 @@
 //!
 //! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
 
-pub mod arrival;
-mod bloch;
-mod burst;
-mod cluster;
 pub mod curve;
 pub mod dispersion;
 pub mod error;
 pub mod flight;
 pub mod instrument;
-mod lattice;
-mod line;
-mod meaning;
 pub mod measure;
-mod modes;
 mod noise;
 pub mod participation;
-mod passage;
-mod pick;
 pub mod ray;
 pub mod repeat;
-mod resonance;
-mod ringing;
-mod row;
 mod sample;
-mod shot;
-mod slab;
-mod solve;
-mod spectrum;
 pub mod standing;
-mod subspace;
 pub mod survey;
-#[cfg(test)]
-mod tests_support;
-mod tone;
 pub mod trace;
-mod travel;
 
 pub use curve::Curve;
 pub use error::AcousticsError;

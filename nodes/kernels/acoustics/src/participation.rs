@@ -6,8 +6,10 @@
 //! tensor. A motion that is nearly free, with a frequency of its own below that of the wave, stays behind as well: the mass
 //! that moves depends a little on frequency.
 
-use crate::cluster::{Cluster, clusters};
+mod cluster;
+
 use crate::error::AcousticsError;
+use crate::participation::cluster::{Cluster, clusters};
 use grains::{Mat3, Packing, Vec3};
 use micro::rattlers::{contacts_needed, participating};
 use micro::{Network, NoNetwork};

@@ -3,8 +3,10 @@
 //! A periodic packing is periodic along any of its lattice vectors, so that a cell whose first two edges lie in the planes
 //! (h k l) and whose third crosses `copies` of them holds the packing `copies` times, whatever the planes: nothing is cut.
 
+mod lattice;
+
 use crate::error::AcousticsError;
-use crate::lattice::{self, Layers};
+use crate::repeat::lattice::Layers;
 use dem::DemError;
 use grains::{Contact, Packing, Vec3};
 

@@ -10,13 +10,17 @@
 //! kPa answer in proportion; 1e-7 moves ρv² by up to 0.1 %, 1e-6 by 0.3 %, 1e-5 by 1 %, 1e-4 by 6 %, as feeble contacts open and
 //! close.
 
+mod resonance;
+mod ringing;
+mod tone;
+
 use crate::curve::Curve;
 use crate::error::AcousticsError;
 use crate::instrument::Instrument;
 use crate::measure::Warning;
 use crate::ray::Ray;
-use crate::resonance::{Found, Resonance};
 use crate::sample::Sample;
+use crate::standing::resonance::{Found, Resonance};
 use crate::trace::Trace;
 use grains::{Packing, Vec3};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! Claims about time of flight through the particle engine.
 
 use crate::sample;
-use acoustics::arrival::Arrivals;
 use acoustics::error::AcousticsError;
+use acoustics::flight::arrival::Arrivals;
 use acoustics::flight::{Pick, Settings, curve, curves};
 use acoustics::measure::Warning;
 use acoustics::{Instrument, Ray};

@@ -1,7 +1,7 @@
 //! Claims about arrivals, on traces made on paper.
 
-use acoustics::arrival::Arrivals;
 use acoustics::error::AcousticsError;
+use acoustics::flight::arrival::Arrivals;
 use acoustics::flight::{Pick, curve};
 use acoustics::instrument::{Clock, Heard};
 use acoustics::trace::Channel;

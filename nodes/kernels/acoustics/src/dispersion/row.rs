@@ -5,13 +5,16 @@ use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
 /// Waves carried at once.
 pub(crate) const WAVES: usize = 3;
 
+/// Numbers of a row.
+const LANES: usize = WAVES + 1;
+
 /// One number a wave, and one that is always zero: a vector register of most processors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
-pub(crate) struct Row(pub(crate) [f64; WAVES + 1]);
+pub(crate) struct Row(pub(crate) [f64; LANES]);
 
 impl Row {
-    pub(crate) const ZERO: Row = Row([0.0; WAVES + 1]);
+    pub(crate) const ZERO: Row = Row([0.0; LANES]);
 
     #[inline(always)]
     pub(crate) fn of(waves: [f64; WAVES]) -> Self {
@@ -44,7 +47,7 @@ impl Mul<Row> for f64 {
     type Output = Row;
     #[inline(always)]
     fn mul(self, row: Row) -> Row {
-        Row([self; WAVES + 1]) * row
+        Row([self; LANES]) * row
     }
 }
 

@@ -4,12 +4,12 @@
 //! The noise is what is heard before the trigger. How much it may have moved the slope is found by picking again in traces
 //! with as much noise added: that includes what no formula for small errors has, as when a correlation is taken a period off.
 
-use crate::burst::Burst;
 use crate::error::AcousticsError;
 use crate::flight::Pick;
-use crate::line::Line;
+use crate::flight::burst::Burst;
+use crate::flight::line::Line;
+use crate::flight::pick::Picker;
 use crate::noise::Noise;
-use crate::pick::Picker;
 use crate::trace::Trace;
 
 /// Noisy copies that are picked again.

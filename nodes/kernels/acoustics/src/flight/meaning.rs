@@ -5,14 +5,14 @@
 //! envelope, which goes at group speed, and something between for an onset, whose long waves run ahead. κ follows from
 //! picking a burst that was sent along such a path on paper, at the very receivers, with the very noise in mind.
 
-use crate::arrival::Arrivals;
-use crate::burst::Burst;
 use crate::curve::{Curve, Point};
 use crate::error::AcousticsError;
 use crate::flight::Pick;
-use crate::line::Line;
-use crate::pick::Picker;
-use crate::spectrum::Spectrum;
+use crate::flight::arrival::Arrivals;
+use crate::flight::burst::Burst;
+use crate::flight::line::Line;
+use crate::flight::pick::Picker;
+use crate::flight::spectrum::Spectrum;
 use crate::trace::Trace;
 use std::f64::consts::TAU;
 

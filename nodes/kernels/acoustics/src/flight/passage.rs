@@ -1,8 +1,8 @@
 //! Where the receivers of a burst are, and how long the path must be.
 
-use crate::burst::Burst;
 use crate::error::AcousticsError;
 use crate::flight::Settings;
+use crate::flight::burst::Burst;
 use std::f64::consts::TAU;
 
 /// Waves may be this much faster than expected: what comes the other way around still comes late.

@@ -1,8 +1,8 @@
 //! Arrival times in the traces of one burst.
 
-use crate::burst::Burst;
 use crate::flight::Pick;
-use crate::spectrum::{Analytic, Spectrum, summit, vertex};
+use crate::flight::burst::Burst;
+use crate::flight::spectrum::{Analytic, Spectrum, summit, vertex};
 use std::f64::consts::FRAC_PI_2;
 
 /// Fine samples a period.

@@ -4,10 +4,10 @@
 //! combinations of x and y (Rayleigh–Ritz). The acoustic modes of a long wave are the softest there are, so a round leaves
 //! some (ω/ω')² of what is not theirs, ω' the softest other mode, and errors of ω² are squares of that.
 
-use crate::bloch::Bloch;
-use crate::row::{Amplitude, Block, Row, WAVES};
-use crate::solve::Solve;
-use crate::subspace::{Complex3, Subspace};
+use crate::dispersion::bloch::Bloch;
+use crate::dispersion::row::{Amplitude, Block, Row, WAVES};
+use crate::dispersion::solve::Solve;
+use crate::dispersion::subspace::{Complex3, Subspace};
 use grains::{Mat3, Vec3};
 
 /// Rounds of inverse iteration at most.

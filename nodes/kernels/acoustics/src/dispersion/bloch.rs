@@ -5,8 +5,8 @@
 //! of rotations, with c = cos(q·l/2) and s = sin(q·l/2). In these amplitudes a uniform motion is a plane wave, and a long
 //! wave changes little from grain to grain.
 
+use crate::dispersion::row::{Amplitude, Row};
 use crate::participation::Carrier;
-use crate::row::{Amplitude, Row};
 use grains::Vec3;
 use micro::Link;
 use micro::preconditioner::{Block, generalised_inverse};
@@ -88,11 +88,11 @@ impl<'a> Bloch<'a> {
     #[inline(always)]
     pub(crate) fn precondition(&self, x: &[Amplitude], y: &mut [Amplitude]) {
         for ((inverse, x), y) in self.inverses.iter().zip(x).zip(y) {
-            for k in 0..6 {
-                let (mut re, mut im) = (inverse[k][0] * x.re[0], inverse[k][0] * x.im[0]);
-                for c in 1..6 {
-                    re += inverse[k][c] * x.re[c];
-                    im += inverse[k][c] * x.im[c];
+            for (k, [first, rest @ ..]) in inverse.iter().enumerate() {
+                let (mut re, mut im) = (*first * x.re[0], *first * x.im[0]);
+                for (c, entry) in rest.iter().enumerate() {
+                    re += *entry * x.re[c + 1];
+                    im += *entry * x.im[c + 1];
                 }
                 (y.re[k], y.im[k]) = (re, im);
             }
@@ -179,15 +179,13 @@ impl Joint {
             x
         };
         let block = |on_i: bool, on_j: bool| -> Block {
-            let mut block = [[0.0; 6]; 6];
-            for column in 0..6 {
+            let own =
+                |moves: bool, force: &Amplitude, row: usize| if moves { force.re[row].0[0] } else { 0.0 };
+            // Column by column, which is row by row: real parts are symmetric.
+            std::array::from_fn(|column| {
                 let (i, j) = self.forces(&unit(on_i, column), &unit(on_j, column));
-                for row in 0..6 {
-                    let own = |moves: bool, force: &Amplitude| if moves { force.re[row].0[0] } else { 0.0 };
-                    block[row][column] += own(on_i, &i) + own(on_j, &j);
-                }
-            }
-            block
+                std::array::from_fn(|row| own(on_i, &i, row) + own(on_j, &j, row))
+            })
         };
         if self.i == self.j {
             vec![(self.i, block(true, true))]
@@ -200,12 +198,12 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::WAVES;
-    use crate::subspace::product;
+    use crate::dispersion::row::WAVES;
+    use crate::dispersion::subspace::product;
 
     #[test]
     fn the_operator_is_hermitian() {
-        let packing = crate::tests_support::lattice();
+        let packing = crate::dispersion::lattice_sample::lattice();
         let carrier = Carrier::new(&packing).unwrap();
         let bloch = Bloch::new(&carrier, &Vec3::new(3e3, -1e4, 5e3));
         let random = |seed: usize| -> Vec<Amplitude> {

@@ -1,9 +1,9 @@
 //! K y = M x by conjugate gradients, compiled for each instruction set. Every operation is rounded as it is written, so all
 //! give the same bits.
 
-use crate::bloch::Bloch;
-use crate::modes::Stopped;
-use crate::row::{Amplitude, Block, Row, WAVES, products};
+use crate::dispersion::bloch::Bloch;
+use crate::dispersion::modes::Stopped;
+use crate::dispersion::row::{Amplitude, Block, Row, WAVES, products};
 use pulp::WithSimd;
 
 /// K y = M x, wave by wave, from y = x/ω²: conjugate gradients preconditioned by the blocks of single grains.

@@ -1,10 +1,10 @@
 //! One burst through one packing, by the particle engine.
 
-use crate::burst::Burst;
 use crate::error::AcousticsError;
+use crate::flight::burst::Burst;
+use crate::flight::slab::Slab;
 use crate::instrument::Heard;
 use crate::repeat::Repeated;
-use crate::slab::Slab;
 use dem::{Engine, Setting};
 use grains::{Contact, Mat3, Vec3};
 use std::collections::BTreeSet;

@@ -1,18 +1,18 @@
 //! The speed of one motion along one ray, by sending bursts.
 
-use crate::arrival::Arrivals;
-use crate::burst::Burst;
 use crate::curve::Curve;
 use crate::error::AcousticsError;
+use crate::flight::arrival::Arrivals;
+use crate::flight::burst::Burst;
+use crate::flight::meaning;
+use crate::flight::passage::Passage;
+use crate::flight::shot::{Answer, Shot};
 use crate::flight::{Pick, Settings};
 use crate::instrument::{Clock, Heard, Instrument, burst_level};
-use crate::meaning;
 use crate::measure::Warning;
 use crate::noise::seed_at;
-use crate::passage::Passage;
 use crate::repeat::repeated;
 use crate::sample::Sample;
-use crate::shot::{Answer, Shot};
 use crate::trace::{Channel, Trace};
 use grains::Vec3;
 use rayon::prelude::*;

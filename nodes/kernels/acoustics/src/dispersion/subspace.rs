@@ -1,7 +1,7 @@
 //! The best modes that a few motions can be combined to (Rayleigh–Ritz).
 
-use crate::bloch::Bloch;
-use crate::row::{Amplitude, Block, Row, WAVES};
+use crate::dispersion::bloch::Bloch;
+use crate::dispersion::row::{Amplitude, Block, Row, WAVES};
 use nalgebra::{Complex, DMatrix, Matrix3, SymmetricEigen};
 
 type C = Complex<f64>;
