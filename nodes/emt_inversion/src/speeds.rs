@@ -95,9 +95,9 @@ fn notes_on(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -
     let mut notes = Vec::new();
     if let Some(departure) = &fitted.departure {
         notes.push(format!(
-            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, {:.1} times what their \
-             errors do: the sample is not quite one, and the errors of its moduli were enlarged by as much",
-            100.0 * departure.scatter, departure.birge_ratio
+            "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, more than their errors \
+             do: the sample is not quite one, and {:.2} % were added to the error of every speed",
+            100.0 * departure.scatter, 50.0 * departure.scatter
         ));
     }
     if let Some(conflict) = &fitted.conflict {

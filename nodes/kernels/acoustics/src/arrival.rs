@@ -13,7 +13,7 @@ use crate::pick::Picker;
 use crate::trace::Trace;
 
 /// Noisy copies that are picked again.
-const COPIES: u64 = 48;
+const COPIES: u64 = 32;
 
 /// Share of them that may show no arrival.
 const MOST_LOST: f64 = 0.25;

@@ -3,7 +3,7 @@
 //! Along a path where long waves have the slowness s₀ and others s₀ (1 + β ω²), each pick's slope is s₀ (1 + κ β ω²) at the
 //! centre frequency, with a κ of its own: about 1 for a correlation, which follows the crests, about 3 for the peak of an
 //! envelope, which goes at group speed, and something between for an onset, whose long waves run ahead. κ follows from
-//! picking a burst that was sent along such a path on paper, at the very receivers.
+//! picking a burst that was sent along such a path on paper, at the very receivers, with the very noise in mind.
 
 use crate::arrival::Arrivals;
 use crate::burst::Burst;
@@ -26,19 +26,35 @@ const LARGE: f64 = 0.2;
 /// (1/12) and packings (0.1 to 0.2).
 const SINGLE_BEND: f64 = 0.2;
 
+/// How far the law of dispersion and κ are trusted: to this share of what they say of a slowness. Packings repeated along
+/// a path have gaps in their spectrum where half a wave is a period, and near them no smooth law; crests feel them least,
+/// and an onset, which hangs on all of a spectrum, most. With these shares 54 speeds through two packings of 2,000 grains
+/// are within two standard deviations of the frozen network's.
+fn distrust(pick: Pick) -> f64 {
+    match pick {
+        Pick::CrossCorrelation => 0.1,
+        Pick::Peak => 0.2,
+        Pick::FirstArrival => 0.5,
+    }
+}
+
 /// No speed is stated more exactly than this, of itself.
 const EXACT: f64 = 1e-6;
 
 /// κ of a pick in traces like `trace`, whose waves have the slowness `slowness` (s/m), near β ω² = `bend`; 1 where it
 /// cannot be found.
-pub(crate) fn kappa(trace: &Trace, cycles: f64, pick: Pick, slowness: f64, bend: f64) -> f64 {
+fn kappa(trace: &Trace, noise: f64, cycles: f64, pick: Pick, slowness: f64, bend: f64) -> f64 {
     let burst = Burst { frequency: trace.frequency, cycles };
     let bend = if bend.abs() < SMALL { SMALL } else { bend.clamp(-LARGE, LARGE) };
     let samples = trace.channels[0].samples.len();
     let distances: Vec<f64> = trace.channels.iter().map(|c| c.distance).collect();
     let channels = sent(&burst, trace, samples, &distances, slowness, bend);
     let channels: Vec<&[f64]> = channels.iter().map(Vec::as_slice).collect();
-    let times = Picker::new(pick, burst, trace.sample_rate, samples).times(&channels, 0.0);
+    let picker = Picker::new(pick, burst, trace.sample_rate, samples);
+    // An onset hangs on the noise, too.
+    let largest = |of: &[f64]| of.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+    let noise = noise * largest(channels[0]) / largest(&trace.channels[0].samples);
+    let times = picker.times(&channels, noise).or_else(|_| picker.times(&channels, 0.0));
     let weights = vec![1.0; distances.len()];
     let line = times.ok().and_then(|t| Line::through(&distances, &t, &weights));
     line.map_or(1.0, |l| (l.slope / trace.sample_rate / slowness - 1.0) / bend)
@@ -80,11 +96,12 @@ pub(crate) fn curve(
         let requirement = "one or more";
         return Err(AcousticsError::Setting { name: "frequencies", value: 0.0, requirement });
     };
-    let crests = of_crests(traces, arrivals, cycles, pick);
+    let crests = of_crests(traces, arrivals, cycles, pick, diameter);
     let points = traces.iter().zip(arrivals).zip(&crests).map(|((trace, a), (slowness, more))| Point {
         wavenumber: TAU * trace.frequency * slowness,
         speed: 1.0 / slowness,
-        stddev: a.slowness_stddev.hypot(*more).max(EXACT * slowness) / slowness.powi(2),
+        stddev: (a.slowness_stddev.powi(2) + more.powi(2) + (EXACT * slowness).powi(2)).sqrt()
+            / slowness.powi(2),
     });
     let points: Vec<Point> = points.collect();
     let alone = || {
@@ -105,7 +122,13 @@ pub(crate) fn curve(
 
 /// Slownesses of several frequencies as those of crests: what [`Arrivals::slowness`] becomes at each centre frequency, and by
 /// how much more its standard deviation is, s/m.
-pub(crate) fn of_crests(traces: &[Trace], arrivals: &[Arrivals], cycles: f64, pick: Pick) -> Vec<(f64, f64)> {
+fn of_crests(
+    traces: &[Trace],
+    arrivals: &[Arrivals],
+    cycles: f64,
+    pick: Pick,
+    diameter: f64,
+) -> Vec<(f64, f64)> {
     let squares: Vec<f64> = traces.iter().map(|t| (TAU * t.frequency).powi(2)).collect();
     let weights: Vec<f64> =
         arrivals.iter().map(|a| (a.slowness_stddev.max(1e-6 * a.slowness)).powi(-2)).collect();
@@ -114,8 +137,10 @@ pub(crate) fn of_crests(traces: &[Trace], arrivals: &[Arrivals], cycles: f64, pi
     let (mut long, mut bend, mut error) = (measured.iter().copied().fold(f64::INFINITY, f64::min), 0.0, 0.0);
     let mut kappas = vec![1.0; traces.len()];
     for _ in 0..3 {
-        let ask = |(t, w2): (&Trace, &f64)| kappa(t, cycles, pick, long, bend / long * w2);
-        kappas = traces.iter().zip(&squares).map(ask).collect();
+        let ask = |((t, a), w2): ((&Trace, &Arrivals), &f64)| {
+            kappa(t, a.noise, cycles, pick, long, bend / long * w2)
+        };
+        kappas = traces.iter().zip(arrivals).zip(&squares).map(ask).collect();
         let places: Vec<f64> = squares.iter().zip(&kappas).map(|(w2, k)| w2 * k).collect();
         let Some(line) = Line::through(&places, &measured, &weights) else { break };
         let total: f64 = weights.iter().sum();
@@ -128,7 +153,10 @@ pub(crate) fn of_crests(traces: &[Trace], arrivals: &[Arrivals], cycles: f64, pi
     }
     let turn = |k: usize| {
         let slip = (kappas[k] - 1.0) * squares[k];
-        (measured[k] - slip * bend, (slip * error).abs())
+        // A bend that happens to come out as nothing is not believed.
+        let usual = 0.5 * SINGLE_BEND * squares[k] * (measured[k] * diameter).powi(2) * long;
+        let law = distrust(pick) * kappas[k] * (bend * squares[k]).abs().max(usual);
+        (measured[k] - slip * bend, (slip * error).hypot(law))
     };
     (0..traces.len()).map(turn).collect()
 }

@@ -144,29 +144,38 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         Way::Standing(way) => (WaveMethod::StandingWave, way.amplitude),
         Way::Flight(way) => (way.pick.method(), way.amplitude),
     };
-    let waves: Vec<MeasuredWave> = (curves.iter().enumerate())
-        .map(|(index, curve)| {
-            let error = instrument.speed_noise * curve.speed;
-            MeasuredWave {
-                wave: WaveSpeed {
-                    direction: curve.direction,
-                    polarization: curve.motion,
-                    speed: curve.speed + error * Noise::at(instrument.seed, &[SPEEDS, index as u64]).next(),
-                    stddev: Some(curve.stddev.hypot(error)),
-                },
-                method,
-                // Extrapolated to long waves.
-                frequency: None,
-                strain_amplitude: amplitude,
-            }
-        })
-        .collect();
+    let wave = |curve: &Curve| MeasuredWave {
+        wave: WaveSpeed {
+            direction: curve.direction,
+            polarization: curve.motion,
+            speed: curve.speed,
+            stddev: Some(curve.stddev),
+        },
+        method,
+        // Extrapolated to long waves.
+        frequency: None,
+        strain_amplitude: amplitude,
+    };
+    let waves: Vec<MeasuredWave> = curves.iter().map(wave).collect();
+    let waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);
     warnings.extend(noisy(&waves));
     let [least, most] = frequencies(&curves);
     let participation = carrier.participation(least);
     let density = participation.mean();
     let density_stddev = participation.spread().hypot(density - carrier.participation(most).mean());
     Ok(Measurement { waves, participation, density, density_stddev, axis, curves, traces, warnings })
+}
+
+/// The same speeds with an independent relative error `noise` (standard deviation) more, which their uncertainty includes: the
+/// same for the same seed.
+pub fn with_speed_noise(waves: &[MeasuredWave], noise: f64, seed: u64) -> Vec<MeasuredWave> {
+    let mut waves = waves.to_vec();
+    for (index, MeasuredWave { wave, .. }) in waves.iter_mut().enumerate().filter(|_| noise > 0.0) {
+        let error = noise * wave.speed;
+        wave.speed += error * Noise::at(seed, &[SPEEDS, index as u64]).next();
+        wave.stddev = wave.stddev.map(|stddev| stddev.hypot(error));
+    }
+    waves
 }
 
 fn check(settings: &Settings) -> Result<(), AcousticsError> {

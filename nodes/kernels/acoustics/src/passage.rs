@@ -3,6 +3,7 @@
 use crate::burst::Burst;
 use crate::error::AcousticsError;
 use crate::flight::Settings;
+use std::f64::consts::TAU;
 
 /// Waves may be this much faster than expected: what comes the other way around still comes late.
 const FASTER: f64 = 1.05;
@@ -10,8 +11,11 @@ const FASTER: f64 = 1.05;
 /// Burst lengths for which the furthest receiver listens on after the burst's first moment has come.
 const LISTEN: f64 = 1.25;
 
-/// Receivers are moved to whole periods of the packing apart if there are at least as many periods as receivers between the
-/// first and the last.
+/// How much slower than long waves a burst of wave number q may be, times (q × mean diameter)²: packings have bends of up to
+/// 0.7 diameters², and a burst has one and a half times that.
+const SLOWER: f64 = 1.0;
+
+/// Where a burst is heard, on which path. Receivers are whole periods of the packing apart where no two would fall together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Passage {
     /// Places of the receivers, from the source, m.
@@ -23,17 +27,19 @@ pub(crate) struct Passage {
 }
 
 impl Passage {
-    /// Of a burst whose waves go at `speed` (m/s) through a packing of that `period` along the path, m.
+    /// Of a burst whose waves go at `speed` (m/s) through a packing of that mean `diameter` and `period` along the path, m.
     pub(crate) fn planned(
         settings: &Settings,
         burst: &Burst,
         speed: f64,
+        diameter: f64,
         period: f64,
     ) -> Result<Self, AcousticsError> {
         let wavelength = speed / burst.frequency;
         let receivers = places(settings, wavelength, period);
         let furthest = receivers.last().copied().unwrap_or(0.0);
-        let duration = furthest / speed + LISTEN * burst.duration();
+        let slower = 1.0 + SLOWER * (TAU * diameter / wavelength).powi(2);
+        let duration = slower * furthest / speed + LISTEN * burst.duration();
         // The other way around to the furthest receiver, while it listens.
         let needed = furthest + FASTER * speed * duration;
         let enough = (needed / period).ceil().max(1.0);

@@ -6,13 +6,15 @@ use crate::spectrum::{Analytic, Spectrum, summit, vertex};
 use std::f64::consts::FRAC_PI_2;
 
 /// Fine samples a period.
-const FINE: f64 = 160.0;
+const FINE: f64 = 64.0;
 
 /// An envelope that stands out of the noise by less than this many standard deviations is no arrival: of a hundred
 /// independent looks at noise one in thirty does.
 const STANDS_OUT: f64 = 4.0;
 
-/// Share of its own greatest value at which a signal counts as having set in; more where the noise demands it.
+/// Share of the greatest value at the first receiver at which an envelope counts as having set in; more where the noise
+/// demands it. Not at each receiver's own: the front of a wave keeps its height where scattering wears down its peak. And
+/// not the signal's: its first lobe is a sixth of the next, and dispersion takes it through any threshold below that.
 const ONSET: f64 = 0.1;
 
 /// How far beyond the noise an onset must be, standard deviations, and the share of the peak above which it is none.
@@ -76,7 +78,8 @@ impl Picker {
 
     /// Delays of greatest correlation with the first receiver.
     fn correlated(&self, signals: &[Vec<Analytic>], peaks: &[f64]) -> Vec<f64> {
-        let cut: Vec<Vec<Analytic>> = signals.iter().zip(peaks).map(|(s, p)| self.cut(s, *p)).collect();
+        let cut = |(s, p): (&Vec<Analytic>, &f64)| self.spectrum.of_analytic(self.cut(s, *p));
+        let cut: Vec<Vec<Analytic>> = signals.iter().zip(peaks).map(cut).collect();
         let mut times = vec![peaks[0]];
         for k in 1..cut.len() {
             // Neighbours' correlation has one highest crest: between them the carrier slips little against the envelope.
@@ -100,7 +103,7 @@ impl Picker {
         signal.iter().step_by(self.finer).enumerate().map(|(k, s)| s * taper(k as f64 - peak)).collect()
     }
 
-    /// When each signal first exceeds a share of its peak, the same for all.
+    /// When each envelope first exceeds the same height.
     fn onsets(&self, channels: &[&[f64]], peaks: &[f64], noise: f64) -> Result<Vec<f64>, String> {
         let noise = noise * Spectrum::passed(&self.low);
         let signals: Vec<Vec<Analytic>> =
@@ -110,25 +113,27 @@ impl Picker {
             let from = (peak - 0.8 * length).max(0.0) as usize;
             from..((peak + 0.3 * length) as usize).min(signal.len())
         };
-        let mut share = ONSET;
-        let mut tops = Vec::with_capacity(signals.len());
-        for (signal, peak) in signals.iter().zip(peaks) {
-            let top = signal[within(*peak, signal)].iter().map(|s| s.re.abs()).fold(0.0, f64::max);
-            share = share.max(ONSET_STANDS_OUT * noise / top);
-            tops.push(top);
-        }
-        if share.is_nan() || share > LARGEST_ONSET {
-            return Err(format!("noise hides the onset: it would be taken at {share:.2} of the peak"));
-        }
-        let onset = |((signal, peak), top): ((&Vec<Analytic>, &f64), &f64)| {
-            let level = share * top;
-            let range = within(*peak, signal);
-            let first = range.clone().find(|k| signal[*k].re.abs() >= level).unwrap_or(range.end);
-            // Between this sample and the one before, on a straight line.
-            let (a, b) = (signal[first.saturating_sub(1)].re.abs(), signal[first].re.abs());
-            if first > range.start && b > a { first as f64 - (b - level) / (b - a) } else { first as f64 }
+        let top = |(signal, peak): (&Vec<Analytic>, &f64)| {
+            signal[within(*peak, signal)].iter().map(|s| s.norm()).fold(0.0, f64::max)
         };
-        Ok(signals.iter().zip(peaks).zip(&tops).map(onset).collect())
+        let first = signals.iter().zip(peaks).map(top).next().unwrap_or(0.0);
+        let level = (ONSET * first).max(ONSET_STANDS_OUT * noise);
+        if level.is_nan() || level > LARGEST_ONSET * first {
+            return Err(format!(
+                "noise hides the onset: it would be taken at {:.2} of the peak",
+                level / first
+            ));
+        }
+        let onset = |(signal, peak): (&Vec<Analytic>, &f64)| {
+            let range = within(*peak, signal);
+            let first = range.clone().find(|k| signal[*k].norm() >= level);
+            let first =
+                first.ok_or("the wave dies away on its path: it does not reach the height of its onset")?;
+            // Between this sample and the one before, on a straight line.
+            let (a, b) = (signal[first.saturating_sub(1)].norm(), signal[first].norm());
+            Ok(if first > range.start && b > a { first as f64 - (b - level) / (b - a) } else { first as f64 })
+        };
+        signals.iter().zip(peaks).map(onset).collect()
     }
 }
 

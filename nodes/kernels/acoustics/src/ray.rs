@@ -2,6 +2,10 @@
 
 use grains::{Cell, Vec3};
 
+/// Sine of the angle between ray and axis below which they count as parallel: the edges of a cell that was servoed are a little
+/// off, and which way tells nothing.
+const PARALLEL: f64 = 0.02;
+
 /// One direction of propagation with the particle motions to send along it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ray {
@@ -25,7 +29,7 @@ impl Ray {
     /// The particle motions of a medium that is isotropic about `axis`: along the ray; across the ray in its plane with the
     /// axis; across both. Where ray and axis are parallel, the last two are any perpendicular pair.
     pub fn motions_about(direction: &Vec3, axis: &Vec3) -> [Vec3; 3] {
-        let across = direction.cross(axis).try_normalize(1e-6);
+        let across = direction.cross(axis).try_normalize(PARALLEL);
         let across = across.unwrap_or_else(|| {
             // The coordinate axis that the direction is furthest from.
             direction.cross(&Vec3::ith(direction.iamin(), 1.0)).normalize()

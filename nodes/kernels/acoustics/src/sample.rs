@@ -89,6 +89,9 @@ impl Sample {
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
         let present = participating(&rested);
+        if present.iter().all(|p| !p) {
+            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(friction) }.into());
+        }
         Ok(Self { packing: rested, present, setting, diameter })
     }
 

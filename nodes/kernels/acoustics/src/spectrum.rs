@@ -74,16 +74,17 @@ impl Spectrum {
         self.refined(&turned).iter().take(self.samples * self.finer).map(|s| s.re).collect()
     }
 
-    /// Correlation of two analytic signals at the original times, at the finer delays: of delay k − (length/2) at place k.
+    /// The spectrum of an analytic signal at the original times, padded.
+    pub(crate) fn of_analytic(&self, signal: Vec<Analytic>) -> Vec<Analytic> {
+        let mut spectrum = signal;
+        spectrum.resize(self.padded(), Complex::default());
+        self.forward.process(&mut spectrum);
+        spectrum
+    }
+
+    /// Correlation of two signals by their spectra, at the finer delays: of delay k − (length/2) at place k.
     pub(crate) fn correlation(&self, late: &[Analytic], early: &[Analytic]) -> Vec<Analytic> {
-        let transform = |signal: &[Analytic]| {
-            let mut padded = signal.to_vec();
-            padded.resize(self.padded(), Complex::default());
-            self.forward.process(&mut padded);
-            padded
-        };
-        let (mut product, early) = (transform(late), transform(early));
-        product.iter_mut().zip(&early).for_each(|(l, e)| *l *= e.conj());
+        let product: Vec<Analytic> = late.iter().zip(early).map(|(l, e)| l * e.conj()).collect();
         let mut fine = self.refined(&product);
         let half = fine.len() / 2;
         fine.rotate_right(half);

@@ -201,3 +201,26 @@ fn an_instruction_set_that_is_not_there_is_refused_by_name() {
         assert_eq!(Compute::new(simd, 1).is_ok(), simd.is_available());
     }
 }
+
+#[test]
+fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
+    let setting = setting(0.3, Tangential::Incremental);
+    for threads in [1, 3] {
+        let compute = Compute::new(Simd::best(), threads).unwrap();
+        let mut kicked = start(PARTS, setting, false, compute);
+        kicked.run(7).unwrap();
+        let mut set = kicked.clone();
+        let by = Vec3::new(1e-3, -2e-3, 5e-4);
+        let hit = |grain: &usize| grain.is_multiple_of(5);
+        kicked.kick((0..PARTS as usize).filter(hit).map(|grain| (grain, by)));
+        let mut velocities = set.velocities();
+        velocities.iter_mut().enumerate().filter(|(grain, _)| hit(grain)).for_each(|(_, v)| *v += by);
+        set.set_velocities(&velocities);
+        kicked.run(20).unwrap();
+        set.run(20).unwrap();
+        assert_eq!(kicked.packing(Mat3::identity()), set.packing(Mat3::identity()));
+        let mut without = start(PARTS, setting, false, Compute::default());
+        without.run(27).unwrap();
+        assert_ne!(kicked.velocities(), without.velocities());
+    }
+}

@@ -1,6 +1,7 @@
 //! `grainlab bench`: speed on this machine, and what it is bought with.
 
 mod accuracy;
+mod acoustics;
 mod cpu_time;
 mod dem;
 mod folder;
@@ -19,6 +20,8 @@ use node_kit::Exit;
 pub(crate) enum Command {
     /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
     Accuracy(accuracy::Args),
+    /// Wave speeds of a packing: time against error of dispersion, standing waves and time of flight.
+    Acoustics(acoustics::Args),
     /// The particle engine: particle-steps per second by size, threads, instruction set and features.
     Dem(dem::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
@@ -31,6 +34,7 @@ pub(crate) enum Command {
 pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Accuracy(args) => accuracy::run(args),
+        Command::Acoustics(args) => acoustics::run(args),
         Command::Dem(args) => dem::run(args),
         Command::Lockstep(args) => lockstep::run(args),
         Command::Stiffness(args) => stiffness::run(args),

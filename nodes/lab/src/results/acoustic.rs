@@ -33,9 +33,9 @@ pub(crate) struct AcousticView {
     pub(crate) degrees_of_freedom: Option<usize>,
     /// Root mean square of the relative residuals of the speeds per degree of freedom.
     pub(crate) scatter: Option<f64>,
-    /// What the errors of the speeds were multiplied with, more than 1, because a packing is not quite isotropic about any
-    /// axis; null where they were not.
-    pub(crate) birge_ratio: Option<f64>,
+    /// Relative scatter of rho v^2 that is the packing's own, which is not quite isotropic about any axis; half of it is an error
+    /// of every speed. Null where the errors of the speeds explain all.
+    pub(crate) departure: Option<f64>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -141,7 +141,7 @@ impl AcousticView {
             chi_square: fitted.as_ref().and_then(|f| f.chi_square),
             degrees_of_freedom: fitted.as_ref().map(|f| f.degrees_of_freedom),
             scatter: fitted.as_ref().and_then(christoffel::Fitted::scatter),
-            birge_ratio: fitted.as_ref().and_then(|f| Some(f.departure?.birge_ratio)),
+            departure: fitted.as_ref().and_then(|f| Some(f.departure?.scatter)),
             warnings,
         }
     }

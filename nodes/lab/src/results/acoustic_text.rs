@@ -21,8 +21,7 @@ pub(crate) fn text(a: &AcousticView, state: &State) -> String {
         a.density,
         a.density_stddev.map_or_else(String::new, |s| format!(" +- {s:.1}")),
         a.density_bulk,
-        a.scatter
-            .map_or_else(String::new, |s| format!("; speeds scatter by {:.2} % about one medium", 100.0 * s)),
+        scatter(a),
     );
     if a.axis.is_none() {
         let [x, y, z] = a.moduli_axis;
@@ -36,8 +35,7 @@ pub(crate) fn text(a: &AcousticView, state: &State) -> String {
 /// How far the speeds are from those of one medium, and what that does to the errors.
 fn scatter(a: &AcousticView) -> String {
     let Some(scatter) = a.scatter else { return String::new() };
-    let enlarged =
-        a.birge_ratio.map_or_else(String::new, |b| format!(", which enlarges the errors {b:.1} times"));
+    let enlarged = if a.departure.is_some() { ", more than their errors, which were enlarged" } else { "" };
     format!("; speeds scatter by {:.2} % about one medium{enlarged}", 100.0 * scatter)
 }
 

@@ -85,7 +85,7 @@ pub(crate) fn three_moduli(c: &Stiffness) -> [f64; 3] {
 
 /// ε about e3 of the contacts weighted by their normal stiffness and squared branch: the deviator of C_ijkk of the affine
 /// stiffness, where tangential springs cancel. `None` without contacts.
-fn eps_stiffness(affine: &Stiffness) -> Option<f64> {
+pub(crate) fn eps_stiffness(affine: &Stiffness) -> Option<f64> {
     let row = |i: usize| (0..3).map(|j| affine.0[(i, j)]).sum::<f64>();
     let [xx, yy, zz] = [row(0), row(1), row(2)];
     let trace = xx + yy + zz;

@@ -4,7 +4,7 @@ use super::chance::is_beyond_chance;
 
 /// Root mean square of the relative scatter of ρ v² up to which it is taken for the sample's own. Over the azimuths of
 /// packings of 2,000 grains it is 1 to 4 %, and it falls with the root of their number.
-const OWN_SCATTER: f64 = 0.05;
+pub(super) const OWN_SCATTER: f64 = 0.05;
 
 /// Standard deviations by which one speed must be off for it to be blamed, where all the others agree.
 const STANDS_OUT: f64 = 10.0;
@@ -23,11 +23,10 @@ pub struct SpeedConflict {
 /// finitely many grains do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departure {
-    /// Root mean square of the relative differences of ρ v² per degree of freedom; of speeds it is half of that.
+    /// Root mean square of the relative differences of ρ v² that are the sample's own. Half of it is a relative error of every
+    /// speed, in quadrature with its own: then χ² is as large as the degrees of freedom (R. C. Paule & J. Mandel, J. Res.
+    /// Natl. Bur. Stand. 87, 377 (1982)). A speed that is known better than that has no more weight than another.
     pub scatter: f64,
-    /// Root of χ² per degree of freedom, more than 1: what the errors of the speeds were multiplied with (R. T. Birge,
-    /// Phys. Rev. 40, 207 (1932)).
-    pub birge_ratio: f64,
 }
 
 /// How well speeds agree.
@@ -35,8 +34,8 @@ pub struct Departure {
 pub(super) enum Agreement {
     /// Within their errors.
     Within,
-    /// Within what a sample differs from a medium.
-    Departure(Departure),
+    /// They scatter, which may be the sample's own scatter.
+    Beyond(SpeedConflict),
     /// Not at all.
     Conflict(SpeedConflict),
 }
@@ -68,9 +67,5 @@ pub(super) fn agreement(
     if others_agree && sigma > STANDS_OUT {
         return conflict;
     }
-    let birge_ratio = (chi_square / degrees_of_freedom as f64).sqrt();
-    // The error that the speeds have by their weights, which speeds that are known badly hardly change.
-    let weight: f64 = errors.iter().map(|e| e.powi(-2)).sum();
-    let scatter = 2.0 * birge_ratio * (errors.len() as f64 / weight).sqrt();
-    if scatter <= OWN_SCATTER { Agreement::Departure(Departure { scatter, birge_ratio }) } else { conflict }
+    Agreement::Beyond(SpeedConflict { worst, sigma })
 }

@@ -43,6 +43,9 @@ use agreement::Agreement;
 use grains::{Vec3, WaveSpeed};
 use ray::Ray;
 
+/// Relative precision of the error that a sample's own scatter adds.
+const OWN_ERROR_PRECISION: f64 = 1e-4;
+
 /// Moduli from wave speeds, and how well the speeds agree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
@@ -81,8 +84,8 @@ impl Fitted {
 /// The moduli are those of a frame with the axis as e3. Any set of speeds will do: [`Fitted::undetermined`] are the moduli
 /// it leaves open. Equal relative errors are taken if no speed has an uncertainty; the moduli then have none either.
 /// Errors of speeds are independent, that of the density moves all moduli together. Where speeds scatter more than they may,
-/// but no more than those of a packing do, which is never quite isotropic about an axis, their covariance is enlarged by
-/// χ² per degree of freedom ([`Fitted::departure`]).
+/// but no more than those of a packing do, which is never quite isotropic about an axis, every speed has the error of that
+/// scatter as well ([`Fitted::departure`]).
 ///
 /// Refused: an axis that is not known, vectors that are not of unit length, numbers that are not positive and finite, a
 /// polarisation more than 30° from every mode of its direction, and speeds that only an unstable medium has. Of two S waves
@@ -120,16 +123,24 @@ pub fn observation(
         }
     }
     let degrees_of_freedom = rays.len().saturating_sub(fit.rank);
+    let chi_square = errors.as_ref().map(|errors| chi_square(&fit, errors, 0.0));
     let agreement = errors.as_ref().map_or(Agreement::Within, |errors| {
         agreement::agreement(&fit.residuals, errors, &fit.leverages, degrees_of_freedom)
     });
-    let (conflict, departure) = match agreement {
-        Agreement::Within => (None, None),
-        Agreement::Departure(departure) => (None, Some(departure)),
-        Agreement::Conflict(conflict) => (Some(conflict), None),
-    };
-    // The sample's own scatter is an error of every speed, where it is the larger one.
-    let error = unit.map(|unit| unit * departure.map_or(1.0, |d| d.birge_ratio));
+    let (mut fit, mut error, mut departure, mut conflict) = (fit, unit, None, None);
+    match (agreement, &errors) {
+        (Agreement::Beyond(found), Some(errors)) => {
+            let (added, with_it, unit) = with_own_error(&rays, errors, &fit)?;
+            let scatter = 2.0 * added;
+            if scatter <= agreement::OWN_SCATTER {
+                (departure, fit, error) = (Some(Departure { scatter }), with_it, unit);
+            } else {
+                conflict = Some(found);
+            }
+        }
+        (Agreement::Conflict(found), _) => conflict = Some(found),
+        _ => {}
+    }
     let (moduli, covariance) = determined::moduli(&fit, density, error);
     if !moduli.known().all(|(_, value)| value.is_finite()) {
         return Err(ChristoffelError::NoMedium);
@@ -137,8 +148,6 @@ pub fn observation(
     if is_unstable(&moduli) {
         return Err(ChristoffelError::Unstable { moduli: listed(&moduli) });
     }
-    let chi_square =
-        errors.as_ref().map(|errors| fit.residuals.iter().zip(errors).map(|(r, e)| (r / e).powi(2)).sum());
     Ok(Fitted {
         observation: Observation { covariance, ..Observation::new(moduli, conditions) },
         undetermined: Modulus::ALL.into_iter().filter(|m| moduli.get(*m).is_none()).collect(),
@@ -149,6 +158,40 @@ pub fn observation(
         departure,
         residuals: fit.residuals,
     })
+}
+
+/// χ² of a fit to speeds with these relative errors and one more.
+fn chi_square(fit: &fit::Fit, errors: &[f64], added: f64) -> f64 {
+    fit.residuals.iter().zip(errors).map(|(r, e)| r * r / (e * e + added * added)).sum()
+}
+
+/// The relative error added to `errors` with which χ² is as large as the degrees of freedom, the fit with it, and the error of
+/// a speed of weight 1. `sharp` is the fit without it.
+fn with_own_error(
+    rays: &[Ray],
+    errors: &[f64],
+    sharp: &fit::Fit,
+) -> Result<(f64, fit::Fit, Option<f64>), ChristoffelError> {
+    let fitted = |added: f64| {
+        let errors: Vec<f64> = errors.iter().map(|e| e.hypot(added)).collect();
+        let (weights, unit) = weights(Some(&errors), rays.len());
+        Ok((fit::fit(rays, &weights, unit)?, unit))
+    };
+    // χ² is below one a speed with an error as large as the largest residual, and a better fit only lowers it.
+    let largest = sharp.residuals.iter().fold(0.0, |most: f64, r| most.max(r.abs()));
+    let (mut low, mut high) = (0.0, largest * rays.len() as f64);
+    let mut best = fitted(high)?;
+    while high - low > OWN_ERROR_PRECISION * high {
+        let middle = 0.5 * (low + high);
+        let next = fitted(middle)?;
+        let freedom = rays.len().saturating_sub(next.0.rank) as f64;
+        if chi_square(&next.0, errors, middle) > freedom {
+            low = middle;
+        } else {
+            (high, best) = (middle, next);
+        }
+    }
+    Ok((high, best.0, best.1))
 }
 
 fn rays(speeds: &[WaveSpeed], axis: Option<Vec3>) -> Result<Vec<Ray>, ChristoffelError> {

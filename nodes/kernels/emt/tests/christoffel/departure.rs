@@ -56,9 +56,9 @@ fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_wi
         assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
         let departure = fitted.departure.expect("a packing is no medium");
         assert!((departure.scatter / scatter - 1.0).abs() < 0.05, "{departure:?}");
-        // All speeds have the same error, 0.1 % of ρ v².
-        assert!((departure.birge_ratio * 0.001 / departure.scatter - 1.0).abs() < 1e-3, "{departure:?}");
-        assert!((departure.scatter / 2.0 / fitted.scatter().unwrap() - 1.0).abs() < 1e-3, "{departure:?}");
+        // All speeds have the same error of their own, 0.05 %.
+        let whole = (0.5 * departure.scatter).hypot(0.0005);
+        assert!((whole / fitted.scatter().unwrap() - 1.0).abs() < 1e-3, "{departure:?}");
         for (modulus, sigma) in deviations(&fitted, &packing) {
             assert!(sigma.abs() < 3.0, "{modulus} is off by {sigma} sigma");
         }
@@ -66,7 +66,7 @@ fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_wi
 }
 
 #[test]
-fn a_departure_enlarges_the_covariance_by_chi_square_per_degree_of_freedom_but_not_that_of_the_density() {
+fn a_departure_is_an_error_of_every_speed_but_not_of_the_density() {
     let packing = packing(&ANISOTROPIC);
     let mut speeds = sharp(&packing, &thirteen());
     let variances = |speeds: &[WaveSpeed], density| {
@@ -81,7 +81,7 @@ fn a_departure_enlarges_the_covariance_by_chi_square_per_degree_of_freedom_but_n
     speeds.iter_mut().for_each(|s| s.stddev = s.stddev.map(|e| e * stated.sqrt()));
     assert_eq!(fit(&speeds).departure, None);
     let (agreed, _) = variances(&speeds, exact);
-    assert!((departed - agreed).amax() < 1e-9 * agreed.amax());
+    assert!((departed - agreed).amax() < 1e-3 * agreed.amax());
     let blurred = Measured { value: DENSITY, stddev: 0.01 * DENSITY };
     let c33 = Modulus::C33 as usize;
     let (with_density, _) = variances(&sharp(&packing, &thirteen()), blurred);
@@ -158,4 +158,20 @@ fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_a
     let alone =
         christoffel::observation(&speeds, Measured::exact(DENSITY), Some(Vec3::z()), Conditions::at(50e3));
     assert!(alone.unwrap_err().to_string().contains("45 degrees from the nearest mode"));
+}
+
+#[test]
+fn a_speed_that_is_known_far_better_than_the_sample_scatters_does_not_outweigh_the_others() {
+    let packing = packing(&ANISOTROPIC);
+    let speeds = sharp(&packing, &thirteen());
+    let moduli = |speeds: &[WaveSpeed]| fit(speeds).observation.moduli;
+    let alike = moduli(&speeds);
+    for sharper in 0..speeds.len() {
+        let mut speeds = speeds.clone();
+        speeds[sharper].stddev = speeds[sharper].stddev.map(|e| 1e-3 * e);
+        for (modulus, value) in moduli(&speeds).known() {
+            let moved = value / alike.get(modulus).unwrap() - 1.0;
+            assert!(moved.abs() < 1e-3, "{modulus} moves by {moved} for speeds[{sharper}]");
+        }
+    }
 }

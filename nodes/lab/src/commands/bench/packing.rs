@@ -5,7 +5,7 @@ use flate2::read::GzDecoder;
 use grains::{Cell, Material, Packing, Vec3};
 use recordings::import::{ImportOptions, lammps_data, load as load_file};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// 2,000 glass spheres made by LAMMPS at 100 kPa, z = 5.11: see its README.
 const BUILT_IN: &[u8] = include_bytes!("../../../../../tests/golden/packings/packing_2000.data.gz");
@@ -28,6 +28,16 @@ pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
     let loaded = known.or_else(|_| load_file(path, &glass)).map_err(Failure::failed)?;
     let none = || Failure::failed(format!("{}: holds no packing", path.display()));
     Ok(loaded.packings.into_iter().next().ok_or_else(none)?.packing)
+}
+
+/// Every packing of every file, or the one built in.
+pub(crate) fn load_all(paths: &[PathBuf]) -> Result<Vec<Packing>, Failure> {
+    if paths.is_empty() {
+        return Ok(vec![load(None)?]);
+    }
+    let all = paths.iter().map(|path| load_file(path, &ImportOptions::default()).map_err(Failure::failed));
+    let loaded = all.collect::<Result<Vec<_>, _>>()?;
+    Ok(loaded.into_iter().flat_map(|l| l.packings).map(|imported| imported.packing).collect())
 }
 
 /// Copies along each axis that give these sizes; 1, 2 and 4 if none is named.

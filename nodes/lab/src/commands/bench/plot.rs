@@ -112,6 +112,14 @@ pub(super) fn line(svg: &mut String, [x1, y1, x2, y2]: [f64; 4], colour: &str) {
     );
 }
 
+/// A point with a stroke and a fill, that says in its title what it is.
+pub(super) fn circle(svg: &mut String, [x, y]: [f64; 2], (stroke, fill): (&str, &str), title: &str) {
+    let style = format!("stroke=\"{stroke}\" fill=\"{fill}\" stroke-width=\"1.4\"");
+    let title = escaped(title);
+    let _ =
+        writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" {style}><title>{title}</title></circle>");
+}
+
 pub(super) fn text(svg: &mut String, x: f64, y: f64, anchor: &str, more: &str, content: &str) {
     let content = escaped(content);
     let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>");

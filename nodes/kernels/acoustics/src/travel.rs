@@ -1,4 +1,4 @@
-//! The speed of one motion along one ray.
+//! The speed of one motion along one ray, by sending bursts.
 
 use crate::arrival::Arrivals;
 use crate::burst::Burst;
@@ -10,12 +10,11 @@ use crate::meaning;
 use crate::measure::Warning;
 use crate::noise::seed_at;
 use crate::passage::Passage;
-use crate::ray::Ray;
 use crate::repeat::repeated;
 use crate::sample::Sample;
 use crate::shot::{Answer, Shot};
 use crate::trace::{Channel, Trace};
-use grains::{Vec3, WaveMethod};
+use grains::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -28,15 +27,12 @@ const ROUGH_WAVELENGTH: f64 = 20.0;
 const ROUGH_SHARE: f64 = 0.75;
 const ROUGH_RECEIVERS: (u32, f64, f64) = (3, 0.75, 2.0);
 
-/// Relative standard deviation of a speed from which noise is to be warned of.
-const NOISY: f64 = 0.02;
-
 /// Relative change of the trace at half the amplitude from which an answer is not in proportion.
 const NONLINEAR: f64 = 1e-2;
 
 /// One motion along one ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mode {
+pub(crate) struct Travel {
     /// Unit direction of propagation.
     pub(crate) direction: Vec3,
     /// Unit particle motion.
@@ -55,7 +51,7 @@ pub(crate) struct Found {
     pub(crate) warnings: Vec<Warning>,
 }
 
-impl Mode {
+impl Travel {
     /// Sends all frequencies, picks, and extrapolates.
     pub(crate) fn measured(
         &self,
@@ -74,33 +70,26 @@ impl Mode {
         }
         let bursts: Vec<Burst> =
             frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
-        // The longest waves take the most time.
+        // A path too short is refused before anything is sent, with the length that the longest wave needs.
+        let short = bursts.iter().filter_map(|b| self.passage(sample, settings, b, speed).err());
+        if let Some(worst) = short.max_by_key(copies_needed) {
+            return Err(worst);
+        }
         let send =
             |burst: &Burst| self.send(sample, settings, burst, speed, instrument.rate(burst.frequency)?);
-        let answers: Vec<Answer> = bursts.par_iter().map(send).collect::<Result<_, _>>()?;
+        let answers: Vec<Result<Answer, AcousticsError>> = bursts.par_iter().map(send).collect();
+        let answers = answers.into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut traces = Vec::with_capacity(bursts.len());
         let mut arrivals = Vec::with_capacity(bursts.len());
         for (k, (burst, answer)) in bursts.iter().zip(&answers).enumerate() {
             let place = [&self.place[..], &[k as u64]].concat();
             let trace = self.trace(burst, answer, instrument, settings.pick, &place)?;
-            arrivals.push(Arrivals::picked(
-                &trace,
-                burst.cycles,
-                settings.pick,
-                seed_at(instrument.seed, &place),
-            )?);
+            let seed = seed_at(instrument.seed, &place);
+            arrivals.push(Arrivals::picked(&trace, burst.cycles, settings.pick, seed)?);
             traces.push(trace);
         }
         let mut curve = meaning::curve(&traces, &arrivals, settings.cycles, settings.pick, sample.diameter)?;
-        let mut warnings = self.nonlinear(sample, settings, speed, &bursts, &answers, &mut curve)?;
-        let relative = curve.stddev / curve.speed;
-        if instrument.signal_to_noise.is_finite() && relative > NOISY {
-            warnings.push(Warning::Noisy {
-                direction: self.direction.into(),
-                motion: self.motion.into(),
-                relative,
-            });
-        }
+        let warnings = self.nonlinear(sample, settings, speed, &bursts, &answers, &mut curve)?;
         Ok(Found { curve, traces, warnings })
     }
 
@@ -118,6 +107,19 @@ impl Mode {
         Ok(1.0 / arrivals.slowness)
     }
 
+    fn passage(
+        &self,
+        sample: &Sample,
+        settings: &Settings,
+        burst: &Burst,
+        speed: f64,
+    ) -> Result<Passage, AcousticsError> {
+        let planes = sample.packing.cell.inverse().transpose() * Vec3::from(self.indices.map(f64::from));
+        // Planes (2 0 0) are every other one of (1 0 0).
+        let divisor = self.indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
+        Passage::planned(settings, burst, speed, sample.diameter, f64::from(divisor) / planes.norm())
+    }
+
     fn send(
         &self,
         sample: &Sample,
@@ -126,12 +128,7 @@ impl Mode {
         speed: f64,
         rate: f64,
     ) -> Result<Answer, AcousticsError> {
-        let no_plane = || AcousticsError::NoLatticePlane { direction: self.direction.into() };
-        let planes = sample.packing.cell.inverse().transpose() * Vec3::from(self.indices.map(f64::from));
-        Ray::normal(&sample.packing.cell, self.indices).ok_or_else(no_plane)?;
-        // Planes (2 0 0) are every other one of (1 0 0).
-        let divisor = self.indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
-        let passage = Passage::planned(settings, burst, speed, f64::from(divisor) / planes.norm())?;
+        let passage = self.passage(sample, settings, burst, speed)?;
         let repeated = repeated(&sample.packing, self.indices, passage.copies)?;
         let shot = Shot {
             repeated: &repeated,
@@ -173,11 +170,7 @@ impl Mode {
         Ok(Trace {
             direction: self.direction,
             motion: self.motion,
-            method: match pick {
-                Pick::FirstArrival => WaveMethod::FirstArrival,
-                Pick::CrossCorrelation => WaveMethod::CrossCorrelation,
-                Pick::Peak => WaveMethod::Peak,
-            },
+            method: pick.method(),
             frequency: burst.frequency,
             sample_rate: rate,
             start: clock.start,
@@ -219,6 +212,10 @@ impl Mode {
         };
         Ok(if change > NONLINEAR { vec![warning] } else { Vec::new() })
     }
+}
+
+fn copies_needed(error: &AcousticsError) -> u32 {
+    if let AcousticsError::PathTooShort { enough, .. } = error { *enough } else { u32::MAX }
 }
 
 fn gcd(a: u32, b: u32) -> u32 {
