@@ -58,7 +58,7 @@ fn ways() -> Vec<ParameterSpec> {
         .within(Range::Double { min: 2.000_001, max: 1e6 }),
         ParameterSpec::new("tolerance", dispersion.tolerance, "relative error allowed to the squared frequencies of \
              dispersion, 1")
-            .within(Range::Double { min: 1e-13, max: 1e-2 }),
+            .within(Range::Double { min: 1e-12, max: 1e-2 }),
         ParameterSpec::new(
             "max_iterations",
             i64::from(dispersion.max_iterations),
@@ -68,20 +68,27 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "copies",
             0_i64,
-            "repetitions of the packing along the path, 0 for 4 (standing_wave, which needs 3) or as many as are needed \
+            "repetitions of the packing along the path, 0 for 8 (standing_wave, which needs 5) or as many as are needed \
              (time of flight)",
         )
         .within(Range::Integer { min: 0, max: 256 }),
         ParameterSpec::new(
             "frequencies",
             Vec::<f64>::new(),
-            "centre frequencies of time of flight, Hz; empty for those whose waves are some 20, 30 and 40 mean grain \
+            "centre frequencies of time of flight, Hz; empty for those whose waves are some 20, 28 and 40 mean grain \
              diameters long",
         )
         .within(Range::Positive),
         ParameterSpec::new("cycles", flight.cycles, "periods of a burst of time of flight")
-            .within(Range::Double { min: 0.5, max: 100.0 }),
+            .within(Range::Double { min: 1.0, max: 100.0 }),
         ParameterSpec::new("amplitude", flight.amplitude, "peak strain that is sent, 1").within(strain),
+        ParameterSpec::new(
+            "friction",
+            -1.0,
+            "friction while grains move: -1 for that of the packing, whose contacts at the limit slide under any wave; inf \
+             for none that slides",
+        )
+        .within(Range::Double { min: -1.0, max: f64::INFINITY }),
     ]
 }
 

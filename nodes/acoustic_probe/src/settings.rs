@@ -24,7 +24,7 @@ pub enum SettingsError {
     Wavelengths(usize),
     /// Too few repetitions for a standing wave.
     #[error(
-        "parameter \"copies\" = {0}: a standing wave needs 3 or more repetitions of the packing, or 0 for 4"
+        "parameter \"copies\" = {0}: a standing wave needs 5 or more repetitions of the packing, or 0 for 8"
     )]
     Copies(u32),
 }
@@ -67,6 +67,7 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
 fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
     let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
     let amplitude = parameters.get("amplitude");
+    let friction = Some(parameters.get("friction")).filter(|mu| *mu >= 0.0);
     let pick = match parameters.get::<String>("method").as_str() {
         "dispersion" => {
             let wavelengths: Vec<f64> = parameters.get("wavelengths");
@@ -82,10 +83,10 @@ fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
         "standing_wave" => {
             let default = standing::Settings::default();
             let copies = copies.unwrap_or(default.copies);
-            if copies < 3 {
+            if copies < standing::FEWEST_COPIES {
                 return Err(SettingsError::Copies(copies));
             }
-            return Ok(Way::Standing(standing::Settings { copies, amplitude, ..default }));
+            return Ok(Way::Standing(standing::Settings { copies, amplitude, friction, ..default }));
         }
         "first_arrival" => Pick::FirstArrival,
         "peak" => Pick::Peak,
@@ -96,6 +97,7 @@ fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
         cycles: parameters.get("cycles"),
         copies,
         amplitude,
+        friction,
         pick,
         ..flight::Settings::default()
     }))

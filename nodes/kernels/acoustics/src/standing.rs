@@ -26,6 +26,9 @@ use grains::{Packing, Vec3};
 use rayon::prelude::*;
 use scene::Tangential;
 
+/// Repetitions of a packing that have room for two wavelengths, to extrapolate from.
+pub const FEWEST_COPIES: u32 = 5;
+
 /// How standing waves are measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -55,7 +58,7 @@ impl Settings {
     /// The settings themselves, if they are in range.
     pub fn validated(&self) -> Result<&Self, AcousticsError> {
         let fault = |name, value, requirement| Err(AcousticsError::Setting { name, value, requirement });
-        if self.copies < 5 {
+        if self.copies < FEWEST_COPIES {
             return fault("copies", self.copies.into(), "5 or more, for two wavelengths");
         }
         if !(1.5..=100.0).contains(&self.periods) {

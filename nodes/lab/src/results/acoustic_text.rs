@@ -9,7 +9,7 @@ use grains::{Stiffness, Vec3};
 /// What the speeds are, in a few words: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.
 pub(crate) fn heading(a: &AcousticView) -> String {
     let method = a.method.map_or_else(String::new, |m| format!("{}, ", m.replace('_', " ")));
-    let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {:.2} %", 100.0 * e));
+    let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {}", percent(e)));
     format!("wave speeds ({method}{} speeds{error})", a.speeds.len())
 }
 
@@ -30,6 +30,11 @@ pub(crate) fn text(a: &AcousticView, state: &State) -> String {
     text += &indented(&moduli(a, state.stiffness().as_ref()).without_empty_columns().text());
     a.warnings.iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
+}
+
+/// Two digits that mean something, of something small.
+fn percent(share: f64) -> String {
+    if share < 5e-5 { format!("{:.0e} %", 100.0 * share) } else { format!("{:.2} %", 100.0 * share) }
 }
 
 /// How far the speeds are from those of one medium, and what that does to the errors.

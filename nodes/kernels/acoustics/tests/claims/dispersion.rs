@@ -2,12 +2,22 @@
 
 use crate::sample;
 use acoustics::dispersion::{self, curves};
-use acoustics::{AcousticsError, Curve, Modes, Ray, Settings, Survey, Way, measure};
+use acoustics::{AcousticsError, Curve, Measurement, Modes, Ray, Settings, Survey, Way, measure};
 use emt::{Conditions, Measured, Modulus, christoffel};
 use grains::{Packing, Stiffness, Vec3};
+use std::sync::LazyLock;
 
 fn stiffness(packing: &Packing) -> Stiffness {
     micro::analyse(packing, &micro::Settings::default()).unwrap().moduli.unwrap().stiffness
+}
+
+/// The whole survey of both packings, by default settings, beside their static stiffness.
+fn surveys() -> &'static [(Measurement, Stiffness); 2] {
+    static SURVEYS: LazyLock<[(Measurement, Stiffness); 2]> = LazyLock::new(|| {
+        [sample::isotropic(), sample::anisotropic()]
+            .map(|packing| (measure(&packing, &Settings::default()).unwrap(), stiffness(&packing)))
+    });
+    &SURVEYS
 }
 
 /// ρ v² of the stiffness for this curve's direction and motion, Pa.
@@ -17,11 +27,10 @@ fn modulus(c: &Stiffness, curve: &Curve) -> f64 {
 
 #[test]
 fn long_waves_have_the_static_stiffness_and_every_speed_is_inside_its_uncertainty() {
-    for packing in [sample::isotropic(), sample::anisotropic()] {
-        let (m, c) = (measure(&packing, &Settings::default()).unwrap(), stiffness(&packing));
+    for (m, c) in surveys() {
         assert_eq!((m.curves.len(), m.warnings.len()), (27, 0));
         for curve in &m.curves {
-            let (found, expected) = (m.density * curve.speed.powi(2), modulus(&c, curve));
+            let (found, expected) = (m.density * curve.speed.powi(2), modulus(c, curve));
             let error = (found / expected - 1.0).abs();
             let sigma = (2.0 * curve.stddev / curve.speed).hypot(m.density_stddev / m.density);
             assert!(error < 4e-4, "{error:e} {curve:?}");
@@ -32,12 +41,11 @@ fn long_waves_have_the_static_stiffness_and_every_speed_is_inside_its_uncertaint
 
 #[test]
 fn christoffel_gives_the_moduli_of_the_transversely_isotropic_projection() {
-    for packing in [sample::isotropic(), sample::anisotropic()] {
-        let m = measure(&packing, &Settings::default()).unwrap();
+    for (m, c) in surveys() {
         let speeds: Vec<_> = m.waves.iter().map(|w| w.wave).collect();
         let density = Measured { value: m.density, stddev: m.density_stddev };
         let fitted = christoffel::observation(&speeds, density, m.axis, Conditions::at(50e3)).unwrap();
-        let t = stiffness(&packing).transverse_isotropy();
+        let t = c.transverse_isotropy();
         for (modulus, expected) in [
             (Modulus::C33, t.c33),
             (Modulus::C11, t.c11),
@@ -95,9 +103,7 @@ fn what_was_asked_for_is_measured_and_nothing_else() {
 
 #[test]
 fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
-    let packing = sample::isotropic();
-    let p =
-        measure(&packing, &Settings { survey: Survey::Three, ..Settings::default() }).unwrap().participation;
+    let p = surveys()[0].0.participation;
     assert_eq!(p.rattlers, 97);
     let without = p.bulk * f64::from(2000 - 97) / 2000.0;
     assert!(p.left_behind > 5 && p.mean() < without && p.mean() > 0.999 * without, "{p:?}");
