@@ -48,7 +48,7 @@ fn rays() -> Vec<ParameterSpec> {
 fn ways() -> Vec<ParameterSpec> {
     let dispersion = dispersion::Settings::default();
     let flight = flight::Settings::default();
-    let strain = Range::Double { min: 1e-12, max: 1e-2 };
+    let strain = Range::Double { min: 0.0, max: 1e-2 };
     vec![
         ParameterSpec::new(
             "wavelengths",
@@ -81,11 +81,16 @@ fn ways() -> Vec<ParameterSpec> {
         .within(Range::Positive),
         ParameterSpec::new("cycles", flight.cycles, "periods of a burst of time of flight")
             .within(Range::Double { min: 1.0, max: 100.0 }),
-        ParameterSpec::new("amplitude", flight.amplitude, "peak strain that is sent, 1").within(strain),
         ParameterSpec::new(
-            "friction",
+            "amplitude",
+            0.0,
+            "peak strain that is sent, 1; 0 for 1e-9 (standing_wave) or 1e-8 (time of flight)",
+        )
+        .within(strain),
+        ParameterSpec::new(
+            "wave_friction",
             -1.0,
-            "friction while grains move: -1 for that of the packing, whose contacts at the limit slide under any wave; inf \
+            "friction while waves pass (not of dispersion): -1 for that of the packing, whose contacts at the limit slide under any wave; inf \
              for none that slides",
         )
         .within(Range::Double { min: -1.0, max: f64::INFINITY }),

@@ -66,8 +66,8 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
 
 fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
     let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
-    let amplitude = parameters.get("amplitude");
-    let friction = Some(parameters.get("friction")).filter(|mu| *mu >= 0.0);
+    let amplitude = Some(parameters.get("amplitude")).filter(|strain| *strain > 0.0);
+    let friction = Some(parameters.get("wave_friction")).filter(|mu| *mu >= 0.0);
     let pick = match parameters.get::<String>("method").as_str() {
         "dispersion" => {
             let wavelengths: Vec<f64> = parameters.get("wavelengths");
@@ -86,20 +86,26 @@ fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
             if copies < standing::FEWEST_COPIES {
                 return Err(SettingsError::Copies(copies));
             }
-            return Ok(Way::Standing(standing::Settings { copies, amplitude, friction, ..default }));
+            return Ok(Way::Standing(standing::Settings {
+                copies,
+                amplitude: amplitude.unwrap_or(default.amplitude),
+                friction,
+                ..default
+            }));
         }
         "first_arrival" => Pick::FirstArrival,
         "peak" => Pick::Peak,
         _ => Pick::CrossCorrelation,
     };
+    let default = flight::Settings::default();
     Ok(Way::Flight(flight::Settings {
         frequencies: Some(parameters.get::<Vec<f64>>("frequencies")).filter(|f| !f.is_empty()),
         cycles: parameters.get("cycles"),
         copies,
-        amplitude,
+        amplitude: amplitude.unwrap_or(default.amplitude),
         friction,
         pick,
-        ..flight::Settings::default()
+        ..default
     }))
 }
 

@@ -67,3 +67,14 @@ fn report(failure: &Failure) -> Exit {
     crate::output::say!("grainlab: {failure}");
     failure.exit
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn no_two_flags_of_a_command_have_one_name() {
+        Cli::command().debug_assert();
+    }
+}

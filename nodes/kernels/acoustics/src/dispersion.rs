@@ -16,6 +16,7 @@ use crate::curve::{Curve, Point};
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::modes::{Stopped, modes};
 use crate::error::AcousticsError;
+use crate::measure::Warning;
 use crate::participation::Carrier;
 use crate::ray::Ray;
 use grains::{Mat3, Packing, Vec3};
@@ -26,10 +27,15 @@ use std::f64::consts::TAU;
 /// Waves of less than this many mean diameters are no waves of a medium: neighbours move against each other.
 const SHORTEST: f64 = 2.0;
 
+/// Waves of less than this many mean diameters leave loose grains of a packing behind, one after the other, which makes them
+/// faster by up to this share of ω².
+const SOFT_BELOW: f64 = 100.0;
+const SOFT: f64 = 1e-3;
+
 /// How dispersion is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Wavelengths in mean grain diameters, two or more, each above 2. In packings of z = 5 waves shorter than some 100 diameters
+    /// Wavelengths in mean grain diameters, three or more different ones, each above 2. In packings of z = 5 waves shorter than some 100 diameters
     /// leave loose grains behind that longer ones take along, and are faster for that by up to a thousandth.
     pub wavelengths: Vec<f64>,
     /// Relative error allowed to ω², in [1e-12, 1e-2].
@@ -72,8 +78,12 @@ pub(crate) fn check(settings: &Settings) -> Result<(), AcousticsError> {
     let range = |name, value: f64, valid: bool, requirement| {
         if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
     };
-    let count = settings.wavelengths.len();
-    range("number of wavelengths", count as f64, count >= 2, "2 or more, to extrapolate from")?;
+    let mut different = settings.wavelengths.clone();
+    different.sort_by(f64::total_cmp);
+    different.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
+    let count = different.len();
+    let requirement = "3 or more different ones, to extrapolate from and to tell how well";
+    range("number of wavelengths", count as f64, count >= 3, requirement)?;
     for wavelength in &settings.wavelengths {
         let valid = wavelength.is_finite() && *wavelength > SHORTEST;
         range("wavelength", *wavelength, valid, "more than 2 mean grain diameters, finite")?;
@@ -83,7 +93,34 @@ pub(crate) fn check(settings: &Settings) -> Result<(), AcousticsError> {
     range("max_iterations", f64::from(n), n > 0, "1 or more")
 }
 
-pub(crate) fn curves_of(
+/// The curves of the rays that have any; those whose modes are not found are left out with a warning, unless all are.
+pub(crate) fn all_curves(
+    carrier: &Carrier,
+    diameter: f64,
+    rays: &[Ray],
+    turn: Turn,
+    settings: &Settings,
+) -> Result<(Vec<Curve>, Vec<Warning>), AcousticsError> {
+    let found: Vec<_> =
+        rays.par_iter().map(|ray| curves_along(carrier, diameter, ray, turn, settings)).collect();
+    let (mut curves, mut warnings, mut lost) = (Vec::new(), Vec::new(), None);
+    for found in found {
+        match found {
+            Ok(found) => curves.extend(found),
+            Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
+                lost = lost.or_else(|| Some(error.clone()));
+                warnings.push(Warning::LeftOut(error));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    match lost {
+        Some(error) if curves.is_empty() => Err(error),
+        _ => Ok((curves, warnings)),
+    }
+}
+
+fn curves_of(
     carrier: &Carrier,
     diameter: f64,
     rays: &[Ray],
@@ -198,7 +235,7 @@ fn resistances(
         found.push(Resistance {
             wavenumber,
             over_square: modes.resistance / (wavenumber * wavenumber),
-            error: modes.change.max(tolerance),
+            error: modes.change.max(tolerance).max(if *wavelength < SOFT_BELOW { SOFT } else { 0.0 }),
         });
         near = Some(modes.waves);
     }

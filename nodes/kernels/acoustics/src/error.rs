@@ -20,8 +20,9 @@ pub enum AcousticsError {
     NoNetwork(#[from] NoNetwork),
     /// Waves of this frequency do not travel through the packing.
     #[error(
-        "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {direction:?} are two \
-         grains long and travel no more; send less than half of it"
+        "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {} are two \
+         grains long and travel no more; send less than half of it",
+        in_brackets(direction)
     )]
     CutOff {
         /// The frequency asked for, Hz.
@@ -49,15 +50,18 @@ pub enum AcousticsError {
         enough: u32,
     },
     /// The ray is not normal to lattice planes, so that the packing cannot be repeated along it.
-    #[error("the packing cannot be repeated along {direction:?}: not a normal of its lattice planes")]
+    #[error(
+        "the packing cannot be repeated along {}: not a normal of its lattice planes",
+        in_brackets(direction)
+    )]
     NoLatticePlane {
         /// Direction of propagation.
         direction: [f64; 3],
     },
     /// The mode of a wave vector was not found to the accuracy asked for.
     #[error(
-        "the mode along {direction:?} at a wavelength of {wavelength:.4e} m was not found: {reason}; raise max_iterations or \
-         tolerance, or use longer waves"
+        "the mode along {} at a wavelength of {wavelength:.4e} m was not found: {reason}",
+        in_brackets(direction)
     )]
     NotConverged {
         /// Direction of propagation.
@@ -68,7 +72,7 @@ pub enum AcousticsError {
         reason: String,
     },
     /// No arrival, or no ringing, was recognised.
-    #[error("no {what} along {direction:?}, motion {motion:?}: {reason}")]
+    #[error("no {what} along {}, motion {}: {reason}", in_brackets(direction), in_brackets(motion))]
     NoSignal {
         /// What was looked for.
         what: &'static str,
@@ -85,4 +89,9 @@ pub enum AcousticsError {
     /// The engine failed.
     #[error(transparent)]
     Engine(#[from] dem::DemError),
+}
+
+/// A direction as people write it.
+pub(crate) fn in_brackets(v: &[f64; 3]) -> String {
+    format!("({:.3}, {:.3}, {:.3})", v[0], v[1], v[2])
 }

@@ -170,7 +170,10 @@ pub fn curves(
     }
     let sample = Sample::new(packing, settings.friction, settings.tangential)?;
     let found: Vec<_> = travels.par_iter().map(|t| t.measured(&sample, settings, instrument)).collect();
-    let (mut curves, mut traces, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut curves, mut traces) = (Vec::new(), Vec::new());
+    let mut warnings: Vec<Warning> =
+        sample.unrest.map(|unbalanced| Warning::NotAtRest { unbalanced }).into_iter().collect();
+    let mut silent = None;
     for found in found {
         match found {
             Ok(mut found) => {
@@ -178,12 +181,15 @@ pub fn curves(
                 traces.append(&mut found.traces);
                 warnings.append(&mut found.warnings);
             }
-            Err(hidden @ AcousticsError::NoSignal { .. }) => warnings.push(Warning::LeftOut(hidden)),
+            Err(hidden @ AcousticsError::NoSignal { .. }) => {
+                silent = silent.or_else(|| Some(hidden.clone()));
+                warnings.push(Warning::LeftOut(hidden));
+            }
             Err(error) => return Err(error),
         }
     }
-    match warnings.first() {
-        Some(Warning::LeftOut(error)) if curves.is_empty() => Err(error.clone()),
+    match silent {
+        Some(error) if curves.is_empty() => Err(error),
         _ => Ok((curves, traces, warnings)),
     }
 }

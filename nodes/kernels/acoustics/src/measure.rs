@@ -2,7 +2,7 @@
 
 use crate::curve::Curve;
 use crate::dispersion::Turn;
-use crate::error::AcousticsError;
+use crate::error::{AcousticsError, in_brackets};
 use crate::instrument::Instrument;
 use crate::noise::Noise;
 use crate::participation::{Carrier, Participation};
@@ -60,8 +60,10 @@ impl Default for Settings {
 pub enum Warning {
     /// The answer is not in proportion to the amplitude.
     #[error(
-        "the packing answers not in proportion along {direction:?}, motion {motion:?}: {opened} contacts opened, {closed} \
-         closed at a strain of {amplitude:e}, the trace changes by {change:.1e} of itself at half of that; send less"
+        "the packing answers not in proportion along {}, motion {}: {opened} contacts opened, {closed} \
+         closed at a strain of {amplitude:e}, the trace changes by {change:.1e} of itself at half of that; send less",
+        in_brackets(direction),
+        in_brackets(motion)
     )]
     Nonlinear {
         /// Direction of propagation.
@@ -77,10 +79,12 @@ pub enum Warning {
         /// Relative change of the trace over the amplitude, root mean square, when half the amplitude is sent.
         change: f64,
     },
-    /// Noise hides the arrivals.
+    /// A speed that is hardly known.
     #[error(
-        "noise hides the wave along {direction:?}, motion {motion:?}: its speed is uncertain by {relative:.1e} of itself; \
-         average more shots"
+        "the wave along {}, motion {}, tells its speed to {relative:.1e} of itself only; average more shots if it is noise, send \
+         less if contacts open",
+        in_brackets(direction),
+        in_brackets(motion)
     )]
     Noisy {
         /// Direction of propagation.
@@ -89,6 +93,15 @@ pub enum Warning {
         motion: [f64; 3],
         /// Relative standard deviation of the speed.
         relative: f64,
+    },
+    /// The packing's own motion is mixed with the waves.
+    #[error(
+        "the packing did not come to rest (unbalanced force ratio {unbalanced:.1e}): its own motion is mixed with the waves; relax \
+         it further, or send more"
+    )]
+    NotAtRest {
+        /// Mean net force of the grains that carry force, over the mean contact force.
+        unbalanced: f64,
     },
     /// A mode was left out.
     #[error("left out: {0}")]
@@ -134,7 +147,8 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let turn = if axis.is_some() { Turn::InPlane } else { Turn::Freely };
-            (dispersion::curves_of(&carrier, diameter, &rays, turn, way)?, Vec::new(), Vec::new())
+            let (curves, warnings) = dispersion::all_curves(&carrier, diameter, &rays, turn, way)?;
+            (curves, Vec::new(), warnings)
         }
         Way::Standing(way) => standing::curves(packing, &lattice(), way, instrument)?,
         Way::Flight(way) => flight::curves(packing, &lattice(), way, instrument)?,
@@ -157,12 +171,20 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
         strain_amplitude: amplitude,
     };
     let waves: Vec<MeasuredWave> = curves.iter().map(wave).collect();
-    let waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);
+    let mut waves = with_speed_noise(&waves, instrument.speed_noise, instrument.seed);
+    warnings.extend(waves.iter().filter(|w| !is_speed(w)).map(|w| {
+        let (direction, motion) = (w.wave.direction.into(), w.wave.polarization.into());
+        let reason = "the noise of speeds is as large as the speed".to_owned();
+        Warning::LeftOut(AcousticsError::NoSignal { what: "speed", direction, motion, reason })
+    }));
+    waves.retain(is_speed);
     warnings.extend(noisy(&waves));
     let [least, most] = frequencies(&curves);
     let participation = carrier.participation(least);
     let density = participation.mean();
     let density_stddev = participation.spread().hypot(density - carrier.participation(most).mean());
+    // Less is rounding.
+    let density_stddev = if density_stddev > 1e-9 * density { density_stddev } else { 0.0 };
     Ok(Measurement { waves, participation, density, density_stddev, axis, curves, traces, warnings })
 }
 
@@ -193,6 +215,10 @@ fn check(settings: &Settings) -> Result<(), AcousticsError> {
 fn frequencies(curves: &[Curve]) -> [f64; 2] {
     let all = || curves.iter().flat_map(|c| &c.points).map(|p| p.speed * p.wavenumber);
     [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)]
+}
+
+fn is_speed(measured: &MeasuredWave) -> bool {
+    measured.wave.speed > 0.0
 }
 
 /// Speeds that noise leaves next to nothing of.

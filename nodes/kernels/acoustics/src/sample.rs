@@ -17,7 +17,7 @@ const SKIN: f64 = 0.02;
 
 /// Solver steps between two looks at the balance of forces, and of all of them.
 const REST_LOOK: u32 = 100;
-const REST_STEPS: u32 = 5_000;
+const REST_STEPS: u32 = 20_000;
 
 /// Unbalanced force ratio at which a packing counts as at rest: its own motion is then far below that of a wave of strain
 /// 1e-9, whose forces are 1e-5 of those of overlaps of 1e-4 diameters.
@@ -34,6 +34,8 @@ pub(crate) struct Sample {
     pub(crate) setting: Setting,
     /// Mean diameter, m.
     pub(crate) diameter: f64,
+    /// Unbalanced force ratio, where the packing did not come to rest.
+    pub(crate) unrest: Option<f64>,
 }
 
 impl Sample {
@@ -76,15 +78,17 @@ impl Sample {
         let setting = Setting { time_step: TimeStep::Fixed(engine.time_step()), ..setting };
         engine.set(setting);
         let mut rest = Relaxation::new(vec![engine]);
+        let unrest = |rest: &Relaxation| {
+            let now = rest.engines()[0].packing(Mat3::identity());
+            unbalanced(&now, &present).filter(|u| u.is_nan() || *u >= AT_REST)
+        };
         for step in 0..REST_STEPS {
-            if step % REST_LOOK == 0 {
-                let now = rest.engines()[0].packing(Mat3::identity());
-                if unbalanced(&now, &present).is_none_or(|u| u < AT_REST) {
-                    break;
-                }
+            if step % REST_LOOK == 0 && unrest(&rest).is_none() {
+                break;
             }
             rest.step()?;
         }
+        let unrest = unrest(&rest);
         let mut rested = rest.engines()[0].packing(packing.deformation);
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
@@ -92,7 +96,7 @@ impl Sample {
         if present.iter().all(|p| !p) {
             return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(friction) }.into());
         }
-        Ok(Self { packing: rested, present, setting, diameter })
+        Ok(Self { packing: rested, present, setting, diameter, unrest })
     }
 
     /// Speed of long waves if every grain moved with the mean deformation, m/s: above the real one, by some tens of per

@@ -105,7 +105,9 @@ pub fn curves(
     let sample = Sample::new(packing, settings.friction, settings.tangential)?;
     let found: Vec<Result<Found, AcousticsError>> =
         resonances.par_iter().map(|r| r.measured(&sample, settings, instrument)).collect();
-    let (mut curves, mut traces, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut curves, mut traces) = (Vec::new(), Vec::new());
+    let mut warnings: Vec<Warning> =
+        sample.unrest.map(|unbalanced| Warning::NotAtRest { unbalanced }).into_iter().collect();
     let mut silent = None;
     for found in found {
         match found {

@@ -16,7 +16,8 @@ pub enum Survey {
     /// One along the axis, three across, five at 45°; of lattice planes one, four and eight.
     #[default]
     Complete,
-    /// One along the axis, one across, one between: what a laboratory has transducers for.
+    /// One along the axis, one across, one between: what a laboratory has transducers for. What a packing differs by between
+    /// azimuths they do not tell.
     Three,
     /// Thirteen over the hemisphere, for an axis that is not known: edges, face diagonals and body diagonals of a cube.
     Everywhere,
@@ -61,8 +62,6 @@ const EVERYWHERE: [[i32; 3]; 13] = [
     [-1, -1, 1],
 ];
 
-const THREE: [[i32; 3]; 3] = [[0, 0, 1], [1, 0, 0], [1, 0, 1]];
-
 impl Survey {
     /// Rays in the directions wanted, about the unit vector `axis`.
     pub fn rays(&self, axis: &Vec3, modes: Modes) -> Vec<Ray> {
@@ -88,9 +87,10 @@ impl Survey {
 
     /// Rays normal to lattice planes of `cell`, with the motions of a medium that is isotropic about `axis`.
     pub fn lattice_rays(&self, cell: &Cell, axis: &Vec3, modes: Modes) -> Vec<Ray> {
-        let indices: &[[i32; 3]] = match self {
-            Self::Complete | Self::Everywhere => &EVERYWHERE,
-            Self::Three => &THREE,
+        let indices: Vec<[i32; 3]> = match self {
+            Self::Complete | Self::Everywhere => EVERYWHERE.to_vec(),
+            // Those that are nearest to the axis, to across it, and to 45°.
+            Self::Three => [1.0, 0.0, FRAC_PI_4.cos()].map(|cosine| nearest(cell, axis, cosine)).to_vec(),
         };
         let ray = |indices: &[i32; 3]| {
             let direction = Ray::normal(cell, *indices)?;
@@ -99,4 +99,15 @@ impl Survey {
         };
         indices.iter().filter_map(ray).collect()
     }
+}
+
+/// Of the lattice planes tried, those whose normal is nearest to this cosine from the axis; the first of equals.
+fn nearest(cell: &Cell, axis: &Vec3, cosine: f64) -> [i32; 3] {
+    let off = |indices: &[i32; 3]| {
+        let normal = Ray::normal(cell, *indices).unwrap_or_else(Vec3::zeros);
+        let angle = normal.dot(axis).abs().min(1.0).acos();
+        // Angles that differ by less than the edges of a servoed cell are off count as equal.
+        ((angle - cosine.acos()).abs() * 20.0).round()
+    };
+    EVERYWHERE.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(EVERYWHERE[0])
 }

@@ -44,12 +44,17 @@ impl std::fmt::Display for Stopped {
         match self {
             Self::NoResistance => write!(f, "it meets no resistance"),
             Self::NotConverged { residual, iterations } => {
-                write!(f, "relative residual {residual:e} after {iterations} iterations")
+                write!(
+                    f,
+                    "relative residual {residual:e} after {iterations} iterations; raise max_iterations or tolerance, or use \
+                     longer waves"
+                )
             }
             Self::Unsettled { change } => {
                 write!(
                     f,
-                    "the square of the frequency still changed by {change:e} of itself after {ROUNDS} rounds"
+                    "the square of the frequency still changed by {change:e} of itself after {ROUNDS} rounds, among softer \
+                     motions of single grains; use longer waves"
                 )
             }
         }

@@ -12,6 +12,9 @@ use crate::flight::pick::Picker;
 use crate::noise::Noise;
 use crate::trace::Trace;
 
+/// Place of the noise of copies, apart from that of shots.
+const COPIES_PLACE: u64 = u64::MAX - 1;
+
 /// Noisy copies that are picked again.
 const COPIES: u64 = 32;
 
@@ -137,7 +140,7 @@ fn repeated(picker: &Picker, channels: &[&[f64]], noise: f64, seed: u64) -> Resu
     let mut times = Vec::with_capacity(COPIES as usize);
     let mut lost = None;
     for copy in 0..COPIES {
-        let mut random = Noise::at(seed, &[copy]);
+        let mut random = Noise::at(seed, &[COPIES_PLACE, copy]);
         let mut noisy = |channel: &&[f64]| channel.iter().map(|s| s + noise * random.next()).collect();
         let copy: Vec<Vec<f64>> = channels.iter().map(&mut noisy).collect();
         let copy: Vec<&[f64]> = copy.iter().map(Vec::as_slice).collect();

@@ -27,6 +27,9 @@ const ROUGH_WAVELENGTH: f64 = 20.0;
 const ROUGH_SHARE: f64 = 0.75;
 const ROUGH_RECEIVERS: (u32, f64, f64) = (3, 0.75, 2.0);
 
+/// What half the amplitude changes, times this, is what none at all may change.
+const TO_NONE: f64 = 3.0;
+
 /// Relative change of the trace at half the amplitude from which an answer is not in proportion.
 const NONLINEAR: f64 = 1e-2;
 
@@ -96,6 +99,14 @@ impl Travel {
     /// The speed of a first burst, m/s: what is sent, and where it is heard, follows from it.
     fn rough_speed(&self, sample: &Sample, settings: &Settings) -> Result<f64, AcousticsError> {
         let guess = ROUGH_SHARE * sample.affine_speed(&self.direction, &self.motion);
+        if guess.is_nan() || guess <= 0.0 {
+            return Err(AcousticsError::NoSignal {
+                what: "wave",
+                direction: self.direction.into(),
+                motion: self.motion.into(),
+                reason: "the contacts resist no such motion".to_owned(),
+            });
+        }
         let (receivers, nearest, furthest) = ROUGH_RECEIVERS;
         let settings = Settings { receivers, nearest, furthest, copies: None, ..settings.clone() };
         let frequency = guess / (ROUGH_WAVELENGTH * sample.diameter);
@@ -200,8 +211,10 @@ impl Travel {
             Ok::<f64, AcousticsError>(Arrivals::picked(&trace, burst.cycles, settings.pick, 1)?.slowness)
         };
         let moved = (slowness(&half)? / slowness(full)? - 1.0).abs();
-        curve.stddev = curve.stddev.hypot(moved * curve.speed);
         let change = change(&full.heard, &half.heard);
+        // A trace that is another one at half the amplitude does not tell what none would do.
+        let unknown = if change > NONLINEAR { 0.5 * change } else { 0.0 };
+        curve.stddev = curve.stddev.hypot((TO_NONE * moved).hypot(unknown) * curve.speed);
         let warning = Warning::Nonlinear {
             direction: self.direction.into(),
             motion: self.motion.into(),

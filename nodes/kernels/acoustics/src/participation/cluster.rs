@@ -52,7 +52,7 @@ pub(crate) fn clusters(network: &Network, mass: &[f64], inertia: &[f64]) -> Vec<
     let loose = |g: u32| (1..=FEW).contains(&neighbours[g as usize].len());
     let mut seen = vec![false; network.grains()];
     let mut clusters = Vec::new();
-    for g in (0..network.grains() as u32).filter(|g| !neighbours[*g as usize].is_empty()) {
+    for g in (0..network.grains() as u32).filter(|g| neighbours[*g as usize].iter().any(|o| o != g)) {
         if seen[g as usize] {
             continue;
         }

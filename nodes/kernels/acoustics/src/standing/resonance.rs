@@ -50,9 +50,6 @@ const STRUCTURE: f64 = 0.15;
 /// Relative change of the traces at half the amplitude from which the answer is not in proportion.
 const NONLINEAR: f64 = 1e-3;
 
-/// Relative standard deviation of a speed from which noise is to be warned of.
-const NOISY: f64 = 0.02;
-
 /// Smallest relative standard deviation of a frequency: rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -148,11 +145,6 @@ impl Resonance {
         let dispersed = curve.bend * repeated.wavenumber(1).powi(2);
         let beyond = (sample.pressure() / modulus).hypot(ringing.aside()).hypot(STRUCTURE * dispersed);
         curve.stddev = curve.stddev.hypot(0.5 * beyond * curve.speed);
-        let relative = curve.stddev / curve.speed;
-        if instrument.signal_to_noise.is_finite() && relative > NOISY {
-            let (direction, motion) = (self.direction.into(), self.motion.into());
-            warnings.push(Warning::Noisy { direction, motion, relative });
-        }
         Ok(Found { curve, trace, warnings })
     }
 

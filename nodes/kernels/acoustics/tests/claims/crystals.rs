@@ -115,6 +115,16 @@ fn simple_cubic_has_its_dispersion_relation() {
 }
 
 #[test]
+fn all_of_a_crystal_moves_however_few_grains_its_cell_has() {
+    let branch = 2.0 * RADIUS - OVERLAP;
+    for n in [1, 2, 3] {
+        let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n), branch);
+        let measured = acoustics::measure(&packing, &acoustics::Settings::default()).unwrap();
+        assert!((measured.density / measured.participation.bulk - 1.0).abs() < 1e-12, "{measured:?}");
+    }
+}
+
+#[test]
 fn face_centred_cubic_has_its_dispersion_relation() {
     let branch = 2.0 * RADIUS - OVERLAP;
     let edge = branch * 2f64.sqrt();

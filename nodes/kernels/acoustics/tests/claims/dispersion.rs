@@ -145,9 +145,15 @@ fn settings_out_of_range_are_refused_by_name() {
         );
     };
     let usual = dispersion::Settings::default;
-    refused(dispersion::Settings { wavelengths: vec![100.0], ..usual() }, "number of wavelengths");
-    refused(dispersion::Settings { wavelengths: vec![100.0, 1.9], ..usual() }, "wavelength = 1.9e0");
-    refused(dispersion::Settings { wavelengths: vec![100.0, f64::NAN], ..usual() }, "wavelength = NaN");
+    refused(
+        dispersion::Settings { wavelengths: vec![100.0, 200.0, 100.0], ..usual() },
+        "number of wavelengths",
+    );
+    refused(dispersion::Settings { wavelengths: vec![100.0, 200.0, 1.9], ..usual() }, "wavelength = 1.9e0");
+    refused(
+        dispersion::Settings { wavelengths: vec![100.0, 200.0, f64::NAN], ..usual() },
+        "wavelength = NaN",
+    );
     refused(dispersion::Settings { tolerance: 0.0, ..usual() }, "tolerance");
     let axis = Some(Vec3::new(0.0, f64::NAN, 1.0));
     let error = measure(&packing, &Settings { axis, ..Settings::default() }).unwrap_err();

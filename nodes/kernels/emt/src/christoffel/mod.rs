@@ -132,8 +132,9 @@ pub fn observation(
         (Agreement::Beyond(found), Some(errors)) => {
             let (added, with_it, unit) = with_own_error(&rays, errors, &fit)?;
             let scatter = 2.0 * added;
+            (fit, error) = (with_it, unit);
             if scatter <= agreement::OWN_SCATTER {
-                (departure, fit, error) = (Some(Departure { scatter }), with_it, unit);
+                departure = Some(Departure { scatter });
             } else {
                 conflict = Some(found);
             }

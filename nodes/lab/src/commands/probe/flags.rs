@@ -90,7 +90,7 @@ mod tests {
     use clap::Args as _;
 
     fn settings(words: &[&str]) -> Result<Settings, String> {
-        let command = Flags::augment_args(Command::new("probe"));
+        let command = Flags::augment_args(Command::new("probe").allow_negative_numbers(true));
         let matches =
             command.try_get_matches_from([&["probe"], words].concat()).map_err(|e| e.to_string())?;
         Flags::from_arg_matches(&matches).unwrap().settings().map_err(|e| e.to_string())

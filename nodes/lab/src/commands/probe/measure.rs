@@ -29,7 +29,11 @@ impl Measure for Probe {
     fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
-        let network = micro::analyse(packing, &micro::Settings::default()).map_err(|e| named(&e))?;
+        let network = micro::analyse(
+            packing,
+            &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        )
+        .map_err(|e| named(&e))?;
         let moduli = network.moduli.as_ref().ok();
         let mut state = State::new(source.to_owned(), packing, &network.fabric, moduli);
         state.step = imported.step;

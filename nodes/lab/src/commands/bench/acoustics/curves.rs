@@ -35,7 +35,7 @@ pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
 /// Speeds at every wavelength shown, by curve, where the packing has modes of that length that are waves.
 fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<Point>> {
     let at = |wavelength: f64| {
-        let wavelengths = vec![wavelength, LONG];
+        let wavelengths = vec![wavelength, LONG, 2.0 * LONG];
         let settings = dispersion::Settings { wavelengths, tolerance: 1e-4, ..Default::default() };
         dispersion::curves(packing, rays, &settings).ok()
     };

@@ -14,7 +14,11 @@ use std::time::Instant;
 /// One row a way and value.
 pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let analysis = micro::analyse(packing, &micro::Settings::default()).map_err(|e| invalid(&e))?;
+    let analysis = micro::analyse(
+        packing,
+        &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+    )
+    .map_err(|e| invalid(&e))?;
     let stiffness = analysis.moduli.map_err(|e| invalid(&e))?.stiffness;
     let mut rows = Vec::new();
     for method in args.methods() {

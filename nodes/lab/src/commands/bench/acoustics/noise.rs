@@ -70,7 +70,11 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = acoustics::Settings { survey: args.survey.into(), ..Default::default() };
     let measurement = acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
-    let analysis = micro::analyse(packing, &micro::Settings::default()).map_err(|e| invalid(&e))?;
+    let analysis = micro::analyse(
+        packing,
+        &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+    )
+    .map_err(|e| invalid(&e))?;
     let affine = analysis.moduli.as_ref().ok().map(|m| m.affine);
     let truth =
         Counted { fabric: analysis.fabric.clone(), eps_stiffness: affine.as_ref().and_then(eps_stiffness) };
