@@ -46,7 +46,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { wavelengths: vec![160.0, 240.0, 320.0], tolerance: 1e-6, max_iterations: 20_000 }
+        Self { wavelengths: vec![160.0, 240.0, 320.0], tolerance: 1e-5, max_iterations: 20_000 }
     }
 }
 
@@ -215,13 +215,13 @@ fn resistances(
     wavelengths: &[f64],
     settings: &Settings,
 ) -> Result<Vec<Resistance>, AcousticsError> {
-    let mut near = None;
+    let mut near = Vec::new();
     let mut found = Vec::with_capacity(wavelengths.len());
     for wavelength in wavelengths {
         let wavenumber = TAU / (wavelength * diameter);
         let bloch = Bloch::new(carrier, &(ray.direction * wavenumber));
         let Settings { tolerance, max_iterations, .. } = *settings;
-        let modes = modes(&bloch, motions, near.as_ref(), tolerance, max_iterations).map_err(|stopped| {
+        let modes = modes(&bloch, motions, &near, tolerance, max_iterations).map_err(|stopped| {
             let contacts = carrier.network.contacts();
             match stopped {
                 Stopped::NoResistance => micro::NoNetwork::Floppy { contacts }.into(),
@@ -237,7 +237,7 @@ fn resistances(
             over_square: modes.resistance / (wavenumber * wavenumber),
             error: modes.change.max(tolerance).max(if *wavelength < SOFT_BELOW { SOFT } else { 0.0 }),
         });
-        near = Some(modes.waves);
+        near = modes.found;
     }
     Ok(found)
 }

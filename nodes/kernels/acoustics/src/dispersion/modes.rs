@@ -24,8 +24,8 @@ pub(crate) struct Modes {
     pub(crate) resistance: Mat3,
     /// Relative change of ω² in the last round, the worst of the modes.
     pub(crate) change: f64,
-    /// The modes themselves.
-    pub(crate) waves: Block,
+    /// The modes themselves, and softer ones that had to be kept apart.
+    pub(crate) found: Vec<Block>,
 }
 
 /// Why there are none.
@@ -62,11 +62,11 @@ impl std::fmt::Display for Stopped {
 }
 
 /// The modes that are nearest to plane waves with the perpendicular `motions`, one to three, to the relative error
-/// `tolerance` of ω². `near`: modes at a wave vector near by.
+/// `tolerance` of ω². `near`: what was found at a wave vector near by.
 pub(crate) fn modes(
     bloch: &Bloch<'_>,
     motions: &[Vec3],
-    near: Option<&Block>,
+    near: &[Block],
     tolerance: f64,
     max_iterations: u32,
 ) -> Result<Modes, Stopped> {
@@ -76,9 +76,7 @@ pub(crate) fn modes(
     bloch.weigh(&plane, &mut weighed);
     let mut subspace = Subspace::new(count);
     subspace.add(bloch, plane.clone());
-    if let Some(near) = near {
-        subspace.add(bloch, near.clone());
-    }
+    near.iter().for_each(|block| subspace.add(bloch, block.clone()));
     let mut ritz = subspace.best(&weighed).ok_or(Stopped::NoResistance)?;
     let mut budget = max_iterations;
     let mut change = f64::INFINITY;
@@ -106,7 +104,8 @@ pub(crate) fn modes(
         change = (0..count).map(moved).fold(0.0, f64::max);
         if change <= tolerance {
             let resistance = resistance(&ritz.squares, &ritz.overlaps, motions);
-            return Ok(Modes { resistance, change, waves: ritz.waves });
+            let found = std::iter::once(ritz.waves).chain(ritz.softer).collect();
+            return Ok(Modes { resistance, change, found });
         }
     }
     Err(Stopped::Unsettled { change })
