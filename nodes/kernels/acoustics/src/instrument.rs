@@ -6,6 +6,10 @@ use crate::noise::Noise;
 /// Samples a period of the centre frequency, where the instrument names no rate.
 const SAMPLES_PER_PERIOD: f64 = 40.0;
 
+/// Fewest and most that it may name.
+const LEAST_PER_PERIOD: f64 = 6.0;
+const MOST_PER_PERIOD: f64 = 10_000.0;
+
 /// Most shots that are averaged.
 const MOST_SHOTS: u32 = 1_000_000;
 
@@ -85,11 +89,11 @@ impl Instrument {
     }
 
     /// Samples a second for waves of `frequency`, Hz. Fewer than six a period cannot tell a burst, whose spectrum reaches
-    /// to twice its centre, from its aliases.
+    /// to twice its centre, from its aliases; more than 10,000 fill the memory and tell nothing.
     pub fn rate(&self, frequency: f64) -> Result<f64, AcousticsError> {
         let rate = self.sample_rate.unwrap_or(SAMPLES_PER_PERIOD * frequency);
-        if rate < 6.0 * frequency {
-            let requirement = "at least six samples a period of the centre frequency";
+        if !(LEAST_PER_PERIOD..=MOST_PER_PERIOD).contains(&(rate / frequency)) {
+            let requirement = "6 to 10,000 samples a period of the centre frequency";
             return Err(AcousticsError::Setting { name: "sample_rate", value: rate, requirement });
         }
         Ok(rate)

@@ -80,7 +80,7 @@ impl Settings {
 /// The standard deviation of a curve's speed also has what ρv² differs by from n·C·n of the unstressed frozen network for just
 /// that motion: terms of the order of the pressure, and sin² of the angle between the motion sent and that of the packing's
 /// own mode, which the longest wave's motion aside tells. And the longest wave's speed is taken to depart from any smooth law
-/// by 15 % of its dispersion.
+/// by a fifth of its dispersion.
 #[allow(clippy::type_complexity)]
 pub fn curves(
     packing: &Packing,

@@ -44,8 +44,8 @@ const LEFT_OUT: f64 = 0.25;
 const TO_NONE: f64 = 3.0;
 
 /// Share of the dispersion of the longest wave by which speeds depart from a smooth law, as waves meet motions of a few loose
-/// grains of their own frequency: the root mean square seen in packings of 2,000 grains.
-const STRUCTURE: f64 = 0.15;
+/// grains of their own frequency: what covers packings of 2,000 grains that did not set it, too.
+const STRUCTURE: f64 = 0.2;
 
 /// Relative change of the traces at half the amplitude from which the answer is not in proportion.
 const NONLINEAR: f64 = 1e-3;
