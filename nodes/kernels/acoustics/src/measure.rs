@@ -4,7 +4,7 @@ use crate::curve::Curve;
 use crate::dispersion::Turn;
 use crate::error::{AcousticsError, in_brackets};
 use crate::instrument::Instrument;
-use crate::noise::Noise;
+use crate::noise::{Noise, seed_at};
 use crate::participation::{Carrier, Participation};
 use crate::survey::{Modes, Survey};
 use crate::trace::Trace;
@@ -139,7 +139,9 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     let axis = settings.axis.map(|a| a.normalize());
     let about = axis.unwrap_or_else(Vec3::z);
     let survey = if axis.is_some() { settings.survey } else { Survey::Everywhere };
-    let instrument = &settings.instrument;
+    // Every packing meets noise of its own.
+    let seed = seed_at(settings.instrument.seed, &[packing.step]);
+    let instrument = &Instrument { seed, ..settings.instrument };
     let lattice = || survey.lattice_rays(&packing.cell, &about, settings.modes);
     let (curves, traces, mut warnings) = match &settings.way {
         Way::Dispersion(way) => {

@@ -87,7 +87,9 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     for noise in &args.noise {
         let draws = if *noise > 0.0 { args.draws } else { 1 };
         let draw = |seed: u32| {
-            let waves = with_speed_noise(&measurement.waves, *noise, seed.into());
+            // Draws of one packing are not those of another.
+            let seed = packing.step.wrapping_mul(u64::from(args.draws) + 1).wrapping_add(seed.into());
+            let waves = with_speed_noise(&measurement.waves, *noise, seed);
             let noisy = Measurement { waves, ..measurement.clone() };
             let sent = acoustic_probe::messages(&header, packing, &noisy).map_err(|e| invalid(&e))?;
             let found = emt_inversion::microstructure_of_speeds(&sent.wave_speeds, &inversion);
