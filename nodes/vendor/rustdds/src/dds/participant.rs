@@ -78,6 +78,8 @@ pub struct DomainParticipantBuilder {
 
   same_host_loopback: bool, // prefer loopback for same-host peers + localhost SPDP discovery peers
 
+  guid_prefix: Option<GuidPrefix>, // random if None
+
   socket_receive_buffer_size: usize,
   socket_send_buffer_size: usize,
 
@@ -93,6 +95,7 @@ impl DomainParticipantBuilder {
       domain_id,
       only_networks: None,
       same_host_loopback: true,
+      guid_prefix: None,
       socket_receive_buffer_size: Self::DEFAULT_SOCKET_RECEIVE_BUFFER_SIZE,
       socket_send_buffer_size: Self::DEFAULT_SOCKET_SEND_BUFFER_SIZE,
       #[cfg(feature = "security")]
@@ -126,6 +129,15 @@ impl DomainParticipantBuilder {
   /// `src/rtps/loopback_same_host_design.md`.
   pub fn same_host_loopback(mut self, enabled: bool) -> Self {
     self.same_host_loopback = enabled;
+    self
+  }
+
+  /// Set the GUID prefix of the participant instead of drawing a random one.
+  ///
+  /// The caller is responsible for its uniqueness in the domain. Not to be
+  /// combined with security, where authentication derives the prefix.
+  pub fn guid_prefix(mut self, prefix: GuidPrefix) -> Self {
+    self.guid_prefix = Some(prefix);
     self
   }
 
@@ -196,7 +208,10 @@ impl DomainParticipantBuilder {
       ..Default::default()
     };
 
-    let candidate_participant_guid = GUID::new_participant_guid();
+    let candidate_participant_guid = match self.guid_prefix {
+      Some(prefix) => GUID::new(prefix, EntityId::PARTICIPANT),
+      None => GUID::new_participant_guid(),
+    };
     #[cfg(not(feature = "security"))]
     let participant_guid = candidate_participant_guid;
     // If security plugins are present, security is enabled

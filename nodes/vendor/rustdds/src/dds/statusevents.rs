@@ -441,6 +441,8 @@ pub struct ParticipantDescription {
   pub guid: GUID,
   pub lease_duration: Option<Duration>,
   pub entity_name: Option<String>,
+  /// Where the participant listens for unicast discovery traffic.
+  pub metatraffic_unicast_addresses: Vec<std::net::SocketAddr>,
   #[cfg(feature = "security")]
   pub supports_security: bool,
 }
@@ -454,6 +456,12 @@ impl From<&SpdpDiscoveredParticipantData> for ParticipantDescription {
       guid: dpd.participant_guid,
       lease_duration: dpd.lease_duration,
       entity_name: dpd.entity_name.clone(),
+      metatraffic_unicast_addresses: dpd
+        .metatraffic_unicast_locators
+        .iter()
+        .filter(|locator| locator.is_udp())
+        .map(|locator| (*locator).into())
+        .collect(),
       #[cfg(feature = "security")]
       supports_security: dpd.supports_security(),
     }
