@@ -23,11 +23,13 @@ use log::{debug, error, info, trace, warn};
 use crate::{
   create_error_out_of_resources, create_error_poisoned,
   dds::{
+    peer_hooks::PeerHooks,
     pubsub::*,
     qos::*,
     result::*,
     statusevents::{
-      sync_status_channel, DomainParticipantStatusEvent, StatusChannelReceiver, StatusChannelSender,
+      sync_status_channel, DomainParticipantStatusEvent, ParticipantDescription,
+      StatusChannelReceiver, StatusChannelSender,
     },
     topic::*,
     typedesc::TypeDesc,
@@ -80,6 +82,8 @@ pub struct DomainParticipantBuilder {
 
   guid_prefix: Option<GuidPrefix>, // random if None
 
+  peer_hooks: PeerHooks,
+
   socket_receive_buffer_size: usize,
   socket_send_buffer_size: usize,
 
@@ -96,6 +100,7 @@ impl DomainParticipantBuilder {
       only_networks: None,
       same_host_loopback: true,
       guid_prefix: None,
+      peer_hooks: PeerHooks::default(),
       socket_receive_buffer_size: Self::DEFAULT_SOCKET_RECEIVE_BUFFER_SIZE,
       socket_send_buffer_size: Self::DEFAULT_SOCKET_SEND_BUFFER_SIZE,
       #[cfg(feature = "security")]
@@ -138,6 +143,29 @@ impl DomainParticipantBuilder {
   /// combined with security, where authentication derives the prefix.
   pub fn guid_prefix(mut self, prefix: GuidPrefix) -> Self {
     self.guid_prefix = Some(prefix);
+    self
+  }
+
+  /// Decide which samples the local readers of the application take.
+  ///
+  /// Called with the GUIDs of the writer and of the local reader for each sample
+  /// of a matched user-defined writer that was not received before, in the event
+  /// loop's thread: it must be quick and must not call into this participant. A
+  /// sample that is not taken counts as received, and is acknowledged, but never
+  /// reaches the reader's cache.
+  pub fn data_filter(mut self, takes: impl Fn(GUID, GUID) -> bool + Send + Sync + 'static) -> Self {
+    self.peer_hooks.data_filter = Some(std::sync::Arc::new(takes));
+    self
+  }
+
+  /// Be told of each newly discovered participant before any endpoint of it is
+  /// matched. Called in the discovery thread: it must be quick and must not call
+  /// into this participant.
+  pub fn participant_listener(
+    mut self,
+    listener: impl Fn(&ParticipantDescription) + Send + Sync + 'static,
+  ) -> Self {
+    self.peer_hooks.participant_listener = Some(std::sync::Arc::new(listener));
     self
   }
 
@@ -359,6 +387,7 @@ impl DomainParticipantBuilder {
       self.socket_send_buffer_size,
       self.only_networks,
       self.same_host_loopback,
+      self.peer_hooks.clone(),
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -373,6 +402,7 @@ impl DomainParticipantBuilder {
     // Construct and start background thread
     let dp_clone = dp.weak_clone();
     let disc_db_clone = dp.discovery_db();
+    let discovery_hooks = self.peer_hooks;
     let discovery_handle = thread::Builder::new()
       .name("RustDDS discovery thread".to_string())
       .spawn(move || {
@@ -387,6 +417,7 @@ impl DomainParticipantBuilder {
           security_plugins_handle,
           discovery_waker,
           discovery_sample_receiver,
+          discovery_hooks,
         ) {
           discovery.discovery_event_loop(); // run the event loop
         }
@@ -992,6 +1023,7 @@ impl DomainParticipantDisc {
     socket_send_buffer_size: usize,
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
+    peer_hooks: PeerHooks,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1009,6 +1041,7 @@ impl DomainParticipantDisc {
       socket_send_buffer_size,
       only_networks,
       same_host_loopback,
+      peer_hooks,
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -1251,6 +1284,7 @@ impl DomainParticipantInner {
     socket_send_buffer_size: usize,
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
+    peer_hooks: PeerHooks,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1427,6 +1461,7 @@ impl DomainParticipantInner {
           only_networks_for_ev_loop,
           socket_send_buffer_size,
           same_host_loopback,
+          peer_hooks,
           reader_ready_rx,
           writer_ready_rx,
           dp_waker,

@@ -11,6 +11,7 @@ use pastey::paste; // token pasting macro
 use crate::{
   dds::{
     participant::DomainParticipantWeak,
+    peer_hooks::PeerHooks,
     qos::{
       policy::{
         Deadline, DestinationOrder, Durability, History, Liveliness, Ownership, Presentation,
@@ -211,6 +212,7 @@ pub(crate) enum NormalDiscoveryPermission {
 pub(crate) struct Discovery {
   poll: Poll,
   domain_participant: DomainParticipantWeak,
+  peer_hooks: PeerHooks,
   discovery_db: Arc<RwLock<DiscoveryDB>>,
 
   // Discovery started sender confirms to application thread that we are running
@@ -318,6 +320,7 @@ impl Discovery {
     security_plugins_opt: Option<SecurityPluginsHandle>,
     waker: LoopWaker,
     discovery_samples: ReadyReceiver<Token>,
+    peer_hooks: PeerHooks,
   ) -> CreateResult<Self> {
     // helper macro to handle initialization failures.
     macro_rules! try_construct {
@@ -657,6 +660,7 @@ impl Discovery {
     Ok(Self {
       poll,
       domain_participant,
+      peer_hooks,
       discovery_db,
       discovery_started_sender,
       discovery_updated_sender,
@@ -1056,6 +1060,12 @@ impl Discovery {
   ) {
     let was_new = discovery_db_write(&self.discovery_db).update_participant(participant_data);
     let guid_prefix = participant_data.participant_guid.prefix;
+
+    if was_new {
+      if let Some(listener) = &self.peer_hooks.participant_listener {
+        listener(&participant_data.into());
+      }
+    }
 
     // Send notification to dp_event_loop. It will update local reader/writer
     // proxies as the SpdpDiscoveredParticipantData contains a bitmap of the

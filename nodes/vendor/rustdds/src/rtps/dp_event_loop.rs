@@ -13,6 +13,7 @@ use mio1::{Events, Interest, Poll, Token};
 
 use crate::{
   dds::{
+    peer_hooks::PeerHooks,
     qos::policy,
     result::{CreateError, CreateResult},
     statusevents::{DomainParticipantStatusEvent, StatusChannelSender},
@@ -140,6 +141,8 @@ pub struct DPEventLoop {
   // route same-host peers over loopback. See
   // `src/rtps/loopback_same_host_design.md`.
   same_host_loopback: bool,
+
+  peer_hooks: PeerHooks,
 }
 
 impl DPEventLoop {
@@ -164,6 +167,7 @@ impl DPEventLoop {
     only_networks: Option<Arc<[IpAddr]>>,
     socket_send_buffer_size: usize,
     same_host_loopback: bool,
+    peer_hooks: PeerHooks,
     reader_ready: ReadyReceiver<EntityId>,
     writer_ready: ReadyReceiver<EntityId>,
     waker: LoopWaker,
@@ -257,6 +261,7 @@ impl DPEventLoop {
       participant_status_sender,
       discovery_command_sender,
       same_host_loopback,
+      peer_hooks,
     })
   }
 
@@ -1065,6 +1070,8 @@ impl DPEventLoop {
       self.shared_timer.clone(),
       self.participant_status_sender.clone(),
     );
+
+    new_reader.set_data_filter(self.peer_hooks.data_filter.clone());
 
     // Reader commands share the poll waker. The ready queue records the entity
     // id, so there is nothing to register under the reader token.

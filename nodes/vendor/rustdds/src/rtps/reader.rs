@@ -17,6 +17,7 @@ use speedy::Writable;
 use crate::{
   dds::{
     ddsdata::DDSData,
+    peer_hooks::DataFilter,
     qos::{policy, HasQoSPolicy, QosPolicies},
     statusevents::{
       CountWithChange, DataReaderStatus, DomainParticipantStatusEvent, StatusChannelSender,
@@ -149,6 +150,9 @@ pub(crate) struct Reader {
 
   participant_status_sender: StatusChannelSender<DomainParticipantStatusEvent>,
 
+  // Which samples the application takes; all of them if None.
+  data_filter: Option<DataFilter>,
+
   #[allow(dead_code)] // to avoid warning if no security feature
   security_plugins: Option<SecurityPluginsHandle>,
 }
@@ -212,6 +216,7 @@ impl Reader {
       poll_event_sender: i.poll_event_sender,
       discovery_notify: i.discovery_notify,
       participant_status_sender,
+      data_filter: None,
 
       security_plugins: i.security_plugins,
     }
@@ -224,6 +229,10 @@ impl Reader {
   #[allow(dead_code)]
   pub fn entity_token(&self) -> Token {
     self.guid().entity_id.as_token()
+  }
+
+  pub fn set_data_filter(&mut self, filter: Option<DataFilter>) {
+    self.data_filter = filter;
   }
 
   pub fn set_requested_deadline_check_timer(&mut self) {
@@ -758,6 +767,14 @@ impl Reader {
       }
     } else {
       // stateless reader: nothing to do before making cache change
+    }
+
+    // The sample counts as received by now, so a reliable writer does not send it
+    // again.
+    if let Some(takes) = &self.data_filter {
+      if writer_guid.entity_id.entity_kind.is_user_defined() && !takes(writer_guid, self.my_guid) {
+        return;
+      }
     }
 
     self.make_cache_change(
