@@ -4,7 +4,7 @@ use crate::{MeasureError, Measured, Settings, measure};
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{from_cdr, topics};
 use node_kit::{
-    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Worker,
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, SampleId, Worker,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -31,6 +31,8 @@ pub struct AcousticProbe {
     wave_speeds: Publisher<WaveSpeeds>,
     waveform: Publisher<Waveform>,
     worker: Worker<Vec<u8>, Outcome>,
+    /// The sample of the packing that is measured: what its results are about.
+    origin: SampleId,
     /// Step of the packing that is measured, as soon as it is decoded.
     step: Arc<AtomicU64>,
     began: Duration,
@@ -78,6 +80,7 @@ impl AcousticProbe {
             wave_speeds: Publisher::advertise(bus, &topics::WAVE_SPEEDS)?,
             waveform: Publisher::advertise(bus, &topics::WAVEFORM)?,
             worker: Worker::new(bus, "measurement", work).map_err(failed)?,
+            origin: SampleId::default(),
             step,
             began: Duration::ZERO,
             tally: Tally::default(),
@@ -90,9 +93,9 @@ impl AcousticProbe {
     /// The traces first: who has the speeds has what they stand on.
     fn publish(&mut self, bus: &mut dyn Bus, found: &Measured) -> Result<(), BusError> {
         for waveform in &found.waveforms {
-            self.waveform.publish(bus, waveform)?;
+            self.waveform.publish_about(bus, waveform, self.origin)?;
         }
-        self.wave_speeds.publish(bus, &found.wave_speeds)?;
+        self.wave_speeds.publish_about(bus, &found.wave_speeds, self.origin)?;
         let WaveSpeeds { source_step: step, speeds, warnings, density, .. } = &found.wave_speeds;
         let tally = &mut self.tally;
         tally.measured += 1;
@@ -148,6 +151,7 @@ impl Node for AcousticProbe {
         {
             self.step.store(UNKNOWN, Ordering::Relaxed);
             self.began = bus.now();
+            self.origin = sample.info.origin();
             self.worker.give(sample.body);
         }
         let now = bus.now();

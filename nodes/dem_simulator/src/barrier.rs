@@ -1,8 +1,9 @@
 //! The lockstep: one request, its repetitions, its answer.
 
 use crate::Settings;
+use crate::question::{Question, Violation};
 use grainlab_msgs::boundary::StrainRateAnswer;
-use grainlab_msgs::builtin_interfaces::Time;
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Refused answers in a row that end a run.
@@ -14,8 +15,8 @@ pub(crate) struct Barrier {
     lag: u64,
     resend_after: Duration,
     resend_at_most: Duration,
-    sequence: u64,
-    stamp: Time,
+    /// The request under way, behind those before it whose answers still count. Empty before the first one.
+    questions: VecDeque<Question>,
     body: Vec<u8>,
     /// The request before: empty for the first one.
     previous: Vec<u8>,
@@ -35,8 +36,22 @@ pub(crate) struct Counts {
     pub(crate) exchanges: u64,
     pub(crate) resends: u64,
     pub(crate) refused: u64,
+    /// Answers to requests that are not under way.
     pub(crate) stale: u64,
+    /// Answers to a request that had another answer before.
+    pub(crate) contradictions: u64,
     pub(crate) waiting: Duration,
+}
+
+/// What an answer that is not refused is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Heard {
+    /// It is the first to its request: the run may obey it.
+    New,
+    /// It is to no request under way, or says what was said before.
+    Stale,
+    /// Another rate was heard as the answer to the same request.
+    Contradicts,
 }
 
 impl Barrier {
@@ -45,8 +60,7 @@ impl Barrier {
             lag: settings.mode.lag(),
             resend_after: settings.resend_after,
             resend_at_most: settings.resend_at_most.max(settings.resend_after),
-            sequence: 0,
-            stamp: Time::default(),
+            questions: VecDeque::new(),
             body: Vec::new(),
             previous: Vec::new(),
             asked: Duration::ZERO,
@@ -59,15 +73,13 @@ impl Barrier {
         }
     }
 
-    /// The run begins: what was refused before does not count.
-    pub(crate) fn begin(&mut self) {
-        self.refused_in_row = 0;
-    }
-
     /// A request has been published.
-    pub(crate) fn ask(&mut self, sequence: u64, stamp: Time, body: Vec<u8>, now: Duration) {
+    pub(crate) fn ask(&mut self, question: Question, body: Vec<u8>, now: Duration) {
+        let oldest = question.sequence.saturating_sub(self.lag);
+        self.questions.retain(|q| q.sequence >= oldest);
+        self.questions.push_back(question);
         self.previous = std::mem::replace(&mut self.body, body);
-        (self.sequence, self.stamp, self.asked, self.busy) = (sequence, stamp, now, Duration::ZERO);
+        (self.asked, self.busy) = (now, Duration::ZERO);
         self.pause = self.resend_after;
         self.resend_at = now + self.pause;
     }
@@ -77,18 +89,34 @@ impl Barrier {
         self.busy += time;
     }
 
-    /// Takes an answer in; one to another request is counted and dropped.
-    pub(crate) fn hear(&mut self, answer: &StrainRateAnswer) {
-        let newer = self.answer.is_none_or(|(known, _)| known < answer.sequence);
-        let ahead = self.sequence.checked_sub(answer.sequence).is_some_and(|behind| behind <= self.lag);
-        // The stamp tells an answer to ours from one to another simulator's request of the same number.
-        let ours = answer.sequence != self.sequence || answer.stamp == self.stamp;
-        if newer && ahead && ours {
-            self.answer = Some((answer.sequence, answer.rate));
-            self.refused_in_row = 0;
-        } else {
+    /// Takes an answer in. It counts only if it is to a request under way, by sequence and stamp, and does what that
+    /// request allows.
+    pub(crate) fn hear(&mut self, answer: &StrainRateAnswer) -> Result<Heard, Violation> {
+        let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
+        let Some(question) = self.questions.iter().find(asked) else {
             self.counts.stale += 1;
+            return Ok(Heard::Stale);
+        };
+        match self.answer {
+            Some((known, rate)) if known == answer.sequence => {
+                let same = rate.map(f64::to_bits) == answer.rate.map(f64::to_bits);
+                let (count, heard) = match same {
+                    true => (&mut self.counts.stale, Heard::Stale),
+                    false => (&mut self.counts.contradictions, Heard::Contradicts),
+                };
+                *count += 1;
+                return Ok(heard);
+            }
+            Some((known, _)) if known > answer.sequence => {
+                self.counts.stale += 1;
+                return Ok(Heard::Stale);
+            }
+            _ => {}
         }
+        question.check(&answer.rate)?;
+        self.answer = Some((answer.sequence, answer.rate));
+        self.refused_in_row = 0;
+        Ok(Heard::New)
     }
 
     /// Counts a refused answer; the request is due again at once. True where the run must end.
@@ -102,7 +130,7 @@ impl Barrier {
     /// The rate to obey, if the run may go on.
     pub(crate) fn pass(&mut self, now: Duration) -> Option<[f64; 6]> {
         let (sequence, rate) = self.answer?;
-        if sequence + self.lag < self.sequence {
+        if sequence + self.lag < self.sequence() {
             return None;
         }
         self.counts.exchanges += 1;
@@ -134,7 +162,7 @@ impl Barrier {
 
     /// The sequence of the request under way.
     pub(crate) fn sequence(&self) -> u64 {
-        self.sequence
+        self.questions.back().map_or(0, |q| q.sequence)
     }
 }
 
@@ -142,12 +170,20 @@ impl Barrier {
 mod tests {
     use super::*;
     use crate::Mode;
+    use grainlab_msgs::builtin_interfaces::Time;
+    use grains::ComponentControl;
 
     const MS: Duration = Duration::from_millis(1);
 
+    fn question(sequence: u64) -> Question {
+        let target = ComponentControl::Stress(1e3);
+        let stamp = Time { sec: 1, nanosec: sequence as u32 };
+        Question { sequence, stamp, controls: [target; 6], rate_limit: 100.0 }
+    }
+
     fn barrier(mode: Mode) -> Barrier {
         let mut barrier = Barrier::new(&Settings { mode, ..Settings::default() });
-        barrier.ask(7, Time { sec: 1, nanosec: 7 }, vec![7], Duration::ZERO);
+        barrier.ask(question(7), vec![7], Duration::ZERO);
         barrier
     }
 
@@ -164,13 +200,39 @@ mod tests {
     fn only_the_answer_to_this_very_request_passes() {
         let mut barrier = barrier(Mode::Lockstep);
         for stale in [answer(6, 6), answer(8, 8), answer(7, 6)] {
-            barrier.hear(&stale);
+            assert_eq!(barrier.hear(&stale), Ok(Heard::Stale));
             assert_eq!(barrier.pass(MS), None, "{stale:?}");
         }
-        barrier.hear(&answer(7, 7));
+        assert_eq!(barrier.hear(&answer(7, 7)), Ok(Heard::New));
         assert_eq!(barrier.pass(MS), Some([7.0; 6]));
-        barrier.hear(&answer(7, 7));
+        assert_eq!(barrier.hear(&answer(7, 7)), Ok(Heard::Stale));
         assert_eq!((barrier.counts.stale, barrier.counts.exchanges), (4, 1));
+    }
+
+    #[test]
+    fn an_answer_heard_before_the_first_request_is_no_answer_to_it() {
+        let mut barrier = Barrier::new(&Settings::default());
+        let early = StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
+        assert_eq!(barrier.hear(&early), Ok(Heard::Stale));
+        barrier.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
+        assert_eq!(barrier.pass(MS), None);
+    }
+
+    #[test]
+    fn another_rate_for_the_same_request_is_a_contradiction_and_changes_nothing() {
+        let mut barrier = barrier(Mode::Lockstep);
+        assert_eq!(barrier.hear(&answer(7, 7)), Ok(Heard::New));
+        let other = StrainRateAnswer { rate: [1.0; 6], ..answer(7, 7) };
+        assert_eq!(barrier.hear(&other), Ok(Heard::Contradicts));
+        assert_eq!((barrier.pass(MS), barrier.counts.contradictions), (Some([7.0; 6]), 1));
+    }
+
+    #[test]
+    fn an_answer_beyond_the_rate_limit_is_refused() {
+        let mut barrier = barrier(Mode::Lockstep);
+        let fast = StrainRateAnswer { rate: [101.0; 6], ..answer(7, 7) };
+        assert!(barrier.hear(&fast).is_err());
+        assert_eq!(barrier.pass(MS), None);
     }
 
     #[test]
@@ -190,23 +252,25 @@ mod tests {
         let mut barrier = barrier(Mode::Lockstep);
         assert!((1..REFUSALS_ALLOWED).all(|_| !barrier.refuse(MS)));
         assert_eq!(barrier.resend(MS), Some([&[][..], &[7]]), "a refused answer is asked for again at once");
-        barrier.ask(8, Time::default(), vec![8], MS);
+        barrier.ask(question(8), vec![8], MS);
         assert_eq!(barrier.resend(100 * MS), Some([&[7][..], &[8]]), "with the request before it");
-        barrier.ask(7, Time { sec: 1, nanosec: 7 }, vec![7], MS);
-        barrier.hear(&answer(7, 7));
+        barrier.ask(question(9), vec![9], MS);
+        assert_eq!(barrier.hear(&answer(9, 9)), Ok(Heard::New));
         assert!((1..REFUSALS_ALLOWED).all(|_| !barrier.refuse(MS)));
         assert!(barrier.refuse(MS));
     }
 
     #[test]
     fn free_run_uses_the_latest_answer_until_it_is_too_old() {
-        let mut barrier = barrier(Mode::FreeRun { lag: 2 });
+        let mut barrier = Barrier::new(&Settings { mode: Mode::FreeRun { lag: 2 }, ..Settings::default() });
+        (5..=7).for_each(|sequence| barrier.ask(question(sequence), vec![], MS));
         assert_eq!(barrier.pass(MS), None, "there is nothing to obey before the first answer");
-        barrier.hear(&answer(6, 6));
-        barrier.hear(&answer(5, 5));
+        assert_eq!(barrier.hear(&answer(6, 6)), Ok(Heard::New));
+        assert_eq!(barrier.hear(&answer(5, 5)), Ok(Heard::Stale));
+        assert_eq!(barrier.hear(&answer(7, 6)), Ok(Heard::Stale), "stamps are looked at there, too");
         assert_eq!(barrier.pass(MS), Some([6.0; 6]), "a late answer does not replace a newer one");
         for (sequence, passes) in [(8, true), (9, false)] {
-            barrier.ask(sequence, Time::default(), vec![], MS);
+            barrier.ask(question(sequence), vec![], MS);
             assert_eq!(barrier.pass(MS).is_some(), passes, "request {sequence}");
         }
     }

@@ -2,14 +2,16 @@
 
 use crate::DemSimulator;
 use crate::ahead::Ahead;
-use crate::barrier::REFUSALS_ALLOWED;
+use crate::barrier::{Heard, REFUSALS_ALLOWED};
 use crate::messages;
 use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
+use crate::partner::Whose;
+use crate::question::Question;
 use crate::settings::Mode;
 use dem::{Advanced, DemError, Request};
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
-use grainlab_msgs::to_cdr;
+use grainlab_msgs::{to_cdr, topics};
 use node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
@@ -22,13 +24,44 @@ impl DemSimulator {
         now: Duration,
     ) -> Result<Option<String>, BusError> {
         while let Some((message, info)) = self.strain_rate.take_valid(bus)? {
-            match StrainRateAnswer::try_from(&message) {
-                Ok(answer) => self.barrier.hear(&answer),
+            // Nothing that was said before the first request can be an answer.
+            if self.stage == Stage::Starting {
+                continue;
+            }
+            let whose = self.partner.judge(&info, || bus.foreign_writers(&topics::STRAIN_RATE));
+            match whose {
+                Whose::Ours | Whose::Successor => {}
+                Whose::AnotherRun => continue,
+                Whose::Another { new } => {
+                    if new {
+                        let servo = bus.describe(info.writer);
+                        log::warn!("a second servo answers, {servo}: the run stays with the one that answered first");
+                    }
+                    continue;
+                }
+            }
+            let heard = StrainRateAnswer::try_from(&message)
+                .map_err(|e| e.to_string())
+                .and_then(|answer| self.barrier.hear(&answer).map_err(|e| e.to_string()));
+            match heard {
+                Ok(Heard::New) => {
+                    if self.partner.stay_with(info.writer) {
+                        log::info!("{} is the servo from now on", bus.describe(info.writer));
+                    }
+                }
+                Ok(Heard::Stale) => {}
+                Ok(Heard::Contradicts) => {
+                    if self.barrier.counts.contradictions.is_power_of_two() {
+                        let (sequence, servo) = (message.sequence, bus.describe(info.writer));
+                        log::error!("request {sequence} was answered twice, differently, by {servo}: the first counts");
+                    }
+                }
                 Err(error) => {
                     bus.count_refused(self.strain_rate.id());
-                    let over = self.barrier.refuse(now) && self.stage == Stage::Running;
+                    let over = self.barrier.refuse(now);
                     if over || self.barrier.counts.refused.is_power_of_two() {
-                        log::warn!("answer {} of writer {}: {error}", message.sequence, info.writer);
+                        let servo = bus.describe(info.writer);
+                        log::warn!("answer {} of {servo}: {error}", message.sequence);
                     }
                     if over {
                         let reason = format!(
@@ -61,13 +94,10 @@ impl DemSimulator {
         {
             return self.fail(bus, &format!("the servo cannot be stable: {error}"));
         }
-        if self.stage != Stage::Running {
-            self.barrier.begin();
-        }
         self.stage = Stage::Running;
         let body = to_cdr(&message);
         self.outbox.post_request(self.stress.id(), body.clone());
-        self.barrier.ask(request.sequence, message.header.stamp, body, now);
+        self.barrier.ask(Question::of(&request), body, now);
         let delivered = self.outbox.deliver(bus)?;
         // Free run needs no answer to go on.
         let free = self.settings.mode != Mode::Lockstep;

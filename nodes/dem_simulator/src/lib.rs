@@ -13,6 +13,8 @@ mod exchange;
 mod messages;
 mod node;
 mod outbox;
+mod partner;
+mod question;
 mod rivals;
 mod settings;
 mod start;

@@ -4,6 +4,7 @@ use crate::ahead::{self, Ahead};
 use crate::barrier::Barrier;
 use crate::messages::{self, Packings};
 use crate::outbox::Outbox;
+use crate::partner::Partner;
 use crate::rivals::Rivals;
 use crate::settings::{Mode, Settings};
 use dem::{ComputeError, DemError, Simulation};
@@ -11,6 +12,7 @@ use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
+use node_kit::admission::Participant;
 use node_kit::{
     BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
@@ -65,7 +67,9 @@ pub struct DemSimulator {
     pub(crate) run_states: Subscription<RunState>,
     pub(crate) stage: Stage,
     pub(crate) rivals: Rivals,
+    pub(crate) participant: Participant,
     pub(crate) barrier: Barrier,
+    pub(crate) partner: Partner,
     /// The run as it will be if the answer is the one that the law gives.
     pub(crate) ahead: Option<Ahead>,
     /// Whether that is computed: not any more once a servo has answered otherwise.
@@ -113,7 +117,7 @@ impl DemSimulator {
         // A rival says it again every second; a reliable reader of our own topic might fill our own window.
         let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
         frames.publish(bus, &messages::frames())?;
-        let own = bus.published().first().map_or([0; 12], |p| p.writer.participant());
+        let own_stress = bus.published().first().map(|p| p.writer).unwrap_or_default();
         let now = bus.now();
         Ok(Self {
             stress,
@@ -122,8 +126,10 @@ impl DemSimulator {
             strain_rate,
             run_states,
             stage: Stage::Starting,
-            rivals: Rivals::new(own),
+            rivals: Rivals::new(own_stress.participant()),
+            participant: own_stress.participant(),
             barrier: Barrier::new(&settings),
+            partner: Partner::new(own_stress),
             ahead: None,
             looks_ahead: settings.ahead
                 && settings.mode == Mode::Lockstep
@@ -267,6 +273,8 @@ impl Node for DemSimulator {
             .with("resends", counts.resends)
             .with("refused", counts.refused)
             .with("stale", counts.stale)
+            .with("contradictions", counts.contradictions)
+            .with("other_servos", self.partner.ignored())
             .with("held_up", self.outbox.held_up())
             .with("packings", self.packings.count)
             .with("readers_left_behind", self.outbox.packings().left_behind())

@@ -3,6 +3,7 @@
 use crate::DemSimulator;
 use crate::messages;
 use crate::node::Stage;
+use crate::partner::{different, same_member};
 use crate::rivals::Verdict;
 use grainlab_msgs::{to_cdr, topics};
 use node_kit::{Bus, BusError, Exit, Next, NodeError};
@@ -11,9 +12,15 @@ use std::time::Duration;
 /// How often a start that waits looks again.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 
+/// A crashed servo stays in the graph until its lease ends, within a minute. Two that are there for longer are two.
+const TWO_SERVOS: Duration = Duration::from_secs(75);
+
 impl DemSimulator {
     pub(crate) fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
+            if same_member(&info.writer.participant(), &self.participant) {
+                continue;
+            }
             if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
                 log::error!(
                     "a second simulator ({}) speaks on our topics; it should end by itself",
@@ -29,7 +36,10 @@ impl DemSimulator {
         if looked < self.settings.look_around {
             return Ok(Next::Wait(self.settings.look_around - looked));
         }
-        match self.rivals.verdict(&bus.foreign_writers(&topics::STRESS), now) {
+        let mut simulators = bus.foreign_writers(&topics::STRESS);
+        // The process that this one takes the place of stays in the graph for a while.
+        simulators.retain(|writer| !same_member(&writer.participant(), &self.participant));
+        match self.rivals.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
                 if self.notice_due(now) {
@@ -46,6 +56,21 @@ impl DemSimulator {
                 );
                 return Err(NodeError::new(Exit::Failure, message));
             }
+        }
+        let servos = different(&bus.foreign_writers(&topics::STRAIN_RATE));
+        if let [first, second, ..] = servos[..] {
+            let both = format!("{} and {}", bus.describe(first), bus.describe(second));
+            if looked > TWO_SERVOS {
+                let message = format!(
+                    "two writers of strain_rate: {both}. Which of them is the servo of this run cannot be told: stop one, or \
+                     give the processes of this run a run of their own (GRAINLAB_RUN=any_name for each of them)"
+                );
+                return Err(NodeError::new(Exit::Failure, message));
+            }
+            if self.notice_due(now) {
+                log::warn!("two writers of strain_rate: {both}; waiting for one to go");
+            }
+            return Ok(Next::Wait(LOOK_AGAIN));
         }
         if let Some(missing) = self.missing(bus) {
             if self.notice_due(now) {

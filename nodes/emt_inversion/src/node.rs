@@ -70,9 +70,9 @@ impl<T: Message> Source<T> {
         microstructure: &Publisher<Microstructure>,
         tally: &mut Tally,
     ) -> Result<(), BusError> {
-        while let Some((data, _)) = self.messages.take_valid(bus)? {
+        while let Some((data, info)) = self.messages.take_valid(bus)? {
             match (self.invert)(&data, settings) {
-                Ok(message) => match microstructure.publish(bus, &message) {
+                Ok(message) => match microstructure.publish_about(bus, &message, info.origin()) {
                     Ok(_) => tally.count(&message),
                     // A reader is hundreds of results behind: it is as good as dead, and this node is not.
                     Err(full @ BusError::Full { .. }) => tally.complain(full.to_string()),

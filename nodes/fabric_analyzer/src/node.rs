@@ -4,7 +4,7 @@ use crate::{MeasureError, Measured, Settings, measure};
 use grainlab_msgs::msg::{Fabric, Moduli, Packing};
 use grainlab_msgs::{from_cdr, topics};
 use node_kit::{
-    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Worker,
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, SampleId, Worker,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -25,6 +25,8 @@ pub struct FabricAnalyzer {
     fabric: Publisher<Fabric>,
     moduli: Publisher<Moduli>,
     worker: Worker<Vec<u8>, Outcome>,
+    /// The sample of the packing that is analysed: what its results are about.
+    origin: SampleId,
     /// Step of the packing that is analysed, as soon as it is decoded.
     step: Arc<AtomicU64>,
     began: Duration,
@@ -63,6 +65,7 @@ impl FabricAnalyzer {
             fabric: Publisher::advertise(bus, &topics::FABRIC)?,
             moduli: Publisher::advertise(bus, &topics::MODULI)?,
             worker: Worker::new(bus, "analysis", work).map_err(failed)?,
+            origin: SampleId::default(),
             step,
             began: Duration::ZERO,
             analysed: 0,
@@ -77,13 +80,13 @@ impl FabricAnalyzer {
 
     fn publish(&mut self, bus: &mut dyn Bus, measured: &Measured) -> Result<(), BusError> {
         let step = measured.fabric.source_step;
-        self.fabric.publish(bus, &measured.fabric)?;
+        self.fabric.publish_about(bus, &measured.fabric, self.origin)?;
         self.analysed += 1;
         self.last_step = Some(step);
         self.trouble = None;
         match &measured.moduli {
             Ok(moduli) => {
-                self.moduli.publish(bus, moduli)?;
+                self.moduli.publish_about(bus, moduli, self.origin)?;
                 let (k, z, eps) = (moduli.k, moduli.z, moduli.eps);
                 log::info!(
                     "packing of step {step}: k {k:.3}, z {z:.3}, eps {eps:.4}, p {:.4e} Pa",
@@ -135,6 +138,7 @@ impl Node for FabricAnalyzer {
         {
             self.step.store(UNKNOWN, Ordering::Relaxed);
             self.began = bus.now();
+            self.origin = sample.info.origin();
             self.worker.give(sample.body);
         }
         let now = bus.now();

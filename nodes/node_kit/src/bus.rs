@@ -1,5 +1,7 @@
 //! The bus: what a node sees of the network. Two implementations exist, over DDS and in memory.
 
+use crate::admission::Stranger;
+use crate::identity::Identity;
 use crate::names::NameError;
 use grainlab_msgs::Topic;
 use std::fmt;
@@ -74,6 +76,30 @@ pub struct SampleInfo {
     pub source_time: Option<u64>,
     /// When it reached this process, ns since 1970.
     pub received: u64,
+    /// The sample that it is about, where its writer says one: the request that an answer answers, the packing that a
+    /// result was measured of. It travels beside the body, as DDS-RPC relates a reply to its request.
+    pub about: Option<SampleId>,
+}
+
+impl SampleInfo {
+    /// The sample itself, for those about it.
+    pub fn id(&self) -> SampleId {
+        SampleId { writer: self.writer, sequence: self.sequence }
+    }
+
+    /// What a result from this sample is about: what the sample is about, or the sample itself.
+    pub fn origin(&self) -> SampleId {
+        self.about.unwrap_or_else(|| self.id())
+    }
+}
+
+/// One sample of one writer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SampleId {
+    /// Who wrote it.
+    pub writer: WriterId,
+    /// Its RTPS sequence number.
+    pub sequence: i64,
 }
 
 /// What a subscription asks of its writers. It asks at most what the topic offers, so that it always matches.
@@ -225,7 +251,17 @@ pub trait Bus {
     ///
     /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and says
     /// [`BusError::Full`].
-    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError>;
+    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
+        self.publish_about(publisher, body, None)
+    }
+
+    /// The same of a message about a sample that came; see [`SampleInfo::about`].
+    fn publish_about(
+        &mut self,
+        publisher: PublisherId,
+        body: &[u8],
+        about: Option<SampleId>,
+    ) -> Result<i64, BusError>;
 
     /// The next sample, if there is one. Never waits.
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError>;
@@ -239,14 +275,14 @@ pub trait Bus {
     /// depends on how fast a thread is.
     fn caller(&self) -> Option<Caller>;
 
-    /// Readers matched with this publisher, as known at the last [`Bus::wait`]. A crashed peer counts until its lease
+    /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`]. A crashed peer counts until its lease
     /// ends, up to a minute: see [`crate::Peers`].
     fn readers(&self, publisher: PublisherId) -> usize;
 
-    /// Writers matched with this subscription, as known at the last [`Bus::wait`].
+    /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
     fn writers(&self, subscription: SubscriptionId) -> usize;
 
-    /// Writers on the resolved topic that are not ours, sorted, as known at the last [`Bus::wait`].
+    /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted, as known at the last [`Bus::wait`].
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
     /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`] tells of
@@ -261,6 +297,15 @@ pub trait Bus {
 
     /// Counts a taken sample whose content was refused.
     fn count_refused(&mut self, subscription: SubscriptionId);
+
+    /// What this process is to its run: whose samples it takes.
+    fn identity(&self) -> Identity;
+
+    /// Who wrote samples that were not taken, because they are of another run or of none, and how many.
+    fn strangers(&self) -> Vec<Stranger>;
+
+    /// Who has this writer, for people.
+    fn describe(&self, writer: WriterId) -> Stranger;
 
     /// Waits until every reliable reader has acknowledged everything, or `timeout` is over; true in the first case. Topics
     /// that this bus reads reliably itself are left out: nobody can tell there.

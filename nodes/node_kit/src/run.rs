@@ -5,6 +5,7 @@ use crate::bus::{Bus, BusError, Wake, WriterId};
 use crate::dds::{DdsBus, Network};
 use crate::diagnostics::Report;
 use crate::exit::Exit;
+use crate::identity::{Identity, Scope};
 use crate::logging::Logger;
 use crate::names::Names;
 use crate::node::{Next, Node, NodeError};
@@ -12,7 +13,7 @@ use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
 use crate::signals::Signals;
 use crate::typed::Publisher;
-use crate::watchdog::{self, Watchdog};
+use crate::watchdog;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
@@ -40,6 +41,8 @@ pub struct NodeSpec {
     pub name: &'static str,
     /// What it does, in a line.
     pub summary: &'static str,
+    /// Whose samples it takes where it is started by hand, without a run.
+    pub scope: Scope,
     /// Its parameters.
     pub parameters: Vec<ParameterSpec>,
 }
@@ -80,7 +83,8 @@ where
         let logger = Logger::install(&node_name, args);
         let signals = refused(Exit::Failure, Signals::install())?;
         let stop = signals.flag();
-        let mut bus = refused(Exit::Failure, DdsBus::open(network, names))?;
+        let identity = Identity::from_env(spec.scope);
+        let mut bus = refused(Exit::Failure, DdsBus::join(network, names, identity))?;
         refused(Exit::Failure, bus.watch(signals))?;
         let mut node = build(&mut bus, &parameters).map_err(|error| {
             log::error!("{error}");
@@ -158,7 +162,6 @@ struct Tender<'a> {
     rosout: Publisher<Log>,
     logger: Option<&'a Logger>,
     watch: PeerWatch,
-    watchdog: Watchdog,
     next_beat: Duration,
     next_look: Duration,
 }
@@ -175,7 +178,6 @@ impl<'a> Tender<'a> {
             rosout: Publisher::advertise(bus, &topics::ROSOUT)?,
             logger,
             watch: PeerWatch::subscribe(bus)?,
-            watchdog: Watchdog::default(),
             next_beat: bus.now() + HEARTBEAT,
             next_look: bus.now() + LOOK,
         })
@@ -192,7 +194,7 @@ impl<'a> Tender<'a> {
         let now = bus.now();
         if now >= self.next_beat {
             self.report(node, bus, None)?;
-            self.watchdog.check()?;
+            watchdog::check()?;
             self.next_beat = now + HEARTBEAT;
         }
         Ok(self.next_beat.saturating_sub(now))

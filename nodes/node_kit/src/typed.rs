@@ -1,6 +1,6 @@
 //! Typed handles over the raw bus.
 
-use crate::bus::{Bus, BusError, Demand, PublisherId, SampleInfo, SubscriptionId};
+use crate::bus::{Bus, BusError, Demand, PublisherId, SampleId, SampleInfo, SubscriptionId};
 use grainlab_msgs::{DecodeError, Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;
 
@@ -24,6 +24,11 @@ impl<T: Message> Publisher<T> {
     /// Encodes and publishes; returns the RTPS sequence number.
     pub fn publish(&self, bus: &mut dyn Bus, message: &T) -> Result<i64, BusError> {
         bus.publish(self.id, &to_cdr(message))
+    }
+
+    /// The same of a message about a sample that came; see [`SampleInfo::about`].
+    pub fn publish_about(&self, bus: &mut dyn Bus, message: &T, about: SampleId) -> Result<i64, BusError> {
+        bus.publish_about(self.id, &to_cdr(message), Some(about))
     }
 
     /// The raw handle, for [`Bus::readers`] and for bodies that are already encoded.

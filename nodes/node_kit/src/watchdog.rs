@@ -1,16 +1,40 @@
 //! Finds a dead DDS thread: a process that looks alive and hears nothing is worse than one that ended.
 //!
 //! Two ways: a panic in one of RustDDS's threads is caught by a hook, and once a second the process counts those threads
-//! in `/proc/self/task`. Its own heartbeat would say more, but where loopback has no multicast (the default on Linux) a
+//! in `/proc/self/task` and compares with the participants that it has open. Its own heartbeat would say more, but where loopback has no multicast (the default on Linux) a
 //! participant does not find itself, and nothing of its own comes back.
 
 use std::sync::Once;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// RustDDS names its threads so.
 const DDS_THREAD: &str = "RustDDS";
 
+/// RustDDS runs so many threads for each participant: discovery and the event loop.
+const THREADS: usize = 2;
+
 static DDS_THREAD_PANICKED: AtomicBool = AtomicBool::new(false);
+
+/// Participants of this process that are open.
+static PARTICIPANTS: AtomicUsize = AtomicUsize::new(0);
+
+/// Counts one participant while it exists.
+#[derive(Debug)]
+pub(crate) struct OpenParticipant(());
+
+impl OpenParticipant {
+    /// To be made when the participant's threads run.
+    pub(crate) fn new() -> Self {
+        PARTICIPANTS.fetch_add(1, Ordering::Relaxed);
+        Self(())
+    }
+}
+
+impl Drop for OpenParticipant {
+    fn drop(&mut self) {
+        PARTICIPANTS.fetch_sub(1, Ordering::Relaxed);
+    }
+}
 
 /// Notes panics of RustDDS's threads from now on, for the whole process. The usual message is printed, too.
 pub fn watch_dds_threads() {
@@ -35,33 +59,26 @@ pub enum Dead {
     /// One of its threads is gone.
     #[error("{left} of {started} DDS threads of this process are left: nothing is sent or received any more")]
     Ended {
-        /// The most there were.
+        /// Those that the open participants started.
         started: usize,
         /// Those there are.
         left: usize,
     },
 }
 
-/// Counts the DDS threads of this process.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Watchdog {
-    most: usize,
+/// Whether the DDS threads of this process are all there. To be asked once a second.
+pub fn check() -> Result<(), Dead> {
+    if DDS_THREAD_PANICKED.load(Ordering::Relaxed) {
+        return Err(Dead::Panicked);
+    }
+    judge(THREADS * PARTICIPANTS.load(Ordering::Relaxed), dds_threads())
 }
 
-impl Watchdog {
-    /// Whether the DDS layer lives. To be asked once a second.
-    pub fn check(&mut self) -> Result<(), Dead> {
-        self.judge(dds_threads())
-    }
-
-    /// The same, `threads` being there now; `None` where they cannot be counted.
-    fn judge(&mut self, threads: Option<usize>) -> Result<(), Dead> {
-        if DDS_THREAD_PANICKED.load(Ordering::Relaxed) {
-            return Err(Dead::Panicked);
-        }
-        let left = threads.unwrap_or(self.most);
-        self.most = self.most.max(left);
-        if left < self.most { Err(Dead::Ended { started: self.most, left }) } else { Ok(()) }
+/// The same, `found` being there now; `None` where they cannot be counted.
+fn judge(started: usize, found: Option<usize>) -> Result<(), Dead> {
+    match found {
+        Some(left) if left < started => Err(Dead::Ended { started, left }),
+        _ => Ok(()),
     }
 }
 
@@ -77,11 +94,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thread_that_is_gone_is_missed_and_one_that_comes_later_is_not() {
-        let mut dog = Watchdog::default();
-        assert_eq!(dog.judge(Some(1)), Ok(()));
-        assert_eq!(dog.judge(Some(2)), Ok(()));
-        assert_eq!(dog.judge(None), Ok(()), "no count is no death");
-        assert_eq!(dog.judge(Some(1)), Err(Dead::Ended { started: 2, left: 1 }));
+    fn a_thread_that_is_gone_is_missed_from_the_first_look_on() {
+        assert_eq!(judge(2, Some(2)), Ok(()));
+        assert_eq!(judge(2, None), Ok(()), "no count is no evidence");
+        assert_eq!(judge(2, Some(1)), Err(Dead::Ended { started: 2, left: 1 }));
+        assert_eq!(judge(2, Some(0)), Err(Dead::Ended { started: 2, left: 0 }));
     }
 }

@@ -3,7 +3,7 @@
 use crate::{Refusal, Settings, answer};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
-use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
+use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleId, Subscription};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct ServoController {
     /// Whether the readers waited for have been there.
     heard: bool,
     /// Questions asked before that.
-    early: VecDeque<Stress>,
+    early: VecDeque<(Stress, SampleId)>,
     stress: Subscription<Stress>,
     strain_rate: Publisher<StrainRate>,
     answered: u64,
@@ -45,9 +45,9 @@ impl ServoController {
         })
     }
 
-    fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress) -> Result<(), BusError> {
+    fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress, asked: SampleId) -> Result<(), BusError> {
         match answer(stress) {
-            Ok(message) => match self.strain_rate.publish(bus, &message) {
+            Ok(message) => match self.strain_rate.publish_about(bus, &message, asked) {
                 Ok(_) => {
                     self.answered += 1;
                     self.trouble = None;
@@ -78,18 +78,18 @@ impl Node for ServoController {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         self.heard = self.heard || bus.readers(self.strain_rate.id()) >= self.settings.min_readers;
         if self.heard {
-            while let Some(stress) = self.early.pop_front() {
-                self.reply(bus, &stress)?;
+            while let Some((stress, asked)) = self.early.pop_front() {
+                self.reply(bus, &stress, asked)?;
             }
         }
-        while let Some((stress, _)) = self.stress.take_valid(bus)? {
+        while let Some((stress, info)) = self.stress.take_valid(bus)? {
             if self.heard {
-                self.reply(bus, &stress)?;
+                self.reply(bus, &stress, info.id())?;
             } else {
                 if self.early.len() >= BACKLOG as usize {
                     self.early.pop_front();
                 }
-                self.early.push_back(stress);
+                self.early.push_back((stress, info.id()));
             }
         }
         Ok(Next::Wait(IDLE))

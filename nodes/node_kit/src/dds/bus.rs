@@ -1,25 +1,29 @@
 //! The bus over DDS.
 
 use super::caretaker::{Caretaker, Inboxes, lock};
+use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
 use super::presence::Presence;
 use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
 use super::{Network, create_error, qos};
+use crate::admission::Stranger;
 use crate::bus::{
-    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleInfo, SubscriptionId,
-    Wake, WriterId,
+    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleId, SampleInfo,
+    SubscriptionId, Wake, WriterId,
 };
+use crate::identity::{Identity, Scope};
 use crate::names::Names;
 use crate::signals::Signals;
+use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
 use rustdds::bytes::Bytes;
 use rustdds::dds::WriteError;
 use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
 use rustdds::no_key::DataWriter;
 use rustdds::{
-    DomainParticipant, DomainParticipantStatusListener, GUID, QosPolicyBuilder, RTPSEntity, StatusEvented,
-    Timestamp, TopicKind, WriteOptionsBuilder,
+    DomainParticipant, DomainParticipantStatusEvent, DomainParticipantStatusListener, GUID, GuidPrefix, QosPolicyBuilder, RTPSEntity,
+    SampleIdentity, SequenceNumber, StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
 };
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -83,15 +87,35 @@ pub struct DdsBus {
     subscriber: rustdds::Subscriber,
     status: DomainParticipantStatusListener,
     graph: Graph,
+    gate: Arc<Gate>,
     participant: DomainParticipant,
+    _open: OpenParticipant,
     names: Names,
     start: Instant,
 }
 
 impl DdsBus {
-    /// Joins the domain. Peers are known some 0.2 s later.
+    /// Joins the domain as a process of the run that the environment names, or hears everyone where it names none. Peers
+    /// are known some 0.2 s later.
     pub fn open(network: Network, names: Names) -> Result<Self, BusError> {
-        let participant = network.participant().map_err(|e| create_error("DDS participant", &e))?;
+        Self::join(network, names, Identity::from_env(Scope::Everyone))
+    }
+
+    /// Joins the domain with this identity.
+    pub fn join(network: Network, names: Names, identity: Identity) -> Result<Self, BusError> {
+        let prefix = identity.guid_prefix();
+        let gate = Arc::new(Gate::new(identity, prefix));
+        let (filter, listener) = (Arc::clone(&gate), Arc::clone(&gate));
+        let participant = network
+            .participant()
+            .guid_prefix(GuidPrefix::new(&prefix))
+            .data_filter(move |writer, reader| filter.takes(writer, reader))
+            .participant_listener(move |peer| {
+                listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
+            })
+            .build()
+            .map_err(|e| create_error("DDS participant", &e))?;
+        let open = OpenParticipant::new();
         let none = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
         let subscriber =
@@ -123,7 +147,9 @@ impl DdsBus {
             subscriber,
             status,
             graph,
+            gate,
             participant,
+            _open: open,
             names,
             start: Instant::now(),
         })
@@ -175,6 +201,7 @@ impl DdsBus {
             .register(inbox.reader_mut(), Token(FIRST_READER + index), Interest::READABLE)
             .map_err(|e| create_error(&resolved, &e))?;
         let guid = inbox.guid();
+        self.gate.add_reader(guid, &resolved);
         self.presence.add_reader(guid);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
@@ -184,10 +211,11 @@ impl DdsBus {
 
     /// Hands what we published to our own subscriptions: where loopback has no multicast, a participant does not find
     /// itself, and DDS would bring it nothing of its own.
-    fn echo(&self, topic: &str, writer: WriterId, sequence: i64, body: &[u8]) {
+    fn echo(&self, topic: &str, id: SampleId, about: Option<SampleId>, body: &[u8]) {
         for reader in self.readers.iter().filter(|r| r.topic == topic) {
             let now = self.wall_nanos();
-            let info = SampleInfo { writer, sequence, source_time: Some(now), received: now };
+            let SampleId { writer, sequence } = id;
+            let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
             lock(&reader.inbox).deliver(Sample { body: body.to_vec(), info });
         }
     }
@@ -196,6 +224,11 @@ impl DdsBus {
     fn follow_graph(&mut self) -> bool {
         let mut changed = false;
         while let Some(event) = self.status.try_recv_status() {
+            if let DomainParticipantStatusEvent::ParticipantLost { id, .. } = &event {
+                let mut participant = [0; 12];
+                participant.copy_from_slice(id.as_ref());
+                self.gate.lost(&participant);
+            }
             changed |= self.graph.apply(event);
         }
         changed
@@ -280,20 +313,32 @@ impl Bus for DdsBus {
         Ok(SubscriptionId(self.subscribers.len() - 1))
     }
 
-    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
+    fn publish_about(
+        &mut self,
+        publisher: PublisherId,
+        body: &[u8],
+        about: Option<SampleId>,
+    ) -> Result<i64, BusError> {
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
         if body.len() < HEADER || body[..2] != CDR_LE {
             let found = body[..body.len().min(HEADER)].to_vec();
             return Err(BusError::Encapsulation { topic: writer.topic.clone(), found });
         }
         let payload = RawPayload(Bytes::copy_from_slice(&body[HEADER..]));
-        let options = WriteOptionsBuilder::new().source_timestamp(Timestamp::now()).build();
+        let related = about.map(|sample| SampleIdentity {
+            writer_guid: GUID::from_bytes(sample.writer.0),
+            sequence_number: SequenceNumber::from(sample.sequence),
+        });
+        let options = WriteOptionsBuilder::new()
+            .source_timestamp(Timestamp::now())
+            .related_sample_identity_opt(related)
+            .build();
         match writer.data.write_with_options(payload, options) {
             Ok(identity) => {
                 writer.count += 1;
                 let sequence = i64::from(identity.sequence_number);
-                let (topic, guid) = (writer.topic.clone(), WriterId(writer.guid.to_bytes()));
-                self.echo(&topic, guid, sequence, body);
+                let (topic, writer) = (writer.topic.clone(), WriterId(writer.guid.to_bytes()));
+                self.echo(&topic, SampleId { writer, sequence }, about, body);
                 Ok(sequence)
             }
             Err(WriteError::WouldBlock { .. }) => {
@@ -363,18 +408,18 @@ impl Bus for DdsBus {
     }
 
     fn readers(&self, publisher: PublisherId) -> usize {
-        self.writers.get(publisher.0).map_or(0, |w| self.graph.matches_of(w.guid))
+        self.writers.get(publisher.0).map_or(0, |w| self.graph.matches_of(w.guid, |guid| self.gate.admits(guid)))
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).map(|s| &self.readers[s.reader]);
-        reader.map_or(0, |r| self.graph.matches_of(r.guid))
+        reader.map_or(0, |r| self.graph.matches_of(r.guid, |guid| self.gate.admits(guid)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
         self.names
             .resolve(topic.name)
-            .map(|name| self.graph.writers_of(&wire_name(&name)))
+            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| self.gate.admits(guid)))
             .unwrap_or_default()
     }
 
@@ -413,6 +458,18 @@ impl Bus for DdsBus {
         if let Some(subscriber) = self.subscribers.get_mut(subscription.0) {
             subscriber.refused += 1;
         }
+    }
+
+    fn identity(&self) -> Identity {
+        self.gate.identity()
+    }
+
+    fn strangers(&self) -> Vec<Stranger> {
+        self.gate.strangers()
+    }
+
+    fn describe(&self, writer: WriterId) -> Stranger {
+        self.gate.describe(&writer.participant())
     }
 
     fn flush(&mut self, timeout: Duration) -> bool {

@@ -81,16 +81,16 @@ impl Graph {
         before != self.writers.len() + self.matches.values().map(BTreeSet::len).sum::<usize>()
     }
 
-    /// Remote endpoints matched with a local one.
-    pub(super) fn matches_of(&self, local: GUID) -> usize {
-        self.matches.get(&local).map_or(0, BTreeSet::len)
+    /// Remote endpoints matched with a local one, of those that count.
+    pub(super) fn matches_of(&self, local: GUID, counts: impl Fn(&GUID) -> bool) -> usize {
+        self.matches.get(&local).map_or(0, |remotes| remotes.iter().filter(|guid| counts(guid)).count())
     }
 
-    /// Remote writers of a topic as named on the wire, sorted.
-    pub(super) fn writers_of(&self, dds_topic: &str) -> Vec<WriterId> {
+    /// Remote writers of a topic as named on the wire, sorted, of those that count.
+    pub(super) fn writers_of(&self, dds_topic: &str, counts: impl Fn(&GUID) -> bool) -> Vec<WriterId> {
         self.writers
             .iter()
-            .filter(|(_, topic)| *topic == dds_topic)
+            .filter(|(guid, topic)| *topic == dds_topic && counts(guid))
             .map(|(g, _)| WriterId(g.to_bytes()))
             .collect()
     }

@@ -1,7 +1,7 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
 use super::raw::{RawAdapter, RawBody};
-use crate::bus::{BusError, Demand, Sample, SampleInfo, WriterId};
+use crate::bus::{BusError, Demand, Sample, SampleId, SampleInfo, WriterId};
 use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
 use rustdds::{GUID, Timestamp};
 use std::collections::VecDeque;
@@ -128,6 +128,10 @@ fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
         sequence: i64::from(change.sequence_number),
         source_time: change.source_timestamp().filter(|t| *t != Timestamp::INVALID).map(nanos),
         received: nanos(change.receive_instant),
+        about: change.related_sample_identity().map(|sample| SampleId {
+            writer: WriterId(sample.writer_guid.to_bytes()),
+            sequence: i64::from(sample.sequence_number),
+        }),
     };
     Sample { body: change.into_value().0, info }
 }

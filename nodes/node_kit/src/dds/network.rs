@@ -1,7 +1,6 @@
 //! Which network and which domain: the ROS 2 environment variables, as far as RustDDS can honour them.
 
-use rustdds::dds::CreateResult;
-use rustdds::{DomainParticipant, DomainParticipantBuilder};
+use rustdds::DomainParticipantBuilder;
 use std::net::Ipv4Addr;
 
 /// How far discovery reaches.
@@ -95,12 +94,12 @@ impl Network {
         Ok(Self { domain, range })
     }
 
-    /// A DDS participant of this network.
-    pub(crate) fn participant(&self) -> CreateResult<DomainParticipant> {
+    /// What a participant of this network is made with.
+    pub(crate) fn participant(&self) -> DomainParticipantBuilder {
         let builder = DomainParticipantBuilder::new(self.domain);
         match self.range {
-            Range::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]).build(),
-            Range::Subnet => builder.build(),
+            Range::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+            Range::Subnet => builder,
         }
     }
 }

@@ -1,9 +1,12 @@
 //! One participant of the network in memory.
 
-use super::hub::{Hub, State, writer_id};
+use super::hub::{Hub, State};
+use crate::admission::{Admission, Participant, Stranger};
 use crate::bus::{
-    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SubscriptionId, Wake, WriterId,
+    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleId, SubscriptionId, Wake,
+    WriterId,
 };
+use crate::identity::Identity;
 use crate::names::Names;
 use grainlab_msgs::Topic;
 use std::collections::BTreeMap;
@@ -13,7 +16,8 @@ use std::time::Duration;
 #[derive(Debug)]
 pub struct MemoryBus {
     hub: Hub,
-    participant: u32,
+    participant: Participant,
+    admission: Admission,
     names: Names,
     /// Places in the hub.
     writers: Vec<usize>,
@@ -24,9 +28,10 @@ pub struct MemoryBus {
 }
 
 impl MemoryBus {
-    pub(super) fn new(hub: Hub, participant: u32, names: Names) -> Self {
+    pub(super) fn new(hub: Hub, participant: Participant, names: Names, identity: Identity) -> Self {
+        let admission = Admission::new(identity, participant);
         let (writers, readers, wholes) = (Vec::new(), Vec::new(), BTreeMap::new());
-        Self { hub, participant, names, writers, readers, wholes, interrupted: false }
+        Self { hub, participant, admission, names, writers, readers, wholes, interrupted: false }
     }
 
     /// What a signal does on the real bus: the next wait says [`Wake::Shutdown`], once.
@@ -43,8 +48,10 @@ impl MemoryBus {
         count(&self.hub.state.borrow(), topic)
     }
 
-    fn is_ours(&self, writer: WriterId) -> bool {
-        writer.participant() == writer_id(self.participant, 0).participant()
+    /// Another process's writer that is not a stranger's.
+    fn counts(&self, writer: WriterId) -> bool {
+        let participant = writer.participant();
+        participant != self.participant && self.admission.admits(&participant)
     }
 }
 
@@ -67,21 +74,33 @@ impl Bus for MemoryBus {
         Ok(SubscriptionId(self.readers.len() - 1))
     }
 
-    fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
+    fn publish_about(
+        &mut self,
+        publisher: PublisherId,
+        body: &[u8],
+        about: Option<SampleId>,
+    ) -> Result<i64, BusError> {
         let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
         let mut state = self.hub.state.borrow_mut();
         if !body.starts_with(&[0, 1]) || body.len() < 4 {
             let found = body[..body.len().min(4)].to_vec();
             return Err(BusError::Encapsulation { topic: state.writers[writer].topic.clone(), found });
         }
-        Ok(state.publish(writer, body))
+        Ok(state.publish(writer, body, about))
     }
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
         let mut state = self.hub.state.borrow_mut();
         let now = state.now;
-        Ok(state.readers[reader].take(now))
+        while let Some(sample) = state.readers[reader].take(now) {
+            let (taken, _) = self.admission.takes(sample.info.writer, &state.readers[reader].topic);
+            if taken {
+                state.readers[reader].taken += 1;
+                return Ok(Some(sample));
+            }
+        }
+        Ok(None)
     }
 
     fn wait(&mut self, timeout: Duration) -> Wake {
@@ -110,7 +129,9 @@ impl Bus for MemoryBus {
     fn readers(&self, publisher: PublisherId) -> usize {
         let Some(writer) = self.writers.get(publisher.0) else { return 0 };
         let topic = self.hub.state.borrow().writers[*writer].topic.clone();
-        let others = |r: &&super::hub::Reader| r.alive && r.participant != self.participant;
+        let others = |r: &&super::hub::Reader| {
+            r.alive && r.participant != self.participant && self.admission.admits(&r.participant)
+        };
         self.endpoints(&topic, |s, topic| {
             s.readers.iter().filter(others).filter(|r| r.topic == topic).count()
         })
@@ -119,7 +140,7 @@ impl Bus for MemoryBus {
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let Some(reader) = self.readers.get(subscription.0) else { return 0 };
         let topic = self.hub.state.borrow().readers[*reader].topic.clone();
-        let others = |w: &&super::hub::Writer| w.alive && !self.is_ours(w.id);
+        let others = |w: &&super::hub::Writer| w.alive && self.counts(w.id);
         self.endpoints(&topic, |s, topic| {
             s.writers.iter().filter(others).filter(|w| w.topic == topic).count()
         })
@@ -129,7 +150,7 @@ impl Bus for MemoryBus {
         let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
         let state = self.hub.state.borrow();
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved);
-        let mut ids: Vec<WriterId> = on_topic.map(|w| w.id).filter(|id| !self.is_ours(*id)).collect();
+        let mut ids: Vec<WriterId> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
         ids.sort();
         ids
     }
@@ -166,6 +187,18 @@ impl Bus for MemoryBus {
         if let Some(reader) = self.readers.get(subscription.0) {
             self.hub.state.borrow_mut().readers[*reader].refused += 1;
         }
+    }
+
+    fn identity(&self) -> Identity {
+        *self.admission.identity()
+    }
+
+    fn strangers(&self) -> Vec<Stranger> {
+        self.admission.strangers()
+    }
+
+    fn describe(&self, writer: WriterId) -> Stranger {
+        self.admission.describe(&writer.participant())
     }
 
     fn flush(&mut self, _timeout: Duration) -> bool {

@@ -2,7 +2,9 @@
 
 use super::bus::MemoryBus;
 use super::faults::{Dice, Faults};
-use crate::bus::{Demand, Sample, SampleInfo, WriterId};
+use crate::admission::Participant;
+use crate::bus::{Demand, Sample, SampleId, SampleInfo, WriterId};
+use crate::identity::Identity;
 use crate::names::Names;
 use grainlab_msgs::topics::Qos;
 use std::cell::RefCell;
@@ -41,7 +43,7 @@ pub(super) struct Writer {
 
 #[derive(Debug)]
 pub(super) struct Reader {
-    pub(super) participant: u32,
+    pub(super) participant: Participant,
     pub(super) topic: String,
     pub(super) demand: Demand,
     /// Due time and sample, in the order of due time.
@@ -67,9 +69,14 @@ impl Hub {
 
     /// A participant of its own, for one node. Dropping it is a clean leave and a crash alike.
     pub fn bus(&self, names: Names) -> MemoryBus {
+        self.bus_as(names, Identity::default())
+    }
+
+    /// The same with another identity than that of a tool.
+    pub fn bus_as(&self, names: Names, identity: Identity) -> MemoryBus {
         let mut state = self.state.borrow_mut();
         state.participants += 1;
-        MemoryBus::new(self.clone(), state.participants, names)
+        MemoryBus::new(self.clone(), participant_of(&identity, state.participants), names, identity)
     }
 
     /// Faults of one topic, by its resolved name, from now on.
@@ -100,11 +107,20 @@ impl Hub {
     }
 }
 
+/// The GUID prefix of the participant that came as the `number`th: as on the real bus, but without chance.
+fn participant_of(identity: &Identity, number: u32) -> Participant {
+    let mut prefix = identity.guid_prefix();
+    if identity.run.is_none() {
+        prefix[3..9].fill(0);
+    }
+    prefix[9..].copy_from_slice(&number.to_be_bytes()[1..]);
+    prefix
+}
+
 /// The GUID of a participant's endpoint.
-pub(super) fn writer_id(participant: u32, entity: usize) -> WriterId {
+pub(super) fn writer_id(participant: Participant, entity: usize) -> WriterId {
     let mut bytes = [0; 16];
-    bytes[..4].copy_from_slice(b"mem ");
-    bytes[8..12].copy_from_slice(&participant.to_be_bytes());
+    bytes[..12].copy_from_slice(&participant);
     bytes[12..].copy_from_slice(&(entity as u32).to_be_bytes());
     WriterId(bytes)
 }
@@ -114,13 +130,13 @@ impl State {
         EPOCH_NANOS + self.now.as_nanos() as u64
     }
 
-    pub(super) fn add_writer(&mut self, participant: u32, topic: String, qos: Qos) -> usize {
+    pub(super) fn add_writer(&mut self, participant: Participant, topic: String, qos: Qos) -> usize {
         let id = writer_id(participant, self.writers.len());
         self.writers.push(Writer { id, topic, qos, count: 0, latched: VecDeque::new(), alive: true });
         self.writers.len() - 1
     }
 
-    pub(super) fn add_reader(&mut self, participant: u32, topic: String, demand: Demand) -> usize {
+    pub(super) fn add_reader(&mut self, participant: Participant, topic: String, demand: Demand) -> usize {
         let mut queue = VecDeque::new();
         if demand.reliable {
             for writer in self.writers.iter().filter(|w| w.alive && w.topic == topic) {
@@ -131,7 +147,7 @@ impl State {
         self.readers.len() - 1
     }
 
-    pub(super) fn publish(&mut self, writer: usize, body: &[u8]) -> i64 {
+    pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
         let (now, received) = (self.now, self.wall_nanos());
         let writer = &mut self.writers[writer];
         writer.count += 1;
@@ -140,6 +156,7 @@ impl State {
             sequence: writer.count as i64,
             source_time: Some(received),
             received,
+            about,
         };
         let sample = Sample { body: body.to_vec(), info };
         if writer.qos.transient_local {
@@ -185,7 +202,6 @@ impl Reader {
         if !self.has_data(now) {
             return None;
         }
-        self.taken += 1;
         self.queue.pop_front().map(|(_, sample)| sample)
     }
 }

@@ -28,7 +28,7 @@ struct Ends<Out: serde::Serialize, In> {
 
 impl<Out: Message, In: Message> Ends<Out, In> {
     fn open(network: Network, name: &str, output: &Topic, input: &Topic) -> Result<Self, BusError> {
-        let participant = network.participant().map_err(|e| failed("participant", e))?;
+        let participant = network.participant().build().map_err(|e| failed("participant", e))?;
         let context = Context::from_domain_participant(participant).map_err(|e| failed("context", e))?;
         let name = NodeName::new("/", name).map_err(|e| failed("node name", format!("{e:?}")))?;
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);

@@ -41,7 +41,7 @@ impl Node for Talker {
 }
 
 fn talk(name: &'static str, at_end: Exit, dawdle: Duration) -> ! {
-    let spec = NodeSpec { name, summary: "talks", parameters: Vec::new() };
+    let spec = NodeSpec { name, summary: "talks", scope: Scope::Everyone, parameters: Vec::new() };
     let exit = run_node(&spec, &RosArgs::default(), |bus, _| {
         let publisher = Publisher::advertise(bus, &topics::RUN_STATE)?;
         Ok(Box::new(Talker { publisher, step: 0, at_end, dawdle }))
@@ -123,7 +123,7 @@ fn panicking_node() {
             Health::default()
         }
     }
-    let spec = NodeSpec { name: "panicking", summary: "panics", parameters: Vec::new() };
+    let spec = NodeSpec { name: "panicking", summary: "panics", scope: Scope::Everyone, parameters: Vec::new() };
     let exit = run_node(&spec, &RosArgs::default(), |_, _| Ok(Box::new(Panics)));
     std::process::exit(i32::from(exit.code()))
 }

@@ -1,0 +1,142 @@
+//! Which servo the run stays with.
+
+use node_kit::admission::Participant;
+use node_kit::identity::{member_of, run_of};
+use node_kit::{SampleInfo, WriterId};
+use std::collections::BTreeSet;
+
+/// Servos that are named one by one.
+const NAMED: usize = 64;
+
+/// The servo that answered first, until it is gone.
+#[derive(Debug)]
+pub(crate) struct Partner {
+    /// Our writer of requests.
+    stress: WriterId,
+    current: Option<Participant>,
+    named: BTreeSet<Participant>,
+    ignored: u64,
+}
+
+/// Whose answer it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Whose {
+    /// Of the servo that the run stays with.
+    Ours,
+    /// Of the one that takes its place from now on.
+    Successor,
+    /// To the request of another simulator.
+    AnotherRun,
+    /// Of another servo, while the first is there; `new` the first time that one is heard.
+    Another { new: bool },
+}
+
+/// Whether two participants are one process of a launched run, before and after a restart.
+pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
+    run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
+}
+
+/// Writers that are different servos: a restarted one counts once.
+pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
+    let mut found: Vec<WriterId> = Vec::new();
+    for writer in writers {
+        let participant = writer.participant();
+        let known = |w: &WriterId| {
+            w.participant() == participant || same_member(&w.participant(), &participant)
+        };
+        if !found.iter().any(known) {
+            found.push(*writer);
+        }
+    }
+    found
+}
+
+impl Partner {
+    /// For a simulator that asks by this writer of stress.
+    pub(crate) fn new(stress: WriterId) -> Self {
+        Self { stress, current: None, named: BTreeSet::new(), ignored: 0 }
+    }
+
+    /// Judges an answer; `present` tells the writers of answers that are there.
+    pub(crate) fn judge(&mut self, info: &SampleInfo, present: impl Fn() -> Vec<WriterId>) -> Whose {
+        if info.about.is_some_and(|asked| asked.writer != self.stress) {
+            return Whose::AnotherRun;
+        }
+        let heard = info.writer.participant();
+        let Some(current) = self.current else { return Whose::Successor };
+        if current == heard {
+            return Whose::Ours;
+        }
+        let gone = || !present().iter().any(|w| w.participant() == current);
+        if same_member(&current, &heard) || gone() {
+            return Whose::Successor;
+        }
+        self.ignored += 1;
+        Whose::Another { new: self.named.len() < NAMED && self.named.insert(heard) }
+    }
+
+    /// The run stays with this servo from now on; true if another one was there before.
+    pub(crate) fn stay_with(&mut self, writer: WriterId) -> bool {
+        let heard = writer.participant();
+        self.current.replace(heard).is_some_and(|before| before != heard)
+    }
+
+    /// Answers of other servos.
+    pub(crate) fn ignored(&self) -> u64 {
+        self.ignored
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use node_kit::{Identity, RunId, SampleId};
+
+    const STRESS: WriterId = WriterId([9; 16]);
+
+    fn writer(prefix: Participant) -> WriterId {
+        let mut id = [1; 16];
+        id[..12].copy_from_slice(&prefix);
+        WriterId(id)
+    }
+
+    fn answer(writer: WriterId) -> SampleInfo {
+        SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None }
+    }
+
+    #[test]
+    fn the_run_stays_with_the_first_servo_until_that_one_is_gone() {
+        let (first, second) = (writer([1; 12]), writer([2; 12]));
+        let mut partner = Partner::new(STRESS);
+        assert_eq!(partner.judge(&answer(first), || vec![first, second]), Whose::Successor);
+        assert!(!partner.stay_with(first));
+        assert_eq!(partner.judge(&answer(second), || vec![first, second]), Whose::Another { new: true });
+        assert_eq!(partner.judge(&answer(second), || vec![first, second]), Whose::Another { new: false });
+        assert_eq!(partner.judge(&answer(first), || vec![first, second]), Whose::Ours);
+        assert_eq!(partner.judge(&answer(second), || vec![second]), Whose::Successor);
+        assert!(partner.stay_with(second));
+        assert_eq!(partner.ignored(), 2);
+    }
+
+    #[test]
+    fn a_restarted_servo_takes_its_own_place_at_once() {
+        let servo = Identity::member_of(RunId::named("a"), 4);
+        let (before, after) = (writer(servo.guid_prefix()), writer(servo.guid_prefix()));
+        let mut partner = Partner::new(STRESS);
+        partner.stay_with(before);
+        assert_eq!(partner.judge(&answer(after), || vec![before, after]), Whose::Successor);
+        assert_eq!(different(&[before, after]).len(), 1);
+        assert_eq!(different(&[writer([1; 12]), writer([2; 12])]).len(), 2);
+    }
+
+    #[test]
+    fn an_answer_to_another_simulator_is_of_another_run() {
+        let servo = writer([1; 12]);
+        let about = |writer| Some(SampleId { writer, sequence: 5 });
+        let mut partner = Partner::new(STRESS);
+        let elsewhere = SampleInfo { about: about(WriterId([8; 16])), ..answer(servo) };
+        assert_eq!(partner.judge(&elsewhere, || vec![servo]), Whose::AnotherRun);
+        let here = SampleInfo { about: about(STRESS), ..answer(servo) };
+        assert_eq!(partner.judge(&here, || vec![servo]), Whose::Successor);
+    }
+}

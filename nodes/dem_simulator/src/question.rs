@@ -1,0 +1,84 @@
+//! What a request asks, and which answers it allows.
+
+use dem::Request;
+use grainlab_msgs::builtin_interfaces::Time;
+use grainlab_msgs::stamp;
+use grains::ComponentControl;
+
+/// Names of the components, in Voigt order.
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// Rounding that a servo in another language may add, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// One request, as far as its answer is held against it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Question {
+    pub(crate) sequence: u64,
+    pub(crate) stamp: Time,
+    /// What is imposed on each component, Voigt order.
+    pub(crate) controls: [ComponentControl; 6],
+    /// Largest magnitude of a component of the answer, 1/s.
+    pub(crate) rate_limit: f64,
+}
+
+/// An answer that does what its request forbids.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Violation {
+    #[error("rate {component} = {found} 1/s is beyond the rate limit of the request, {limit} 1/s")]
+    Limit { component: &'static str, found: f64, limit: f64 },
+    #[error("rate {component} = {found} 1/s, where the request imposes {imposed} 1/s")]
+    Imposed { component: &'static str, found: f64, imposed: f64 },
+}
+
+impl Question {
+    /// What `request` asks.
+    pub(crate) fn of(request: &Request) -> Self {
+        Self {
+            sequence: request.sequence,
+            stamp: stamp(request.time),
+            controls: request.controls,
+            rate_limit: request.rate_limit,
+        }
+    }
+
+    /// Whether these rates, 1/s, may be obeyed: none beyond the limit, none but zero where a component is held, and the
+    /// rate imposed where one is. Only a component with a stress target is the servo's to choose.
+    pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
+        let limit = self.rate_limit;
+        for ((component, control), found) in COMPONENTS.into_iter().zip(&self.controls).zip(*rate) {
+            if found.abs() > limit * (1.0 + ROUNDING) {
+                return Err(Violation::Limit { component, found, limit });
+            }
+            let imposed = match control {
+                ComponentControl::Held => 0.0,
+                ComponentControl::StrainRate(imposed) => imposed.clamp(-limit, limit),
+                ComponentControl::Stress(_) => continue,
+            };
+            if (found - imposed).abs() > ROUNDING * imposed.abs() {
+                return Err(Violation::Imposed { component, found, imposed });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_component_with_a_stress_target_is_the_servos_to_choose() {
+        let mut controls = [ComponentControl::Stress(1e3); 6];
+        controls[1] = ComponentControl::Held;
+        controls[2] = ComponentControl::StrainRate(-0.5);
+        let question = Question { sequence: 3, stamp: Time::default(), controls, rate_limit: 2.0 };
+        assert_eq!(question.check(&[2.0, 0.0, -0.5, -1.0, 0.0, 0.1]), Ok(()));
+        let limit = Violation::Limit { component: "yz", found: -2.1, limit: 2.0 };
+        assert_eq!(question.check(&[0.0, 0.0, -0.5, -2.1, 0.0, 0.0]), Err(limit));
+        let held = Violation::Imposed { component: "yy", found: 1e-6, imposed: 0.0 };
+        assert_eq!(question.check(&[0.0, 1e-6, -0.5, 0.0, 0.0, 0.0]), Err(held));
+        let imposed = Violation::Imposed { component: "zz", found: 0.5, imposed: -0.5 };
+        assert_eq!(question.check(&[0.0, 0.0, 0.5, 0.0, 0.0, 0.0]), Err(imposed));
+    }
+}

@@ -1,0 +1,196 @@
+//! Whose samples are taken, and whose are ignored, counted and named.
+
+use crate::bus::WriterId;
+use crate::identity::{Identity, RunId, Scope, run_of};
+use std::collections::BTreeMap;
+
+/// The GUID prefix of one participant.
+pub type Participant = [u8; 12];
+
+/// Strangers that are counted one by one; those beyond count together, so that a flood of made-up names takes no memory.
+const COUNTED: usize = 64;
+
+/// A participant whose samples were ignored.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stranger {
+    /// Its GUID prefix; zero for all those beyond the ones that are counted one by one.
+    pub participant: Participant,
+    /// The run that it says it belongs to.
+    pub run: Option<RunId>,
+    /// Its process, as in `pid 4711 (python3)`, where that is known.
+    pub process: Option<String>,
+    /// Samples ignored, by resolved topic.
+    pub ignored: BTreeMap<String, u64>,
+}
+
+/// A name for people: the process where it is known, the run, or the GUID prefix.
+impl std::fmt::Display for Stranger {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.participant == [0; 12] {
+            return write!(f, "further processes");
+        }
+        match &self.process {
+            Some(process) => write!(f, "{process}")?,
+            None => {
+                write!(f, "participant ")?;
+                self.participant.iter().try_for_each(|byte| write!(f, "{byte:02x}"))?;
+            }
+        }
+        self.run.map_or(Ok(()), |run| write!(f, " of run {run}"))
+    }
+}
+
+/// A process on this host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Process {
+    /// Its process id.
+    pub pid: u32,
+    /// Its name, as `ps` shows it.
+    pub name: String,
+    /// Whether what started the run started it, or its parent, and so on.
+    pub below_root: bool,
+}
+
+/// Decides for one process whose samples it takes.
+#[derive(Debug)]
+pub struct Admission {
+    identity: Identity,
+    own: Participant,
+    /// Processes of participants that do not say a run, where they are on this host.
+    processes: BTreeMap<Participant, Process>,
+    strangers: BTreeMap<Participant, Stranger>,
+}
+
+impl Admission {
+    /// For the participant `own` of a process with this identity.
+    pub fn new(identity: Identity, own: Participant) -> Self {
+        Self { identity, own, processes: BTreeMap::new(), strangers: BTreeMap::new() }
+    }
+
+    /// What this process is to its run.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// A participant was discovered, and this process runs it.
+    pub fn discovered(&mut self, participant: Participant, process: Process) {
+        // As many as discovery itself keeps; those beyond stay nameless.
+        if self.processes.len() < 16 * COUNTED || self.processes.contains_key(&participant) {
+            self.processes.insert(participant, process);
+        }
+    }
+
+    /// A participant is gone.
+    pub fn lost(&mut self, participant: &Participant) {
+        self.processes.remove(participant);
+    }
+
+    /// Whether samples of this participant are taken.
+    pub fn admits(&self, participant: &Participant) -> bool {
+        if self.identity.scope == Scope::Everyone || *participant == self.own {
+            return true;
+        }
+        match (self.identity.run, run_of(participant)) {
+            (own, Some(run)) => own == Some(run),
+            (None, None) => true,
+            (Some(_), None) => self.processes.get(participant).is_some_and(|p| p.below_root),
+        }
+    }
+
+    /// The same for one sample; one that is not taken is counted. The second value is true for the first of its writer.
+    pub fn takes(&mut self, writer: WriterId, topic: &str) -> (bool, bool) {
+        let participant = writer.participant();
+        if self.admits(&participant) {
+            return (true, false);
+        }
+        let full = self.strangers.len() >= COUNTED && !self.strangers.contains_key(&participant);
+        let key = if full { [0; 12] } else { participant };
+        let mut new = false;
+        let process = self.processes.get(&key).map(|p| format!("pid {} ({})", p.pid, p.name));
+        let stranger = self.strangers.entry(key).or_insert_with(|| {
+            new = true;
+            let run = run_of(&key);
+            Stranger { participant: key, run, process, ignored: BTreeMap::new() }
+        });
+        match stranger.ignored.get_mut(topic) {
+            Some(count) => *count += 1,
+            None => {
+                stranger.ignored.insert(topic.into(), 1);
+            }
+        }
+        (false, new)
+    }
+
+    /// Everyone whose samples were ignored, by GUID prefix.
+    pub fn strangers(&self) -> Vec<Stranger> {
+        self.strangers.values().cloned().collect()
+    }
+
+    /// What is known of a participant, for people.
+    pub fn describe(&self, participant: &Participant) -> Stranger {
+        let process = self.processes.get(participant).map(|p| format!("pid {} ({})", p.pid, p.name));
+        let (participant, run) = (*participant, run_of(participant));
+        Stranger { participant, run, process, ignored: BTreeMap::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HAND: Identity = Identity { run: None, member: 0, root: None, scope: Scope::OwnRun };
+
+    fn writer(prefix: Participant) -> WriterId {
+        let mut id = [3; 16];
+        id[..12].copy_from_slice(&prefix);
+        WriterId(id)
+    }
+
+    fn process(below_root: bool) -> Process {
+        Process { pid: 7, name: "python3".into(), below_root }
+    }
+
+    #[test]
+    fn a_member_takes_its_own_run_and_what_the_launcher_started_and_nobody_else() {
+        let (run, other) = (Identity::member_of(RunId::named("a"), 1), Identity::member_of(RunId::named("b"), 1));
+        let mut admission = Admission::new(run, run.guid_prefix());
+        assert!(admission.admits(&run.guid_prefix()));
+        assert!(!admission.admits(&other.guid_prefix()), "another run");
+        assert!(!admission.admits(&HAND.guid_prefix()), "a node started by hand");
+        let instrument = [0x01, 0x10, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5];
+        assert!(!admission.admits(&instrument));
+        admission.discovered(instrument, process(false));
+        assert!(!admission.admits(&instrument), "other software that somebody else started");
+        admission.discovered(instrument, process(true));
+        assert!(admission.admits(&instrument));
+        admission.lost(&instrument);
+        assert!(!admission.admits(&instrument));
+    }
+
+    #[test]
+    fn by_hand_a_node_of_the_lockstep_ignores_launched_runs_and_a_tool_hears_everyone() {
+        let launched = Identity::member_of(RunId::named("a"), 1).guid_prefix();
+        let by_hand = Admission::new(HAND, HAND.guid_prefix());
+        assert!(!by_hand.admits(&launched));
+        assert!(by_hand.admits(&HAND.guid_prefix()));
+        let tool = Admission::new(Identity::default(), Identity::default().guid_prefix());
+        assert!(tool.admits(&launched) && tool.admits(&HAND.guid_prefix()));
+    }
+
+    #[test]
+    fn strangers_are_counted_by_topic_and_a_flood_of_them_together() {
+        let run = Identity::member_of(RunId::named("a"), 1);
+        let mut admission = Admission::new(run, run.guid_prefix());
+        let stranger = HAND.guid_prefix();
+        assert_eq!(admission.takes(writer(stranger), "/stress"), (false, true));
+        assert_eq!(admission.takes(writer(stranger), "/stress"), (false, false));
+        assert_eq!(admission.strangers()[0].ignored["/stress"], 2);
+        (0..1000).for_each(|_| {
+            admission.takes(writer(HAND.guid_prefix()), "/moduli");
+        });
+        let known = admission.strangers();
+        assert_eq!(known.len(), COUNTED + 1);
+        let counted: u64 = known.iter().flat_map(|s| s.ignored.values()).sum();
+        assert_eq!(counted, 1002);
+    }
+}

@@ -1,0 +1,85 @@
+//! Between RustDDS's threads and the rules of admission.
+
+use super::caretaker::lock;
+use super::processes;
+use crate::admission::{Admission, Participant, Stranger};
+use crate::bus::WriterId;
+use crate::identity::{Identity, run_of};
+use rustdds::GUID;
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::sync::Mutex;
+
+/// The rules of admission of one bus, and the topics of its readers. RustDDS asks it for each sample.
+#[derive(Debug)]
+pub(super) struct Gate {
+    identity: Identity,
+    admission: Mutex<Admission>,
+    /// Resolved topics by our readers.
+    topics: Mutex<BTreeMap<[u8; 16], String>>,
+}
+
+fn prefix(guid: &GUID) -> Participant {
+    WriterId(guid.to_bytes()).participant()
+}
+
+impl Gate {
+    pub(super) fn new(identity: Identity, own: Participant) -> Self {
+        Self { identity, admission: Mutex::new(Admission::new(identity, own)), topics: Mutex::default() }
+    }
+
+    pub(super) fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// A reader of ours is to be filtered and counted under its topic.
+    pub(super) fn add_reader(&self, reader: GUID, topic: &str) {
+        lock(&self.topics).insert(reader.to_bytes(), topic.to_owned());
+    }
+
+    /// Whether a reader of ours takes a sample of this writer.
+    pub(super) fn takes(&self, writer: GUID, reader: GUID) -> bool {
+        let mut admission = lock(&self.admission);
+        if admission.admits(&prefix(&writer)) {
+            return true;
+        }
+        let topic = lock(&self.topics).get(&reader.to_bytes()).cloned().unwrap_or_default();
+        let (taken, new) = admission.takes(WriterId(writer.to_bytes()), &topic);
+        if new {
+            let stranger = admission.describe(&prefix(&writer));
+            drop(admission);
+            log::warn!("{topic}: {stranger} is not of this run: what it publishes is ignored");
+        }
+        taken
+    }
+
+    /// Whether endpoints of this participant count.
+    pub(super) fn admits(&self, guid: &GUID) -> bool {
+        lock(&self.admission).admits(&prefix(guid))
+    }
+
+    /// A participant was discovered, which listens there.
+    pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
+        let participant = prefix(&participant);
+        // Who says its run needs no other evidence.
+        if self.identity.run.is_none() || run_of(&participant) == self.identity.run {
+            return;
+        }
+        if let Some(process) = processes::listening_on(addresses, self.identity.root) {
+            lock(&self.admission).discovered(participant, process);
+        }
+    }
+
+    /// A participant is gone.
+    pub(super) fn lost(&self, participant: &Participant) {
+        lock(&self.admission).lost(participant);
+    }
+
+    pub(super) fn strangers(&self) -> Vec<Stranger> {
+        lock(&self.admission).strangers()
+    }
+
+    pub(super) fn describe(&self, participant: &Participant) -> Stranger {
+        lock(&self.admission).describe(participant)
+    }
+}

@@ -1,0 +1,89 @@
+//! Which process of this host listens on a port: who runs a participant of any vendor.
+
+use crate::admission::Process;
+use std::collections::BTreeMap;
+use std::fs;
+use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::path::Path;
+
+/// Ancestors looked at: more than any chain of launchers and shells is long.
+const GENERATIONS: usize = 32;
+
+/// The process that listens on one of these addresses, and whether `root` started it; `None` if it is on another host, or
+/// another user's.
+pub(super) fn listening_on(addresses: &[SocketAddr], root: Option<u32>) -> Option<Process> {
+    let local = addresses.iter().filter(|a| is_local(a.ip()));
+    let inodes = inodes_by_port()?;
+    let inode = local.filter_map(|a| inodes.get(&a.port())).next()?;
+    let pid = owner_of(*inode)?;
+    let name = fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default().trim().to_owned();
+    Some(Process { pid, name, below_root: root.is_some_and(|root| is_below(pid, root)) })
+}
+
+/// Only an address of this host can be bound.
+fn is_local(ip: IpAddr) -> bool {
+    ip.is_loopback() || UdpSocket::bind((ip, 0)).is_ok()
+}
+
+/// Socket inodes of all UDP ports in use. `/proc/net/udp` has a line for each: number, local address, …, inode in the
+/// tenth column.
+fn inodes_by_port() -> Option<BTreeMap<u16, u64>> {
+    let text = fs::read_to_string("/proc/net/udp").ok()?;
+    let entry = |line: &str| {
+        let columns: Vec<&str> = line.split_whitespace().collect();
+        let (_, port) = columns.get(1)?.split_once(':')?;
+        Some((u16::from_str_radix(port, 16).ok()?, columns.get(9)?.parse().ok()?))
+    };
+    Some(text.lines().skip(1).filter_map(entry).collect())
+}
+
+fn owner_of(inode: u64) -> Option<u32> {
+    let link = format!("socket:[{inode}]");
+    let holds = |directory: &Path| {
+        let descriptors = fs::read_dir(directory.join("fd")).into_iter().flatten().flatten();
+        descriptors.into_iter().any(|fd| fs::read_link(fd.path()).is_ok_and(|l| l.as_os_str() == link.as_str()))
+    };
+    let processes = fs::read_dir("/proc").ok()?.flatten();
+    processes
+        .filter_map(|entry| Some((entry.file_name().to_str()?.parse().ok()?, entry.path())))
+        .find(|(_, directory)| holds(directory))
+        .map(|(pid, _)| pid)
+}
+
+fn is_below(pid: u32, root: u32) -> bool {
+    let parents = std::iter::successors(Some(pid), |pid| parent_of(*pid));
+    parents.take(GENERATIONS).any(|ancestor| ancestor == root)
+}
+
+/// The fourth field of `/proc/PID/stat`; the second, the name, may hold blanks and brackets.
+fn parent_of(pid: u32) -> Option<u32> {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    let (_, behind_name) = stat.rsplit_once(')')?;
+    behind_name.split_whitespace().nth(1)?.parse().ok().filter(|parent| *parent > 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_process_that_holds_a_socket_is_found_and_so_is_what_started_it() {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let address = socket.local_addr().unwrap();
+        let own = std::process::id();
+        let found = listening_on(&[address], Some(own)).unwrap();
+        assert_eq!((found.pid, found.below_root), (own, true));
+        let parent = parent_of(own).unwrap();
+        assert!(listening_on(&[address], Some(parent)).unwrap().below_root);
+        assert!(!listening_on(&[address], None).unwrap().below_root);
+        drop(socket);
+        assert_eq!(listening_on(&[address], None), None);
+    }
+
+    #[test]
+    fn an_address_of_another_host_is_nobody_of_this_one() {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let elsewhere = SocketAddr::new("192.0.2.1".parse().unwrap(), socket.local_addr().unwrap().port());
+        assert_eq!(listening_on(&[elsewhere], None), None);
+    }
+}

@@ -1,0 +1,219 @@
+//! Which run a process belongs to.
+//!
+//! A run has an id, made afresh for it. Every process of the run carries the id in the GUID prefix of its DDS participant,
+//! so that each sample says by its writer which run it is of: without a byte in any message, from the first sample on, and
+//! for best-effort readers, too. Two other places were weighed. A partition would hide the topics from ROS 2 tools, which
+//! cannot join one. The user data of a participant travel with discovery, later than the first best-effort samples.
+
+use std::collections::hash_map::RandomState;
+use std::fmt;
+use std::hash::{BuildHasher, Hasher};
+use std::str::FromStr;
+use std::time::SystemTime;
+
+/// Names the run to its processes: 12 hexadecimal digits, or any other text, from which an id is derived.
+pub const RUN_VARIABLE: &str = "GRAINLAB_RUN";
+
+/// The place of a process in its run, 1 to 254: the same after a restart.
+pub const MEMBER_VARIABLE: &str = "GRAINLAB_MEMBER";
+
+/// Process id of what started the run: the processes below it belong to the run, whatever DDS they use.
+pub const ROOT_VARIABLE: &str = "GRAINLAB_RUN_ROOT";
+
+/// The vendor id of RustDDS, with which it begins each GUID prefix.
+const VENDOR: [u8; 2] = [0x01, 0x12];
+
+/// Identity of one run: 48 bits, of which the first eight are not all zero.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RunId([u8; 6]);
+
+impl RunId {
+    /// A fresh one.
+    pub fn fresh() -> Self {
+        Self::of_bits(random())
+    }
+
+    /// The run that `text` names: its 12 hexadecimal digits, or an id derived from it.
+    pub fn named(text: &str) -> Self {
+        text.parse().unwrap_or_else(|_| Self::of_bits(fnv1a(text.as_bytes())))
+    }
+
+    fn of_bits(bits: u64) -> Self {
+        let mut bytes = [0; 6];
+        bytes.copy_from_slice(&bits.to_le_bytes()[..6]);
+        bytes[0] = bytes[0].max(1);
+        Self(bytes)
+    }
+}
+
+/// 12 hexadecimal digits.
+impl fmt::Display for RunId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl fmt::Debug for RunId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RunId({self})")
+    }
+}
+
+/// Text that is not the 12 hexadecimal digits of a run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not a run id: 12 hexadecimal digits, the first two not both zero")]
+pub struct RunIdError(pub String);
+
+impl FromStr for RunId {
+    type Err = RunIdError;
+
+    fn from_str(text: &str) -> Result<Self, RunIdError> {
+        let error = || RunIdError(text.into());
+        if text.len() != 12 || !text.bytes().all(|b| b.is_ascii_hexdigit()) {
+            return Err(error());
+        }
+        let bits = u64::from_str_radix(text, 16).map_err(|_| error())?;
+        let mut bytes = [0; 6];
+        bytes.copy_from_slice(&bits.to_be_bytes()[2..]);
+        if bytes[0] == 0 { Err(error()) } else { Ok(Self(bytes)) }
+    }
+}
+
+/// Whose samples a process takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scope {
+    /// Everyone's: a tool, or a node that was started by hand beside whatever runs.
+    #[default]
+    Everyone,
+    /// Those of its own run alone: of the processes with its run id, or, without one, of those that have none.
+    OwnRun,
+}
+
+/// What a process is to its run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Identity {
+    /// The run; `None` for a process that was started by hand.
+    pub run: Option<RunId>,
+    /// Its place in the run, 1 to 254; 0 for none.
+    pub member: u8,
+    /// Process id of what started the run.
+    pub root: Option<u32>,
+    /// Whose samples it takes.
+    pub scope: Scope,
+}
+
+impl Identity {
+    /// Of this process, by its environment. A process of a named run takes the samples of that run; one without takes
+    /// those that `otherwise` says.
+    pub fn from_env(otherwise: Scope) -> Self {
+        Self::from_variables(otherwise, |name| std::env::var(name).ok())
+    }
+
+    /// The same from any source of variables; unset and empty are the same.
+    pub fn from_variables(otherwise: Scope, lookup: impl Fn(&str) -> Option<String>) -> Self {
+        let get = |name: &str| lookup(name).filter(|value| !value.is_empty());
+        let run = get(RUN_VARIABLE).map(|text| RunId::named(&text));
+        let Some(run) = run else { return Self { scope: otherwise, ..Self::default() } };
+        Self {
+            run: Some(run),
+            member: get(MEMBER_VARIABLE).and_then(|text| text.parse().ok()).unwrap_or(0),
+            root: get(ROOT_VARIABLE).and_then(|text| text.parse().ok()),
+            scope: Scope::OwnRun,
+        }
+    }
+
+    /// A member of a run.
+    pub fn member_of(run: RunId, member: u8) -> Self {
+        Self { run: Some(run), member, root: None, scope: Scope::OwnRun }
+    }
+
+    /// A GUID prefix for a participant of this process: vendor, run, member, and random bytes that differ at each start.
+    pub fn guid_prefix(&self) -> [u8; 12] {
+        let mut prefix = [0; 12];
+        prefix[..2].copy_from_slice(&VENDOR);
+        let chance = [random(), random()].map(u64::to_le_bytes).concat();
+        match self.run {
+            Some(run) => {
+                prefix[2..8].copy_from_slice(&run.0);
+                prefix[8] = self.member;
+                prefix[9..].copy_from_slice(&chance[..3]);
+            }
+            None => prefix[3..].copy_from_slice(&chance[..9]),
+        }
+        prefix
+    }
+}
+
+/// The run that a participant of this laboratory says it belongs to; `None` if it says none, or is of other software.
+pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
+    (prefix[..2] == VENDOR && prefix[2] != 0).then(|| {
+        let mut bytes = [0; 6];
+        bytes.copy_from_slice(&prefix[2..8]);
+        RunId(bytes)
+    })
+}
+
+/// The place of a participant in its run.
+pub fn member_of(prefix: &[u8; 12]) -> u8 {
+    prefix[8]
+}
+
+/// Bits that differ from call to call and from process to process.
+fn random() -> u64 {
+    let mut hasher = RandomState::new().build_hasher();
+    hasher.write_u32(std::process::id());
+    hasher.write_u128(SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |t| t.as_nanos()));
+    hasher.finish()
+}
+
+/// The FNV-1a hash, the same in every process and release.
+fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_prefix_of_a_member_tells_run_and_place_and_differs_at_each_start() {
+        let run = RunId::fresh();
+        let identity = Identity::member_of(run, 3);
+        let (a, b) = (identity.guid_prefix(), identity.guid_prefix());
+        assert_ne!(a, b);
+        for prefix in [a, b] {
+            assert_eq!((run_of(&prefix), member_of(&prefix)), (Some(run), 3));
+        }
+        assert_eq!(run_of(&Identity::default().guid_prefix()), None);
+        assert_eq!(run_of(&[0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]), None, "another vendor's");
+    }
+
+    #[test]
+    fn a_run_id_reads_back_from_its_digits_and_any_text_names_a_run() {
+        let run = RunId::fresh();
+        assert_eq!(run.to_string().parse(), Ok(run));
+        assert_eq!(RunId::named(&run.to_string()), run);
+        assert_eq!(RunId::named("left"), RunId::named("left"));
+        assert_ne!(RunId::named("left"), RunId::named("right"));
+        for bad in ["", "00ffffffffff", "+12345678901", "12345678901", "xx3456789012"] {
+            assert!(bad.parse::<RunId>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn the_environment_names_run_place_and_root() {
+        let variables = |name: &str| match name {
+            RUN_VARIABLE => Some("left".to_owned()),
+            MEMBER_VARIABLE => Some("4".to_owned()),
+            ROOT_VARIABLE => Some("77".to_owned()),
+            _ => None,
+        };
+        let identity = Identity::from_variables(Scope::Everyone, variables);
+        let expected = Identity { root: Some(77), ..Identity::member_of(RunId::named("left"), 4) };
+        assert_eq!(identity, expected);
+        let by_hand = Identity::from_variables(Scope::Everyone, |_| None);
+        assert_eq!(by_hand, Identity::default());
+    }
+}
