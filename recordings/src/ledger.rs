@@ -4,7 +4,7 @@
 //! never came is a message that was lost, whoever lost it. What a writer sent after the last number seen,
 //! only that writer knows; it reports its count when it ends ([`Ledger::report`]).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::str::FromStr;
 
@@ -59,7 +59,7 @@ pub struct TopicTally {
     pub recorded: u64,
     /// Published but not recorded.
     pub lost: u64,
-    /// Deliveries of a message that was already recorded; not recorded again.
+    /// Messages that say what was already recorded, delivered or published once more; not recorded again.
     pub repeated: u64,
     /// The writers, in order of GUID.
     pub writers: Vec<WriterTally>,
@@ -97,6 +97,15 @@ const LISTED_GAPS: usize = 32;
 struct Writer {
     sequence: Sequence,
     reported: Option<u64>,
+    /// Messages that came and say, byte for byte, what another one said that was recorded.
+    same: u64,
+}
+
+impl Writer {
+    /// Messages before the first one that came; all that it reports, if none came.
+    fn before_first(&self) -> u64 {
+        self.sequence.first().map_or(self.reported.unwrap_or(0), |first| (first - 1).max(0) as u64)
+    }
 }
 
 /// The running account of a recording.
@@ -104,6 +113,8 @@ struct Writer {
 pub struct Ledger {
     topics: BTreeMap<String, BTreeMap<Guid, Writer>>,
     nodes: BTreeMap<Guid, String>,
+    /// Topics of which each writer counts from its first message that came.
+    from_first: BTreeSet<String>,
 }
 
 impl Ledger {
@@ -111,6 +122,22 @@ impl Ledger {
     pub fn expect(&mut self, topic: &str) {
         if !self.topics.contains_key(topic) {
             self.topics.insert(topic.to_owned(), BTreeMap::new());
+        }
+    }
+
+    /// Counts each writer of `topic` from the first of its messages that comes: what it said before the recorder was there
+    /// is not missed. For topics that tell of processes and not of the run.
+    pub fn count_from_first(&mut self, topic: &str) {
+        self.from_first.insert(topic.to_owned());
+    }
+
+    /// Notes that message `sequence` of this writer came and is not recorded, because it says what a recorded one says; it
+    /// counts as repeated.
+    pub fn repeat(&mut self, topic: &str, guid: Guid, sequence: i64) {
+        if self.enter(topic, guid, sequence)
+            && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
+        {
+            writer.same += 1;
         }
     }
 
@@ -145,11 +172,14 @@ impl Ledger {
     /// Messages that writers report as published and that have not come: what a recorder that is about to end
     /// may still wait for.
     pub fn outstanding(&self) -> u64 {
-        self.topics
-            .values()
-            .flat_map(|writers| writers.values())
-            .map(|w| w.reported.unwrap_or(0).saturating_sub(w.sequence.held()))
-            .sum()
+        let of_topic = |(name, writers): (&String, &BTreeMap<Guid, Writer>)| -> u64 {
+            let missed = |w: &Writer| {
+                let before = if self.from_first.contains(name) { w.before_first() } else { 0 };
+                w.reported.unwrap_or(0).saturating_sub(w.sequence.held() + before)
+            };
+            writers.values().map(missed).sum()
+        };
+        self.topics.iter().map(of_topic).sum()
     }
 
     /// The account, topic by topic in order of name.
@@ -168,24 +198,26 @@ impl Ledger {
         };
         for (guid, writer) in writers {
             let s = &writer.sequence;
-            let recorded = s.held();
+            let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
+            let held = s.held();
+            let recorded = held - writer.same;
             // A report that is lower than what was seen is out of date, not proof of a negative loss.
-            let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(recorded);
-            let lost = published - recorded;
+            let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
+            let lost = published.saturating_sub(held);
             topic.published += published;
             topic.recorded += recorded;
             topic.lost += lost;
-            topic.repeated += s.repeated();
+            topic.repeated += s.repeated() + writer.same;
             topic.writers.push(WriterTally {
                 guid: guid.to_string(),
                 node: self.nodes.get(guid).cloned(),
                 recorded,
                 reported: writer.reported,
                 first: s.first(),
-                last: (recorded > 0).then(|| s.highest()),
+                last: (held > 0).then(|| s.highest()),
                 lost,
-                gaps: s.gaps().take(LISTED_GAPS).collect(),
-                repeated: s.repeated(),
+                gaps: s.gaps().filter(|(_, last)| *last >= 0 && *last as u64 > before).take(LISTED_GAPS).collect(),
+                repeated: s.repeated() + writer.same,
             });
         }
         topic

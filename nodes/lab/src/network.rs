@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use node_kit::args::RosArgs;
 use node_kit::logging::Logger;
 use node_kit::signals::Signals;
-use node_kit::{DdsBus, Names, Network};
+use node_kit::{DdsBus, Identity, Names, Network, Scope};
 use std::net::{Ipv4Addr, UdpSocket};
 
 /// Joins the domain that the environment names as `name`; SIGINT and SIGTERM wake its waits.
@@ -18,11 +18,16 @@ pub(crate) fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
 
 /// Joins a domain as `name`, as far as the environment lets it reach. It logs warnings to stderr.
 pub(crate) fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
+    bus_as(domain, name, Identity::from_env(Scope::Everyone))
+}
+
+/// The same with this identity.
+pub(crate) fn bus_as(domain: u16, name: &str, identity: Identity) -> Result<DdsBus, Failure> {
     let quiet = RosArgs { log_level: log::LevelFilter::Warn, rosout: false, ..RosArgs::default() };
     Logger::install(name, &quiet);
     let network = Network { domain, ..Network::from_env().map_err(Failure::usage)? };
     let names = Names::new(name).map_err(Failure::usage)?;
-    DdsBus::open(network, names).map_err(Failure::failed)
+    DdsBus::join(network, names, identity).map_err(Failure::failed)
 }
 
 /// A DDS domain that nobody on this host used when it was taken, kept from other launchers as long as this lives.

@@ -1,23 +1,30 @@
 //! The recorder node: every sample of every topic into one recording.
 //!
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
+//! - `binding`: whose messages belong to a run by hand; `repeats`: messages that say what was recorded already
 //! - [`Recorder`]: the node; [`Finished`]: what it leaves behind
 
+mod binding;
+mod repeats;
 mod settings;
 
 pub(crate) use settings::{Settings, contract_topics, parameters};
 
+use self::binding::{Binding, Outside};
+use self::repeats::{Novelty, Repeats};
 use crate::output::Table;
+use crate::results::strangers::{self, Authors, StrangerView};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::{from_cdr, topics};
+use grainlab_msgs::{Topic, from_cdr, topics};
 use node_kit::bus::Published;
+use node_kit::identity::{member_of, run_of};
 use node_kit::{
-    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample,
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,
 };
 use recordings::ledger::Guid;
 use recordings::writer::Finished;
-use recordings::{Incoming, RunWriter, TopicSpec, TopicTally, WriterOptions};
+use recordings::{Incoming, Outcome, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -59,6 +66,7 @@ impl Source {
 }
 
 struct Channel {
+    topic: Topic,
     source: Source,
     name: String,
     reports: bool,
@@ -77,6 +85,13 @@ pub(crate) struct Recorder {
     whole_run: bool,
     recorded: u64,
     company: Company,
+    /// Where the processes of the run share no run id.
+    binding: Option<Binding>,
+    /// Where one run is recorded.
+    repeats: Option<Repeats>,
+    contradictions: u64,
+    /// Who wrote each result.
+    authors: Authors,
 }
 
 /// Who was heard, and who said goodbye: a last report counts everything that its process ever published.
@@ -125,7 +140,7 @@ impl Recorder {
             specs.push(TopicSpec::of_contract(topic, &name));
             let reports = topic.name == topics::DIAGNOSTICS.name;
             let precious = topic.qos.transient_local && topic.reproducible;
-            channels.push(Channel { source, name, reports, precious });
+            channels.push(Channel { topic: *topic, source, name, reports, precious });
         }
         let directory = settings.directory().map_err(|e| failed(&e))?;
         let name =
@@ -138,6 +153,13 @@ impl Recorder {
             writer.set_metadata("seed", &scene.scene.seed.to_string());
         }
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        for channel in channels.iter().filter(|c| !c.topic.reproducible) {
+            writer.ledger_mut().count_from_first(&channel.name);
+        }
+        let run = bus.identity().run;
+        if let Some(run) = run {
+            writer.set_metadata("run", &run.to_string());
+        }
         log::info!("recording to {}", writer.file().display());
         let company = Company::default();
         Ok(Self {
@@ -148,6 +170,10 @@ impl Recorder {
             whole_run: settings.whole_run,
             recorded: 0,
             company,
+            binding: (settings.whole_run && run.is_none()).then(Binding::default),
+            repeats: settings.whole_run.then(Repeats::default),
+            contradictions: 0,
+            authors: Authors::default(),
         })
     }
 
@@ -158,6 +184,13 @@ impl Recorder {
         for channel in &mut self.channels {
             while let Some(sample) = channel.source.take(bus)? {
                 any = true;
+                let (topic, info) = (&channel.topic, &sample.info);
+                if let Some(binding) = &mut self.binding
+                    && let Err(outside) = binding.takes(topic, info, |t| bus.foreign_writers(t))
+                {
+                    note_outside(outside, topic, bus.describe(info.writer), binding);
+                    continue;
+                }
                 self.company.hear(sample.info.writer);
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
@@ -169,9 +202,31 @@ impl Recorder {
                     receive_time: sample.info.received,
                     payload: &sample.body,
                 };
-                writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
+                let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
+                    repeats.enter(&channel.topic, author(sample.info.writer), &sample.body)
+                });
+                if novelty != Novelty::New {
+                    writer.ledger_mut().repeat(&channel.name, incoming.guid, incoming.sequence);
+                    if let Novelty::Contradiction { sequence } = novelty {
+                        self.contradictions += 1;
+                        if self.contradictions.is_power_of_two() {
+                            let who = bus.describe(sample.info.writer);
+                            log::error!(
+                                "{}: message {sequence} of {who} is not the one that was recorded under this number: it is \
+                                 left out ({} so far)",
+                                channel.name,
+                                self.contradictions
+                            );
+                        }
+                    }
+                    continue;
+                }
+                let outcome = writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
                 self.recorded += 1;
                 if channel.precious {
+                    if let Outcome::Recorded { log_time } = outcome {
+                        self.authors.enter(&channel.name, log_time, incoming.guid);
+                    }
                     // To the writer, whatever waits is old enough then.
                     writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
                 }
@@ -179,6 +234,16 @@ impl Recorder {
         }
         writer.tick(Instant::now()).map_err(|e| lost(&e))?;
         Ok(any)
+    }
+
+    /// Everyone whose messages were left out.
+    fn strangers(&self, bus: &dyn Bus) -> Vec<StrangerView> {
+        let of_bus = bus.strangers();
+        let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {
+            let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
+            Stranger { ignored, ..bus.describe(WriterId::of_participant(*participant)) }
+        });
+        of_bus.into_iter().chain(of_binding).map(|s| StrangerView::of(&s)).collect()
     }
 
     /// Waits for what is known to be on its way, then for a moment of silence if anyone may still speak.
@@ -201,6 +266,30 @@ impl Recorder {
             }
             bus.wait(Duration::from_millis(20));
         }
+    }
+}
+
+/// The same for a process of a launched run and the one that takes its place.
+fn author(writer: WriterId) -> u64 {
+    let participant = writer.participant();
+    match (run_of(&participant), member_of(&participant)) {
+        (Some(_), member @ 1..) => u64::from(member),
+        _ => participant[4..].iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
+    }
+}
+
+/// Names a process whose message is left out, once for each kind of message.
+fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Binding) {
+    let first = binding.ignored().get(&who.participant).is_some_and(|topics| topics.get(topic.name) == Some(&1));
+    if !first {
+        return;
+    }
+    match outside {
+        Outside::Stranger => log::warn!("{}: {who} is not of this run: what it publishes is left out", topic.name),
+        Outside::Second => log::error!(
+            "{}: {who} writes about this run beside the process that was heard first: what it publishes is left out",
+            topic.name
+        ),
     }
 }
 
@@ -265,7 +354,14 @@ impl Node for Recorder {
     /// Finishes the file. What this process itself says after that, it cannot record.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> std::result::Result<Exit, NodeError> {
         self.last_call(bus)?;
-        let Some(writer) = self.writer.take() else { return Ok(Exit::Done) };
+        let strangers = self.strangers(bus);
+        let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
+        let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
+        writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
+        writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
+        if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
+            writer.set_metadata("run", &WriterId::of_participant(run).to_string()[..24]);
+        }
         let finished = writer.finish().map_err(|e| lost(&e))?;
         let (before, after) = losses(&finished.ledger.tallies());
         *self.result.borrow_mut() = Some(finished);
@@ -276,6 +372,14 @@ impl Node for Recorder {
         if lost > 0 {
             log::error!("{lost} messages were published and are not in the recording");
             return Ok(Exit::DataLoss);
+        }
+        let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
+        if seconds > 0 || self.contradictions > 0 {
+            log::error!(
+                "two processes wrote what one should: which of them is right cannot be told. Start the processes of a run \
+                 with a run of their own (GRAINLAB_RUN=any_name for each of them)"
+            );
+            return Ok(Exit::Failure);
         }
         Ok(Exit::Done)
     }

@@ -14,6 +14,13 @@ use std::time::Duration;
 pub struct WriterId(pub [u8; 16]);
 
 impl WriterId {
+    /// Stands for every writer of a participant: its entity is zero.
+    pub fn of_participant(participant: [u8; 12]) -> Self {
+        let mut id = [0; 16];
+        id[..12].copy_from_slice(&participant);
+        Self(id)
+    }
+
     /// The 12 bytes that every endpoint of one process shares.
     pub fn participant(&self) -> [u8; 12] {
         let mut prefix = [0; 12];
@@ -284,6 +291,9 @@ pub trait Bus {
 
     /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted, as known at the last [`Bus::wait`].
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
+
+    /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
+    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
     /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`] tells of
     /// it as if that writer were one of `topic`.

@@ -5,7 +5,7 @@ use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
 use node_kit::{
     Bus, Demand, Exit, Health, Hub, Level, MemoryBus, Names, Next, Node, NodeError, NodeSpec, ParameterSpec,
-    Peers, Publisher, Range, Report, RosArgs, Subscription, drive, run_node,
+    Peers, Publisher, Range, Report, RosArgs, Scope, Subscription, drive, run_node,
 };
 use std::time::Duration;
 
@@ -139,6 +139,7 @@ fn wrong_arguments_end_before_anything_starts() {
     let spec = NodeSpec {
         name: "ticker",
         summary: "ticks",
+        scope: Scope::Everyone,
         parameters: vec![ParameterSpec::new("dt", 1.0, "time step, s").within(Range::Positive)],
     };
     for wrong in

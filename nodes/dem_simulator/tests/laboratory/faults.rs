@@ -2,9 +2,10 @@
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use dem_simulator::Settings;
+use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grains::Packing;
+use grains::{ComponentControl, Packing};
 use node_kit::memory::{Actor, run_until};
 use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
@@ -16,13 +17,16 @@ struct BadServo {
     honest: u64,
     lies: u32,
     lie: f64,
+    /// Also where the component is not the servo's to choose.
+    anywhere: bool,
 }
 
 impl BadServo {
     fn new(bus: &mut dyn Bus, honest: u64, lies: u32, lie: f64) -> Self {
         let stress = Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(16)).unwrap();
         let strain_rate = Publisher::advertise(bus, &topics::STRAIN_RATE).unwrap();
-        Self { stress, strain_rate, honest, lies, lie }
+        let anywhere = lie.is_nan() || lie.abs() >= 1.0;
+        Self { stress, strain_rate, honest, lies, lie, anywhere }
     }
 }
 
@@ -30,7 +34,9 @@ impl Node for BadServo {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         while let Some((stress, _)) = self.stress.take_valid(bus)? {
             let mut answer = servo_controller::answer(&stress).expect("an answer");
-            if stress.sequence >= self.honest && self.lies > 0 {
+            let chosen = StressRequest::try_from(&stress).unwrap().controls[2];
+            let may = self.anywhere || matches!(chosen, ComponentControl::Stress(_));
+            if stress.sequence >= self.honest && self.lies > 0 && may {
                 self.lies -= 1;
                 answer.rate[2] = self.lie;
             }
@@ -86,7 +92,12 @@ fn computing_ahead_of_the_answers_changes_no_message_whether_they_are_foreseen_o
     // Another law is obeyed, and once is enough to know it.
     let (_, plain, _) = run_ahead_with(300, 5, -0.7, false);
     let (_, ahead, foreseen) = run_ahead_with(300, 5, -0.7, true);
-    assert_eq!(foreseen, [300, plain.without_repeats().bodies(&topics::STRAIN_RATE).len() as u64]);
+    let first = plain.messages::<Stress>(&topics::STRESS).into_iter().find(|stress| {
+        let chosen = StressRequest::try_from(stress).unwrap().controls[2];
+        stress.sequence >= 300 && matches!(chosen, ComponentControl::Stress(_))
+    });
+    let exchanges = plain.without_repeats().bodies(&topics::STRAIN_RATE).len() as u64;
+    assert_eq!(foreseen, [first.unwrap().sequence, exchanges]);
     assert!(plain == ahead);
     let (_, honest) = run_with(0, 0, 0.0);
     assert!(honest.bodies(&topics::STRESS) != plain.bodies(&topics::STRESS), "it mattered");
@@ -126,12 +137,12 @@ fn nine_answers_that_are_not_numbers_change_no_byte() {
 }
 
 #[test]
-fn a_rate_that_tears_the_packing_apart_ends_the_run_with_the_last_finite_state() {
-    // 10⁸ per second moves a grain by more than its size within one step of some 10⁻⁸ s.
+fn ten_answers_beyond_the_rate_limit_end_the_run_with_its_state_saved() {
+    // Obeyed, 10⁸ per second would move a grain by more than its size within one step of some 10⁻⁸ s.
     let (exit, record) = run_with(400, u32::MAX, -1e8);
     assert_eq!(exit, Some(Exit::PhysicsInvalid));
     let end: RunState = record.last(&topics::RUN_STATE).unwrap();
-    assert!(end.state == RunState::FAILED && end.message.contains("step"), "{}", end.message);
+    assert!(end.state == RunState::FAILED && end.message.contains("rate limit"), "{}", end.message);
     let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
     assert_eq!(saved.step, end.last_packing_step);
     assert!(Packing::try_from(&saved).is_ok());

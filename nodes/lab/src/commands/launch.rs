@@ -2,7 +2,8 @@
 
 use crate::failure::{Failure, worse};
 use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
-use crate::launch::supervisor::{Supervised, Supervisor};
+use crate::launch::Run;
+use crate::launch::supervisor::{Heard, Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
 use crate::results::read_back::{self, ReadBack};
@@ -10,8 +11,7 @@ use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
-use node_kit::dds::Range;
-use node_kit::{Exit, Network};
+use node_kit::{Exit, Network, RunId};
 use recordings::Recording;
 use recordings::runs::{RUNS, create_run_directory};
 use std::collections::BTreeMap;
@@ -65,7 +65,6 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
     let scene = scenes::load(name, seed)?;
     let (domain, lock) = domain()?;
-    let alone = lock.is_some() && network()?.range == Range::Localhost;
     let directory = run_directory(&args.out, &scene)?;
     // Parameters are YAML: a path with a blank or a colon needs its quotes.
     let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
@@ -74,18 +73,19 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     values.insert("seed", scene.scene.seed.to_string());
     values.insert("out", path(&directory));
     let mut plans = file.nodes(&values).map_err(Failure::usage)?;
-    if alone {
-        plans.iter_mut().for_each(NodePlan::do_not_look_around);
-    }
+    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    let run = Run { id: RunId::fresh(), domain };
     crate::output::say!(
-        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}; run {}",
+        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
         scene.scene.name,
         scene.scene.seed,
         scene.scene.grains,
+        run.id,
         directory.display()
     );
-    let supervised = supervise(plans, domain, alone, &directory, scene.scene.phases.len())?;
-    finish(args.format, &directory, &scene, domain, supervised)
+    let supervised = supervise(plans, run, &directory, scene.scene.phases.len());
+    drop(lock);
+    finish(args.format, &directory, &scene, run, supervised?)
 }
 
 /// The launch file, if one is named, and the values for its arguments.
@@ -154,15 +154,28 @@ fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
 
 fn supervise(
     plans: Vec<NodePlan>,
-    domain: u16,
-    alone: bool,
+    run: Run,
     directory: &Path,
     phases: usize,
 ) -> Result<Supervised, Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    let logs = directory.join("logs");
-    runtime.block_on(async { Supervisor::new(plans, domain, alone, &logs, phases)?.run().await })
+    runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
+}
+
+/// What the run published and its recording does not hold.
+fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
+    let mut missing = Vec::new();
+    if let Some(published) = heard.packings.filter(|n| back.packings < *n as usize) {
+        missing.push(format!("{} of {published} packings are in the recording", back.packings));
+    }
+    for (topic, steps) in &heard.results {
+        let recorded = back.results.get(topic);
+        for step in steps.iter().filter(|step| recorded.is_none_or(|known| !known.contains(step))) {
+            missing.push(format!("the {topic} of step {step} was published and is not in the recording"));
+        }
+    }
+    missing
 }
 
 /// Reads the recording back, prints the result and writes it beside the recording.
@@ -170,7 +183,7 @@ fn finish(
     format: Format,
     directory: &Path,
     scene: &SceneText,
-    domain: u16,
+    run: Run,
     supervised: Supervised,
 ) -> Result<Exit, Failure> {
     let mut exit = supervised.exit;
@@ -182,6 +195,12 @@ fn finish(
     if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
         exit = worse(exit, Exit::DataLoss);
     }
+    let mut back = back;
+    let missing = missing(&supervised.heard, &back);
+    if !missing.is_empty() {
+        exit = worse(exit, Exit::DataLoss);
+        back.complaints.extend(missing);
+    }
     let nodes = supervised.children.iter().map(|c| NodeEnd {
         name: c.plan.name.clone(),
         pid: c.last_pid,
@@ -191,7 +210,8 @@ fn finish(
     let launched = Launched {
         scene: scene.scene.name.clone(),
         seed: scene.scene.seed,
-        domain,
+        domain: run.domain,
+        run: run.id.to_string(),
         wall_seconds: supervised.wall.as_secs_f64(),
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),
@@ -201,6 +221,7 @@ fn finish(
     let path = directory.join("summary.json");
     let text = json(&summary)?;
     std::fs::write(&path, &text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
     summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
     print(&match format {

@@ -4,21 +4,33 @@ use crate::failure::Failure;
 use crate::lifeline;
 use crate::output::print;
 use crate::recorder::{self, Recorder};
+use crate::results::last_packing;
 use crate::scenes;
 use acoustic_probe::AcousticProbe;
 use dem_simulator::DemSimulator;
 use emt_inversion::EmtInversion;
 use fabric_analyzer::FabricAnalyzer;
 use node_kit::run::NodeSpec;
-use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, run_node};
+use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
 use servo_controller::ServoController;
+use std::path::Path;
 
 /// Every node: its name, what it does, its parameters.
 pub(crate) fn nodes() -> Vec<NodeSpec> {
-    let node = |name, summary, parameters| NodeSpec { name, summary, parameters };
+    // By hand, the lockstep and its record keep apart from launched runs; who measures hears everyone.
+    let of_run = |name| ["dem_simulator", "servo_controller", "recorder"].contains(&name);
+    let node = |name, summary, parameters| {
+        let scope = if of_run(name) { Scope::OwnRun } else { Scope::Everyone };
+        NodeSpec { name, summary, scope, parameters }
+    };
     let mut simulator = vec![
         ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
         ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
+        ParameterSpec::new(
+            "resume",
+            "",
+            "recording to go on from: the run continues from its last packing, to the same bytes; empty: from the beginning",
+        ),
     ];
     simulator.extend(dem_simulator::parameters());
     vec![
@@ -84,7 +96,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
                 let name: String = parameters.get("scene");
                 let scene = scenes::load(&name, seed).map_err(|e| node_error(&e))?.scene;
-                let simulator = DemSimulator::new(bus, scene, None, parameters.into());
+                let recording: String = parameters.get("resume");
+                let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
+                let from = from.transpose().map_err(|e| node_error(&e))?;
+                let simulator = DemSimulator::new(bus, scene, from, parameters.into());
                 Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
             }
             "servo_controller" => Box::new(ServoController::new(bus, parameters.into())?),

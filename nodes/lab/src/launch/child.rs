@@ -1,8 +1,10 @@
 //! One process of a run, which cannot outlive the launcher.
 
+use super::Run;
 use super::plan::NodePlan;
 use crate::failure::Failure;
 use crate::lifeline::VARIABLE;
+use node_kit::identity::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -27,35 +29,52 @@ pub(crate) struct Child {
     pub(crate) plan: NodePlan,
     /// Process id while it runs.
     pub(crate) pid: Option<u32>,
+    /// Its place in the run: the same for each process that runs it.
+    pub(crate) member: u8,
     /// Process id of the latest process.
     pub(crate) last_pid: u32,
     /// Exit code of the last process that ended by itself; `None` if it runs or a signal ended it.
     pub(crate) code: Option<i32>,
+    /// The recording that a simulator goes on from, where it takes the place of one that died.
+    pub(crate) resume_from: Option<PathBuf>,
     /// When it was started again.
     pub(crate) restarts: Vec<Instant>,
 }
 
 impl Child {
     /// Nothing is started yet.
-    pub(crate) fn new(plan: NodePlan) -> Self {
-        Self { plan, pid: None, last_pid: 0, code: None, restarts: Vec::new() }
+    pub(crate) fn new(plan: NodePlan, member: u8) -> Self {
+        Self { plan, member, pid: None, last_pid: 0, code: None, resume_from: None, restarts: Vec::new() }
     }
 
     /// Starts the node with its output in `<logs>/<name>.log`. Its end is sent to `ended`.
     pub(crate) fn start(
         &mut self,
         index: usize,
-        domain: u16,
+        run: &Run,
         logs: &Path,
         ended: &UnboundedSender<Ended>,
     ) -> Result<(), Failure> {
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", self.plan.name));
         let log = open_log(logs, &self.plan.name).map_err(failed)?;
-        let mut command = Command::new(std::env::current_exe().map_err(failed)?);
+        let ours = self.plan.node.is_some();
+        let program = if ours { std::env::current_exe().map_err(failed)? } else { self.plan.program.clone().into() };
+        let mut command = Command::new(program);
+        if ours {
+            command.env(VARIABLE, "1");
+        } else {
+            end_with_launcher(&mut command);
+        }
+        command.args(&self.plan.arguments);
+        if let Some(recording) = &self.resume_from {
+            let path = serde_json::Value::from(recording.to_string_lossy());
+            command.args(["--ros-args", "-p", &format!("resume:={path}")]);
+        }
         command
-            .args(&self.plan.arguments)
-            .env("ROS_DOMAIN_ID", domain.to_string())
-            .env(VARIABLE, "1")
+            .env("ROS_DOMAIN_ID", run.domain.to_string())
+            .env(RUN_VARIABLE, run.id.to_string())
+            .env(MEMBER_VARIABLE, self.member.to_string())
+            .env(ROOT_VARIABLE, std::process::id().to_string())
             .stdin(Stdio::piped())
             .stdout(log.try_clone().map_err(failed)?)
             .stderr(log)
@@ -77,6 +96,13 @@ impl Child {
         Ok(())
     }
 
+    /// The end, from `words` on, of the last line of its log that holds them.
+    pub(crate) fn last_line_with(&self, logs: &Path, words: &str) -> Option<String> {
+        let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).ok()?;
+        let line = text.lines().rfind(|line| line.contains(words))?;
+        line.find(words).map(|at| line[at..].to_owned())
+    }
+
     /// Repeats the last errors of its log on stderr.
     pub(crate) fn quote_log(&self, logs: &Path) {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
@@ -91,6 +117,17 @@ impl Child {
             // SAFETY: kill takes two integers. The process is ours and its end was not reported yet, so the id is its own.
             unsafe { libc::kill(pid, signal) };
         }
+    }
+}
+
+/// A program that is not ours does not watch its standard input: the kernel ends it when the launcher is gone.
+fn end_with_launcher(command: &mut Command) {
+    // SAFETY: prctl takes integers, touches no memory of ours, and may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
+            Ok(())
+        });
     }
 }
 

@@ -12,7 +12,8 @@ struct Kind {
     /// Node that writes it.
     node: &'static str,
     measured: BTreeSet<u64>,
-    inverted: BTreeSet<u64>,
+    /// Step and place of the inversion.
+    inverted: BTreeSet<(u64, u8)>,
     declined: BTreeSet<u64>,
 }
 
@@ -23,6 +24,8 @@ pub(crate) enum Standing {
     Complete,
     /// Nothing is to come any more, and this node found nothing to invert.
     Declined(&'static str),
+    /// This node measured a structure, and nothing that could be inverted has come.
+    Bare(&'static str),
     /// What is there is not inverted yet; this node measured it.
     Measured(&'static str),
     /// This node has not measured it yet.
@@ -31,7 +34,13 @@ pub(crate) enum Standing {
 
 /// What is known of every kind of data.
 #[derive(Debug)]
-pub(crate) struct Debts(Vec<Kind>);
+pub(crate) struct Debts {
+    kinds: Vec<Kind>,
+    /// Inversions of the run: each of them infers from every kind of data. One, where the run has none: somebody has to.
+    inversions: usize,
+    /// Packings whose structure was measured.
+    structures: BTreeSet<u64>,
+}
 
 impl Debts {
     /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
@@ -44,7 +53,7 @@ impl Debts {
             inverted: BTreeSet::new(),
             declined: BTreeSet::new(),
         };
-        let has = |node: &str| plans.iter().any(|p| p.node == node);
+        let has = |node: &str| plans.iter().any(|p| p.is(node));
         let mut kinds = Vec::new();
         let (moduli, speeds) = (kind(&topics::MODULI), kind(&topics::WAVE_SPEEDS));
         let probe = has(speeds.node);
@@ -54,20 +63,26 @@ impl Debts {
         if probe {
             kinds.push(speeds);
         }
-        Self(kinds)
+        let inversions = plans.iter().filter(|p| p.is(topics::MICROSTRUCTURE.writer)).count().max(1);
+        Self { kinds, inversions, structures: BTreeSet::new() }
     }
 
-    /// The data of this topic about the packing of `step` are there, or it is known that there are none but a fabric.
+    /// The structure of the packing of `step` is there; its moduli follow at once, or there are none.
+    pub(crate) fn structure(&mut self, step: u64) {
+        self.structures.insert(step);
+    }
+
+    /// The data of this topic about the packing of `step` are there.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
         self.of_topic(topic).for_each(|k| {
             k.measured.insert(step);
         });
     }
 
-    /// A microstructure from the data of this topic is there.
-    pub(crate) fn inverted(&mut self, topic: &str, step: u64) {
+    /// A microstructure from the data of this topic is there, by the inversion in this place.
+    pub(crate) fn inverted(&mut self, topic: &str, step: u64, member: u8) {
         self.of_topic(topic).for_each(|k| {
-            k.inverted.insert(step);
+            k.inverted.insert((step, member));
         });
     }
 
@@ -79,15 +94,20 @@ impl Debts {
     }
 
     fn of_topic<'a>(&'a mut self, topic: &str) -> impl Iterator<Item = &'a mut Kind> {
-        self.0.iter_mut().filter(move |k| k.topic == topic)
+        self.kinds.iter_mut().filter(move |k| k.topic == topic)
     }
 
     /// Where the run stands with the packing of `step`: by what takes longest.
     pub(crate) fn standing(&self, step: u64) -> Standing {
-        let owed = || self.0.iter().filter(|k| !k.inverted.contains(&step));
+        let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
+        let owed = || self.kinds.iter().filter(|k| !inverted(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
-        if let Some(open) = due().find(|k| !k.measured.contains(&step)) {
+        let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
+        if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
             return Standing::Open(open.node);
+        }
+        if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
+            return Standing::Bare(bare.node);
         }
         if let Some(measured) = due().next() {
             return Standing::Measured(measured.node);
@@ -106,7 +126,8 @@ mod tests {
     fn debts(nodes: &[&str]) -> Debts {
         let plan = |node: &&str| NodePlan {
             name: (*node).to_owned(),
-            node: (*node).to_owned(),
+            node: Some((*node).to_owned()),
+            program: "grainlab".to_owned(),
             arguments: Vec::new(),
             respawn: false,
         };
@@ -118,26 +139,26 @@ mod tests {
         let mut d = debts(&[ANALYZER, PROBE]);
         assert_eq!(d.standing(7), Standing::Open(ANALYZER));
         d.measured("moduli", 7);
-        d.inverted("moduli", 7);
+        d.inverted("moduli", 7, 2);
         assert_eq!(d.standing(7), Standing::Open(PROBE));
         d.measured("wave_speeds", 7);
         assert_eq!(d.standing(7), Standing::Measured(PROBE));
-        d.inverted("wave_speeds", 6);
+        d.inverted("wave_speeds", 6, 2);
         assert_eq!(d.standing(7), Standing::Measured(PROBE), "another packing");
-        d.inverted("wave_speeds", 7);
+        d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.standing(7), Standing::Complete);
     }
 
     #[test]
     fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
         let mut d = debts(&[ANALYZER]);
-        d.inverted("wave_speeds", 7);
+        d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.standing(7), Standing::Open(ANALYZER));
-        d.inverted("moduli", 7);
+        d.inverted("moduli", 7, 2);
         assert_eq!(d.standing(7), Standing::Complete);
         assert_eq!(debts(&[]).standing(7), Standing::Open(ANALYZER));
         let mut d = debts(&[PROBE]);
-        d.inverted("wave_speeds", 7);
+        d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.standing(7), Standing::Complete);
     }
 
@@ -147,7 +168,26 @@ mod tests {
         d.declined("wave_speeds", 7);
         d.measured("moduli", 7);
         assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
-        d.inverted("moduli", 7);
+        d.inverted("moduli", 7, 2);
         assert_eq!(d.standing(7), Standing::Declined(PROBE));
+    }
+    #[test]
+    fn every_inversion_of_the_run_is_waited_for() {
+        let mut d = debts(&[ANALYZER, "emt_inversion", "emt_inversion"]);
+        d.measured("moduli", 7);
+        d.inverted("moduli", 7, 2);
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
+        d.inverted("moduli", 7, 3);
+        assert_eq!(d.standing(7), Standing::Complete);
+    }
+
+    #[test]
+    fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
+        let mut d = debts(&[ANALYZER]);
+        d.structure(7);
+        assert_eq!(d.standing(7), Standing::Bare(ANALYZER));
+        d.measured("moduli", 7);
+        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
     }
 }

@@ -1,4 +1,4 @@
-//! Launch files: the YAML form of ROS 2 launch, as much of it as starts our nodes.
+//! Launch files: the YAML form of ROS 2 launch, as much of it as starts processes: nodes of ours, and any other program.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -15,10 +15,8 @@ pub(crate) enum PlanError {
     /// Not YAML, or not this subset of ROS 2 launch.
     #[error("not a launch file that can be run here: {0}")]
     Format(String),
-    /// A command that is not one of our nodes.
-    #[error(
-        "executable `{cmd}`: only `grainlab run NODE ...` is supported; use ros2 launch for anything else"
-    )]
+    /// Another command of ours than one that runs a node, or none at all.
+    #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
     Command { cmd: String },
     /// A substitution other than `$(var NAME)`.
     #[error("`{text}`: only $(var NAME) is supported of the substitutions of ROS 2 launch")]
@@ -36,8 +34,11 @@ pub(crate) enum PlanError {
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
     /// A node that no laboratory works without, or with two of.
-    #[error("the launch file starts {count} of {node}; there must be one")]
-    Count { node: &'static str, count: usize },
+    #[error("the launch file starts {count} of {node}; there must be {allowed}")]
+    Count { node: &'static str, count: usize, allowed: &'static str },
+    /// More than a run has places for.
+    #[error("the launch file starts {count} processes; a run has at most {most}")]
+    Many { count: usize, most: usize },
 }
 
 #[derive(Debug, Deserialize)]
@@ -71,23 +72,42 @@ struct Executable {
     respawn: Option<String>,
 }
 
-/// One node to start.
+/// Processes that a run has places for: a place is a byte, of which the launcher has one value and nobody another.
+const PLACES: usize = 254;
+
+/// How many of each node a run may have: two of those that one run has one of would contradict each other.
+const COUNTS: [(&str, std::ops::RangeInclusive<usize>, &str); 5] = [
+    ("recorder", 1..=1, "one"),
+    ("dem_simulator", 1..=1, "one"),
+    ("servo_controller", 0..=1, "at most one"),
+    ("fabric_analyzer", 0..=1, "at most one"),
+    ("acoustic_probe", 0..=1, "at most one"),
+];
+
+/// One process to start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NodePlan {
     /// Name of the process: its log is called so.
     pub(crate) name: String,
-    /// Which node.
-    pub(crate) node: String,
-    /// Arguments of `grainlab`: `run`, the node, its ROS arguments.
+    /// Which of our nodes; `None` for a program that is not ours.
+    pub(crate) node: Option<String>,
+    /// The program; of a node of ours, whatever `grainlab` this is.
+    pub(crate) program: String,
+    /// Its arguments. Of a node: `run`, the node, its ROS arguments.
     pub(crate) arguments: Vec<String>,
     /// Started again when it ends by itself.
     pub(crate) respawn: bool,
 }
 
 impl NodePlan {
-    /// A simulator in a domain that nobody else can be in has no rivals to look for, unless it is told to.
+    /// Whether it is this node of ours.
+    pub(crate) fn is(&self, node: &str) -> bool {
+        self.node.as_deref() == Some(node)
+    }
+
+    /// A simulator of a launched run has no rivals to look for, unless it is told to.
     pub(crate) fn do_not_look_around(&mut self) {
-        if self.node == "dem_simulator" {
+        if self.is("dem_simulator") {
             // Behind `run NODE`: a value of the launch file comes later and wins.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
@@ -135,10 +155,13 @@ impl LaunchFile {
         }
         let nodes: Vec<NodePlan> =
             self.executables.iter().map(|e| e.plan(&variables)).collect::<Result<_, _>>()?;
-        for node in ["recorder", "dem_simulator"] {
-            let count = nodes.iter().filter(|n| n.node == node).count();
-            if count != 1 {
-                return Err(PlanError::Count { node, count });
+        if nodes.len() > PLACES {
+            return Err(PlanError::Many { count: nodes.len(), most: PLACES });
+        }
+        for (node, counts, allowed) in COUNTS {
+            let count = nodes.iter().filter(|n| n.is(node)).count();
+            if !counts.contains(&count) {
+                return Err(PlanError::Count { node, count, allowed });
             }
         }
         Ok(nodes)
@@ -148,13 +171,17 @@ impl LaunchFile {
 impl Executable {
     fn plan(&self, variables: &BTreeMap<&str, String>) -> Result<NodePlan, PlanError> {
         let words = words(&self.cmd, variables)?;
-        let [program, run, node, ..] = words.as_slice() else {
-            return Err(PlanError::Command { cmd: self.cmd.clone() });
+        let node = match words.as_slice() {
+            [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.clone()),
+            [program, ..] if program != "grainlab" => None,
+            _ => return Err(PlanError::Command { cmd: self.cmd.clone() }),
         };
-        if program != "grainlab" || run != "run" {
-            return Err(PlanError::Command { cmd: self.cmd.clone() });
-        }
-        let name = self.name.clone().unwrap_or_else(|| node.clone());
+        let (program, arguments) = (words[0].clone(), words[1..].to_vec());
+        let by_itself = || {
+            let file = std::path::Path::new(&program).file_stem();
+            file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned())
+        };
+        let name = self.name.clone().or_else(|| node.clone()).unwrap_or_else(by_itself);
         let refuse = |key, value: &str, allowed| PlanError::Value {
             name: name.clone(),
             key,
@@ -170,7 +197,7 @@ impl Executable {
             Some("false" | "False") => false,
             Some(other) => return Err(refuse("respawn", other, "true or false")),
         };
-        Ok(NodePlan { node: node.clone(), arguments: words[1..].to_vec(), respawn, name })
+        Ok(NodePlan { node, program, arguments, respawn, name })
     }
 }
 

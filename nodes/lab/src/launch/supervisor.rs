@@ -1,19 +1,23 @@
-//! Who is restarted, whose death ends the run, and in which order all end.
+//! Who is restarted, and whose death ends the run.
 
+use super::Run;
 use super::child::{Child, Ended};
 use super::debts::{Debts, Standing};
+use super::patience::Patience;
 use super::plan::NodePlan;
 use super::progress::Progress;
+use super::stopped::Stopped;
 use super::watch::{Event, Watch};
 use crate::failure::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use grainlab_msgs::topics;
 use node_kit::Exit;
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
-use tokio::time::{sleep, sleep_until, timeout};
+use tokio::time::sleep;
 
 /// A node that ends this often within this time is not started again.
 const RESTARTS: usize = 10;
@@ -21,33 +25,39 @@ const RESTART_WINDOW: Duration = Duration::from_secs(30);
 /// Pause before a start after an end.
 const RESTART_PAUSE: Duration = Duration::from_millis(100);
 
-/// How long the last packing may take to be measured, and what was measured to be inverted.
-const MEASURED_WITHIN: Duration = Duration::from_secs(600);
-const INVERTED_WITHIN: Duration = Duration::from_secs(10);
+/// How often the processes are looked at.
+const LOOK: Duration = Duration::from_millis(200);
 
-/// How long a process that was asked to end may take before it is asked again, more firmly.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// How long the last packing may take to be measured, what was measured to be inverted, and moduli to follow a structure.
+const MEASURED_WITHIN: Duration = Duration::from_secs(600);
+const INVERTED_WITHIN: Duration = Duration::from_secs(30);
+const MODULI_WITHIN: Duration = Duration::from_secs(5);
+
+/// How long a run that has not begun is silent about it.
+const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
 /// The node whose end is the end of the record.
-const RECORDER: &str = "recorder";
-/// The node whose end is the end of the run.
+pub(super) const RECORDER: &str = "recorder";
+/// The node that goes on from its last packing when it dies.
 const SIMULATOR: &str = "dem_simulator";
 /// The node that sends waves.
 const PROBE: &str = "acoustic_probe";
+/// The node that infers.
+const INVERSION: &str = "emt_inversion";
 
 /// A run from its first process to its last.
-pub(crate) struct Supervisor<'a> {
-    children: Vec<Child>,
-    domain: u16,
-    /// Nobody else can be in the domain.
-    alone: bool,
-    logs: &'a Path,
-    ended: UnboundedReceiver<Ended>,
+pub(crate) struct Supervisor {
+    pub(super) children: Vec<Child>,
+    run: Run,
+    directory: PathBuf,
+    logs: PathBuf,
+    pub(super) ended: UnboundedReceiver<Ended>,
     report_end: UnboundedSender<Ended>,
-    interrupt: Signal,
-    terminate: Signal,
+    pub(super) interrupt: Signal,
+    pub(super) terminate: Signal,
     hangup: Signal,
-    progress: Progress,
+    pub(super) progress: Progress,
+    begun: bool,
     finished: Option<RunStateReading>,
     failed: Option<String>,
     /// The watch failed: nobody would notice the end of the run.
@@ -55,19 +65,15 @@ pub(crate) struct Supervisor<'a> {
     debts: Debts,
     /// The probe was heard at work since the last look.
     probing: bool,
-    /// Processes that said their last word.
-    left: BTreeSet<u32>,
-}
-
-/// The three steps of an end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
-    /// Every node is asked to end and says its last word, which belongs into the recording.
-    Farewell,
-    /// The recorder ends.
-    Record,
-    /// Nobody is asked any more; what still runs goes.
-    Exit,
+    pub(super) stopped: Stopped,
+    /// Packings that were recorded each time the simulator died.
+    deaths: Vec<u64>,
+    /// A program that is not ours failed.
+    foreign_failure: bool,
+    /// Results that were heard, by topic: steps of packings.
+    results: BTreeMap<&'static str, BTreeSet<u64>>,
+    /// Processes that sent their last report.
+    pub(super) left: BTreeSet<u32>,
 }
 
 /// What a run came to.
@@ -75,77 +81,90 @@ enum Ending {
 pub(crate) struct Supervised {
     /// How it ended.
     pub(crate) exit: Exit,
-    /// Every node with its last process.
+    /// Every process with its last process id.
     pub(crate) children: Vec<Child>,
     /// From the first start to the last end.
     pub(crate) wall: Duration,
+    /// What was heard of the run: has to be in the recording.
+    pub(crate) heard: Heard,
 }
 
-impl<'a> Supervisor<'a> {
+/// What the run published, as the launcher heard it.
+#[derive(Debug, Default)]
+pub(crate) struct Heard {
+    /// Packings, by the last run state; `None` if the path was not finished.
+    pub(crate) packings: Option<u32>,
+    /// Steps of the packings of which there is a result, by topic.
+    pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
+}
+
+impl Supervisor {
     /// To be made inside the runtime.
-    pub(crate) fn new(
-        plans: Vec<NodePlan>,
-        domain: u16,
-        alone: bool,
-        logs: &'a Path,
-        phases: usize,
-    ) -> Result<Self, Failure> {
+    pub(crate) fn new(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         let debts = Debts::of(&plans);
         Ok(Self {
-            children: plans.into_iter().map(Child::new).collect(),
-            domain,
-            alone,
-            logs,
+            children: plans.into_iter().zip(1..).map(|(plan, member)| Child::new(plan, member)).collect(),
+            run,
+            directory: directory.to_owned(),
+            logs: directory.join("logs"),
             ended,
             report_end,
             interrupt: handler(SignalKind::interrupt())?,
             terminate: handler(SignalKind::terminate())?,
             hangup: handler(SignalKind::hangup())?,
             progress: Progress::new(phases),
+            begun: false,
             finished: None,
             failed: None,
             blind: false,
             debts,
             probing: false,
+            stopped: Stopped::default(),
+            deaths: Vec::new(),
+            foreign_failure: false,
+            results: BTreeMap::new(),
             left: BTreeSet::new(),
         })
     }
 
-    /// Starts every node, waits for the end, ends every node.
+    /// Starts every process, waits for the end, ends every process.
     pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
-        let (watch, mut events) = Watch::start(self.domain, self.alone)?;
-        if let Some(Event::Rival(writer)) = events.recv().await.filter(|e| matches!(e, Event::Rival(_))) {
-            // Left to the end of the process: RustDDS may panic where a participant leaves in the midst of discovery.
-            std::mem::forget(watch);
-            return Err(Failure::failed(format!(
-                "a run is already under way in DDS domain {} (writer {writer} of stress): end it, or unset ROS_DOMAIN_ID \
-                 to get a domain of its own",
-                self.domain
-            )));
+        let (watch, mut events) = Watch::start(self.run)?;
+        // Nothing that the processes say is missed.
+        if let Some(event) = events.recv().await {
+            self.take(event);
         }
         let mut exit = match self.start_all() {
+            Ok(()) if self.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
                 crate::output::say!("grainlab: {failure}");
                 failure.exit
             }
         };
-        for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
-            if self.end(ending, &mut events).await {
-                exit = Exit::Interrupted;
-            }
-            // It leaves while the processes do.
-            watch.stop();
+        if self.end_all(exit, &mut events, &watch).await {
+            exit = Exit::Interrupted;
         }
-        let recorder = self.children.iter().find(|c| c.plan.node == RECORDER).and_then(|c| c.code);
-        if recorder != Some(0) {
+        let code = |node: &str| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
+        if code(RECORDER) != Some(0) {
             exit = worse(exit, Exit::DataLoss);
         }
+        // A simulator that ended with an error fails the run, whatever was heard before.
+        let simulator = code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
+        if exit == Exit::Done && simulator != Exit::Done {
+            crate::output::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
+            exit = simulator;
+        }
+        if self.foreign_failure {
+            exit = worse(exit, Exit::Failure);
+        }
         drop(watch);
-        Ok(Supervised { exit, children: self.children, wall: begin.elapsed() })
+        let packings = self.finished.as_ref().map(|state| state.packings);
+        let heard = Heard { packings, results: self.results };
+        Ok(Supervised { exit, children: self.children, wall: begin.elapsed(), heard })
     }
 
     fn start_all(&mut self) -> Result<(), Failure> {
@@ -153,16 +172,20 @@ impl<'a> Supervisor<'a> {
     }
 
     fn start(&mut self, index: usize) -> Result<(), Failure> {
-        self.children[index].start(index, self.domain, self.logs, &self.report_end)
+        self.children[index].start(index, &self.run, &self.logs, &self.report_end)
     }
 
     /// Follows the run until it is over; the children still run then.
     async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
-        let mut deadline: Option<(tokio::time::Instant, Exit, String)> = None;
+        let mut deadline: Option<Deadline> = None;
+        let mut beginning = Patience::new(BEGINS_WITHIN);
         loop {
-            let due =
-                deadline.as_ref().map_or_else(|| tokio::time::Instant::now() + PATIENCE, |(at, ..)| *at);
+            // What has happened comes before what has not happened in time.
             tokio::select! {
+                biased;
+                _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
+                _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
+                _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
                 event = events.recv() => {
                     self.take(event.unwrap_or_else(|| Event::Failed("the watch ended".into())));
                     if self.blind {
@@ -174,48 +197,44 @@ impl<'a> Supervisor<'a> {
                         return exit;
                     }
                 }
-                _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
-                _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
-                _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
-                () = sleep_until(due) => {
-                    if let Some((_, exit, message)) = deadline {
-                        crate::output::say!("grainlab: {message}");
-                        return exit;
+                () = sleep(LOOK) => {
+                    let suspended = self.look_for_stopped();
+                    if let Some(late) = deadline.as_mut()
+                        && late.patience.is_over(suspended)
+                    {
+                        crate::output::say!("grainlab: {}", late.message);
+                        return late.exit;
                     }
+                    if !self.begun && beginning.is_over(suspended) {
+                        beginning = Patience::new(BEGINS_WITHIN);
+                        self.say_what_is_waited_for();
+                    }
+                    continue;
                 }
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
             let Some(step) = last else { return Exit::Done };
-            let now = tokio::time::Instant::now();
-            let probing = std::mem::take(&mut self.probing);
-            deadline = match (self.debts.standing(step), deadline) {
-                (Standing::Complete, _) => return Exit::Done,
-                (Standing::Declined(node), _) => {
+            match self.debts.standing(step) {
+                Standing::Complete => return Exit::Done,
+                Standing::Declined(node) => {
                     crate::output::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
                 }
-                (Standing::Measured(_), Some(known @ (_, Exit::PhysicsInvalid, _))) => Some(known),
-                (Standing::Measured(node), _) => {
-                    let message = format!("the last packing has no {}", nothing(node));
-                    Some((now + INVERTED_WITHIN, Exit::PhysicsInvalid, message))
+                standing => {
+                    // Bursts through a long path take as long as they take; who is at work is waited for.
+                    let at_work = std::mem::take(&mut self.probing) && standing == Standing::Open(PROBE);
+                    if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
+                        deadline = Some(Deadline::of(standing));
+                    }
                 }
-                // Bursts through a long path take as long as they take; who is at work is waited for.
-                (Standing::Open(node), Some(known @ (_, Exit::Failure, _)))
-                    if !(probing && node == PROBE) =>
-                {
-                    Some(known)
-                }
-                (Standing::Open(node), _) => {
-                    let message = format!("the last packing was not measured: see logs/{node}.log");
-                    Some((now + MEASURED_WITHIN, Exit::Failure, message))
-                }
-            };
+            }
         }
     }
 
-    fn take(&mut self, event: Event) {
+    pub(super) fn take(&mut self, event: Event) {
         match event {
             Event::State(state) => {
+                self.begun = true;
                 self.progress.show(&state);
                 match state.status {
                     RunStatus::Running => {}
@@ -226,8 +245,15 @@ impl<'a> Supervisor<'a> {
             Event::Goodbye(pid) => {
                 self.left.insert(pid);
             }
-            Event::Clear | Event::Rival(_) => {}
-            Event::Measured(topic, step) => self.debts.measured(topic, step),
+            Event::Open => {}
+            Event::Structure(step) => {
+                self.heard(topics::FABRIC.name, step);
+                self.debts.structure(step);
+            }
+            Event::Measured(topic, step) => {
+                self.heard(topic, step);
+                self.debts.measured(topic, step);
+            }
             Event::Declined(topic, step) => self.debts.declined(topic, step),
             Event::Probing(step) => {
                 self.probing = true;
@@ -235,16 +261,48 @@ impl<'a> Supervisor<'a> {
                     self.progress.still(&format!("waves are sent through the packing of step {step}"));
                 }
             }
-            Event::Microstructure(source, step) => {
-                self.debts.inverted(&source, step);
+            Event::Microstructure { source, step, member } => {
+                self.heard(topics::MICROSTRUCTURE.name, step);
+                self.debts.inverted(&source, step, member);
                 let data = source.replace('_', " ");
                 self.progress.say(&format!("packing of step {step} measured and inverted, by its {data}"));
             }
+            Event::Stranger(text) => crate::output::say!("grainlab: {text} and is not of this run: it is ignored"),
             Event::Failed(message) => {
                 crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
                 self.blind = true;
             }
         }
+    }
+
+    /// An instrument's data are of no packing of the run.
+    fn heard(&mut self, topic: &'static str, step: u64) {
+        if step > 0 {
+            self.results.entry(topic).or_default().insert(step);
+        }
+    }
+
+    /// Says once who is stopped and who goes on; true while anyone is stopped.
+    pub(super) fn look_for_stopped(&mut self) -> bool {
+        let changes = self.stopped.look(&self.children);
+        for (name, pid) in changes.stopped {
+            self.progress.say(&format!("{name} (pid {pid}) is stopped by a signal: waiting for it (kill -CONT {pid})"));
+        }
+        for name in changes.resumed {
+            self.progress.say(&format!("{name} goes on"));
+        }
+        self.stopped.any()
+    }
+
+    /// What the simulator says in its log that it waits for.
+    fn say_what_is_waited_for(&self) {
+        let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
+        let waits = simulator.and_then(|c| c.last_line_with(&self.logs, "waiting for"));
+        let what = waits.unwrap_or_else(|| "for its processes to find each other".to_owned());
+        self.progress.say(&format!(
+            "the run has not begun: {what}. Without multicast on the loopback interface, DDS finds at most 120 processes in \
+             a domain"
+        ));
     }
 
     fn interrupted(&self, name: &str) -> Exit {
@@ -256,40 +314,79 @@ impl<'a> Supervisor<'a> {
     async fn on_end(&mut self, ended: &Ended) -> Option<Exit> {
         let how = self.note_end(ended);
         let child = &self.children[ended.index];
-        let (name, node, code) = (child.plan.name.clone(), child.plan.node.as_str(), child.code);
+        let (name, node, code) = (child.plan.name.clone(), child.plan.node.clone(), child.code);
         let meant = code.and_then(Exit::from_code);
+        let Some(node) = node else { return self.on_foreign_end(ended.index, &how).await };
         if node == SIMULATOR && self.finished.is_some() && code == Some(0) {
             return None;
         }
-        let exit = match (node, meant) {
+        let exit = match (node.as_str(), meant) {
             (_, Some(Exit::Usage)) => Exit::Usage,
             (RECORDER, _) => Exit::DataLoss,
             (SIMULATOR, Some(Exit::PhysicsInvalid)) => Exit::PhysicsInvalid,
+            (SIMULATOR, None | Some(Exit::Failure)) => return self.resume(ended.index, &how).await,
             (SIMULATOR, _) => Exit::Failure,
             _ if child.plan.respawn => return self.restart(ended.index, &how).await,
             _ => Exit::Failure,
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
         crate::output::say!("grainlab: {name} {how}: {reason}");
-        self.children[ended.index].quote_log(self.logs);
+        self.children[ended.index].quote_log(&self.logs);
         Some(exit)
+    }
+
+    /// A program that is not ours may end when it is done; one that fails does not end the run, but it is no good end.
+    async fn on_foreign_end(&mut self, index: usize, how: &str) -> Option<Exit> {
+        let child = &self.children[index];
+        if child.plan.respawn {
+            return self.restart(index, how).await;
+        }
+        if child.code == Some(0) {
+            self.progress.say(&format!("{} {how}", child.plan.name));
+        } else {
+            crate::output::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
+            self.foreign_failure = true;
+        }
+        None
+    }
+
+    /// Starts the simulator again, from the last packing that was recorded; see `--resume`.
+    async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
+        let packings = crate::results::last_packing::count(&self.directory);
+        self.deaths.push(packings);
+        // It got no further in three attempts: the next one would not, either.
+        if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
+            crate::output::say!("grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up");
+            self.children[index].quote_log(&self.logs);
+            return Some(Exit::Failure);
+        }
+        self.children[index].quote_log(&self.logs);
+        let from = if packings == 0 { "from the beginning" } else { "from the last packing recorded" };
+        self.progress.say(&format!("{SIMULATOR} {how}: the run goes on {from}"));
+        self.children[index].resume_from = (packings > 0).then(|| self.directory.clone());
+        self.finished = None;
+        self.start_again(index).await
     }
 
     async fn restart(&mut self, index: usize, how: &str) -> Option<Exit> {
         let child = &mut self.children[index];
         let name = child.plan.name.clone();
         let now = Instant::now();
-        child.restarts.push(now);
-        let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count();
+        let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
             crate::output::say!(
                 "grainlab: {name} {how}, {recent} times within {} s: given up",
                 RESTART_WINDOW.as_secs()
             );
-            self.children[index].quote_log(self.logs);
+            self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
         self.progress.say(&format!("{name} {how}: started again"));
+        self.start_again(index).await
+    }
+
+    async fn start_again(&mut self, index: usize) -> Option<Exit> {
+        self.children[index].restarts.push(Instant::now());
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
@@ -297,68 +394,33 @@ impl<'a> Supervisor<'a> {
             failure.exit
         })
     }
+}
 
-    /// Books an end and says how it came.
-    fn note_end(&mut self, ended: &Ended) -> String {
-        use std::os::unix::process::ExitStatusExt;
-        let child = &mut self.children[ended.index];
-        child.pid = None;
-        match &ended.status {
-            Ok(status) => {
-                child.code = status.code();
-                match (status.code(), status.signal()) {
-                    (Some(code), _) => format!("ended with exit code {code}"),
-                    (None, Some(signal)) => format!("was ended by signal {signal}"),
-                    (None, None) => "ended".to_owned(),
-                }
-            }
-            Err(error) => format!("cannot be waited for ({error})"),
-        }
-    }
+/// What is waited for, and for how long.
+struct Deadline {
+    of: Standing,
+    patience: Patience,
+    exit: Exit,
+    message: String,
+}
 
-    /// Whether an end still waits for this child.
-    fn awaits(&self, child: &Child, ending: Ending) -> bool {
-        let recorder = child.plan.node == RECORDER;
-        match (ending, child.pid) {
-            (_, None) => false,
-            (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
-            (Ending::Record, _) => recorder,
-            (Ending::Exit, _) => true,
-        }
-    }
-
-    /// Takes one step of the end: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the user asked to hurry,
-    /// which kills what is left.
-    async fn end(&mut self, ending: Ending, events: &mut UnboundedReceiver<Event>) -> bool {
-        let mut hurried = false;
-        for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGKILL] {
-            let signal = if hurried { libc::SIGKILL } else { signal };
-            // Who said its last word was asked already, and a second signal would end it at once.
-            if ending != Ending::Exit || signal != libc::SIGINT {
-                self.children.iter().filter(|c| self.awaits(c, ending)).for_each(|c| c.signal(signal));
+impl Deadline {
+    fn of(standing: Standing) -> Self {
+        let (time, exit, message) = match standing {
+            Standing::Bare(node) => {
+                (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
             }
-            let running = |s: &Self| s.children.iter().any(|c| s.awaits(c, ending));
-            let deadline = tokio::time::Instant::now() + PATIENCE;
-            while running(self) && !hurried {
-                tokio::select! {
-                    Some(ended) = self.ended.recv() => { self.note_end(&ended); }
-                    Some(event) = events.recv() => self.take(event),
-                    _ = self.interrupt.recv() => hurried = true,
-                    _ = self.terminate.recv() => hurried = true,
-                    () = sleep_until(deadline) => break,
-                }
+            Standing::Measured(node) => {
+                let message = format!("what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log");
+                (INVERTED_WITHIN, Exit::Failure, message)
             }
-            if !running(self) {
-                return hurried;
+            Standing::Open(node) | Standing::Declined(node) => {
+                let message = format!("the last packing was not measured: see logs/{node}.log");
+                (MEASURED_WITHIN, Exit::Failure, message)
             }
-            if hurried && signal == libc::SIGKILL {
-                while running(self) {
-                    let Ok(Some(ended)) = timeout(PATIENCE, self.ended.recv()).await else { break };
-                    self.note_end(&ended);
-                }
-            }
-        }
-        hurried
+            Standing::Complete => (Duration::ZERO, Exit::Done, String::new()),
+        };
+        Self { of: standing, patience: Patience::new(time), exit, message }
     }
 }
 

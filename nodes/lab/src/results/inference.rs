@@ -12,6 +12,9 @@ pub(crate) struct Inference {
     /// Topic that the data came from; absent where they came from a command line or a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<String>,
+    /// Node that inferred it; absent where that is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) by: Option<String>,
     /// Name of the model.
     pub(crate) model: String,
     /// Name of the calibration.
@@ -87,6 +90,7 @@ impl Inference {
         warnings: Vec<String>,
     ) -> Self {
         Self {
+            by: None,
             source: None,
             model: model.to_owned(),
             calibration: calibration.to_owned(),
@@ -150,6 +154,7 @@ impl Inference {
             estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
         };
         Self {
+            by: None,
             source: None,
             model: estimate.model.to_owned(),
             calibration: estimate.calibration.clone(),

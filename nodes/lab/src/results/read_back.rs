@@ -3,6 +3,7 @@
 use super::acoustic::AcousticView;
 use super::inference::Inference;
 use super::state::State;
+use super::strangers::{self, Authors, StrangerView};
 use grainlab_msgs::boundary::{MicrostructureReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
@@ -10,7 +11,7 @@ use grains::{Fabric, Moduli, Packing};
 use node_kit::Report;
 use recordings::{Recording, Selection};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A state and what was inferred from it.
 #[derive(Clone, Debug, Serialize)]
@@ -29,6 +30,12 @@ pub(crate) struct ReadBack {
     pub(crate) states: Vec<InvertedState>,
     /// The last report of each process, by node and process id.
     pub(crate) reports: BTreeMap<(String, u32), Report>,
+    /// Messages of packings.
+    pub(crate) packings: usize,
+    /// Steps of the packings of which there is a result, by topic.
+    pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
+    /// Who was on the bus beside the run.
+    pub(crate) strangers: Vec<StrangerView>,
     /// What could not be read.
     pub(crate) complaints: Vec<String>,
 }
@@ -40,8 +47,8 @@ struct About {
     fabric: Option<Fabric>,
     moduli: Option<Moduli>,
     wave_speeds: Option<WaveSpeedsReading>,
-    /// By the topic the data came from.
-    results: BTreeMap<String, Vec<Inference>>,
+    /// In the order in which they came.
+    results: Vec<Inference>,
 }
 
 /// Reads a recording back.
@@ -58,6 +65,8 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
     let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
     let channels = recording.channels();
     let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
+    let authors = Names::of(recording);
+    back.strangers = strangers::strangers(recording);
     let mut about: BTreeMap<u64, About> = BTreeMap::new();
     let messages = match recording.messages(&Selection::topics(names)) {
         Ok(messages) => messages,
@@ -71,7 +80,14 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         let taken = if topic.name == topics::DIAGNOSTICS.name {
             reports(&mut back.reports, &message.payload)
         } else {
-            enter(&mut about, topic, &message.payload)
+            let by = authors.node(&message.channel.topic, message.log_time);
+            enter(&mut about, topic, &message.payload, by).map(|step| {
+                if topic.name == topics::PACKING.name {
+                    back.packings += 1;
+                } else {
+                    back.results.entry(topic.name).or_default().insert(step);
+                }
+            })
         };
         if let Err(problem) = taken {
             back.complaints
@@ -87,7 +103,7 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
                     state.warnings.push("no moduli were published for this packing".to_owned());
                 }
                 let acoustic = about.wave_speeds.as_ref().map(|w| AcousticView::new(&packing, w));
-                let results = about.results.into_values().flatten().collect();
+                let results = about.results;
                 back.states.push(InvertedState { state, acoustic, results });
             }
             // An instrument's data are of no packing of the run.
@@ -104,38 +120,74 @@ fn decoded<T: Message>(payload: &[u8]) -> Result<T, String> {
     from_cdr(payload).map_err(|e| e.to_string())
 }
 
-fn enter(about: &mut BTreeMap<u64, About>, topic: &Topic, payload: &[u8]) -> Result<(), String> {
+/// Takes one message in; the step of the packing that it is about.
+fn enter(
+    about: &mut BTreeMap<u64, About>,
+    topic: &Topic,
+    payload: &[u8],
+    by: Option<&str>,
+) -> Result<u64, String> {
     let text = |e: grainlab_msgs::boundary::BoundaryError| e.to_string();
     match topic.name {
         name if name == topics::PACKING.name => {
             let packing = Packing::try_from(&decoded::<msg::Packing>(payload)?).map_err(text)?;
             let step = packing.step;
             about.entry(step).or_default().packing = Some(packing);
+            Ok(step)
         }
         name if name == topics::FABRIC.name => {
             let message: msg::Fabric = decoded(payload)?;
             about.entry(message.source_step).or_default().fabric =
                 Some(Fabric::try_from(&message).map_err(text)?);
+            Ok(message.source_step)
         }
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = decoded(payload)?;
             let about = about.entry(message.source_step).or_default();
             about.moduli = Some(Moduli::try_from(&message).map_err(text)?);
+            Ok(message.source_step)
         }
         name if name == topics::WAVE_SPEEDS.name => {
             let message: msg::WaveSpeeds = decoded(payload)?;
             let reading = WaveSpeedsReading::try_from(&message).map_err(text)?;
             about.entry(message.source_step).or_default().wave_speeds = Some(reading);
+            Ok(message.source_step)
         }
         _ => {
             let message: msg::Microstructure = decoded(payload)?;
             let reading = MicrostructureReading::try_from(&message).map_err(text)?;
-            let results =
-                reading.estimates.iter().map(|e| Inference::of_reading(&reading.source, e)).collect();
-            about.entry(reading.source_step).or_default().results.insert(reading.source, results);
+            let known = &mut about.entry(reading.source_step).or_default().results;
+            for estimate in &reading.estimates {
+                let by = by.map(str::to_owned);
+                let found = Inference { by, ..Inference::of_reading(&reading.source, estimate) };
+                // One that took another's place may have said it again.
+                if !known.contains(&found) {
+                    known.push(found);
+                }
+            }
+            Ok(reading.source_step)
         }
     }
-    Ok(())
+}
+
+/// Nodes by the messages that they wrote.
+struct Names {
+    authors: Authors,
+    nodes: BTreeMap<String, String>,
+}
+
+impl Names {
+    fn of(recording: &Recording) -> Self {
+        let tallies = recording.ledger().unwrap_or_default();
+        let writers = tallies.into_iter().flat_map(|t| t.writers);
+        let nodes = writers.filter_map(|w| Some((w.guid, w.node?))).collect();
+        Self { authors: strangers::authors(recording), nodes }
+    }
+
+    /// The node that wrote the message of a topic at this log time.
+    fn node(&self, topic: &str, log_time: u64) -> Option<&str> {
+        self.nodes.get(self.authors.writer(topic, log_time)?).map(String::as_str)
+    }
 }
 
 fn reports(known: &mut BTreeMap<(String, u32), Report>, payload: &[u8]) -> Result<(), String> {

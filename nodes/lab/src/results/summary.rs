@@ -1,6 +1,7 @@
 //! What a launched run came to, with the stable keys of `summary.json`.
 
 use super::read_back::{InvertedState, ReadBack};
+use super::strangers::StrangerView;
 use node_kit::{Exit, Report};
 use recordings::TopicTally;
 use serde::Serialize;
@@ -11,8 +12,12 @@ pub(crate) struct Summary {
     pub(crate) scene: String,
     pub(crate) seed: u64,
     pub(crate) domain: u16,
+    /// Id of the run.
+    pub(crate) run: String,
     pub(crate) wall_seconds: f64,
     pub(crate) nodes: Vec<NodeEnd>,
+    /// Processes whose messages were left out.
+    pub(crate) strangers: Vec<StrangerView>,
     pub(crate) topics: Vec<TopicCount>,
     pub(crate) exchanges: Option<u64>,
     pub(crate) exchanges_per_second: Option<f64>,
@@ -95,6 +100,8 @@ impl Summary {
             scene: launched.scene,
             seed: launched.seed,
             domain: launched.domain,
+            run: launched.run,
+            strangers: back.strangers,
             wall_seconds: launched.wall_seconds,
             nodes: launched.nodes,
             topics: tallies.unwrap_or_default().iter().map(TopicCount::from).collect(),
@@ -116,6 +123,7 @@ pub(crate) struct Launched {
     pub(crate) scene: String,
     pub(crate) seed: u64,
     pub(crate) domain: u16,
+    pub(crate) run: String,
     pub(crate) wall_seconds: f64,
     pub(crate) nodes: Vec<NodeEnd>,
     pub(crate) recording: Option<String>,

@@ -47,13 +47,19 @@ pub(crate) fn text(s: &Summary) -> String {
 
 /// What each model infers, a block for each kind of data.
 fn inferred(s: &InvertedState) -> String {
-    let sources: BTreeSet<Option<&str>> = s.results.iter().map(|r| r.source.as_deref()).collect();
+    let origin = |r: &Inference| (r.source.clone(), r.by.clone());
+    let origins: BTreeSet<_> = s.results.iter().map(origin).collect();
+    let sources: BTreeSet<_> = origins.iter().map(|(source, _)| source).collect();
+    let inversions: BTreeSet<_> = origins.iter().map(|(_, by)| by).collect();
     let mut text = String::new();
-    for source in &sources {
+    for (source, by) in &origins {
         let results: Vec<Inference> =
-            s.results.iter().filter(|r| r.source.as_deref() == *source).cloned().collect();
+            s.results.iter().filter(|r| r.source == *source && r.by == *by).cloned().collect();
+        if inversions.len() > 1 {
+            text += &format!("  by {}\n", by.as_deref().unwrap_or("a node that the recording does not name"));
+        }
         if sources.len() > 1 {
-            let data = match (*source, &s.acoustic) {
+            let data = match (source.as_deref(), &s.acoustic) {
                 (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic::heading(a),
                 (Some(name), _) if name == topics::MODULI.name => {
                     let method = s.state.method.unwrap_or("given");

@@ -423,6 +423,13 @@ impl Bus for DdsBus {
             .unwrap_or_default()
     }
 
+    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
+        self.names
+            .resolve(topic.name)
+            .map(|name| self.graph.writers_of(&wire_name(&name), |guid| !self.gate.admits(guid)))
+            .unwrap_or_default()
+    }
+
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;

@@ -155,6 +155,16 @@ impl Bus for MemoryBus {
         ids
     }
 
+    fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
+        let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
+        let state = self.hub.state.borrow();
+        let strange = |id: &WriterId| !self.admission.admits(&id.participant());
+        let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved).map(|w| w.id);
+        let mut ids: Vec<WriterId> = on_topic.filter(strange).collect();
+        ids.sort();
+        ids
+    }
+
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("count_published"))?;

@@ -4,7 +4,7 @@ use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
 use node_kit::pingpong::bus_listen;
 use node_kit::{
-    Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, run_node,
+    Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, Scope, run_node,
 };
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use crate::commands::run::record;
 use crate::failure::Failure;
 use crate::recorder::{self, Settings};
 use node_kit::run::NodeSpec;
-use node_kit::{Exit, RosArgs};
+use node_kit::{Exit, RosArgs, Scope};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -42,7 +42,12 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
         whole_run: false,
     };
-    let spec = NodeSpec { name: "recorder", summary: "records topics to MCAP", parameters: Vec::new() };
+    let spec = NodeSpec {
+        name: "recorder",
+        summary: "records topics to MCAP",
+        scope: Scope::Everyone,
+        parameters: Vec::new(),
+    };
     let (ros, plain) = RosArgs::parse(&args.ros).map_err(Failure::usage)?;
     if let Some(stranger) = plain.first() {
         return Err(Failure::usage(format!("unexpected argument {stranger:?}")));

@@ -1,0 +1,140 @@
+//! In which order the processes of a run end.
+
+use super::child::{Child, Ended};
+use super::supervisor::{RECORDER, Supervisor};
+use super::watch::{Event, Watch};
+use node_kit::Exit;
+use std::time::Duration;
+use tokio::sync::mpsc::UnboundedReceiver;
+use tokio::time::{sleep_until, timeout};
+
+/// How long a process may take to die of SIGKILL.
+const KILLED_WITHIN: Duration = Duration::from_secs(1);
+
+/// How often it is looked whether a process is stopped.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// How long a run that ends by itself waits for a stopped process, beyond the usual time.
+const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
+
+/// The three steps of an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ending {
+    /// Every node is asked to end and sends its last report, which belongs into the recording.
+    Farewell,
+    /// The recorder ends.
+    Record,
+    /// Nobody is asked any more; what still runs goes.
+    Exit,
+}
+
+impl Ending {
+    /// The signals, each with the time until the next one. Together less than 15 s.
+    fn signals(self) -> [(i32, Duration); 3] {
+        let seconds = |interrupt, terminate| {
+            [
+                (libc::SIGINT, Duration::from_secs(interrupt)),
+                (libc::SIGTERM, Duration::from_secs(terminate)),
+                (libc::SIGKILL, KILLED_WITHIN),
+            ]
+        };
+        match self {
+            Ending::Farewell => seconds(5, 1),
+            Ending::Record => seconds(3, 1),
+            Ending::Exit => seconds(1, 1),
+        }
+    }
+}
+
+impl Supervisor {
+    /// Ends every process; true if the user asked to hurry.
+    pub(super) async fn end_all(
+        &mut self,
+        exit: Exit,
+        events: &mut UnboundedReceiver<Event>,
+        watch: &Watch,
+    ) -> bool {
+        let mut hurried = false;
+        for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
+            // Who asked for the end wants it now; a run that ends by itself waits for who is stopped.
+            let waits = exit != Exit::Interrupted && !hurried;
+            hurried |= self.end(ending, waits, events).await;
+            // It leaves while the processes do.
+            watch.stop();
+        }
+        hurried
+    }
+
+    /// Whether an end still waits for this child.
+    fn awaits(&self, child: &Child, ending: Ending) -> bool {
+        let recorder = child.plan.is(RECORDER);
+        match (ending, child.pid) {
+            (_, None) => false,
+            (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
+            (Ending::Record, _) => recorder,
+            (Ending::Exit, _) => true,
+        }
+    }
+
+    /// Takes one step of the end: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the user asked to hurry,
+    /// which kills what is left.
+    async fn end(&mut self, ending: Ending, waits: bool, events: &mut UnboundedReceiver<Event>) -> bool {
+        let mut hurried = false;
+        for (signal, time) in ending.signals() {
+            let signal = if hurried { libc::SIGKILL } else { signal };
+            // Who sent its last report was asked already, and a second signal would end it at once.
+            if ending != Ending::Exit || signal != libc::SIGINT {
+                self.children.iter().filter(|c| self.awaits(c, ending)).for_each(|c| c.signal(signal));
+            }
+            let running = |s: &Self| s.children.iter().any(|c| s.awaits(c, ending));
+            let mut deadline = tokio::time::Instant::now() + time;
+            let latest = deadline + if waits { STOPPED_AT_MOST } else { Duration::ZERO };
+            while running(self) && !hurried {
+                let now = tokio::time::Instant::now();
+                if now >= deadline {
+                    break;
+                }
+                tokio::select! {
+                    biased;
+                    _ = self.interrupt.recv() => hurried = true,
+                    _ = self.terminate.recv() => hurried = true,
+                    Some(ended) = self.ended.recv() => { self.note_end(&ended); }
+                    Some(event) = events.recv() => self.take(event),
+                    () = sleep_until((now + LOOK).min(deadline)) => {
+                        if waits && self.look_for_stopped() {
+                            deadline = (tokio::time::Instant::now() + time).min(latest);
+                        }
+                    }
+                }
+            }
+            if !running(self) {
+                return hurried;
+            }
+            if hurried && signal == libc::SIGKILL {
+                while running(self) {
+                    let Ok(Some(ended)) = timeout(KILLED_WITHIN, self.ended.recv()).await else { break };
+                    self.note_end(&ended);
+                }
+            }
+        }
+        hurried
+    }
+
+    /// Books an end and says how it came.
+    pub(super) fn note_end(&mut self, ended: &Ended) -> String {
+        use std::os::unix::process::ExitStatusExt;
+        let child = &mut self.children[ended.index];
+        child.pid = None;
+        match &ended.status {
+            Ok(status) => {
+                child.code = status.code();
+                match (status.code(), status.signal()) {
+                    (Some(code), _) => format!("ended with exit code {code}"),
+                    (None, Some(signal)) => format!("was ended by signal {signal}"),
+                    (None, None) => "ended".to_owned(),
+                }
+            }
+            Err(error) => format!("cannot be waited for ({error})"),
+        }
+    }
+}

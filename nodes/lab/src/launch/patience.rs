@@ -1,0 +1,50 @@
+//! How long something may take, by the time that this process was awake.
+
+use std::time::{Duration, Instant};
+
+/// A step between two looks that is longer than this is not all counted: the launcher itself was stopped meanwhile.
+const STEP: Duration = Duration::from_millis(500);
+
+/// Time that is left for something.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patience {
+    left: Duration,
+    looked: Instant,
+}
+
+impl Patience {
+    /// So much time, from now.
+    pub(super) fn new(time: Duration) -> Self {
+        Self { left: time, looked: Instant::now() }
+    }
+
+    /// To be called several times a second; true when the time is over. Time `suspended` does not count.
+    pub(super) fn is_over(&mut self, suspended: bool) -> bool {
+        self.passes(Instant::now(), suspended)
+    }
+
+    fn passes(&mut self, now: Instant, suspended: bool) -> bool {
+        let step = now.saturating_duration_since(self.looked).min(STEP);
+        self.looked = now;
+        if !suspended {
+            self.left = self.left.saturating_sub(step);
+        }
+        self.left.is_zero()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_for_which_somebody_was_stopped_does_not_count() {
+        let begin = Instant::now();
+        let at = |ms| begin + Duration::from_millis(ms);
+        let mut patience = Patience { left: Duration::from_secs(1), looked: begin };
+        assert!(!patience.passes(at(60_000), false), "the launcher was stopped: one step counts");
+        assert!(!patience.passes(at(60_400), true), "a process of the run was stopped");
+        assert!(!patience.passes(at(60_800), false));
+        assert!(patience.passes(at(61_000), false));
+    }
+}

@@ -1,0 +1,77 @@
+//! Processes of a run that are stopped by a signal: Ctrl-Z, a debugger, `kill -STOP`.
+
+use super::child::Child;
+use std::collections::BTreeSet;
+
+/// Which processes were stopped at the last look.
+#[derive(Debug, Default)]
+pub(super) struct Stopped {
+    pids: BTreeSet<u32>,
+}
+
+/// What changed since the look before.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Changes {
+    /// Names and process ids of those that are stopped now.
+    pub(super) stopped: Vec<(String, u32)>,
+    /// Names of those that go on.
+    pub(super) resumed: Vec<String>,
+}
+
+impl Stopped {
+    /// Looks at every process that runs.
+    pub(super) fn look(&mut self, children: &[Child]) -> Changes {
+        let running = children.iter().filter_map(|c| Some((c.plan.name.clone(), c.pid?)));
+        let mut changes = Changes::default();
+        let mut now = BTreeSet::new();
+        for (name, pid) in running {
+            match (is_stopped(pid), self.pids.contains(&pid)) {
+                (true, known) => {
+                    now.insert(pid);
+                    if !known {
+                        changes.stopped.push((name, pid));
+                    }
+                }
+                (false, true) => changes.resumed.push(name),
+                (false, false) => {}
+            }
+        }
+        self.pids = now;
+        changes
+    }
+
+    /// Whether any process was stopped.
+    pub(super) fn any(&self) -> bool {
+        !self.pids.is_empty()
+    }
+}
+
+/// The state of a process is the third field of `/proc/PID/stat`: T where a signal stopped it, t where a debugger did.
+fn is_stopped(pid: u32) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+    let state = stat.rsplit_once(')').and_then(|(_, behind)| behind.trim_start().chars().next());
+    matches!(state, Some('T' | 't'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_is_stopped_between_its_two_signals() {
+        let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let pid = child.id();
+        let signal = |signal| {
+            // SAFETY: kill takes two integers. The child is ours and was not waited for.
+            assert_eq!(unsafe { libc::kill(pid as i32, signal) }, 0);
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        };
+        assert!(!is_stopped(pid));
+        signal(libc::SIGSTOP);
+        assert!(is_stopped(pid));
+        signal(libc::SIGCONT);
+        assert!(!is_stopped(pid));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+}

@@ -1,0 +1,31 @@
+//! The last packing of a recording: what a run goes on from.
+
+use crate::failure::Failure;
+use grainlab_msgs::{from_cdr, msg, topics};
+use grains::Packing;
+use recordings::{Recording, Selection};
+use std::path::Path;
+
+/// Packings that a recording holds, also while it is being written; 0 if it cannot be read.
+pub(crate) fn count(directory: &Path) -> u64 {
+    let Ok(recording) = Recording::open(directory) else { return 0 };
+    packings(&recording).map_or(0, |bodies| bodies.len() as u64)
+}
+
+/// The last packing, and the state of the run in it.
+pub(crate) fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
+    let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
+    let recording = Recording::open(directory).map_err(|e| failed(&e))?;
+    let body = packings(&recording)?.pop().ok_or_else(|| failed(&"there is no packing to go on from"))?;
+    let message: msg::Packing = from_cdr(&body).map_err(|e| failed(&e))?;
+    let packing = Packing::try_from(&message).map_err(|e| failed(&e))?;
+    Ok((packing, message.run_state))
+}
+
+fn packings(recording: &Recording) -> Result<Vec<Vec<u8>>, Failure> {
+    let channels = recording.channels();
+    let is_packing = |topic: &str| topic.rsplit('/').next() == Some(topics::PACKING.name);
+    let names = channels.iter().filter(|c| is_packing(&c.topic)).map(|c| c.topic.clone());
+    let messages = recording.messages(&Selection::topics(names)).map_err(Failure::failed)?;
+    Ok(messages.map(|m| m.payload.to_vec()).collect())
+}

@@ -1,0 +1,86 @@
+//! Who was on the bus beside the run, and who wrote which result.
+
+use node_kit::Stranger;
+use recordings::{Guid, Recording, METADATA_RECORD};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Keys of the metadata record of a recording.
+pub(crate) const STRANGERS: &str = "strangers";
+pub(crate) const AUTHORS: &str = "authors";
+
+/// A process whose messages were left out of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct StrangerView {
+    /// Its process, or its DDS participant.
+    pub(crate) who: String,
+    /// The run that it says it belongs to.
+    pub(crate) run: Option<String>,
+    /// Messages left out, by topic.
+    pub(crate) ignored: BTreeMap<String, u64>,
+}
+
+impl StrangerView {
+    /// For a recording, and for `summary.json`.
+    pub(crate) fn of(stranger: &Stranger) -> Self {
+        Self {
+            who: stranger.to_string(),
+            run: stranger.run.map(|run| run.to_string()),
+            ignored: stranger.ignored.clone(),
+        }
+    }
+
+    /// For people.
+    pub(crate) fn line(&self) -> String {
+        let counts: Vec<String> = self.ignored.iter().map(|(topic, n)| format!("{n} on {topic}")).collect();
+        format!("not of this run and left out: {}: {}", self.who, counts.join(", "))
+    }
+}
+
+/// Who wrote each result: log times and writers, by topic. A message in a recording does not say its writer.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Authors(BTreeMap<String, Vec<(u64, String)>>);
+
+impl Authors {
+    /// A message of `topic` was recorded at this log time.
+    pub(crate) fn enter(&mut self, topic: &str, log_time: u64, writer: Guid) {
+        self.0.entry(topic.to_owned()).or_default().push((log_time, writer.to_string()));
+    }
+
+    /// The writer of the message of `topic` at this log time.
+    pub(crate) fn writer(&self, topic: &str, log_time: u64) -> Option<&str> {
+        let known = self.0.get(topic)?;
+        let place = known.binary_search_by_key(&log_time, |(time, _)| *time).ok()?;
+        Some(&known[place].1)
+    }
+}
+
+/// Who a recording says was beside its run.
+pub(crate) fn strangers(recording: &Recording) -> Vec<StrangerView> {
+    read(recording, STRANGERS).unwrap_or_default()
+}
+
+/// Who a recording says wrote which result.
+pub(crate) fn authors(recording: &Recording) -> Authors {
+    read(recording, AUTHORS).unwrap_or_default()
+}
+
+fn read<T: for<'a> Deserialize<'a>>(recording: &Recording, key: &str) -> Option<T> {
+    serde_json::from_str(recording.metadata(METADATA_RECORD)?.get(key)?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_writer_of_a_result_is_found_by_its_log_time() {
+        let mut authors = Authors::default();
+        authors.enter("/microstructure", 5, Guid([1; 16]));
+        authors.enter("/microstructure", 9, Guid([2; 16]));
+        let authors: Authors = serde_json::from_str(&serde_json::to_string(&authors).unwrap()).unwrap();
+        assert_eq!(authors.writer("/microstructure", 9), Some(Guid([2; 16]).to_string().as_str()));
+        assert_eq!(authors.writer("/microstructure", 6), None);
+        assert_eq!(authors.writer("/moduli", 9), None);
+    }
+}
