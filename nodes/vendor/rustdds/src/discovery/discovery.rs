@@ -733,6 +733,9 @@ impl Discovery {
       );
       match self.poll.poll(&mut events, Some(poll_timeout)) {
         Ok(_) => (),
+        // A signal, or a stop and continue of the process. `events` is empty;
+        // timers and queues are served below as after a timeout.
+        Err(e) if e.kind() == std::io::ErrorKind::Interrupted => (),
         Err(e) => {
           error!("Failed in waiting of poll in discovery. {e:?}");
           return;

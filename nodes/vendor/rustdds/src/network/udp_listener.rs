@@ -349,6 +349,11 @@ impl UDPListener {
           self.receive_buffer.clear();
           return messages;
         }
+        // Reading must go on until WouldBlock: the poll is edge-triggered.
+        Err(e) if e.kind() == io::ErrorKind::Interrupted => {
+          self.receive_buffer.clear();
+          continue;
+        }
         Err(e) => {
           self.receive_buffer.clear();
           warn!("socket recv() error: {e:?}");

@@ -219,7 +219,13 @@ impl UDPSender {
       trace!("raw_send: {id:?} cannot reach {addr} (address family mismatch), dropping");
       return SendOutcome::Dropped;
     }
-    match socket.send_to(buffer, addr) {
+    let outcome = loop {
+      match socket.send_to(buffer, addr) {
+        Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+        outcome => break outcome,
+      }
+    };
+    match outcome {
       Ok(bytes_sent) => {
         if bytes_sent != buffer.len() {
           error!(
