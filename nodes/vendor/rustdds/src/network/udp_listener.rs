@@ -4,7 +4,7 @@ use std::{
   net::{IpAddr, Ipv4Addr, SocketAddr},
 };
 
-use log::{debug, error, info, trace, warn};
+use log::{debug, info, trace, warn};
 use socket2::{Domain, Protocol, SockAddr, Socket, Type};
 use bytes::{Bytes, BytesMut};
 
@@ -51,7 +51,8 @@ pub struct UDPListener {
   socket: mio1::net::UdpSocket,
   receive_buffer: BytesMut,
   multicast_group: Option<Ipv4Addr>,
-  has_multicast_join: bool,
+  // Where the group was joined; it has to be left on the same interfaces.
+  joined_multicast_interfaces: Vec<Ipv4Addr>,
   // Cached OS interface-index -> local interface map, used to resolve the
   // receiving interface reported by IP_PKTINFO. Built once at construction.
   ifindex_map: HashMap<u32, InterfaceSelector>,
@@ -60,12 +61,13 @@ pub struct UDPListener {
 impl Drop for UDPListener {
   fn drop(&mut self) {
     if let Some(mcg) = self.multicast_group {
-      self
-        .socket
-        .leave_multicast_v4(&mcg, &Ipv4Addr::UNSPECIFIED)
-        .unwrap_or_else(|e| {
-          error!("leave_multicast_group: {e:?}");
-        });
+      for interface in &self.joined_multicast_interfaces {
+        // The interface may be gone meanwhile. Closing the socket leaves anyway.
+        self
+          .socket
+          .leave_multicast_v4(&mcg, interface)
+          .unwrap_or_else(|e| debug!("leave_multicast_group on {interface}: {e:?}"));
+      }
     }
   }
 }
@@ -170,7 +172,7 @@ impl UDPListener {
     let local_port = self.socket.local_addr()?.port();
 
     match self.multicast_group {
-      Some(_ipv4_addr) if self.has_multicast_join => Ok(get_local_multicast_locators(local_port)),
+      Some(_ipv4_addr) if !self.joined_multicast_interfaces.is_empty() => Ok(get_local_multicast_locators(local_port)),
       Some(_ipv4_addr) => Ok(vec![]),
       None => Ok(get_local_unicast_locators_filtered(
         local_port,
@@ -195,7 +197,7 @@ impl UDPListener {
       socket: mio_socket,
       receive_buffer: BytesMut::with_capacity(MESSAGE_BUFFER_ALLOCATION_CHUNK),
       multicast_group: None,
-      has_multicast_join: false,
+      joined_multicast_interfaces: Vec::new(),
       ifindex_map: build_ifindex_to_interface_map(),
     })
   }
@@ -217,15 +219,13 @@ impl UDPListener {
     }
 
     let mio_socket = Self::new_listening_socket(host, port, true, recv_buffer_size)?;
-    let mut joined_multicast = false;
+    let mut joined_multicast_interfaces = Vec::new();
 
     for multicast_if_ipaddr in get_local_multicast_ip_addrs_filtered(only_networks)? {
       match multicast_if_ipaddr {
         IpAddr::V4(a) => mio_socket
           .join_multicast_v4(&multicast_group, &a)
-          .map(|()| {
-            joined_multicast = true;
-          })
+          .map(|()| joined_multicast_interfaces.push(a))
           .unwrap_or_else(|e| {
             warn!(
               "join_multicast_v4 failed: {e:?}. multicast_group [{multicast_group:?}] interface \
@@ -233,23 +233,12 @@ impl UDPListener {
             );
           }),
 
-        IpAddr::V6(addr) => {
-          mio_socket
-            .join_multicast_v6(&addr, 0)
-            .map(|()| {
-              joined_multicast = true;
-            })
-            .unwrap_or_else(|e| {
-              warn!(
-                "join_multicast_v6 failed. err: {e}. mcast group: [{multicast_group:?}], \
-                 addr:[{addr:?}]"
-              );
-            });
-        }
+        // The group and the socket are IPv4; such interfaces are filtered out.
+        IpAddr::V6(_) => {}
       }
     }
 
-    if !joined_multicast {
+    if joined_multicast_interfaces.is_empty() {
       warn!(
         "No multicast joins succeeded for group {multicast_group:?}; multicast locator will not \
          be advertised."
@@ -260,7 +249,7 @@ impl UDPListener {
       socket: mio_socket,
       receive_buffer: BytesMut::with_capacity(MESSAGE_BUFFER_ALLOCATION_CHUNK),
       multicast_group: Some(multicast_group),
-      has_multicast_join: joined_multicast,
+      joined_multicast_interfaces,
       ifindex_map: build_ifindex_to_interface_map(),
     })
   }
