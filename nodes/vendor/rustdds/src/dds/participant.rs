@@ -37,7 +37,7 @@ use crate::{
     discovery_db::DiscoveryDB,
     sedp_messages::{DiscoveredReaderData, DiscoveredTopicData, DiscoveredWriterData},
   },
-  network::{constant::*, udp_listener::UDPListener},
+  network::{constant::*, udp_listener::UDPListener, util::unicast_bind_address},
   polling::{
     ready_channel, wake_channel, wake_channel_unbounded, LoopWaker, ReadySender, WakeReceiver,
     WakeSender, WakeUnboundedSender,
@@ -105,14 +105,14 @@ impl DomainParticipantBuilder {
     }
   }
 
-  /// Filter which local network interfaces are used for multicast and
-  /// advertised in discovery.
+  /// Restrict the participant to some local network interfaces.
   ///
   /// When set, only interfaces whose IP address appears in `addrs` are used for
   /// multicast joins, multicast sends, and unicast locator advertisement.
-  ///
-  /// This is not a hard transport-level ACL: unicast sockets still bind to
-  /// wildcard addresses for the selected ports.
+  /// Datagrams that arrive on other interfaces, loopback excepted, are dropped
+  /// unread. If the only address is a loopback one, unicast sockets are bound to
+  /// it, and on Linux multicast sockets to the multicast group, so that the
+  /// kernel delivers nothing from elsewhere.
   pub fn with_only_networks(mut self, addrs: impl IntoIterator<Item = impl Into<IpAddr>>) -> Self {
     self.only_networks = Some(addrs.into_iter().map(Into::into).collect());
     self
@@ -1259,6 +1259,7 @@ impl DomainParticipantInner {
 
     let only_networks: Option<Arc<[IpAddr]>> = only_networks.map(|v| v.into());
 
+    let unicast_host = unicast_bind_address(only_networks.as_deref()).to_string();
     let mut listeners = HashMap::new();
 
     match UDPListener::new_multicast_with_buf_size(
@@ -1282,9 +1283,10 @@ impl DomainParticipantInner {
     // Numbers"
     while discovery_listener.is_none() && participant_id < 120 {
       discovery_listener = UDPListener::new_unicast_with_buf_size(
-        "0.0.0.0",
+        &unicast_host,
         spdp_well_known_unicast_port(domain_id, participant_id),
         socket_receive_buffer_size,
+        only_networks.as_deref(),
       )
       .ok();
       if discovery_listener.is_none() {
@@ -1317,22 +1319,27 @@ impl DomainParticipantInner {
     }
 
     let user_traffic_listener = UDPListener::new_unicast_with_buf_size(
-      "0.0.0.0",
+      &unicast_host,
       user_traffic_unicast_port(domain_id, participant_id),
       socket_receive_buffer_size,
+      only_networks.as_deref(),
     )
     .or_else(|e| {
       if matches!(e.kind(), ErrorKind::AddrInUse) {
         // If we do not get the preferred listening port,
         // try again, with "any" port number.
-        UDPListener::new_unicast_with_buf_size("0.0.0.0", 0, socket_receive_buffer_size).or_else(
-          |e| {
-            create_error_out_of_resources!(
-              "Could not open unicast user traffic listener, any port number: {:?}",
-              e
-            )
-          },
+        UDPListener::new_unicast_with_buf_size(
+          &unicast_host,
+          0,
+          socket_receive_buffer_size,
+          only_networks.as_deref(),
         )
+        .or_else(|e| {
+          create_error_out_of_resources!(
+            "Could not open unicast user traffic listener, any port number: {:?}",
+            e
+          )
+        })
       } else {
         create_error_out_of_resources!("Could not open unicast user traffic listener: {e:?}")
       }

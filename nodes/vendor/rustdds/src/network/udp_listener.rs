@@ -10,8 +10,9 @@ use bytes::{Bytes, BytesMut};
 
 use crate::{
   network::util::{
-    build_ifindex_to_interface_map, get_local_multicast_ip_addrs_filtered,
-    get_local_multicast_locators, get_local_unicast_locators_filtered,
+    allowed_interface_indices, build_ifindex_to_interface_map,
+    get_local_multicast_ip_addrs_filtered, get_local_multicast_locators,
+    get_local_unicast_locators_filtered,
   },
   rtps::transmit::InterfaceSelector,
   serialization::padding_needed_for_alignment_4,
@@ -56,6 +57,9 @@ pub struct UDPListener {
   // Cached OS interface-index -> local interface map, used to resolve the
   // receiving interface reported by IP_PKTINFO. Built once at construction.
   ifindex_map: HashMap<u32, InterfaceSelector>,
+  // With `only_networks`: OS indices of the interfaces a datagram may arrive on.
+  // Anything else is dropped before it is looked at. `None` accepts all.
+  allowed_ifindices: Option<Vec<u32>>,
 }
 
 impl Drop for UDPListener {
@@ -78,6 +82,7 @@ impl UDPListener {
     port: u16,
     reuse_addr: bool,
     recv_buffer_size: usize,
+    only_joined_groups: bool,
   ) -> io::Result<mio1::net::UdpSocket> {
     let raw_socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
 
@@ -129,6 +134,15 @@ impl UDPListener {
       }
     }
 
+    // By default, Linux delivers a group's datagrams from every interface on
+    // which any process of the host has joined that group.
+    #[cfg(target_os = "linux")]
+    if only_joined_groups {
+      raw_socket.set_multicast_all_v4(false)?;
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = only_joined_groups; // the interface filter of recv_one() has to do
+
     // Ask the kernel to attach IP_PKTINFO to received datagrams so we can learn
     // which local interface each one arrived on. Best-effort: if it fails we
     // simply lose interface metadata and fall back to the legacy send path.
@@ -172,7 +186,9 @@ impl UDPListener {
     let local_port = self.socket.local_addr()?.port();
 
     match self.multicast_group {
-      Some(_ipv4_addr) if !self.joined_multicast_interfaces.is_empty() => Ok(get_local_multicast_locators(local_port)),
+      Some(_ipv4_addr) if !self.joined_multicast_interfaces.is_empty() => {
+        Ok(get_local_multicast_locators(local_port))
+      }
       Some(_ipv4_addr) => Ok(vec![]),
       None => Ok(get_local_unicast_locators_filtered(
         local_port,
@@ -183,15 +199,16 @@ impl UDPListener {
 
   #[cfg(test)]
   pub fn new_unicast(host: &str, port: u16) -> io::Result<Self> {
-    Self::new_unicast_with_buf_size(host, port, 0)
+    Self::new_unicast_with_buf_size(host, port, 0, None)
   }
 
   pub fn new_unicast_with_buf_size(
     host: &str,
     port: u16,
     recv_buffer_size: usize,
+    only_networks: Option<&[IpAddr]>,
   ) -> io::Result<Self> {
-    let mio_socket = Self::new_listening_socket(host, port, false, recv_buffer_size)?;
+    let mio_socket = Self::new_listening_socket(host, port, false, recv_buffer_size, false)?;
 
     Ok(Self {
       socket: mio_socket,
@@ -199,6 +216,7 @@ impl UDPListener {
       multicast_group: None,
       joined_multicast_interfaces: Vec::new(),
       ifindex_map: build_ifindex_to_interface_map(),
+      allowed_ifindices: only_networks.map(allowed_interface_indices),
     })
   }
 
@@ -218,7 +236,16 @@ impl UDPListener {
       return io::Result::Err(io::Error::other("Not a multicast address"));
     }
 
-    let mio_socket = Self::new_listening_socket(host, port, true, recv_buffer_size)?;
+    // A socket bound to the group hears nothing but the group. Elsewhere than on
+    // Linux binding to a group may be refused.
+    let group_address = multicast_group.to_string();
+    let host = if cfg!(target_os = "linux") && only_networks.is_some() {
+      group_address.as_str()
+    } else {
+      host
+    };
+    let mio_socket =
+      Self::new_listening_socket(host, port, true, recv_buffer_size, only_networks.is_some())?;
     let mut joined_multicast_interfaces = Vec::new();
 
     for multicast_if_ipaddr in get_local_multicast_ip_addrs_filtered(only_networks)? {
@@ -251,6 +278,7 @@ impl UDPListener {
       multicast_group: Some(multicast_group),
       joined_multicast_interfaces,
       ifindex_map: build_ifindex_to_interface_map(),
+      allowed_ifindices: only_networks.map(allowed_interface_indices),
     })
   }
 
@@ -332,7 +360,12 @@ impl UDPListener {
         self.receive_buffer.capacity()
       );
       let (nbytes, origin) = match self.recv_one() {
-        Ok(Some(received)) => received,
+        Ok(Some(Some(received))) => received,
+        Ok(Some(None)) => {
+          // Arrived on an interface that is not ours to listen to.
+          self.receive_buffer.clear();
+          continue;
+        }
         Ok(None) => {
           // WouldBlock: nothing (more) to read.
           self.receive_buffer.clear();
@@ -385,9 +418,10 @@ impl UDPListener {
   }
 
   /// Receive a single datagram into `self.receive_buffer`, capturing its
-  /// [`PacketOrigin`]. Returns `Ok(None)` when the socket would block.
+  /// [`PacketOrigin`]. Returns `Ok(None)` when the socket would block, and
+  /// `Ok(Some(None))` for a datagram from an interface outside `only_networks`.
   #[cfg(unix)]
-  fn recv_one(&mut self) -> io::Result<Option<(usize, PacketOrigin)>> {
+  fn recv_one(&mut self) -> io::Result<Option<Option<(usize, PacketOrigin)>>> {
     use std::{io::IoSliceMut, os::unix::io::AsRawFd};
 
     use nix::{
@@ -433,29 +467,36 @@ impl UDPListener {
       (nbytes, source, ifindex, spec_dst)
     };
 
+    // Index 0: the kernel did not tell.
+    if let Some(allowed) = &self.allowed_ifindices {
+      if ifindex != 0 && !allowed.contains(&ifindex) {
+        return Ok(Some(None));
+      }
+    }
+
     // Prefer the exact local destination address (matches sender interface
     // keys directly); otherwise resolve the interface index.
     let local_if = spec_dst
       .map(InterfaceSelector::Ip)
       .or_else(|| self.ifindex_map.get(&ifindex).copied());
 
-    Ok(Some((nbytes, PacketOrigin { source, local_if })))
+    Ok(Some(Some((nbytes, PacketOrigin { source, local_if }))))
   }
 
   /// Non-Unix fallback: capture the source address only (no interface info).
   #[cfg(not(unix))]
-  fn recv_one(&mut self) -> io::Result<Option<(usize, PacketOrigin)>> {
+  fn recv_one(&mut self) -> io::Result<Option<Option<(usize, PacketOrigin)>>> {
     match self
       .socket
       .recv_from(&mut self.receive_buffer[..MAX_MESSAGE_SIZE])
     {
-      Ok((nbytes, source)) => Ok(Some((
+      Ok((nbytes, source)) => Ok(Some(Some((
         nbytes,
         PacketOrigin {
           source: Some(source),
           local_if: None,
         },
-      ))),
+      )))),
       Err(e) if e.kind() == io::ErrorKind::WouldBlock => Ok(None),
       Err(e) => Err(e),
     }
