@@ -44,7 +44,7 @@ use crate::{
   },
   rtps::{
     constant::*,
-    dp_event_loop::{DPEventLoop, DomainInfo, EventLoopCommand},
+    dp_event_loop::{DPEventLoop, DomainInfo, EventLoopCommand, EventLoopOptions},
     reader::*,
     writer::WriterIngredients,
   },
@@ -80,6 +80,8 @@ pub struct DomainParticipantBuilder {
 
   guid_prefix: Option<GuidPrefix>, // random if None
 
+  event_loop_options: EventLoopOptions,
+
   socket_receive_buffer_size: usize,
   socket_send_buffer_size: usize,
 
@@ -96,6 +98,7 @@ impl DomainParticipantBuilder {
       only_networks: None,
       same_host_loopback: true,
       guid_prefix: None,
+      event_loop_options: EventLoopOptions::default(),
       socket_receive_buffer_size: Self::DEFAULT_SOCKET_RECEIVE_BUFFER_SIZE,
       socket_send_buffer_size: Self::DEFAULT_SOCKET_SEND_BUFFER_SIZE,
       #[cfg(feature = "security")]
@@ -138,6 +141,16 @@ impl DomainParticipantBuilder {
   /// combined with security, where authentication derives the prefix.
   pub fn guid_prefix(mut self, prefix: GuidPrefix) -> Self {
     self.guid_prefix = Some(prefix);
+    self
+  }
+
+  /// Largest sample, in bytes, that is assembled from fragments (default: 16
+  /// MiB). Larger ones are discarded.
+  ///
+  /// It also bounds the memory of incomplete samples: two of this size from one
+  /// remote Writer, four in the participant.
+  pub fn max_fragmented_sample_size(mut self, bytes: usize) -> Self {
+    self.event_loop_options.max_fragmented_sample_size = bytes;
     self
   }
 
@@ -359,6 +372,7 @@ impl DomainParticipantBuilder {
       self.socket_send_buffer_size,
       self.only_networks,
       self.same_host_loopback,
+      self.event_loop_options,
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -992,6 +1006,7 @@ impl DomainParticipantDisc {
     socket_send_buffer_size: usize,
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
+    event_loop_options: EventLoopOptions,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1009,6 +1024,7 @@ impl DomainParticipantDisc {
       socket_send_buffer_size,
       only_networks,
       same_host_loopback,
+      event_loop_options,
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -1251,6 +1267,7 @@ impl DomainParticipantInner {
     socket_send_buffer_size: usize,
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
+    event_loop_options: EventLoopOptions,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1437,6 +1454,7 @@ impl DomainParticipantInner {
           only_networks_for_ev_loop,
           socket_send_buffer_size,
           same_host_loopback,
+          event_loop_options,
           reader_ready_rx,
           writer_ready_rx,
           dp_waker,

@@ -36,6 +36,7 @@ use crate::{
   //qos::HasQoSPolicy,
   rtps::{
     constant::*,
+    fragment_assembler::{FragmentBudget, DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE},
     message_receiver::MessageReceiver,
     outbound::SocketId,
     reader::{Reader, ReaderIngredients},
@@ -68,6 +69,20 @@ pub struct DomainInfo {
   pub domain_participant_guid: GUID,
   pub domain_id: u16,
   pub participant_id: u16,
+}
+
+/// What the builder of the participant sets for the event loop alone.
+#[derive(Clone)]
+pub(crate) struct EventLoopOptions {
+  pub max_fragmented_sample_size: usize,
+}
+
+impl Default for EventLoopOptions {
+  fn default() -> Self {
+    Self {
+      max_fragmented_sample_size: DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE,
+    }
+  }
 }
 
 pub(crate) enum EventLoopCommand {
@@ -140,6 +155,9 @@ pub struct DPEventLoop {
   // route same-host peers over loopback. See
   // `src/rtps/loopback_same_host_design.md`.
   same_host_loopback: bool,
+
+  // Memory that incomplete fragmented samples may take, over all Readers.
+  fragment_budget: Rc<FragmentBudget>,
 }
 
 impl DPEventLoop {
@@ -164,6 +182,7 @@ impl DPEventLoop {
     only_networks: Option<Arc<[IpAddr]>>,
     socket_send_buffer_size: usize,
     same_host_loopback: bool,
+    options: EventLoopOptions,
     reader_ready: ReadyReceiver<EntityId>,
     writer_ready: ReadyReceiver<EntityId>,
     waker: LoopWaker,
@@ -257,6 +276,7 @@ impl DPEventLoop {
       participant_status_sender,
       discovery_command_sender,
       same_host_loopback,
+      fragment_budget: Rc::new(FragmentBudget::new(options.max_fragmented_sample_size)),
     })
   }
 
@@ -839,6 +859,10 @@ impl DPEventLoop {
     // observations; refresh the interface-aware send routes of any writers that
     // already have matched readers behind this participant. Access `writers`
     // directly (not via &mut self) so it stays disjoint from the `db` borrow.
+    self
+      .interface_observations
+      .borrow_mut()
+      .keep(participant_guid_prefix);
     for writer in self.writers.values_mut() {
       writer.recompute_routes_for(participant_guid_prefix);
     }
@@ -1067,6 +1091,7 @@ impl DPEventLoop {
       self.udp_sender.clone(),
       self.shared_timer.clone(),
       self.participant_status_sender.clone(),
+      Rc::clone(&self.fragment_budget),
     );
 
     // Reader commands share the poll waker. The ready queue records the entity
@@ -1347,6 +1372,7 @@ mod tests {
         None,
         0,
         true,
+        EventLoopOptions::default(),
         reader_ready,
         writer_ready,
         waker,
