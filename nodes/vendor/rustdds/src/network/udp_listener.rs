@@ -325,21 +325,19 @@ impl UDPListener {
     panic!("test helper didn't recv message after ten attempts.");
   }
 
-  /// Drain up to `max_messages` datagrams waiting in the socket, each paired
+  /// Read up to `max_messages` datagrams waiting in the socket, each paired
   /// with its [`PacketOrigin`] (source address + receiving interface, when
-  /// available). Pass `usize::MAX` to read everything currently queued.
+  /// available). The flag tells whether the socket was emptied.
   ///
-  /// The reactor registers listeners edge-triggered, so it must pass
-  /// `usize::MAX`: a datagram left unread does not produce another readiness
-  /// event. `Ok(None)` from [`recv_one`](Self::recv_one) (`WouldBlock`) ends
-  /// the drain.
-  pub fn messages_bounded(&mut self, max_messages: usize) -> Vec<(Bytes, PacketOrigin)> {
+  /// The reactor registers listeners edge-triggered: a datagram left unread does
+  /// not produce another readiness event, so a socket that was not emptied has
+  /// to be read again. `Ok(None)` from [`recv_one`](Self::recv_one)
+  /// (`WouldBlock`) ends the drain.
+  pub fn messages_bounded(&mut self, max_messages: usize) -> (Vec<(Bytes, PacketOrigin)>, bool) {
     let mut messages = Vec::with_capacity(4);
 
-    loop {
-      if messages.len() >= max_messages {
-        return messages;
-      }
+    // Counts refused datagrams, too.
+    for _ in 0..max_messages {
       // Loop invariant. Note that capacity() may be large, but .len() == 0.
       assert_eq!(self.receive_buffer.len(), 0);
 
@@ -369,7 +367,7 @@ impl UDPListener {
         Ok(None) => {
           // WouldBlock: nothing (more) to read.
           self.receive_buffer.clear();
-          return messages;
+          return (messages, true);
         }
         // Reading must go on until WouldBlock: the poll is edge-triggered.
         Err(e) if e.kind() == io::ErrorKind::Interrupted => {
@@ -378,8 +376,8 @@ impl UDPListener {
         }
         Err(e) => {
           self.receive_buffer.clear();
-          warn!("socket recv() error: {e:?}");
-          return messages;
+          warn_sparsely!("socket recv() error: {e:?}");
+          return (messages, true);
         }
       };
       // Something was received.
@@ -412,9 +410,7 @@ impl UDPListener {
       message.truncate(nbytes); // discard (hide) padding
       messages.push((Bytes::from(message), origin)); // freeze bytes and push
     } // loop
-
-    // unreachable!(); // But why does this cause a warning? (rustc 1.66.0)
-    // Answer: https://github.com/rust-lang/rust/issues/46500
+    (messages, false)
   }
 
   /// Receive a single datagram into `self.receive_buffer`, capturing its

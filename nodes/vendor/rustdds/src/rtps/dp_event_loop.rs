@@ -64,6 +64,9 @@ use crate::{
 #[cfg(not(feature = "security"))]
 use crate::no_security::security_plugins::SecurityPluginsHandle;
 
+// Datagrams read from one socket before others are served.
+const MAX_DATAGRAMS_PER_BATCH: usize = 256;
+
 #[derive(Clone, Debug)]
 pub struct DomainInfo {
   pub domain_participant_guid: GUID,
@@ -202,7 +205,7 @@ impl DPEventLoop {
 
     let poll = try_init!(Poll::new(), "Unable to create new poll");
     // Listeners are edge-triggered. The loop reads each one until WouldBlock,
-    // so a datagram left in the socket cannot sit unreported.
+    // in batches, so a datagram left in the socket cannot sit unreported.
     let mut udp_listeners = udp_listeners;
     for (token, listener) in &mut udp_listeners {
       try_init!(
@@ -312,6 +315,10 @@ impl DPEventLoop {
       ev_wrapper.remove_local_writer(&writer_guid);
     }
 
+    // Listeners that were not emptied. A flood could be read for ever; timers,
+    // commands and the other sockets get their turn after each batch.
+    let mut unread_listeners: Vec<Token> = Vec::new();
+
     // loop starts here
     loop {
       // The poll wakes for a socket, the shared waker, or the sooner of the next
@@ -321,6 +328,11 @@ impl DPEventLoop {
         Duration::from_millis(2000)
       } else {
         Duration::from_millis(2)
+      };
+      let idle_cap = if unread_listeners.is_empty() {
+        idle_cap
+      } else {
+        Duration::ZERO
       };
       let poll_timeout = timeout_until(ev_wrapper.shared_timer.borrow().next_deadline(), idle_cap);
       match ev_wrapper.poll.poll(&mut events, Some(poll_timeout)) {
@@ -352,19 +364,8 @@ impl DPEventLoop {
               | DISCOVERY_MUL_LISTENER_TOKEN
               | USER_TRAFFIC_LISTENER_TOKEN
               | USER_TRAFFIC_MUL_LISTENER_TOKEN => {
-                // Edge-triggered: read until WouldBlock. A cap would leave
-                // datagrams sitting with no further readiness event.
-                let udp_messages = ev_wrapper.udp_listeners.get_mut(&token).map_or_else(
-                  || {
-                    error!("No listener with token {:?}", token);
-                    vec![]
-                  },
-                  |l| l.messages_bounded(usize::MAX),
-                );
-                for (packet, origin) in udp_messages {
-                  ev_wrapper
-                    .message_receiver
-                    .handle_received_packet(&packet, origin);
+                if !unread_listeners.contains(&token) {
+                  unread_listeners.push(token);
                 }
               }
               LOOP_WAKE_TOKEN => {
@@ -393,6 +394,9 @@ impl DPEventLoop {
         }
       }
 
+      // Edge-triggered: a listener stays in the list until it is empty.
+      unread_listeners.retain(|token| !ev_wrapper.read_listener(*token));
+
       ev_wrapper.drain_timers(preparing_to_stop);
       if ev_wrapper.drain_queues(
         &mut readers_to_remove,
@@ -414,6 +418,21 @@ impl DPEventLoop {
       ev_wrapper.service_outbound();
     } // loop
   } // fn
+
+  // Handles a batch of datagrams. Returns true when there are no more.
+  fn read_listener(&mut self, token: Token) -> bool {
+    let Some(listener) = self.udp_listeners.get_mut(&token) else {
+      error!("No listener with token {token:?}");
+      return true;
+    };
+    let (udp_messages, emptied) = listener.messages_bounded(MAX_DATAGRAMS_PER_BATCH);
+    for (packet, origin) in udp_messages {
+      self
+        .message_receiver
+        .handle_received_packet(&packet, origin);
+    }
+    emptied
+  }
 
   // Returns true when the loop should exit.
   fn drain_queues(
