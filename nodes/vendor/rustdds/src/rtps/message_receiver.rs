@@ -1066,7 +1066,9 @@ impl MessageReceiver {
           }
           (false, None) => vec![], // This one is normal again
           (false, Some(_)) => {
-            warn_sparsely!("InfoReply submessage has unexpected multicast_reply_locator_list, ignoring.");
+            warn_sparsely!(
+              "InfoReply submessage has unexpected multicast_reply_locator_list, ignoring."
+            );
             vec![]
           }
         };

@@ -233,9 +233,7 @@ impl InterfaceObservations {
     match self.by_participant.entry(prefix) {
       Entry::Occupied(mut known) => known.get_mut().record(iface, source),
       Entry::Vacant(new) => {
-        new
-          .insert(ObservedRoutes::default())
-          .record(iface, source);
+        new.insert(ObservedRoutes::default()).record(iface, source);
         self.strangers.push_back(prefix);
         if self.strangers.len() > MAX_STRANGERS {
           if let Some(oldest) = self.strangers.pop_front() {

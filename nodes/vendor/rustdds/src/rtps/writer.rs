@@ -1157,7 +1157,7 @@ impl Writer {
 
         // sanity check requested sequence numbers
         if let Some(0) = an.reader_sn_state.iter().next().map(i64::from) {
-          warn!("Request for SN zero! : {an:?}");
+          warn_sparsely!("Request for SN zero! : {an:?}");
         }
 
         let reader_guid = GUID::new(reader_guid_prefix, an.reader_id);
@@ -1253,14 +1253,9 @@ impl Writer {
 
         // See if we need to respond by GAP message
         if let Some(reader_proxy) = self.readers.get(&reader_guid) {
-          if !reader_proxy.get_pending_gap().is_empty() {
+          if reader_proxy.has_pending_gap() {
             let gap_message = MessageBuilder::new()
-              .gap_msg(
-                reader_proxy.get_pending_gap(),
-                self.my_guid.entity_id,
-                self.endianness,
-                reader_guid,
-              )
+              .pending_gap_msg(reader_proxy, self.my_guid.entity_id, self.endianness)
               .add_header_and_build(self.my_guid.prefix);
             self.send_control_to_readers(
               DeliveryMode::Unicast,
@@ -1299,6 +1294,13 @@ impl Writer {
       AckSubmessage::NackFrag(ref nackfrag) => {
         // NackFrag is negative acknowledgement only, i.e. requesting missing fragments.
         let reader_guid = GUID::new(reader_guid_prefix, nackfrag.reader_id);
+        let Some(frag_count) = self
+          .send_buffer
+          .get_by_sn(nackfrag.writer_sn)
+          .map(|cc| cc.data_value.payload_size().div_ceil(FRAGMENT_SIZE))
+        else {
+          return; // a GAP or HEARTBEAT will tell that it is gone
+        };
         let Some(reader_proxy) = self.lookup_reader_proxy_mut(reader_guid) else {
           return;
         };
@@ -1311,7 +1313,11 @@ impl Writer {
           return;
         }
         reader_proxy.last_nackfrag_count = Some(nackfrag.count);
-        reader_proxy.mark_frags_requested(nackfrag.writer_sn, &nackfrag.fragment_number_state);
+        reader_proxy.mark_frags_requested(
+          nackfrag.writer_sn,
+          &nackfrag.fragment_number_state,
+          frag_count,
+        );
         self.schedule_repair_frags(reader_guid, self.nackfrag_response_delay);
       }
     }
@@ -1430,7 +1436,7 @@ impl Writer {
         break;
       };
       let first_available = self.send_buffer.first_change_sequence_number();
-      let pending_gaps = reader_proxy.get_pending_gap().clone();
+      let is_pending_gap = reader_proxy.is_pending_gap(unsent_sn);
 
       let mut gap = MessageBuilder::new();
       let mut cache_change = None;
@@ -1449,7 +1455,7 @@ impl Writer {
           reader_guid,
         );
         reader_proxy.remove_from_unsent_set_all_before(first_available);
-      } else if !pending_gaps.contains(&unsent_sn) {
+      } else if !is_pending_gap {
         match self.send_buffer.get_by_sn(unsent_sn) {
           Some(cc) => cache_change = Some(cc),
           None => {
@@ -1470,16 +1476,9 @@ impl Writer {
       }
       // SNs we are not going to send to this reader: announce them once per
       // round, together with the first change that goes out.
-      if !pending_gaps.is_empty() && (!pending_gap_sent || pending_gaps.contains(&unsent_sn)) {
-        gap = gap.gap_msg(
-          &pending_gaps,
-          self.entity_id(),
-          self.endianness,
-          reader_guid,
-        );
-        for sn in &pending_gaps {
-          reader_proxy.mark_change_sent(*sn);
-        }
+      if is_pending_gap || (reader_proxy.has_pending_gap() && !pending_gap_sent) {
+        gap = gap.pending_gap_msg(reader_proxy, self.entity_id(), self.endianness);
+        reader_proxy.mark_pending_gap_sent();
         pending_gap_sent = true;
       }
       let gap_len = gap.submessage_bytes_len();
@@ -2414,15 +2413,10 @@ impl<'a> Iterator for FragmentationIter<'a> {
 
             // If sending to a single reader, add a GAP message with pending gaps if any
             if let Some(reader) = target_reader_opt {
-              if !reader.get_pending_gap().is_empty() {
+              if reader.has_pending_gap() {
                 let gap_msg = MessageBuilder::new()
                   .dst_submessage(writer.endianness, reader.remote_reader_guid.prefix)
-                  .gap_msg(
-                    reader.get_pending_gap(),
-                    writer.entity_id(),
-                    writer.endianness,
-                    reader.remote_reader_guid,
-                  )
+                  .pending_gap_msg(reader, writer.entity_id(), writer.endianness)
                   .add_header_and_build(writer.my_guid.prefix);
                 // Leading GAP: if it blocks, resume from Fresh (re-send GAP too).
                 return Some((SampleCursor::Fresh, gap_msg));
@@ -2543,14 +2537,8 @@ impl<'a> Iterator for FragmentationIter<'a> {
             message_builder.dst_submessage(writer.endianness, reader.remote_reader_guid.prefix);
 
           // If the reader is pending GAPs on any sequence numbers, add a GAP
-          if !reader.get_pending_gap().is_empty() {
-            message_builder = message_builder.gap_msg(
-              reader.get_pending_gap(),
-              writer.entity_id(),
-              writer.endianness,
-              reader.remote_reader_guid,
-            );
-          }
+          message_builder =
+            message_builder.pending_gap_msg(reader, writer.entity_id(), writer.endianness);
         }
 
         // Add the DATA submessage
