@@ -24,7 +24,9 @@ use crate::{
   },
   messages::submessages::submessages::AckSubmessage,
   network::{
-    constant::SPDP_LOCALHOST_PEER_COUNT,
+    constant::{
+      SPDP_LOCALHOST_FULL_ANNOUNCEMENTS, SPDP_LOCALHOST_PEER_COUNT, SPDP_LOCALHOST_SLOTS,
+    },
     udp_listener::UDPListener,
     udp_sender::UDPSender,
     util::{local_interface_table, localhost_spdp_peer_locators, IfAddr},
@@ -1163,11 +1165,13 @@ impl DPEventLoop {
     if self.same_host_loopback
       && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
     {
-      new_writer.set_extra_unicast_destinations(localhost_spdp_peer_locators(
-        self.domain_info.domain_id,
-        self.domain_info.participant_id,
-        SPDP_LOCALHOST_PEER_COUNT,
-      ));
+      let own_slot = self.domain_info.participant_id;
+      let slots = |count| localhost_spdp_peer_locators(self.domain_info.domain_id, own_slot, count);
+      new_writer.set_extra_unicast_destinations(
+        slots(SPDP_LOCALHOST_PEER_COUNT.max(own_slot)),
+        slots(SPDP_LOCALHOST_SLOTS),
+        SPDP_LOCALHOST_FULL_ANNOUNCEMENTS,
+      );
     }
 
     // The doorbell is a shared ready-queue plus the poll waker, not a
