@@ -154,6 +154,27 @@ impl DomainParticipantBuilder {
     self
   }
 
+  /// Say of which remote participants the readers may hold up our reliable
+  /// writers (default: of all).
+  ///
+  /// A reliable writer waits for its slowest reader when its send window is
+  /// full, and keeps samples for it. A reader for whose participant `may_block`
+  /// returns `false` is not waited for: not by `write`, nor by
+  /// `wait_for_acknowledgments`, nor in what is kept. It gets data and repairs
+  /// as far as samples are still there, and is told by GAP of those that are
+  /// not.
+  ///
+  /// `may_block` is asked once for each pair of writer and reader, when they are
+  /// matched, from the thread of the event loop. Built-in topics are not
+  /// affected.
+  pub fn reader_may_block(
+    mut self,
+    may_block: impl Fn(GuidPrefix) -> bool + Send + Sync + 'static,
+  ) -> Self {
+    self.event_loop_options.reader_may_block = Arc::new(may_block);
+    self
+  }
+
   pub const DEFAULT_SOCKET_RECEIVE_BUFFER_SIZE: usize = 8 * 1024 * 1024;
   pub const DEFAULT_SOCKET_SEND_BUFFER_SIZE: usize = 8 * 1024 * 1024;
 

@@ -80,12 +80,17 @@ pub struct DomainInfo {
 #[derive(Clone)]
 pub(crate) struct EventLoopOptions {
   pub max_fragmented_sample_size: usize,
+  pub reader_may_block: ReaderMayBlock,
 }
+
+/// Says whether Readers of a remote participant may hold up reliable Writers.
+pub(crate) type ReaderMayBlock = Arc<dyn Fn(GuidPrefix) -> bool + Send + Sync>;
 
 impl Default for EventLoopOptions {
   fn default() -> Self {
     Self {
       max_fragmented_sample_size: DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE,
+      reader_may_block: Arc::new(|_| true),
     }
   }
 }
@@ -163,6 +168,8 @@ pub struct DPEventLoop {
 
   // Memory that incomplete fragmented samples may take, over all Readers.
   fragment_budget: Rc<FragmentBudget>,
+
+  reader_may_block: ReaderMayBlock,
 }
 
 impl DPEventLoop {
@@ -282,6 +289,7 @@ impl DPEventLoop {
       discovery_command_sender,
       same_host_loopback,
       fragment_budget: Rc::new(FragmentBudget::new(options.max_fragmented_sample_size)),
+      reader_may_block: options.reader_may_block,
     })
   }
 
@@ -1162,6 +1170,7 @@ impl DPEventLoop {
     // - every writer may route a confirmed same-host peer over loopback.
     // See `src/rtps/loopback_same_host_design.md`.
     new_writer.set_prefer_loopback_same_host(self.same_host_loopback);
+    new_writer.set_reader_may_block(Arc::clone(&self.reader_may_block));
     if self.same_host_loopback
       && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
     {

@@ -56,6 +56,8 @@ pub(crate) struct RtpsReaderProxy {
   expects_in_line_qos: bool,
   /// Specifies whether the remote Reader is responsive to the Writer
   is_active: bool,
+  /// Whether a reliable Writer waits for this Reader. Set when matched.
+  pub may_block: bool,
 
   // Reader has positively acked all SequenceNumbers _before_ this.
   // This is directly the same as readerSNState.base in ACKNACK submessage.
@@ -110,6 +112,7 @@ impl RtpsReaderProxy {
       loopback_unicast_locators: Vec::default(),
       expects_in_line_qos,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),
@@ -240,6 +243,7 @@ impl RtpsReaderProxy {
       loopback_unicast_locators: Vec::new(),
       expects_in_line_qos: false,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),
@@ -319,6 +323,7 @@ impl RtpsReaderProxy {
       loopback_unicast_locators,
       expects_in_line_qos: discovered_reader_data.reader_proxy.expects_inline_qos,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),

@@ -33,6 +33,7 @@ use crate::{
       NACK_RESPONSE_DELAY, NACK_SUPPRESSION_DURATION, REPAIR_BATCH_MAX_BYTES,
       REPAIR_INTERVAL_DEFAULT, REPAIR_INTERVAL_MAX, REPAIR_INTERVAL_MIN,
     },
+    dp_event_loop::{EventLoopOptions, ReaderMayBlock},
     outbound::{SocketId, TrafficClass},
     rtps_reader_proxy::RtpsReaderProxy,
     timed_event::DpTimerEvent,
@@ -207,6 +208,9 @@ pub(crate) struct Writer {
   // default. Passed into `DefaultRouteSelector` on every route resolution.
   prefer_loopback_same_host: bool,
 
+  // Whose Readers may hold us up. See the participant builder.
+  reader_may_block: ReaderMayBlock,
+
   // Interface-aware transmit: per-remote observed receive interfaces/addresses,
   // shared (intra-thread) with the MessageReceiver that records them. Consulted
   // when (re)resolving each reader proxy's SendRoute.
@@ -352,6 +356,7 @@ impl Writer {
       extra_unicast_destinations: Vec::new(),
       first_unicast_destinations: RefCell::new((0, Vec::new())),
       prefer_loopback_same_host: true,
+      reader_may_block: EventLoopOptions::default().reader_may_block,
       interface_observations,
       local_interfaces,
       min_datagram_payload: FALLBACK_MAX_AGGREGATED_DATAGRAM_SIZE,
@@ -1352,7 +1357,7 @@ impl Writer {
     let frontier = self
       .readers
       .values()
-      .filter(|rp| rp.qos().is_reliable())
+      .filter(|rp| rp.may_block && rp.qos().is_reliable())
       .map(RtpsReaderProxy::acked_up_to_before)
       .min();
     self.send_buffer.set_acked_frontier(frontier);
@@ -1670,6 +1675,7 @@ impl Writer {
       let acked_by_all_readers = self
         .readers
         .values()
+        .filter(|rp| rp.may_block)
         .map(RtpsReaderProxy::acked_up_to_before)
         .min()
         .unwrap_or_else(SequenceNumber::zero);
@@ -1987,6 +1993,11 @@ impl Writer {
     self.prefer_loopback_same_host = enabled;
   }
 
+  /// See the participant-builder `reader_may_block`.
+  pub fn set_reader_may_block(&mut self, reader_may_block: ReaderMayBlock) {
+    self.reader_may_block = reader_may_block;
+  }
+
   pub fn update_reader_proxy(
     &mut self,
     reader_proxy: &RtpsReaderProxy,
@@ -2113,6 +2124,8 @@ impl Writer {
       .or_insert_with(|| {
         is_new = true;
         let mut new_proxy = updated_reader_proxy.clone();
+        new_proxy.may_block = self.my_guid.entity_id.kind().is_built_in()
+          || (self.reader_may_block)(new_proxy.remote_reader_guid.prefix);
         // Ensure loopback stays in the gated bucket even for proxies that
         // arrive with it inline (e.g. the built-in get_builtin_reader_proxy path).
         new_proxy.normalize_loopback();
@@ -3021,6 +3034,48 @@ mod tests {
     }
 
     // A repeated ACKNACK count is a copy and changes nothing; a new count does.
+    #[test]
+    fn a_reader_that_may_not_block_is_not_waited_for_but_repaired() {
+      let mut fixture = Fixture::user(10, 8, None);
+      let bystander = GuidPrefix::new(&[3; 12]);
+      fixture
+        .writer
+        .set_reader_may_block(std::sync::Arc::new(move |prefix| prefix != bystander));
+      let mut reader_proxy = fixture.reader_proxy().clone();
+      let waited_for = reader_proxy.remote_reader_guid;
+      reader_proxy.remote_reader_guid.prefix = bystander;
+      let bystander = reader_proxy.remote_reader_guid;
+      let qos = reader_proxy.qos().clone();
+      fixture.writer.update_reader_proxy(&reader_proxy, &qos);
+
+      let all = SequenceNumber::new(10);
+      let send_buffer = fixture.writer.send_buffer.clone();
+      assert!(!send_buffer.is_acked_through(all));
+      // The one that is waited for acknowledges, the other asks for repairs.
+      for (reader, base, requested) in [(waited_for, 11, vec![]), (bystander, 2, vec![2, 3])] {
+        let acknack = AckNack {
+          reader_id: reader.entity_id,
+          writer_id: fixture.writer.guid().entity_id,
+          reader_sn_state: SequenceNumberSet::from_base_and_set(
+            SequenceNumber::new(base),
+            &requested.into_iter().map(SequenceNumber::new).collect(),
+          ),
+          count: 1,
+        };
+        fixture
+          .writer
+          .handle_ack_nack(reader.prefix, &AckSubmessage::AckNack(acknack));
+      }
+      assert!(send_buffer.is_acked_through(all));
+      assert_eq!(
+        fixture.writer.readers[&bystander].first_unsent_change(),
+        Some(SequenceNumber::new(2))
+      );
+      // Alone, it counts as little.
+      fixture.writer.reader_lost(waited_for);
+      assert!(send_buffer.is_acked_through(all));
+    }
+
     #[test]
     fn duplicate_acknack_count_is_ignored() {
       let mut f = Fixture::user(5, 8, None);
