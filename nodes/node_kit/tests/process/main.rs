@@ -4,6 +4,7 @@
 
 mod leaving;
 mod roles;
+mod stopping;
 
 use node_kit::Network;
 use node_kit::dds::ClaimedDomain;

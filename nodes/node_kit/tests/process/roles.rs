@@ -2,7 +2,7 @@
 
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
-use node_kit::pingpong::bus_listen;
+use node_kit::pingpong::{bus_listen, bus_pong};
 use node_kit::{
     Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, Scope, run_node,
 };
@@ -140,4 +140,13 @@ fn our_listener() {
     }
     let (received, missing) = bus_listen(&mut bus("listener")).unwrap();
     println!("listener: received {received} missing {missing}");
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn answerer() {
+    if !is_child() {
+        return;
+    }
+    bus_pong(&mut bus("answerer")).unwrap();
 }

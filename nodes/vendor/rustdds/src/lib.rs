@@ -177,6 +177,8 @@ mod polling;
 mod serialization_test;
 #[macro_use]
 mod checked_impl;
+#[macro_use]
+mod log_sparsely;
 #[doc(hidden)]
 pub mod discovery; // to access some Discovered data in e.g. ros2-client crate
 mod messages;

@@ -39,14 +39,14 @@ use crate::{
     discovery_db::DiscoveryDB,
     sedp_messages::{DiscoveredReaderData, DiscoveredTopicData, DiscoveredWriterData},
   },
-  network::{constant::*, udp_listener::UDPListener},
+  network::{constant::*, udp_listener::UDPListener, util::unicast_bind_address},
   polling::{
     ready_channel, wake_channel, wake_channel_unbounded, LoopWaker, ReadySender, WakeReceiver,
     WakeSender, WakeUnboundedSender,
   },
   rtps::{
     constant::*,
-    dp_event_loop::{DPEventLoop, DomainInfo, EventLoopCommand},
+    dp_event_loop::{DPEventLoop, DomainInfo, EventLoopCommand, EventLoopOptions},
     reader::*,
     writer::WriterIngredients,
   },
@@ -83,6 +83,7 @@ pub struct DomainParticipantBuilder {
   guid_prefix: Option<GuidPrefix>, // random if None
 
   peer_hooks: PeerHooks,
+  event_loop_options: EventLoopOptions,
 
   socket_receive_buffer_size: usize,
   socket_send_buffer_size: usize,
@@ -101,6 +102,7 @@ impl DomainParticipantBuilder {
       same_host_loopback: true,
       guid_prefix: None,
       peer_hooks: PeerHooks::default(),
+      event_loop_options: EventLoopOptions::default(),
       socket_receive_buffer_size: Self::DEFAULT_SOCKET_RECEIVE_BUFFER_SIZE,
       socket_send_buffer_size: Self::DEFAULT_SOCKET_SEND_BUFFER_SIZE,
       #[cfg(feature = "security")]
@@ -110,14 +112,14 @@ impl DomainParticipantBuilder {
     }
   }
 
-  /// Filter which local network interfaces are used for multicast and
-  /// advertised in discovery.
+  /// Restrict the participant to some local network interfaces.
   ///
   /// When set, only interfaces whose IP address appears in `addrs` are used for
   /// multicast joins, multicast sends, and unicast locator advertisement.
-  ///
-  /// This is not a hard transport-level ACL: unicast sockets still bind to
-  /// wildcard addresses for the selected ports.
+  /// Datagrams that arrive on other interfaces, loopback excepted, are dropped
+  /// unread. If the only address is a loopback one, unicast sockets are bound to
+  /// it, and on Linux multicast sockets to the multicast group, so that the
+  /// kernel delivers nothing from elsewhere.
   pub fn with_only_networks(mut self, addrs: impl IntoIterator<Item = impl Into<IpAddr>>) -> Self {
     self.only_networks = Some(addrs.into_iter().map(Into::into).collect());
     self
@@ -166,6 +168,37 @@ impl DomainParticipantBuilder {
     listener: impl Fn(&ParticipantDescription) + Send + Sync + 'static,
   ) -> Self {
     self.peer_hooks.participant_listener = Some(std::sync::Arc::new(listener));
+    self
+  }
+
+  /// Largest sample, in bytes, that is assembled from fragments (default: 16
+  /// MiB). Larger ones are discarded.
+  ///
+  /// It also bounds the memory of incomplete samples: two of this size from one
+  /// remote Writer, four in the participant.
+  pub fn max_fragmented_sample_size(mut self, bytes: usize) -> Self {
+    self.event_loop_options.max_fragmented_sample_size = bytes;
+    self
+  }
+
+  /// Say of which remote participants the readers may hold up our reliable
+  /// writers (default: of all).
+  ///
+  /// A reliable writer waits for its slowest reader when its send window is
+  /// full, and keeps samples for it. A reader for whose participant `may_block`
+  /// returns `false` is not waited for: not by `write`, nor by
+  /// `wait_for_acknowledgments`, nor in what is kept. It gets data and repairs
+  /// as far as samples are still there, and is told by GAP of those that are
+  /// not.
+  ///
+  /// `may_block` is asked once for each pair of writer and reader, when they are
+  /// matched, from the thread of the event loop. Built-in topics are not
+  /// affected.
+  pub fn reader_may_block(
+    mut self,
+    may_block: impl Fn(GuidPrefix) -> bool + Send + Sync + 'static,
+  ) -> Self {
+    self.event_loop_options.reader_may_block = Arc::new(may_block);
     self
   }
 
@@ -388,6 +421,7 @@ impl DomainParticipantBuilder {
       self.only_networks,
       self.same_host_loopback,
       self.peer_hooks.clone(),
+      self.event_loop_options,
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -1024,6 +1058,7 @@ impl DomainParticipantDisc {
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
     peer_hooks: PeerHooks,
+    event_loop_options: EventLoopOptions,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1042,6 +1077,7 @@ impl DomainParticipantDisc {
       only_networks,
       same_host_loopback,
       peer_hooks,
+      event_loop_options,
       dp_waker,
       discovery_sample_sender,
     )?;
@@ -1285,6 +1321,7 @@ impl DomainParticipantInner {
     only_networks: Option<Vec<IpAddr>>,
     same_host_loopback: bool,
     peer_hooks: PeerHooks,
+    event_loop_options: EventLoopOptions,
     dp_waker: LoopWaker,
     discovery_sample_sender: ReadySender<mio1::Token>,
   ) -> CreateResult<Self> {
@@ -1293,6 +1330,7 @@ impl DomainParticipantInner {
 
     let only_networks: Option<Arc<[IpAddr]>> = only_networks.map(|v| v.into());
 
+    let unicast_host = unicast_bind_address(only_networks.as_deref()).to_string();
     let mut listeners = HashMap::new();
 
     match UDPListener::new_multicast_with_buf_size(
@@ -1316,9 +1354,10 @@ impl DomainParticipantInner {
     // Numbers"
     while discovery_listener.is_none() && participant_id < 120 {
       discovery_listener = UDPListener::new_unicast_with_buf_size(
-        "0.0.0.0",
+        &unicast_host,
         spdp_well_known_unicast_port(domain_id, participant_id),
         socket_receive_buffer_size,
+        only_networks.as_deref(),
       )
       .ok();
       if discovery_listener.is_none() {
@@ -1351,22 +1390,27 @@ impl DomainParticipantInner {
     }
 
     let user_traffic_listener = UDPListener::new_unicast_with_buf_size(
-      "0.0.0.0",
+      &unicast_host,
       user_traffic_unicast_port(domain_id, participant_id),
       socket_receive_buffer_size,
+      only_networks.as_deref(),
     )
     .or_else(|e| {
       if matches!(e.kind(), ErrorKind::AddrInUse) {
         // If we do not get the preferred listening port,
         // try again, with "any" port number.
-        UDPListener::new_unicast_with_buf_size("0.0.0.0", 0, socket_receive_buffer_size).or_else(
-          |e| {
-            create_error_out_of_resources!(
-              "Could not open unicast user traffic listener, any port number: {:?}",
-              e
-            )
-          },
+        UDPListener::new_unicast_with_buf_size(
+          &unicast_host,
+          0,
+          socket_receive_buffer_size,
+          only_networks.as_deref(),
         )
+        .or_else(|e| {
+          create_error_out_of_resources!(
+            "Could not open unicast user traffic listener, any port number: {:?}",
+            e
+          )
+        })
       } else {
         create_error_out_of_resources!("Could not open unicast user traffic listener: {e:?}")
       }
@@ -1391,11 +1435,14 @@ impl DomainParticipantInner {
     // Adding readers. Capacities match the previous mio-extras channels.
     let (sender_add_reader, receiver_add_reader) =
       wake_channel::<ReaderIngredients>(100, &dp_waker);
-    let (sender_remove_reader, receiver_remove_reader) = wake_channel::<GUID>(4, &dp_waker);
+    // Removals: an application drops all its endpoints at once when it ends, and
+    // the loop may not run for a while on a busy machine. A removal that does not
+    // fit leaves its endpoint behind.
+    let (sender_remove_reader, receiver_remove_reader) = wake_channel::<GUID>(1024, &dp_waker);
 
     // Writers
     let (add_writer_sender, add_writer_receiver) = wake_channel::<WriterIngredients>(10, &dp_waker);
-    let (remove_writer_sender, remove_writer_receiver) = wake_channel::<GUID>(4, &dp_waker);
+    let (remove_writer_sender, remove_writer_receiver) = wake_channel::<GUID>(1024, &dp_waker);
     let (reader_ready, reader_ready_rx) = ready_channel(&dp_waker);
     let (writer_ready, writer_ready_rx) = ready_channel(&dp_waker);
 
@@ -1462,6 +1509,7 @@ impl DomainParticipantInner {
           socket_send_buffer_size,
           same_host_loopback,
           peer_hooks,
+          event_loop_options,
           reader_ready_rx,
           writer_ready_rx,
           dp_waker,

@@ -763,7 +763,11 @@ impl InnerPublisher {
     self
       .remove_writer_sender
       .try_send_timeout(guid, std::time::Duration::from_millis(20))
-      .unwrap_or_else(|e| error!("Cannot remove Writer {guid:?} : {e:?}"));
+      .unwrap_or_else(|e| match e {
+        std::sync::mpsc::TrySendError::Full(_) => error!("Cannot remove Writer {guid:?} : {e:?}"),
+        // The event loop has ended, and the Writer with it.
+        std::sync::mpsc::TrySendError::Disconnected(_) => debug!("Writer {guid:?} is gone already"),
+      });
   }
 
   pub(crate) fn identity(&self) -> EntityId {
@@ -1413,7 +1417,11 @@ impl InnerSubscriber {
     self
       .sender_remove_reader
       .try_send_timeout(guid, std::time::Duration::from_millis(20))
-      .unwrap_or_else(|e| error!("Cannot remove Reader {guid:?} : {e:?}"));
+      .unwrap_or_else(|e| match e {
+        std::sync::mpsc::TrySendError::Full(_) => error!("Cannot remove Reader {guid:?} : {e:?}"),
+        // The event loop has ended, and the Reader with it.
+        std::sync::mpsc::TrySendError::Disconnected(_) => debug!("Reader {guid:?} is gone already"),
+      });
   }
 
   fn unwrap_or_new_entity_id(

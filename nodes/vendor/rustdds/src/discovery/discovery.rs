@@ -20,7 +20,7 @@ use crate::{
       QosPolicies, QosPolicyBuilder,
     },
     readcondition::ReadCondition,
-    result::{CreateError, CreateResult},
+    result::{CreateError, CreateResult, ReadError},
     statusevents::{DomainParticipantStatusEvent, LostReason, StatusChannelSender},
   },
   discovery::{
@@ -257,6 +257,8 @@ pub(crate) struct Discovery {
   // per-topic timers and the separate participant/topic cleanup and secure
   // resend timers), so discovery uses a single timer background thread.
   discovery_timer: SharedTimer<DiscoveryTimerEvent>,
+  // A one-shot announcement is scheduled already.
+  quick_response_pending: bool,
 
   // If security is enabled, this field contains a SecureDiscovery struct, an appendix
   // which is used for Secure functionality
@@ -681,6 +683,7 @@ impl Discovery {
       dcps_participant_message, // liveliness messages
 
       discovery_timer,
+      quick_response_pending: false,
 
       security_opt,
       #[cfg(feature = "security")]
@@ -737,6 +740,9 @@ impl Discovery {
       );
       match self.poll.poll(&mut events, Some(poll_timeout)) {
         Ok(_) => (),
+        // A signal, or a stop and continue of the process. `events` is empty;
+        // timers and queues are served below as after a timeout.
+        Err(e) if e.kind() == std::io::ErrorKind::Interrupted => (),
         Err(e) => {
           error!("Failed in waiting of poll in discovery. {e:?}");
           return;
@@ -856,6 +862,7 @@ impl Discovery {
             for timer_event in expired {
               match timer_event {
                 DiscoveryTimerEvent::SendParticipantInfo { reschedule } => {
+                  self.quick_response_pending = false;
                   if let Some(dp) = self.domain_participant.clone().upgrade() {
                     self.spdp_publish(&dp);
                   } else {
@@ -1046,6 +1053,8 @@ impl Discovery {
           trace!("spdp_receive: no more data");
           return;
         } // no more data
+        // Somebody sends what is not participant data. Go on with the next.
+        Err(ReadError::Deserialization { reason }) => warn_sparsely!("spdp_receive: {reason}"),
         Err(e) => {
           error!(" !!! spdp_receive: {e:?}");
           return;
@@ -1058,8 +1067,19 @@ impl Discovery {
     &mut self,
     participant_data: &SpdpDiscoveredParticipantData,
   ) {
-    let was_new = discovery_db_write(&self.discovery_db).update_participant(participant_data);
     let guid_prefix = participant_data.participant_guid.prefix;
+    if participant_data.participant_guid.entity_id != EntityId::PARTICIPANT {
+      debug!("Not a participant: {:?}", participant_data.participant_guid);
+      return;
+    }
+    let was_new = {
+      let mut db = discovery_db_write(&self.discovery_db);
+      if !db.has_room_for_participant(guid_prefix) {
+        warn_sparsely!("Too many participants in the domain: {guid_prefix:?} refused");
+        return;
+      }
+      db.update_participant(participant_data)
+    };
 
     if was_new {
       if let Some(listener) = &self.peer_hooks.participant_listener {
@@ -1086,8 +1106,9 @@ impl Discovery {
       // a previously unknown Participant, but this behavior is optional."
       //
       // But not to reply to self, because we know that we exist.
-      // TODO: Maybe add some rate-limiting to this to avoid packet storms.
-      if guid_prefix != self.domain_participant.guid().prefix {
+      if guid_prefix != self.domain_participant.guid().prefix && !self.quick_response_pending {
+        // One response serves all who came meanwhile.
+        self.quick_response_pending = true;
         // One-shot quick SPDP response on the shared timer (does not reschedule).
         self.discovery_timer.borrow_mut().set_timeout(
           StdDuration::from_millis(10),
@@ -1178,31 +1199,38 @@ impl Discovery {
 
   // Check if there are messages about new Readers
   pub fn sedp_receive_subscription(&mut self, read_history: Option<GuidPrefix>) {
-    let drds: Vec<Sample<DiscoveredReaderData, GUID>> =
+    let drds: Vec<Sample<DiscoveredReaderData, GUID>> = loop {
       match self.dcps_subscription.reader.into_iterator() {
-        Ok(ds) => ds
-          .map(|d| d.map_dispose(|g| g.0)) // map_dispose removes Endpoint_GUID wrapper around GUID
-          // into_iterator() took these samples out of the reader, so all of them
-          // must be processed, also when a participant was specified. A sample
-          // skipped here would be lost for good.
-          .inspect(|d| {
-            let reader_guid = match d {
-              Sample::Value(drd) => drd.reader_proxy.remote_reader_guid,
-              Sample::Dispose(guid) => *guid,
-            };
-            match read_history {
-              Some(participant) if participant != reader_guid.prefix => {
-                debug!("Rediscovery of {participant:?} processes pending reader {reader_guid:?}");
+        Ok(ds) => {
+          break ds
+            .map(|d| d.map_dispose(|g| g.0)) // map_dispose removes Endpoint_GUID wrapper around GUID
+            // into_iterator() took these samples out of the reader, so all of them
+            // must be processed, also when a participant was specified. A sample
+            // skipped here would be lost for good.
+            .inspect(|d| {
+              let reader_guid = match d {
+                Sample::Value(drd) => drd.reader_proxy.remote_reader_guid,
+                Sample::Dispose(guid) => *guid,
+              };
+              match read_history {
+                Some(participant) if participant != reader_guid.prefix => {
+                  debug!("Rediscovery of {participant:?} processes pending reader {reader_guid:?}");
+                }
+                _ => (),
               }
-              _ => (),
-            }
-          })
-          .collect(),
+            })
+            .collect()
+        }
+        // Somebody sends what is not endpoint data. Go on with the next.
+        Err(ReadError::Deserialization { reason }) => {
+          warn_sparsely!("sedp_receive_subscription: {reason}")
+        }
         Err(e) => {
           error!("sedp_receive_subscription: {e:?}");
           return;
         }
-      };
+      }
+    };
 
     for d in drds {
       #[cfg(not(feature = "security"))]
@@ -1221,6 +1249,9 @@ impl Discovery {
         match d {
           Sample::Value(d) => {
             trace!("sedp_receive_subscription - {d:?}");
+            if !discovery_db_read(&self.discovery_db).may_add_reader(&d) {
+              continue;
+            }
             let drd = discovery_db_write(&self.discovery_db).update_subscription(&d);
             debug!(
               "sedp_receive_subscription - send_discovery_notification ReaderUpdated  {:?}",
@@ -1254,34 +1285,41 @@ impl Discovery {
   }
 
   pub fn sedp_receive_publication(&mut self, read_history: Option<GuidPrefix>) {
-    let dwds: Vec<Sample<DiscoveredWriterData, GUID>> =
+    let dwds: Vec<Sample<DiscoveredWriterData, GUID>> = loop {
       match self.dcps_publication.reader.into_iterator() {
         // a lot of cloning here, but we must copy the data out of the
         // reader before we can use self again, as .read() returns references to within
         // a reader and thus self
-        Ok(ds) => ds
-          .map(|d| d.map_dispose(|g| g.0)) // map_dispose removes Endpoint_GUID wrapper around GUID
-          // into_iterator() took these samples out of the reader, so all of them
-          // must be processed, also when a participant was specified. A sample
-          // skipped here would be lost for good.
-          .inspect(|d| {
-            let writer_guid = match d {
-              Sample::Value(dwd) => dwd.writer_proxy.remote_writer_guid,
-              Sample::Dispose(guid) => *guid,
-            };
-            match read_history {
-              Some(participant) if participant != writer_guid.prefix => {
-                debug!("Rediscovery of {participant:?} processes pending writer {writer_guid:?}");
+        Ok(ds) => {
+          break ds
+            .map(|d| d.map_dispose(|g| g.0)) // map_dispose removes Endpoint_GUID wrapper around GUID
+            // into_iterator() took these samples out of the reader, so all of them
+            // must be processed, also when a participant was specified. A sample
+            // skipped here would be lost for good.
+            .inspect(|d| {
+              let writer_guid = match d {
+                Sample::Value(dwd) => dwd.writer_proxy.remote_writer_guid,
+                Sample::Dispose(guid) => *guid,
+              };
+              match read_history {
+                Some(participant) if participant != writer_guid.prefix => {
+                  debug!("Rediscovery of {participant:?} processes pending writer {writer_guid:?}");
+                }
+                _ => (),
               }
-              _ => (),
-            }
-          })
-          .collect(),
+            })
+            .collect()
+        }
+        // Somebody sends what is not endpoint data. Go on with the next.
+        Err(ReadError::Deserialization { reason }) => {
+          warn_sparsely!("sedp_receive_publication: {reason}")
+        }
         Err(e) => {
           error!("sedp_receive_publication: {e:?}");
           return;
         }
-      };
+      }
+    };
 
     for d in dwds {
       #[cfg(not(feature = "security"))]
@@ -1300,6 +1338,9 @@ impl Discovery {
         match d {
           Sample::Value(dwd) => {
             trace!("sedp_receive_publication discovered {:?}", dwd);
+            if !discovery_db_read(&self.discovery_db).may_add_writer(&dwd) {
+              continue;
+            }
             let discovered_writer_data =
               discovery_db_write(&self.discovery_db).update_publication(&dwd);
             self.send_discovery_notification(DiscoveryNotificationType::WriterUpdated {
@@ -1345,7 +1386,7 @@ impl Discovery {
         })
         .collect(),
       Err(e) => {
-        error!("sedp_receive_topic_data: {e:?}");
+        warn_sparsely!("sedp_receive_topic_data: {e:?}");
         return;
       }
     };
@@ -1419,7 +1460,7 @@ impl Discovery {
     {
       Ok(nonsecure_samples) => nonsecure_samples,
       Err(e) => {
-        error!("receive_participant_message: {e:?}");
+        warn_sparsely!("receive_participant_message: {e:?}");
         return;
       }
     };
@@ -1691,6 +1732,9 @@ impl Discovery {
           Sample::Value(sec_sub) => {
             // Currently we use only the DiscoveredReaderData field, no DataTag
             let drd_from_topic = sec_sub.discovered_reader_data;
+            if !discovery_db_read(&self.discovery_db).may_add_reader(&drd_from_topic) {
+              continue;
+            }
             let drd = discovery_db_write(&self.discovery_db).update_subscription(&drd_from_topic);
             self.send_discovery_notification(DiscoveryNotificationType::ReaderUpdated {
               discovered_reader_data: drd,
@@ -1738,6 +1782,9 @@ impl Discovery {
           Sample::Value(se_pub) => {
             // Currently we use only the DiscoveredWriterData field, no DataTag
             let dwd_from_topic = se_pub.discovered_writer_data;
+            if !discovery_db_read(&self.discovery_db).may_add_writer(&dwd_from_topic) {
+              continue;
+            }
             let dwd = discovery_db_write(&self.discovery_db).update_publication(&dwd_from_topic);
             self.send_discovery_notification(DiscoveryNotificationType::WriterUpdated {
               discovered_writer_data: dwd,
@@ -2152,7 +2199,7 @@ impl Discovery {
     self
       .participant_status_sender
       .try_send(event)
-      .unwrap_or_else(|e| error!("Cannot report participant status: {e:?}"));
+      .unwrap_or_else(|e| warn_sparsely!("Cannot report participant status: {e:?}"));
   }
 }
 
@@ -2429,7 +2476,7 @@ mod tests {
       .poll(&mut events, Some(StdDuration::from_secs(1)))
       .unwrap();
 
-    for _ in udp_listener.messages_bounded(usize::MAX) {
+    for _ in udp_listener.messages_bounded(usize::MAX).0 {
       info!("Message received");
     }
   }

@@ -1,4 +1,5 @@
 use std::{
+  cmp::min,
   collections::BTreeMap,
   sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard},
   time::Instant,
@@ -16,7 +17,7 @@ use crate::{
     topic::{Topic, TopicDescription},
   },
   rtps::{
-    reader::ReaderIngredients, rtps_reader_proxy::RtpsReaderProxy,
+    constant::MAX_LOCATORS_PER_LIST, reader::ReaderIngredients, rtps_reader_proxy::RtpsReaderProxy,
     rtps_writer_proxy::RtpsWriterProxy,
   },
   structure::{
@@ -44,6 +45,21 @@ const DEFAULT_PARTICIPANT_LEASE_DURATION: Duration = Duration::from_secs(60);
 
 // How much longer to wait than lease duration before pronouncing lost.
 const PARTICIPANT_LEASE_DURATION_TOLERANCE: Duration = Duration::from_secs(0);
+
+// What anyone on the network can fill is bounded. What does not fit is refused.
+const MAX_PARTICIPANTS: usize = 512;
+// Readers; as many Writers.
+const MAX_REMOTE_ENDPOINTS: usize = 4096;
+// Of them, while their participant is not known.
+const MAX_ENDPOINTS_OF_STRANGERS: usize = 256;
+const MAX_TOPIC_RECORDS: usize = 16 * 1024; // topic and who told of it
+
+// Bytes of topic name, type name and user data of one endpoint.
+const MAX_ENDPOINT_STRINGS: usize = 16 * 1024;
+
+// A participant of which nothing but its announcement is known is forgotten
+// after this silence, whatever lease it asks for.
+const MAX_LEASE_WITHOUT_ENDPOINTS: Duration = Duration::from_secs(60);
 
 // TODO: Let DiscoveryDB itself become thread-safe and support smaller-scope
 // lock
@@ -147,7 +163,52 @@ impl DiscoveryDB {
     self
       .participant_status_sender
       .try_send(event)
-      .unwrap_or_else(|e| error!("Cannot report participant status: {e:?}"));
+      .unwrap_or_else(|e| warn_sparsely!("Cannot report participant status: {e:?}"));
+  }
+
+  /// Is there room for this participant, or is it known already?
+  pub fn has_room_for_participant(&self, guid_prefix: GuidPrefix) -> bool {
+    self.participant_proxies.len() < MAX_PARTICIPANTS
+      || self.participant_proxies.contains_key(&guid_prefix)
+  }
+
+  fn may_add_endpoint(&self, guid: GUID, strings: usize, is_known: bool, count: usize) -> bool {
+    // Endpoints are removed with their participant. One that is not known (yet)
+    // may never be removed.
+    let limit = if self.participant_proxies.contains_key(&guid.prefix) {
+      MAX_REMOTE_ENDPOINTS
+    } else {
+      MAX_ENDPOINTS_OF_STRANGERS
+    };
+    let may = is_known || (count < limit && strings <= MAX_ENDPOINT_STRINGS);
+    if !may {
+      warn_sparsely!("Too many remote endpoints, or too long names: {guid:?} refused");
+    }
+    may
+  }
+
+  /// Is there room for this remote Reader?
+  pub fn may_add_reader(&self, data: &DiscoveredReaderData) -> bool {
+    let guid = data.reader_proxy.remote_reader_guid;
+    let topic = &data.subscription_topic_data;
+    self.may_add_endpoint(
+      guid,
+      topic.topic_name().len() + topic.type_name().len() + data.user_data.len(),
+      self.external_topic_readers.contains_key(&guid),
+      self.external_topic_readers.len(),
+    )
+  }
+
+  /// Is there room for this remote Writer?
+  pub fn may_add_writer(&self, data: &DiscoveredWriterData) -> bool {
+    let guid = data.writer_proxy.remote_writer_guid;
+    let topic = &data.publication_topic_data;
+    self.may_add_endpoint(
+      guid,
+      topic.topic_name.len() + topic.type_name.len() + data.user_data.len(),
+      self.external_topic_writers.contains_key(&guid),
+      self.external_topic_writers.len(),
+    )
   }
 
   // Returns if participant was previously unknown
@@ -157,7 +218,7 @@ impl DiscoveryDB {
 
     // sanity check
     if guid.entity_id != EntityId::PARTICIPANT {
-      error!("Discovered participant GUID entity_id is not for participant: {guid:?}");
+      warn_sparsely!("Discovered participant GUID entity_id is not for participant: {guid:?}");
       // Maybe we should discard the participant here?
       return false;
     }
@@ -198,7 +259,16 @@ impl DiscoveryDB {
 
     // In any case:
     // Update SpdpDiscoveredParticipantData to DB
-    self.participant_proxies.insert(guid.prefix, data.clone());
+    let mut stored = data.clone();
+    for locators in [
+      &mut stored.metatraffic_unicast_locators,
+      &mut stored.metatraffic_multicast_locators,
+      &mut stored.default_unicast_locators,
+      &mut stored.default_multicast_locators,
+    ] {
+      locators.truncate(MAX_LOCATORS_PER_LIST); // each is sent to
+    }
+    self.participant_proxies.insert(guid.prefix, stored);
     // Timestamp last life sign fro participant
     self
       .participant_last_life_signs
@@ -247,6 +317,13 @@ impl DiscoveryDB {
         &mut self.external_topic_writers,
         &mut self.external_topic_writers_attic,
       );
+      // It is only a convenience for those who come back.
+      if self.external_topic_readers_attic.len() > MAX_REMOTE_ENDPOINTS {
+        self.external_topic_readers_attic.clear();
+      }
+      if self.external_topic_writers_attic.len() > MAX_REMOTE_ENDPOINTS {
+        self.external_topic_writers_attic.clear();
+      }
     }
   }
 
@@ -314,6 +391,11 @@ impl DiscoveryDB {
       let lease_duration = sp
         .lease_duration
         .unwrap_or(DEFAULT_PARTICIPANT_LEASE_DURATION);
+      let lease_duration = if guid == self.my_guid.prefix || self.has_endpoints(guid) {
+        lease_duration
+      } else {
+        min(lease_duration, MAX_LEASE_WITHOUT_ENDPOINTS)
+      };
       // let lease_duration = lease_duration + lease_duration; // double it
       match self.participant_last_life_signs.get(&guid) {
         Some(&last_life) => {
@@ -346,6 +428,19 @@ impl DiscoveryDB {
     }
 
     to_remove
+  }
+
+  fn has_endpoints(&self, guid_prefix: GuidPrefix) -> bool {
+    self
+      .external_topic_readers
+      .range(guid_prefix.range())
+      .next()
+      .is_some()
+      || self
+        .external_topic_writers
+        .range(guid_prefix.range())
+        .next()
+        .is_some()
   }
 
   fn topic_has_writers_or_readers(&self, topic_name: &str) -> bool {
@@ -397,6 +492,12 @@ impl DiscoveryDB {
     for dt in &dead_topics {
       self.topics.remove(dt);
     }
+    // nor what participants told that are gone
+    let (participants, my_prefix) = (&self.participant_proxies, self.my_guid.prefix);
+    for told in self.topics.values_mut() {
+      told.retain(|by, _| by.prefix == my_prefix || participants.contains_key(&by.prefix));
+    }
+    self.topics.retain(|_, told| !told.is_empty());
   }
 
   pub fn update_local_topic_writer(&mut self, writer: DiscoveredWriterData) {
@@ -450,7 +551,7 @@ impl DiscoveryDB {
 
     // Build enriched data with participant's default locators filled in, so that
     // later lookups via readers_on_topic() return usable locator information.
-    let enriched = DiscoveredReaderData {
+    let mut enriched = DiscoveredReaderData {
       reader_proxy: ReaderProxy::from(RtpsReaderProxy::from_discovered_reader_data(
         data,
         &default_locator_lists.0,
@@ -459,6 +560,14 @@ impl DiscoveryDB {
       ..data.clone()
     };
 
+    enriched
+      .reader_proxy
+      .unicast_locator_list
+      .truncate(MAX_LOCATORS_PER_LIST);
+    enriched
+      .reader_proxy
+      .multicast_locator_list
+      .truncate(MAX_LOCATORS_PER_LIST);
     self.external_topic_readers.insert(guid, enriched.clone());
     debug!("External reader: {enriched:?}");
 
@@ -507,7 +616,7 @@ impl DiscoveryDB {
 
     // Build enriched data with participant's default locators filled in, so that
     // later lookups via writers_on_topic() return usable locator information.
-    let enriched = DiscoveredWriterData {
+    let mut enriched = DiscoveredWriterData {
       writer_proxy: WriterProxy::from(RtpsWriterProxy::from_discovered_writer_data(
         data,
         &default_locator_lists.0,
@@ -516,6 +625,14 @@ impl DiscoveryDB {
       ..data.clone()
     };
 
+    enriched
+      .writer_proxy
+      .unicast_locator_list
+      .truncate(MAX_LOCATORS_PER_LIST);
+    enriched
+      .writer_proxy
+      .multicast_locator_list
+      .truncate(MAX_LOCATORS_PER_LIST);
     self.external_topic_writers.insert(guid, enriched.clone());
     debug!("External writer: {enriched:?}");
 
@@ -554,6 +671,18 @@ impl DiscoveryDB {
     discovered_via: DiscoveredVia,
   ) {
     trace!("Update topic data: {:?}", dtd);
+    let is_known = self
+      .topics
+      .get(&dtd.topic_data.name)
+      .is_some_and(|told| told.contains_key(&updater));
+    if !is_known
+      && updater.prefix != self.my_guid.prefix
+      && (dtd.topic_data.name.len() + dtd.topic_data.type_name.len() > MAX_ENDPOINT_STRINGS
+        || self.topics.values().map(BTreeMap::len).sum::<usize>() >= MAX_TOPIC_RECORDS)
+    {
+      warn_sparsely!("Too many topics, or too long names: topic data of {updater:?} refused");
+      return;
+    }
     let topic_name = dtd.topic_data.name.clone();
     let mut notify = false;
     let mut inconsistency_event_to_send = None;
@@ -850,7 +979,7 @@ mod tests {
     mio_source,
     polling::{wake_channel, LoopWaker},
     serialization::CDRSerializerAdapter,
-    structure::guid::*,
+    structure::{guid::*, locator::Locator},
     test::{
       random_data::RandomData,
       test_data::{reader_proxy_data, spdp_participant_data, subscription_builtin_topic_data},
@@ -883,6 +1012,47 @@ mod tests {
     assert!(discoverydb.participant_proxies.is_empty());
 
     // TODO: more operations tests
+  }
+
+  #[test]
+  fn what_a_flood_of_announcements_can_fill_is_bounded() {
+    let (event_sender, _event_receiver) = std::sync::mpsc::sync_channel::<()>(4);
+    let (status_sender, _status_receiver) = sync_status_channel(16).unwrap();
+    let mut db = DiscoveryDB::new(GUID::new_participant_guid(), event_sender, status_sender);
+
+    let mut data = spdp_participant_data().unwrap();
+    data.default_unicast_locators = vec![Locator::Invalid; 1000];
+    let mut last_known = data.participant_guid;
+    for _ in 0..2 * MAX_PARTICIPANTS {
+      data.participant_guid = GUID::new_participant_guid();
+      if db.has_room_for_participant(data.participant_guid.prefix) {
+        db.update_participant(&data);
+        last_known = data.participant_guid;
+      }
+    }
+    assert_eq!(db.participant_proxies.len(), MAX_PARTICIPANTS);
+    assert!(db.has_room_for_participant(last_known.prefix));
+    let known = db.find_participant_proxy(last_known.prefix).unwrap();
+    assert_eq!(known.default_unicast_locators.len(), MAX_LOCATORS_PER_LIST);
+
+    let mut reader = DiscoveredReaderData::default("topic".into(), "type".into());
+    let mut flood = |prefix| {
+      for i in 0..2 * MAX_REMOTE_ENDPOINTS as u32 {
+        let key = [(i >> 16) as u8, (i >> 8) as u8, i as u8];
+        let id = EntityId::new(key, EntityKind::READER_NO_KEY_USER_DEFINED);
+        reader.reader_proxy.remote_reader_guid = GUID::new(prefix, id);
+        if db.may_add_reader(&reader) {
+          db.update_subscription(&reader);
+        }
+      }
+      db.external_topic_readers.len()
+    };
+    assert_eq!(flood(GuidPrefix::UNKNOWN), MAX_ENDPOINTS_OF_STRANGERS);
+    assert_eq!(flood(last_known.prefix), MAX_REMOTE_ENDPOINTS);
+    reader.reader_proxy.remote_reader_guid.entity_id = EntityId::UNKNOWN;
+    reader.user_data = vec![0; MAX_ENDPOINT_STRINGS];
+    db.external_topic_readers.clear();
+    assert!(!db.may_add_reader(&reader));
   }
 
   #[test]

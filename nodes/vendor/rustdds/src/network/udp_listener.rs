@@ -4,14 +4,15 @@ use std::{
   net::{IpAddr, Ipv4Addr, SocketAddr},
 };
 
-use log::{debug, error, info, trace, warn};
+use log::{debug, info, trace, warn};
 use socket2::{Domain, Protocol, SockAddr, Socket, Type};
 use bytes::{Bytes, BytesMut};
 
 use crate::{
   network::util::{
-    build_ifindex_to_interface_map, get_local_multicast_ip_addrs_filtered,
-    get_local_multicast_locators, get_local_unicast_locators_filtered,
+    allowed_interface_indices, build_ifindex_to_interface_map,
+    get_local_multicast_ip_addrs_filtered, get_local_multicast_locators,
+    get_local_unicast_locators_filtered,
   },
   rtps::transmit::InterfaceSelector,
   serialization::padding_needed_for_alignment_4,
@@ -51,21 +52,26 @@ pub struct UDPListener {
   socket: mio1::net::UdpSocket,
   receive_buffer: BytesMut,
   multicast_group: Option<Ipv4Addr>,
-  has_multicast_join: bool,
+  // Where the group was joined; it has to be left on the same interfaces.
+  joined_multicast_interfaces: Vec<Ipv4Addr>,
   // Cached OS interface-index -> local interface map, used to resolve the
   // receiving interface reported by IP_PKTINFO. Built once at construction.
   ifindex_map: HashMap<u32, InterfaceSelector>,
+  // With `only_networks`: OS indices of the interfaces a datagram may arrive on.
+  // Anything else is dropped before it is looked at. `None` accepts all.
+  allowed_ifindices: Option<Vec<u32>>,
 }
 
 impl Drop for UDPListener {
   fn drop(&mut self) {
     if let Some(mcg) = self.multicast_group {
-      self
-        .socket
-        .leave_multicast_v4(&mcg, &Ipv4Addr::UNSPECIFIED)
-        .unwrap_or_else(|e| {
-          error!("leave_multicast_group: {e:?}");
-        });
+      for interface in &self.joined_multicast_interfaces {
+        // The interface may be gone meanwhile. Closing the socket leaves anyway.
+        self
+          .socket
+          .leave_multicast_v4(&mcg, interface)
+          .unwrap_or_else(|e| debug!("leave_multicast_group on {interface}: {e:?}"));
+      }
     }
   }
 }
@@ -76,6 +82,7 @@ impl UDPListener {
     port: u16,
     reuse_addr: bool,
     recv_buffer_size: usize,
+    only_joined_groups: bool,
   ) -> io::Result<mio1::net::UdpSocket> {
     let raw_socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
 
@@ -127,6 +134,15 @@ impl UDPListener {
       }
     }
 
+    // By default, Linux delivers a group's datagrams from every interface on
+    // which any process of the host has joined that group.
+    #[cfg(target_os = "linux")]
+    if only_joined_groups {
+      raw_socket.set_multicast_all_v4(false)?;
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = only_joined_groups; // the interface filter of recv_one() has to do
+
     // Ask the kernel to attach IP_PKTINFO to received datagrams so we can learn
     // which local interface each one arrived on. Best-effort: if it fails we
     // simply lose interface metadata and fall back to the legacy send path.
@@ -170,7 +186,9 @@ impl UDPListener {
     let local_port = self.socket.local_addr()?.port();
 
     match self.multicast_group {
-      Some(_ipv4_addr) if self.has_multicast_join => Ok(get_local_multicast_locators(local_port)),
+      Some(_ipv4_addr) if !self.joined_multicast_interfaces.is_empty() => {
+        Ok(get_local_multicast_locators(local_port))
+      }
       Some(_ipv4_addr) => Ok(vec![]),
       None => Ok(get_local_unicast_locators_filtered(
         local_port,
@@ -181,22 +199,24 @@ impl UDPListener {
 
   #[cfg(test)]
   pub fn new_unicast(host: &str, port: u16) -> io::Result<Self> {
-    Self::new_unicast_with_buf_size(host, port, 0)
+    Self::new_unicast_with_buf_size(host, port, 0, None)
   }
 
   pub fn new_unicast_with_buf_size(
     host: &str,
     port: u16,
     recv_buffer_size: usize,
+    only_networks: Option<&[IpAddr]>,
   ) -> io::Result<Self> {
-    let mio_socket = Self::new_listening_socket(host, port, false, recv_buffer_size)?;
+    let mio_socket = Self::new_listening_socket(host, port, false, recv_buffer_size, false)?;
 
     Ok(Self {
       socket: mio_socket,
       receive_buffer: BytesMut::with_capacity(MESSAGE_BUFFER_ALLOCATION_CHUNK),
       multicast_group: None,
-      has_multicast_join: false,
+      joined_multicast_interfaces: Vec::new(),
       ifindex_map: build_ifindex_to_interface_map(),
+      allowed_ifindices: only_networks.map(allowed_interface_indices),
     })
   }
 
@@ -216,16 +236,23 @@ impl UDPListener {
       return io::Result::Err(io::Error::other("Not a multicast address"));
     }
 
-    let mio_socket = Self::new_listening_socket(host, port, true, recv_buffer_size)?;
-    let mut joined_multicast = false;
+    // A socket bound to the group hears nothing but the group. Elsewhere than on
+    // Linux binding to a group may be refused.
+    let group_address = multicast_group.to_string();
+    let host = if cfg!(target_os = "linux") && only_networks.is_some() {
+      group_address.as_str()
+    } else {
+      host
+    };
+    let mio_socket =
+      Self::new_listening_socket(host, port, true, recv_buffer_size, only_networks.is_some())?;
+    let mut joined_multicast_interfaces = Vec::new();
 
     for multicast_if_ipaddr in get_local_multicast_ip_addrs_filtered(only_networks)? {
       match multicast_if_ipaddr {
         IpAddr::V4(a) => mio_socket
           .join_multicast_v4(&multicast_group, &a)
-          .map(|()| {
-            joined_multicast = true;
-          })
+          .map(|()| joined_multicast_interfaces.push(a))
           .unwrap_or_else(|e| {
             warn!(
               "join_multicast_v4 failed: {e:?}. multicast_group [{multicast_group:?}] interface \
@@ -233,23 +260,12 @@ impl UDPListener {
             );
           }),
 
-        IpAddr::V6(addr) => {
-          mio_socket
-            .join_multicast_v6(&addr, 0)
-            .map(|()| {
-              joined_multicast = true;
-            })
-            .unwrap_or_else(|e| {
-              warn!(
-                "join_multicast_v6 failed. err: {e}. mcast group: [{multicast_group:?}], \
-                 addr:[{addr:?}]"
-              );
-            });
-        }
+        // The group and the socket are IPv4; such interfaces are filtered out.
+        IpAddr::V6(_) => {}
       }
     }
 
-    if !joined_multicast {
+    if joined_multicast_interfaces.is_empty() {
       warn!(
         "No multicast joins succeeded for group {multicast_group:?}; multicast locator will not \
          be advertised."
@@ -260,8 +276,9 @@ impl UDPListener {
       socket: mio_socket,
       receive_buffer: BytesMut::with_capacity(MESSAGE_BUFFER_ALLOCATION_CHUNK),
       multicast_group: Some(multicast_group),
-      has_multicast_join: joined_multicast,
+      joined_multicast_interfaces,
       ifindex_map: build_ifindex_to_interface_map(),
+      allowed_ifindices: only_networks.map(allowed_interface_indices),
     })
   }
 
@@ -308,21 +325,19 @@ impl UDPListener {
     panic!("test helper didn't recv message after ten attempts.");
   }
 
-  /// Drain up to `max_messages` datagrams waiting in the socket, each paired
+  /// Read up to `max_messages` datagrams waiting in the socket, each paired
   /// with its [`PacketOrigin`] (source address + receiving interface, when
-  /// available). Pass `usize::MAX` to read everything currently queued.
+  /// available). The flag tells whether the socket was emptied.
   ///
-  /// The reactor registers listeners edge-triggered, so it must pass
-  /// `usize::MAX`: a datagram left unread does not produce another readiness
-  /// event. `Ok(None)` from [`recv_one`](Self::recv_one) (`WouldBlock`) ends
-  /// the drain.
-  pub fn messages_bounded(&mut self, max_messages: usize) -> Vec<(Bytes, PacketOrigin)> {
+  /// The reactor registers listeners edge-triggered: a datagram left unread does
+  /// not produce another readiness event, so a socket that was not emptied has
+  /// to be read again. `Ok(None)` from [`recv_one`](Self::recv_one)
+  /// (`WouldBlock`) ends the drain.
+  pub fn messages_bounded(&mut self, max_messages: usize) -> (Vec<(Bytes, PacketOrigin)>, bool) {
     let mut messages = Vec::with_capacity(4);
 
-    loop {
-      if messages.len() >= max_messages {
-        return messages;
-      }
+    // Counts refused datagrams, too.
+    for _ in 0..max_messages {
       // Loop invariant. Note that capacity() may be large, but .len() == 0.
       assert_eq!(self.receive_buffer.len(), 0);
 
@@ -343,16 +358,26 @@ impl UDPListener {
         self.receive_buffer.capacity()
       );
       let (nbytes, origin) = match self.recv_one() {
-        Ok(Some(received)) => received,
+        Ok(Some(Some(received))) => received,
+        Ok(Some(None)) => {
+          // Arrived on an interface that is not ours to listen to.
+          self.receive_buffer.clear();
+          continue;
+        }
         Ok(None) => {
           // WouldBlock: nothing (more) to read.
           self.receive_buffer.clear();
-          return messages;
+          return (messages, true);
+        }
+        // Reading must go on until WouldBlock: the poll is edge-triggered.
+        Err(e) if e.kind() == io::ErrorKind::Interrupted => {
+          self.receive_buffer.clear();
+          continue;
         }
         Err(e) => {
           self.receive_buffer.clear();
-          warn!("socket recv() error: {e:?}");
-          return messages;
+          warn_sparsely!("socket recv() error: {e:?}");
+          return (messages, true);
         }
       };
       // Something was received.
@@ -385,15 +410,14 @@ impl UDPListener {
       message.truncate(nbytes); // discard (hide) padding
       messages.push((Bytes::from(message), origin)); // freeze bytes and push
     } // loop
-
-    // unreachable!(); // But why does this cause a warning? (rustc 1.66.0)
-    // Answer: https://github.com/rust-lang/rust/issues/46500
+    (messages, false)
   }
 
   /// Receive a single datagram into `self.receive_buffer`, capturing its
-  /// [`PacketOrigin`]. Returns `Ok(None)` when the socket would block.
+  /// [`PacketOrigin`]. Returns `Ok(None)` when the socket would block, and
+  /// `Ok(Some(None))` for a datagram from an interface outside `only_networks`.
   #[cfg(unix)]
-  fn recv_one(&mut self) -> io::Result<Option<(usize, PacketOrigin)>> {
+  fn recv_one(&mut self) -> io::Result<Option<Option<(usize, PacketOrigin)>>> {
     use std::{io::IoSliceMut, os::unix::io::AsRawFd};
 
     use nix::{
@@ -439,29 +463,36 @@ impl UDPListener {
       (nbytes, source, ifindex, spec_dst)
     };
 
+    // Index 0: the kernel did not tell.
+    if let Some(allowed) = &self.allowed_ifindices {
+      if ifindex != 0 && !allowed.contains(&ifindex) {
+        return Ok(Some(None));
+      }
+    }
+
     // Prefer the exact local destination address (matches sender interface
     // keys directly); otherwise resolve the interface index.
     let local_if = spec_dst
       .map(InterfaceSelector::Ip)
       .or_else(|| self.ifindex_map.get(&ifindex).copied());
 
-    Ok(Some((nbytes, PacketOrigin { source, local_if })))
+    Ok(Some(Some((nbytes, PacketOrigin { source, local_if }))))
   }
 
   /// Non-Unix fallback: capture the source address only (no interface info).
   #[cfg(not(unix))]
-  fn recv_one(&mut self) -> io::Result<Option<(usize, PacketOrigin)>> {
+  fn recv_one(&mut self) -> io::Result<Option<Option<(usize, PacketOrigin)>>> {
     match self
       .socket
       .recv_from(&mut self.receive_buffer[..MAX_MESSAGE_SIZE])
     {
-      Ok((nbytes, source)) => Ok(Some((
+      Ok((nbytes, source)) => Ok(Some(Some((
         nbytes,
         PacketOrigin {
           source: Some(source),
           local_if: None,
         },
-      ))),
+      )))),
       Err(e) if e.kind() == io::ErrorKind::WouldBlock => Ok(None),
       Err(e) => Err(e),
     }

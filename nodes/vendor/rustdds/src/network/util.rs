@@ -248,6 +248,40 @@ fn get_local_multicast_ip_addrs_inner(
     .collect()
 }
 
+/// OS indices of the interfaces on which a participant restricted to
+/// `only_networks` listens: those that carry one of the addresses, and
+/// loopback, over which everything from this host arrives.
+pub fn allowed_interface_indices(only_networks: &[IpAddr]) -> Vec<u32> {
+  match enumerate_interfaces() {
+    Ok(ifaces) => allowed_interface_indices_inner(&ifaces, only_networks),
+    Err(e) => {
+      error!("Cannot enumerate local interfaces to restrict listening: {e:?}");
+      Vec::new()
+    }
+  }
+}
+
+fn allowed_interface_indices_inner(ifaces: &[IfAddr], only_networks: &[IpAddr]) -> Vec<u32> {
+  let mut indices: Vec<u32> = ifaces
+    .iter()
+    .filter(|ifa| ifa.is_loopback || only_networks.contains(&ifa.ip))
+    .map(|ifa| ifa.index)
+    .collect();
+  indices.sort_unstable();
+  indices.dedup();
+  indices
+}
+
+/// The address to bind unicast sockets to: loopback, if the participant is
+/// restricted to it, so that the kernel delivers nothing else. Any other
+/// restriction has to leave room for same-host peers that send to loopback.
+pub fn unicast_bind_address(only_networks: Option<&[IpAddr]>) -> Ipv4Addr {
+  match only_networks {
+    Some([IpAddr::V4(only)]) if only.is_loopback() => *only,
+    _ => Ipv4Addr::UNSPECIFIED,
+  }
+}
+
 /// Builds a mapping from OS interface index to an [`InterfaceSelector`].
 ///
 /// Used to resolve the `ipi_ifindex` reported by `IP_PKTINFO`/`IPV6_PKTINFO`
@@ -290,8 +324,9 @@ mod tests {
   use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
   use super::{
-    build_ifindex_map_inner, get_local_multicast_ip_addrs_inner, get_local_unicast_locators_inner,
-    localhost_spdp_peer_locators, path_mtu_payload_for_peer, IfAddr, InterfaceSelector,
+    allowed_interface_indices_inner, build_ifindex_map_inner, get_local_multicast_ip_addrs_inner,
+    get_local_unicast_locators_inner, localhost_spdp_peer_locators, path_mtu_payload_for_peer,
+    unicast_bind_address, IfAddr, InterfaceSelector,
   };
   use crate::{
     network::constant::spdp_well_known_unicast_port,
@@ -532,6 +567,31 @@ mod tests {
     assert_eq!(
       path_mtu_payload_for_peer(&[], v4(192, 168, 1, 1)),
       FALLBACK_MAX_AGGREGATED_DATAGRAM_SIZE
+    );
+  }
+
+  #[test]
+  fn restricted_listening_covers_given_and_loopback_interfaces_only() {
+    let ifaces = [
+      iface(v4(127, 0, 0, 1), 1, true, false),
+      iface(v4(192, 0, 2, 1), 2, false, true),
+      iface(v4(198, 51, 100, 1), 3, false, true),
+    ];
+    let allowed = |nets: &[IpAddr]| allowed_interface_indices_inner(&ifaces, nets);
+    assert_eq!(allowed(&[v4(127, 0, 0, 1)]), vec![1]);
+    assert_eq!(allowed(&[v4(198, 51, 100, 1)]), vec![1, 3]);
+  }
+
+  #[test]
+  fn sockets_are_bound_to_loopback_only_if_nothing_else_is_allowed() {
+    let lo = v4(127, 0, 0, 1);
+    assert_eq!(unicast_bind_address(Some(&[lo])), Ipv4Addr::LOCALHOST);
+    assert_eq!(unicast_bind_address(None), Ipv4Addr::UNSPECIFIED);
+    let both = [lo, v4(192, 0, 2, 1)];
+    assert_eq!(unicast_bind_address(Some(&both)), Ipv4Addr::UNSPECIFIED);
+    assert_eq!(
+      unicast_bind_address(Some(&both[1..])),
+      Ipv4Addr::UNSPECIFIED
     );
   }
 

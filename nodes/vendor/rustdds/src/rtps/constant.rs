@@ -67,14 +67,24 @@ pub const DEFAULT_WRITER_MAX_SAMPLES: usize = 8192;
 // dropped (they are the least useful to retransmit).
 pub const MAX_UNSENT_CHANGES_PER_READER: usize = DEFAULT_WRITER_MAX_SAMPLES;
 
-// Memory-safety backstop for the per-matched-writer map of received/irrelevant
-// sequence numbers a Reader tracks (`RtpsWriterProxy::changes`). Entries below
-// `ack_base` are pruned eagerly, but under best-effort loss `ack_base` can
-// stall at a permanently missing sample while received sequence numbers pile up
-// above it. When the map exceeds this cap, `ack_base` is forced forward past
-// the oldest gap (those old samples are given up as lost) so the map stays
-// bounded.
-pub const MAX_TRACKED_CHANGES_PER_WRITER: usize = DEFAULT_WRITER_MAX_SAMPLES;
+// Memory-safety backstop for the per-matched-writer set of ranges of sequence
+// numbers that a Reader has received or knows to be unavailable
+// (`RtpsWriterProxy::accounted`). Under best-effort loss, or with a pathological
+// peer, ranges can pile up above a permanently missing sample. Beyond this,
+// the oldest missing samples are given up as lost.
+pub const MAX_TRACKED_RANGES_PER_WRITER: usize = DEFAULT_WRITER_MAX_SAMPLES;
+
+// The most sequence numbers that one ACKNACK can request, RTPS v2.5 Section
+// "8.3.5.5 SequenceNumberSet".
+pub const MAX_MISSING_WINDOW: i64 = 256;
+
+// How far a Writer can get ahead of what a Reader has heard from it. Packets
+// that claim more are mutated, forged, or from a Writer not heard for long.
+pub const MAX_PLAUSIBLE_SEQUENCE_JUMP: i64 = 1 << 20;
+
+// Locators taken from one list of a packet. Hosts have fewer interfaces, and
+// each locator is sent to.
+pub const MAX_LOCATORS_PER_LIST: usize = 16;
 
 // Most payload bytes a TopicCache retains for samples withheld from Reliable
 // DataReaders while an earlier sample from the same Writer is missing. Beyond

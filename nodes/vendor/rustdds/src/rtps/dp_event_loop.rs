@@ -25,7 +25,9 @@ use crate::{
   },
   messages::submessages::submessages::AckSubmessage,
   network::{
-    constant::SPDP_LOCALHOST_PEER_COUNT,
+    constant::{
+      SPDP_LOCALHOST_FULL_ANNOUNCEMENTS, SPDP_LOCALHOST_PEER_COUNT, SPDP_LOCALHOST_SLOTS,
+    },
     udp_listener::UDPListener,
     udp_sender::UDPSender,
     util::{local_interface_table, localhost_spdp_peer_locators, IfAddr},
@@ -37,6 +39,7 @@ use crate::{
   //qos::HasQoSPolicy,
   rtps::{
     constant::*,
+    fragment_assembler::{FragmentBudget, DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE},
     message_receiver::MessageReceiver,
     outbound::SocketId,
     reader::{Reader, ReaderIngredients},
@@ -64,11 +67,33 @@ use crate::{
 #[cfg(not(feature = "security"))]
 use crate::no_security::security_plugins::SecurityPluginsHandle;
 
+// Datagrams read from one socket before others are served.
+const MAX_DATAGRAMS_PER_BATCH: usize = 256;
+
 #[derive(Clone, Debug)]
 pub struct DomainInfo {
   pub domain_participant_guid: GUID,
   pub domain_id: u16,
   pub participant_id: u16,
+}
+
+/// What the builder of the participant sets for the event loop alone.
+#[derive(Clone)]
+pub(crate) struct EventLoopOptions {
+  pub max_fragmented_sample_size: usize,
+  pub reader_may_block: ReaderMayBlock,
+}
+
+/// Says whether Readers of a remote participant may hold up reliable Writers.
+pub(crate) type ReaderMayBlock = Arc<dyn Fn(GuidPrefix) -> bool + Send + Sync>;
+
+impl Default for EventLoopOptions {
+  fn default() -> Self {
+    Self {
+      max_fragmented_sample_size: DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE,
+      reader_may_block: Arc::new(|_| true),
+    }
+  }
 }
 
 pub(crate) enum EventLoopCommand {
@@ -143,6 +168,10 @@ pub struct DPEventLoop {
   same_host_loopback: bool,
 
   peer_hooks: PeerHooks,
+  // Memory that incomplete fragmented samples may take, over all Readers.
+  fragment_budget: Rc<FragmentBudget>,
+
+  reader_may_block: ReaderMayBlock,
 }
 
 impl DPEventLoop {
@@ -168,6 +197,7 @@ impl DPEventLoop {
     socket_send_buffer_size: usize,
     same_host_loopback: bool,
     peer_hooks: PeerHooks,
+    options: EventLoopOptions,
     reader_ready: ReadyReceiver<EntityId>,
     writer_ready: ReadyReceiver<EntityId>,
     waker: LoopWaker,
@@ -187,7 +217,7 @@ impl DPEventLoop {
 
     let poll = try_init!(Poll::new(), "Unable to create new poll");
     // Listeners are edge-triggered. The loop reads each one until WouldBlock,
-    // so a datagram left in the socket cannot sit unreported.
+    // in batches, so a datagram left in the socket cannot sit unreported.
     let mut udp_listeners = udp_listeners;
     for (token, listener) in &mut udp_listeners {
       try_init!(
@@ -262,6 +292,8 @@ impl DPEventLoop {
       discovery_command_sender,
       same_host_loopback,
       peer_hooks,
+      fragment_budget: Rc::new(FragmentBudget::new(options.max_fragmented_sample_size)),
+      reader_may_block: options.reader_may_block,
     })
   }
 
@@ -297,6 +329,10 @@ impl DPEventLoop {
       ev_wrapper.remove_local_writer(&writer_guid);
     }
 
+    // Listeners that were not emptied. A flood could be read for ever; timers,
+    // commands and the other sockets get their turn after each batch.
+    let mut unread_listeners: Vec<Token> = Vec::new();
+
     // loop starts here
     loop {
       // The poll wakes for a socket, the shared waker, or the sooner of the next
@@ -307,9 +343,17 @@ impl DPEventLoop {
       } else {
         Duration::from_millis(2)
       };
+      let idle_cap = if unread_listeners.is_empty() {
+        idle_cap
+      } else {
+        Duration::ZERO
+      };
       let poll_timeout = timeout_until(ev_wrapper.shared_timer.borrow().next_deadline(), idle_cap);
       match ev_wrapper.poll.poll(&mut events, Some(poll_timeout)) {
         Ok(_) => {}
+        // A signal, or a stop and continue of the process. `events` is empty;
+        // timers and queues are served below as after a timeout.
+        Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
         Err(e) => {
           error!("dp_event_loop poll failed: {e:?}");
           break;
@@ -334,19 +378,8 @@ impl DPEventLoop {
               | DISCOVERY_MUL_LISTENER_TOKEN
               | USER_TRAFFIC_LISTENER_TOKEN
               | USER_TRAFFIC_MUL_LISTENER_TOKEN => {
-                // Edge-triggered: read until WouldBlock. A cap would leave
-                // datagrams sitting with no further readiness event.
-                let udp_messages = ev_wrapper.udp_listeners.get_mut(&token).map_or_else(
-                  || {
-                    error!("No listener with token {:?}", token);
-                    vec![]
-                  },
-                  |l| l.messages_bounded(usize::MAX),
-                );
-                for (packet, origin) in udp_messages {
-                  ev_wrapper
-                    .message_receiver
-                    .handle_received_packet(&packet, origin);
+                if !unread_listeners.contains(&token) {
+                  unread_listeners.push(token);
                 }
               }
               LOOP_WAKE_TOKEN => {
@@ -375,6 +408,9 @@ impl DPEventLoop {
         }
       }
 
+      // Edge-triggered: a listener stays in the list until it is empty.
+      unread_listeners.retain(|token| !ev_wrapper.read_listener(*token));
+
       ev_wrapper.drain_timers(preparing_to_stop);
       if ev_wrapper.drain_queues(
         &mut readers_to_remove,
@@ -396,6 +432,21 @@ impl DPEventLoop {
       ev_wrapper.service_outbound();
     } // loop
   } // fn
+
+  // Handles a batch of datagrams. Returns true when there are no more.
+  fn read_listener(&mut self, token: Token) -> bool {
+    let Some(listener) = self.udp_listeners.get_mut(&token) else {
+      error!("No listener with token {token:?}");
+      return true;
+    };
+    let (udp_messages, emptied) = listener.messages_bounded(MAX_DATAGRAMS_PER_BATCH);
+    for (packet, origin) in udp_messages {
+      self
+        .message_receiver
+        .handle_received_packet(&packet, origin);
+    }
+    emptied
+  }
 
   // Returns true when the loop should exit.
   fn drain_queues(
@@ -841,6 +892,10 @@ impl DPEventLoop {
     // observations; refresh the interface-aware send routes of any writers that
     // already have matched readers behind this participant. Access `writers`
     // directly (not via &mut self) so it stays disjoint from the `db` borrow.
+    self
+      .interface_observations
+      .borrow_mut()
+      .keep(participant_guid_prefix);
     for writer in self.writers.values_mut() {
       writer.recompute_routes_for(participant_guid_prefix);
     }
@@ -1069,6 +1124,7 @@ impl DPEventLoop {
       self.udp_sender.clone(),
       self.shared_timer.clone(),
       self.participant_status_sender.clone(),
+      Rc::clone(&self.fragment_budget),
     );
 
     new_reader.set_data_filter(self.peer_hooks.data_filter.clone());
@@ -1120,14 +1176,17 @@ impl DPEventLoop {
     // - every writer may route a confirmed same-host peer over loopback.
     // See `src/rtps/loopback_same_host_design.md`.
     new_writer.set_prefer_loopback_same_host(self.same_host_loopback);
+    new_writer.set_reader_may_block(Arc::clone(&self.reader_may_block));
     if self.same_host_loopback
       && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
     {
-      new_writer.set_extra_unicast_destinations(localhost_spdp_peer_locators(
-        self.domain_info.domain_id,
-        self.domain_info.participant_id,
-        SPDP_LOCALHOST_PEER_COUNT,
-      ));
+      let own_slot = self.domain_info.participant_id;
+      let slots = |count| localhost_spdp_peer_locators(self.domain_info.domain_id, own_slot, count);
+      new_writer.set_extra_unicast_destinations(
+        slots(SPDP_LOCALHOST_PEER_COUNT.max(own_slot)),
+        slots(SPDP_LOCALHOST_SLOTS),
+        SPDP_LOCALHOST_FULL_ANNOUNCEMENTS,
+      );
     }
 
     // The doorbell is a shared ready-queue plus the poll waker, not a
@@ -1351,6 +1410,7 @@ mod tests {
         None,
         0,
         true,
+        EventLoopOptions::default(),
         reader_ready,
         writer_ready,
         waker,

@@ -1,7 +1,4 @@
-use std::{
-  collections::{btree_map::Entry, BTreeMap},
-  fmt, iter,
-};
+use std::{cell::Cell, collections::BTreeMap, fmt, iter, rc::Rc};
 
 use bit_vec::BitVec;
 use enumflags2::BitFlags;
@@ -22,67 +19,137 @@ use crate::{
   },
 };
 
+/// Bounds the memory that incomplete samples take in one participant.
+///
+/// Fragments announce the size of the whole sample, so each claims memory for
+/// more than what it brings.
+#[derive(Debug)]
+pub(crate) struct FragmentBudget {
+  max_sample_size: usize,
+  used: Cell<usize>,
+}
+
+/// Largest fragmented sample that is assembled unless configured otherwise.
+pub(crate) const DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE: usize = 16 * 1024 * 1024;
+
+/// Incomplete samples of one Writer, and of all, in units of the largest one.
+const WRITER_BUDGET_SAMPLES: usize = 2;
+const PARTICIPANT_BUDGET_SAMPLES: usize = 4;
+
+impl Default for FragmentBudget {
+  fn default() -> Self {
+    Self::new(DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE)
+  }
+}
+
+impl FragmentBudget {
+  pub fn new(max_sample_size: usize) -> Self {
+    Self {
+      max_sample_size,
+      used: Cell::new(0),
+    }
+  }
+
+  fn writer_limit(&self) -> usize {
+    self.max_sample_size.saturating_mul(WRITER_BUDGET_SAMPLES)
+  }
+
+  fn has_room_for(&self, size: usize) -> bool {
+    self.used.get().saturating_add(size)
+      <= self
+        .max_sample_size
+        .saturating_mul(PARTICIPANT_BUDGET_SAMPLES)
+  }
+}
+
 // This is for the assembly of a single object
 struct AssemblyBuffer {
   buffer_bytes: BytesMut,
+  fragment_size: u16,
   fragment_count: usize,
   received_bitmap: BitVec,
+  budget: Rc<FragmentBudget>,
+  budgeted: usize,
 
-  #[allow(dead_code)] // TODO: Purpose is to use this later for e.g.
-  // garbage collection, in case some buffer is not completed within reasonable time.
-  created_time: Timestamp,
   modified_time: Timestamp,
 }
 
+impl Drop for AssemblyBuffer {
+  fn drop(&mut self) {
+    let used = self.budget.used.get();
+    self.budget.used.set(used.saturating_sub(self.budgeted));
+  }
+}
+
 impl AssemblyBuffer {
-  pub fn new(datafrag: &DataFrag) -> Option<Self> {
+  /// `None` if the sample is too large, or there is no room for it now.
+  pub fn new(datafrag: &DataFrag, budget: &Rc<FragmentBudget>) -> Option<Self> {
     let data_size: usize = datafrag.data_size.try_into().ok()?;
     let fragment_size: u16 = datafrag.fragment_size;
     debug!("new AssemblyBuffer data_size={data_size} frag_size={fragment_size}");
 
     if fragment_size == 0 || fragment_size as usize > data_size {
-      error!("Cannot create AssemblyBuffer: fragment_size={fragment_size} data_size={data_size}");
+      warn_sparsely!(
+        "Cannot create AssemblyBuffer: fragment_size={fragment_size} data_size={data_size}"
+      );
       return None;
     }
-
-    let mut buffer_bytes = BytesMut::with_capacity(data_size);
-    buffer_bytes.resize(data_size, 0);
+    if data_size > budget.max_sample_size {
+      warn_sparsely!(
+        "Fragmented sample of {data_size} bytes is larger than the limit of {} bytes. Discarding.",
+        budget.max_sample_size
+      );
+      return None;
+    }
+    if !budget.has_room_for(data_size) {
+      warn_sparsely!(
+        "Too many incomplete fragmented samples, discarding one of {data_size} bytes."
+      );
+      return None;
+    }
 
     let fragment_count = usize::from(datafrag.total_number_of_fragments());
-    if fragment_count == 0 {
-      error!("Cannot create AssemblyBuffer: zero fragment count");
+    if fragment_count == 0 || fragment_count > budget.max_sample_size / MIN_FRAGMENT_SIZE {
+      warn_sparsely!("Cannot create AssemblyBuffer: {fragment_count} fragments");
       return None;
     }
 
-    let now = Timestamp::now();
-
+    budget.used.set(budget.used.get() + data_size);
     Some(Self {
-      buffer_bytes,
+      // Zeroed pages are not in memory until a fragment is written to them.
+      buffer_bytes: BytesMut::zeroed(data_size),
+      fragment_size,
       fragment_count,
       received_bitmap: BitVec::from_elem(fragment_count, false),
-      created_time: now,
-      modified_time: now,
+      budget: Rc::clone(budget),
+      budgeted: data_size,
+      modified_time: Timestamp::now(),
     })
   }
 
-  /// Returns `false` if the fragment run is invalid or out of bounds.
-  pub fn insert_frags(&mut self, datafrag: &DataFrag, frag_size: u16) -> bool {
-    // TODO: Sanity checks? E.g. datafrag.fragment_size == frag_size
-    // Or is this even guaranteed? Can Writer vary fragment size?
-    // Answer: Writer must guarantee constant fragment size per SequenceNumber.
-    // So yes, it is guaranteed. RTPS spec v2.5 Section 8.4.14.1.1 "How to select
-    // the fragment size" even says that the frag size is fixed per-writer.
+  /// Is this fragment one of the same sample, as its size claims?
+  fn agrees_with(&self, datafrag: &DataFrag) -> bool {
+    self.fragment_size == datafrag.fragment_size && self.budgeted == datafrag.data_size as usize
+  }
 
-    let frag_size = usize::from(frag_size);
+  /// Returns `false` if the fragment run is invalid or out of bounds.
+  pub fn insert_frags(&mut self, datafrag: &DataFrag) -> bool {
+    // Writer must guarantee constant fragment size per SequenceNumber.
+    // RTPS spec v2.5 Section 8.4.14.1.1 "How to select
+    // the fragment size" even says that the frag size is fixed per-writer.
+    if !self.agrees_with(datafrag) {
+      return false;
+    }
+    let frag_size = usize::from(self.fragment_size);
     let frags_in_submessage = usize::from(datafrag.fragments_in_submessage);
     if frags_in_submessage == 0 {
-      error!("insert_frags: fragments_in_submessage is zero");
+      warn_sparsely!("insert_frags: fragments_in_submessage is zero");
       return false;
     }
     let fragment_starting_num: usize = match u32::from(datafrag.fragment_starting_num).try_into() {
       Ok(n) if n >= 1 => n,
       _ => {
-        error!(
+        warn_sparsely!(
           "insert_frags: invalid fragment_starting_num {:?}",
           datafrag.fragment_starting_num
         );
@@ -91,7 +158,7 @@ impl AssemblyBuffer {
     };
     let start_frag_from_0 = fragment_starting_num - 1;
     if start_frag_from_0 + frags_in_submessage > self.fragment_count {
-      error!(
+      warn_sparsely!(
         "insert_frags: fragment span out of bounds: start={fragment_starting_num} \
          count={frags_in_submessage} total={}",
         self.fragment_count
@@ -127,7 +194,7 @@ impl AssemblyBuffer {
       self.buffer_bytes.len(),
     );
     if from_byte > to_before_byte {
-      error!(
+      warn_sparsely!(
         "insert_frags: invalid byte range from_byte={from_byte} to_before_byte={to_before_byte}"
       );
       return false;
@@ -140,7 +207,7 @@ impl AssemblyBuffer {
     if last_frag_in_submessage < self.fragment_count
       && datafrag.serialized_payload.len() < frags_in_submessage * frag_size
     {
-      error!(
+      warn_sparsely!(
         "Received DATAFRAG too small. fragment_starting_num={} out of fragment_count={}, \
          frags_in_submessage={}, frag_size={} but payload length = {}. Original data_size={}",
         fragment_starting_num,
@@ -150,6 +217,7 @@ impl AssemblyBuffer {
         datafrag.serialized_payload.len(),
         datafrag.data_size,
       );
+      return false; // else zeros would be taken for data
     }
 
     debug!("insert_frags: from_byte = {from_byte:?}, to_before_byte = {to_before_byte:?}");
@@ -185,10 +253,14 @@ impl AssemblyBuffer {
 // under best effort is lost anyway and under reliable will be re-requested.
 const MAX_ASSEMBLY_BUFFERS: usize = 128;
 
+// Smallest fragments that the largest sample may consist of, in bytes: bounds
+// the bitmap and the search for missing fragments. Ours are of 256 bytes.
+const MIN_FRAGMENT_SIZE: usize = 64;
+
 // Assembles fragments from a single (remote) Writer
 // So there is only one sequence of SNs
 pub(crate) struct FragmentAssembler {
-  fragment_size: u16, // number of bytes per fragment. Each writer must select one constant value.
+  budget: Rc<FragmentBudget>,
   assembly_buffers: BTreeMap<SequenceNumber, AssemblyBuffer>,
   // Whether the owning reader is Reliable. This decides which buffer to drop
   // when `MAX_ASSEMBLY_BUFFERS` is exceeded (see `new_datafrag`).
@@ -204,10 +276,10 @@ impl fmt::Debug for FragmentAssembler {
 }
 
 impl FragmentAssembler {
-  pub fn new(fragment_size: u16, reliable: bool) -> Self {
-    debug!("new FragmentAssembler. frag_size = {fragment_size} reliable = {reliable}");
+  pub fn new(budget: Rc<FragmentBudget>, reliable: bool) -> Self {
+    debug!("new FragmentAssembler. reliable = {reliable}");
     Self {
-      fragment_size,
+      budget,
       assembly_buffers: BTreeMap::new(),
       reliable,
     }
@@ -220,18 +292,24 @@ impl FragmentAssembler {
     flags: BitFlags<DATAFRAG_Flags>,
   ) -> Option<DDSData> {
     let writer_sn = datafrag.writer_sn;
-    let frag_size = self.fragment_size;
-
     let sn = datafrag.writer_sn;
-    match self.assembly_buffers.entry(sn) {
-      Entry::Vacant(v) => {
-        let Some(buf) = AssemblyBuffer::new(datafrag) else {
-          error!("new_datafrag: failed to create AssemblyBuffer for {sn:?}");
-          return None;
-        };
-        v.insert(buf);
+
+    // Of two that disagree about the sample, the later one is believed: a Writer
+    // goes on sending, one forged fragment must not stop it.
+    if self
+      .assembly_buffers
+      .get(&sn)
+      .is_some_and(|buffer| !buffer.agrees_with(datafrag))
+    {
+      self.assembly_buffers.remove(&sn);
+    }
+    if !self.assembly_buffers.contains_key(&sn) {
+      if !self.make_room(sn, datafrag.data_size as usize) {
+        return None;
       }
-      Entry::Occupied(_) => {}
+      self
+        .assembly_buffers
+        .insert(sn, AssemblyBuffer::new(datafrag, &self.budget)?);
     }
 
     let Some(assembly_buffer) = self.assembly_buffers.get_mut(&sn) else {
@@ -239,19 +317,20 @@ impl FragmentAssembler {
       return None;
     };
 
-    if !assembly_buffer.insert_frags(datafrag, frag_size) {
-      error!("new_datafrag: rejected invalid DATAFRAG for {sn:?}");
+    if !assembly_buffer.insert_frags(datafrag) {
+      warn_sparsely!("new_datafrag: rejected invalid DATAFRAG for {sn:?}");
       return None;
     }
 
     if assembly_buffer.is_complete() {
       debug!("new_datafrag: COMPLETED FRAGMENT");
-      if let Some(assembly_buffer) = self.assembly_buffers.remove(&writer_sn) {
+      if let Some(mut assembly_buffer) = self.assembly_buffers.remove(&writer_sn) {
         // Return what we have assembled.
-        let serialized_data_or_key =
-          SerializedPayload::from_bytes(&assembly_buffer.buffer_bytes.freeze()).map_or_else(
+        let assembled = std::mem::take(&mut assembly_buffer.buffer_bytes);
+        let serialized_data_or_key = SerializedPayload::from_bytes(&assembled.freeze())
+          .map_or_else(
             |e| {
-              error!("Deserializing SerializedPayload from DATAFRAG: {:?}", e);
+              warn_sparsely!("Deserializing SerializedPayload from DATAFRAG: {:?}", e);
               None
             },
             Some,
@@ -269,32 +348,50 @@ impl FragmentAssembler {
       }
     } else {
       debug!("new_dataFrag: FRAGMENT NOT COMPLETED YET");
-      // Bound memory: never keep more than MAX_ASSEMBLY_BUFFERS incomplete
-      // reassemblies.
-      //
-      // Which one to evict depends on reliability:
-      //  * Reliable: the reader delivers strictly in order, so it must complete the
-      //    LOWEST sequence number first; that buffer is exactly the one blocking
-      //    progress. Dropping it would livelock, because a writer that bursts many
-      //    large samples ahead (e.g. Connext) would make the reader perpetually evict
-      //    the very sample it is waiting for. So evict the HIGHEST (newest) sequence
-      //    number instead; the writer keeps unacked samples in its history and
-      //    re-sends them once we catch up.
-      //  * Best effort: there is no retransmission, so a low incomplete buffer is
-      //    lost anyway. Evict the OLDEST (lowest SN) to free room for newer samples
-      //    that may still complete.
-      while self.assembly_buffers.len() > MAX_ASSEMBLY_BUFFERS {
-        let evicted = if self.reliable {
-          self.assembly_buffers.pop_last()
-        } else {
-          self.assembly_buffers.pop_first()
-        };
-        if evicted.is_none() {
-          break;
-        }
-      }
       None
     }
+  }
+
+  // Bound memory: never keep more than MAX_ASSEMBLY_BUFFERS incomplete
+  // reassemblies, nor more bytes than one Writer may have. Returns whether there
+  // is room for `new_sn` after eviction.
+  //
+  // Which one to evict depends on reliability:
+  //  * Reliable: the reader delivers strictly in order, so it must complete the
+  //    LOWEST sequence number first; that buffer is exactly the one blocking
+  //    progress. Dropping it would livelock, because a writer that bursts many
+  //    large samples ahead (e.g. Connext) would make the reader perpetually evict
+  //    the very sample it is waiting for. So evict the HIGHEST (newest) sequence
+  //    number instead; the writer keeps unacked samples in its history and
+  //    re-sends them once we catch up.
+  //  * Best effort: there is no retransmission, so a low incomplete buffer is
+  //    lost anyway. Evict the OLDEST (lowest SN) to free room for newer samples
+  //    that may still complete.
+  fn make_room(&mut self, new_sn: SequenceNumber, size: usize) -> bool {
+    while self.assembly_buffers.len() >= MAX_ASSEMBLY_BUFFERS
+      || self.bytes_budgeted().saturating_add(size) > self.budget.writer_limit()
+    {
+      let evicted = if self.reliable {
+        match self.assembly_buffers.keys().next_back() {
+          Some(&highest) if highest > new_sn => self.assembly_buffers.pop_last(),
+          _ => None, // the new one is the highest
+        }
+      } else {
+        self.assembly_buffers.pop_first()
+      };
+      if evicted.is_none() {
+        return false;
+      }
+    }
+    true
+  }
+
+  fn bytes_budgeted(&self) -> usize {
+    self.assembly_buffers.values().map(|ab| ab.budgeted).sum()
+  }
+
+  pub fn is_empty(&self) -> bool {
+    self.assembly_buffers.is_empty()
   }
 
   pub fn garbage_collect_before(&mut self, expire_before: Timestamp) {
@@ -340,10 +437,65 @@ impl FragmentAssembler {
 mod tests {
   use bytes::Bytes;
 
-  use super::AssemblyBuffer;
+  use std::rc::Rc;
+
+  use enumflags2::BitFlags;
+
+  use super::{AssemblyBuffer, FragmentAssembler, FragmentBudget};
   use crate::{
-    messages::submessages::submessages::DataFrag, structure::sequence_number::FragmentNumber,
+    messages::submessages::submessages::{DATAFRAG_Flags, DataFrag},
+    structure::sequence_number::{FragmentNumber, SequenceNumber},
   };
+
+  fn budget() -> Rc<FragmentBudget> {
+    Rc::new(FragmentBudget::new(1 << 20))
+  }
+
+  fn feed(fa: &mut FragmentAssembler, sn: i64, data_size: u32) -> bool {
+    let mut fragment = datafrag(1, 1, 1024, data_size, vec![0; 1024]);
+    fragment.writer_sn = SequenceNumber::new(sn);
+    let no_flags = BitFlags::<DATAFRAG_Flags>::empty();
+    fa.new_datafrag(&fragment, no_flags).is_some()
+  }
+
+  #[test]
+  fn claimed_sizes_are_bounded_per_sample_writer_and_participant() {
+    let budget = budget();
+    let mut writers: Vec<_> = (0..8)
+      .map(|_| FragmentAssembler::new(Rc::clone(&budget), true))
+      .collect();
+    assert!(!feed(&mut writers[0], 1, u32::MAX));
+    assert_eq!(budget.used.get(), 0, "2 GB are not even reserved");
+    for writer in &mut writers {
+      for sn in 1..100 {
+        feed(writer, sn, 1 << 20);
+      }
+      assert!(writer.bytes_budgeted() <= 2 << 20);
+    }
+    assert_eq!(budget.used.get(), 4 << 20);
+    writers.truncate(1);
+    writers[0].garbage_collect_before(super::Timestamp::now());
+    assert_eq!(budget.used.get(), 0, "what is dropped is given back");
+  }
+
+  #[test]
+  fn a_reliable_reader_gives_way_to_the_sample_that_it_waits_for() {
+    let mut fa = FragmentAssembler::new(budget(), true);
+    feed(&mut fa, 1 << 40, 1 << 20);
+    feed(&mut fa, 1 << 41, 1 << 20);
+    feed(&mut fa, 7, 1 << 20);
+    assert!(fa.is_partially_received(SequenceNumber::new(7)));
+  }
+
+  #[test]
+  fn a_forged_fragment_does_not_stop_the_true_ones() {
+    let mut fa = FragmentAssembler::new(budget(), true);
+    feed(&mut fa, 1, 1 << 20);
+    let mut whole = datafrag(1, 2, 1024, 1100, vec![0; 1100]);
+    whole.writer_sn = SequenceNumber::new(1);
+    let no_flags = BitFlags::<DATAFRAG_Flags>::empty();
+    assert!(fa.new_datafrag(&whole, no_flags).is_some());
+  }
 
   // Build a DATAFRAG submessage carrying the contiguous run of `k` fragments
   // starting at 1-based `start`, with the given payload bytes.
@@ -369,14 +521,14 @@ mod tests {
 
     // First submessage packs fragments 1 and 2 (K = 2, 2048 payload bytes).
     let first = datafrag(1, 2, frag_size, data_size, whole[0..2048].to_vec());
-    let mut ab = AssemblyBuffer::new(&first).expect("valid first fragment");
+    let mut ab = AssemblyBuffer::new(&first, &budget()).expect("valid first fragment");
     assert!(!ab.is_complete());
-    ab.insert_frags(&first, frag_size);
+    ab.insert_frags(&first);
     assert!(!ab.is_complete(), "still missing the tail fragment");
 
     // Trailing submessage carries the shorter final fragment 3 (552 bytes).
     let tail = datafrag(3, 1, frag_size, data_size, whole[2048..2600].to_vec());
-    ab.insert_frags(&tail, frag_size);
+    ab.insert_frags(&tail);
     assert!(ab.is_complete(), "all fragments received");
     assert_eq!(
       &ab.buffer_bytes[..],
@@ -393,8 +545,8 @@ mod tests {
     let whole: Vec<u8> = (0..data_size as usize).map(|i| (i % 97) as u8).collect();
 
     let all = datafrag(1, 3, frag_size, data_size, whole.clone());
-    let mut ab = AssemblyBuffer::new(&all).expect("valid fragment set");
-    ab.insert_frags(&all, frag_size);
+    let mut ab = AssemblyBuffer::new(&all, &budget()).expect("valid fragment set");
+    ab.insert_frags(&all);
     assert!(ab.is_complete());
     assert_eq!(&ab.buffer_bytes[..], &whole[..]);
   }
@@ -406,22 +558,17 @@ mod tests {
     let frag_size = 256u16;
     let data_size = 512u32; // 2 fragments total
     let bad = datafrag(2, 2, frag_size, data_size, vec![0u8; 256]);
-    let mut ab = AssemblyBuffer::new(&bad).expect("buffer for valid data_size");
-    assert!(!ab.insert_frags(&bad, frag_size));
+    let mut ab = AssemblyBuffer::new(&bad, &budget()).expect("buffer for valid data_size");
+    assert!(!ab.insert_frags(&bad));
     assert!(!ab.is_complete());
   }
 
   #[test]
   fn fragment_assembler_rejects_span_beyond_total() {
-    use enumflags2::BitFlags;
-
-    use super::FragmentAssembler;
-    use crate::messages::submessages::submessages::DATAFRAG_Flags;
-
     let frag_size = 256u16;
     let data_size = 512u32;
     let bad = datafrag(2, 2, frag_size, data_size, vec![0u8; 256]);
-    let mut fa = FragmentAssembler::new(frag_size, true);
+    let mut fa = FragmentAssembler::new(budget(), true);
     assert!(fa
       .new_datafrag(&bad, BitFlags::<DATAFRAG_Flags>::empty())
       .is_none());

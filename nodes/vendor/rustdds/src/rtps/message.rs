@@ -20,7 +20,7 @@ use crate::{
     validity_trait::Validity,
     vendor_id::VendorId,
   },
-  rtps::{Submessage, SubmessageBody},
+  rtps::{rtps_reader_proxy::RtpsReaderProxy, Submessage, SubmessageBody},
   structure::{
     cache_change::CacheChange,
     guid::{EntityId, GuidPrefix, GUID},
@@ -616,6 +616,28 @@ impl MessageBuilder {
           .map(|s| self.submessages.push(s));
       }
       (_, _) => error!("gap_msg called with empty SN set. Skipping GAP submessage"),
+    }
+    self
+  }
+
+  // GAPs for all that the reader is not going to get
+  pub fn pending_gap_msg(
+    mut self,
+    reader: &RtpsReaderProxy,
+    writer_entity_id: EntityId,
+    writer_endianness: Endianness,
+  ) -> Self {
+    let reader_guid = reader.remote_reader_guid;
+    if let Some(before) = reader.gap_before() {
+      self = self.gap_msg_before(before, writer_entity_id, writer_endianness, reader_guid);
+    }
+    if !reader.get_pending_gap().is_empty() {
+      self = self.gap_msg(
+        reader.get_pending_gap(),
+        writer_entity_id,
+        writer_endianness,
+        reader_guid,
+      );
     }
     self
   }

@@ -14,7 +14,10 @@ use crate::{
   messages::{protocol_version::ProtocolVersion, submessages::submessages::*, vendor_id::VendorId},
   network::udp_listener::PacketOrigin,
   polling::WakeSender,
-  rtps::{reader::Reader, transmit::InterfaceObservations, Message, Submessage, SubmessageBody},
+  rtps::{
+    constant::MAX_LOCATORS_PER_LIST, reader::Reader, transmit::InterfaceObservations, Message,
+    Submessage, SubmessageBody,
+  },
   structure::{
     entity::RTPSEntity,
     guid::{EntityId, GuidPrefix, GUID},
@@ -246,7 +249,7 @@ impl MessageReceiver {
         info!("Received RTPS PING. Do not know how to respond.");
         debug!("Data was {:?}", msg_bytes);
       } else {
-        warn!("Message is shorter than RTPS header. Cannot deserialize.");
+        warn_sparsely!("Message is shorter than RTPS header. Cannot deserialize.");
         debug!("Data was {:?}", msg_bytes);
       }
       return;
@@ -264,7 +267,7 @@ impl MessageReceiver {
         info!("Received message with RTPX header. Ignoring.");
         return;
       } else {
-        warn!("Received message with unknown start of header {magic:x?}. Ignoring.");
+        warn_sparsely!("Received message with unknown start of header {magic:x?}. Ignoring.");
         return;
       }
     }
@@ -274,7 +277,7 @@ impl MessageReceiver {
     let rtps_message = match Message::read_from_buffer(msg_bytes) {
       Ok(m) => m,
       Err(speedy_err) => {
-        warn!("RTPS deserialize error {speedy_err:?}");
+        warn_sparsely!("RTPS deserialize error {speedy_err:?}");
         debug!("Data was {msg_bytes:?}");
         return;
       }
@@ -752,7 +755,7 @@ impl MessageReceiver {
     if payload_buffer_length
       > (datafrag.fragments_in_submessage as usize) * (datafrag.fragment_size as usize)
     {
-      error!(
+      warn_sparsely!(
         "{:?}",
         std::io::Error::other(format!(
           "Invalid DataFrag. serializedData length={} should be less than or equal to \
@@ -1047,20 +1050,25 @@ impl MessageReceiver {
       }
       InterpreterSubmessage::InfoReply(info_reply, flags) => {
         self.unicast_reply_locator_list = info_reply.unicast_locator_list;
+        self
+          .unicast_reply_locator_list
+          .truncate(MAX_LOCATORS_PER_LIST); // each is sent to
         self.multicast_reply_locator_list = match (
           flags.contains(INFOREPLY_Flags::Multicast),
           info_reply.multicast_locator_list,
         ) {
           (true, Some(ll)) => ll, // expected case
           (true, None) => {
-            warn!(
+            warn_sparsely!(
               "InfoReply submessage flag indicates multicast_reply_locator_list, but none found."
             );
             vec![]
           }
           (false, None) => vec![], // This one is normal again
           (false, Some(_)) => {
-            warn!("InfoReply submessage has unexpected multicast_reply_locator_list, ignoring.");
+            warn_sparsely!(
+              "InfoReply submessage has unexpected multicast_reply_locator_list, ignoring."
+            );
             vec![]
           }
         };
@@ -1246,6 +1254,7 @@ mod tests {
       Rc::new(UDPSender::new_with_random_port().unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // Add info of the writer to the reader

@@ -43,8 +43,11 @@ use crate::{
   network::udp_sender::UDPSender,
   polling::{ReadySender, SharedTimer, WakeReceiver},
   rtps::{
-    fragment_assembler::FragmentAssembler, message_receiver::MessageReceiverState,
-    rtps_writer_proxy::RtpsWriterProxy, timed_event::DpTimerEvent, Message,
+    fragment_assembler::{FragmentAssembler, FragmentBudget},
+    message_receiver::MessageReceiverState,
+    rtps_writer_proxy::RtpsWriterProxy,
+    timed_event::DpTimerEvent,
+    Message,
   },
   structure::{
     cache_change::{CacheChange, ChangeKind},
@@ -135,6 +138,7 @@ pub(crate) struct Reader {
   received_heartbeat_count: i32,
 
   fragment_assemblers: BTreeMap<GUID, FragmentAssembler>,
+  fragment_budget: Rc<FragmentBudget>, // shared by the readers of the participant
   last_fragment_garbage_collect: Timestamp,
   matched_writers: BTreeMap<GUID, RtpsWriterProxy>,
   writer_match_count_total: i32, // total count, never decreases
@@ -157,9 +161,17 @@ pub(crate) struct Reader {
   security_plugins: Option<SecurityPluginsHandle>,
 }
 
+// Sequence numbers go from 1, and leave room to count on.
+fn is_valid_sequence_number(sn: SequenceNumber) -> bool {
+  sn > SequenceNumber::zero() && i64::from(sn) < i64::MAX
+}
+
 // If we are assembling a fragment, but it does not receive any updates
 // for this time, the AssemblyBuffer is just dropped.
 const FRAGMENT_ASSEMBLY_TIMEOUT: Duration = Duration::from_secs(10);
+// Limits for fragments from writers that are not matched (yet).
+const MAX_UNMATCHED_SAMPLE_SIZE: u32 = 64 * 1024;
+const MAX_UNMATCHED_ASSEMBLERS: usize = 16;
 // minimum interval (max frequency) of AssemblyBuffer GC
 const MIN_FRAGMENT_GC_INTERVAL: Duration = Duration::from_secs(2);
 
@@ -169,6 +181,7 @@ impl Reader {
     udp_sender: Rc<UDPSender>,
     timed_event_timer: SharedTimer<DpTimerEvent>,
     participant_status_sender: StatusChannelSender<DomainParticipantStatusEvent>,
+    fragment_budget: Rc<FragmentBudget>,
   ) -> Self {
     // Verify that the topic cache corresponds to the topic of the Reader
     let topic_cache_name = i.topic_cache_handle.lock().unwrap().topic_name();
@@ -205,6 +218,7 @@ impl Reader {
       heartbeat_suppression_duration: StdDuration::new(0, 0),
       received_heartbeat_count: 0,
       fragment_assemblers: BTreeMap::new(),
+      fragment_budget,
       last_fragment_garbage_collect: Timestamp::now(),
       matched_writers: BTreeMap::new(),
       writer_match_count_total: 0,
@@ -283,7 +297,7 @@ impl Reader {
     self
       .participant_status_sender
       .try_send(event)
-      .unwrap_or_else(|e| error!("Cannot report participant status: {e:?}"));
+      .unwrap_or_else(|e| warn_sparsely!("Cannot report participant status: {e:?}"));
   }
 
   // The deadline that the DataReader was expecting through its QosPolicy
@@ -477,6 +491,7 @@ impl Reader {
   pub fn remove_writer_proxy(&mut self, writer_guid: GUID) {
     if self.matched_writers.contains_key(&writer_guid) {
       self.matched_writers.remove(&writer_guid);
+      self.fragment_assemblers.remove(&writer_guid);
       self
         .acquire_the_topic_cache_guard()
         .forget_reliable_writer(writer_guid);
@@ -538,6 +553,12 @@ impl Reader {
     self.update_writer_proxy(proxy, qos);
   }
 
+  // Those who announce themselves, or authenticate, are not matched yet. To any
+  // other reader, DATA from a writer that was not discovered means nothing.
+  fn accepts_unmatched_writers(&self) -> bool {
+    self.like_stateless || self.my_guid.entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_READER
+  }
+
   fn matched_writer(&self, remote_writer_guid: GUID) -> Option<&RtpsWriterProxy> {
     self.matched_writers.get(&remote_writer_guid)
   }
@@ -554,6 +575,17 @@ impl Reader {
     mr_state: &MessageReceiverState,
   ) {
     // trace!("handle_data_msg entry");
+    if !is_valid_sequence_number(data.writer_sn) {
+      debug!("DATA with invalid sequence number {:?}", data.writer_sn);
+      return;
+    }
+    if !self.accepts_unmatched_writers()
+      && !self
+        .matched_writers
+        .contains_key(&GUID::new(mr_state.source_guid_prefix, data.writer_id))
+    {
+      return; // nothing of it is of use, see process_received_data()
+    }
     let receive_timestamp = Timestamp::now();
 
     // parse write_options out of the message
@@ -568,7 +600,7 @@ impl Reader {
       data.inline_qos.as_ref().and_then(|inline_qos_parameters| {
         InlineQos::related_sample_identity(inline_qos_parameters, representation_identifier)
           .unwrap_or_else(|e| {
-            error!("Deserializing related_sample_identity: {:?}", e);
+            warn_sparsely!("Deserializing related_sample_identity: {:?}", e);
             None
           })
       })
@@ -599,6 +631,9 @@ impl Reader {
   ) {
     let writer_guid = GUID::new_with_prefix_and_id(mr_state.source_guid_prefix, datafrag.writer_id);
     let seq_num = datafrag.writer_sn;
+    if !is_valid_sequence_number(seq_num) || !self.may_assemble(writer_guid, datafrag) {
+      return;
+    }
     let receive_timestamp = Timestamp::now();
     //trace!("DATAFRAG received topic={:?}", self.topic_name);
 
@@ -634,7 +669,7 @@ impl Reader {
         .and_then(|inline_qos_parameters| {
           InlineQos::related_sample_identity(inline_qos_parameters, representation_identifier)
             .unwrap_or_else(|e| {
-              error!("Deserializing related_sample_identity: {:?}", e);
+              warn_sparsely!("Deserializing related_sample_identity: {:?}", e);
               None
             })
         })
@@ -645,7 +680,7 @@ impl Reader {
     // Feed to fragment assembler ...
     let writer_seq_num = datafrag.writer_sn; // for borrow checker
     let completed_dds_data = self
-      .fragment_assembler_mutable(writer_guid, datafrag.fragment_size)
+      .fragment_assembler_mutable(writer_guid)
       .new_datafrag(datafrag, datafrag_flags);
 
     // ... and continue processing, if data was completed.
@@ -664,16 +699,27 @@ impl Reader {
     }
   }
 
-  fn fragment_assembler_mutable(
-    &mut self,
-    writer_guid: GUID,
-    frag_size: u16,
-  ) -> &mut FragmentAssembler {
+  // Memory is spent on fragments only if the sample would be taken, i.e. if it
+  // is new and its writer is matched. A few small ones are allowed to those who
+  // announce themselves.
+  fn may_assemble(&self, writer_guid: GUID, datafrag: &DataFrag) -> bool {
+    if let Some(writer_proxy) = self.matched_writer(writer_guid) {
+      !writer_proxy.should_ignore_change(datafrag.writer_sn)
+    } else {
+      self.accepts_unmatched_writers()
+        && datafrag.data_size <= MAX_UNMATCHED_SAMPLE_SIZE
+        && (self.fragment_assemblers.contains_key(&writer_guid)
+          || self.fragment_assemblers.len() < MAX_UNMATCHED_ASSEMBLERS)
+    }
+  }
+
+  fn fragment_assembler_mutable(&mut self, writer_guid: GUID) -> &mut FragmentAssembler {
     let reliable = self.reliability != policy::Reliability::BestEffort;
+    let budget = &self.fragment_budget;
     self
       .fragment_assemblers
       .entry(writer_guid)
-      .or_insert_with(|| FragmentAssembler::new(frag_size, reliable))
+      .or_insert_with(|| FragmentAssembler::new(Rc::clone(budget), reliable))
   }
 
   fn garbage_collect_fragments(&mut self) {
@@ -687,13 +733,11 @@ impl Reader {
 
       let expire_before = now - FRAGMENT_ASSEMBLY_TIMEOUT;
 
-      self
-        .fragment_assemblers
-        .iter_mut()
-        .for_each(|(writer, fa)| {
-          debug!("AssemblyBuffer GC writer {writer:?}");
-          fa.garbage_collect_before(expire_before);
-        });
+      self.fragment_assemblers.retain(|writer, fa| {
+        debug!("AssemblyBuffer GC writer {writer:?}");
+        fa.garbage_collect_before(expire_before);
+        !fa.is_empty()
+      });
     } else {
       trace!("Not yet AssemblyBuffer GC time.");
     }
@@ -759,9 +803,9 @@ impl Reader {
           my_entity_id, writer_guid, self.topic_name,
         );
         // This is normal if the DATA was broadcast, but it was from another topic.
-        // We just ignore the data in such a case
-        // ... unless it is Discovery traffic.
-        if writer_guid.entity_id.entity_kind.is_user_defined() {
+        // We just ignore the data in such a case, unless it tells us of a new
+        // participant.
+        if !self.accepts_unmatched_writers() {
           return;
         }
       }
@@ -825,7 +869,7 @@ impl Reader {
         // about
         let key_hash = if let Some(h) = data.inline_qos.as_ref().and_then(|inline_qos_parameters| {
           InlineQos::key_hash(inline_qos_parameters).unwrap_or_else(|e| {
-            error!("Deserializing key_hash: {:?}", e);
+            warn_sparsely!("Deserializing key_hash: {:?}", e);
             None
           })
         }) {
@@ -851,17 +895,17 @@ impl Reader {
         // payload cannot be both key and data.
         // RTPS Spec 9.4.5.3.1 Flags in the Submessage Header says
         // "D=1 and K=1 is an invalid combination in this version of the protocol."
-        warn!("Got DATA that claims to be both data and key - discarding.");
+        warn_sparsely!("Got DATA that claims to be both data and key - discarding.");
         Err("Ambiguous data/key received.".to_string())
       }
 
       (Some(_), false, false) => {
         // data but no data? - this should not be possible
-        warn!("make_cache_change - Flags says no data or key, but got payload!");
+        warn_sparsely!("make_cache_change - Flags says no data or key, but got payload!");
         Err("DATA message has mystery contents".to_string())
       }
       (None, true, _) | (None, _, true) => {
-        warn!("make_cache_change - Where is my SerializedPayload?");
+        warn_sparsely!("make_cache_change - Where is my SerializedPayload?");
         Err("DATA message contents missing".to_string())
       }
     }
@@ -924,23 +968,33 @@ impl Reader {
       );
       return false;
     }
-    // sanity check
-    if heartbeat.first_sn < SequenceNumber::default() {
-      warn!(
-        "Writer {:?} advertised SequenceNumbers from {:?} to {:?}!",
-        writer_guid, heartbeat.first_sn, heartbeat.last_sn
+    // Validity, RTPS v2.5 Section "8.3.8.6.3". Zero as first is tolerated.
+    if heartbeat.first_sn < SequenceNumber::zero()
+      || heartbeat.last_sn < SequenceNumber::zero()
+      || heartbeat.first_sn > heartbeat.last_sn.saturating_next()
+    {
+      warn_sparsely!(
+        "Writer {:?} advertised SequenceNumbers from {:?} to {:?}. Ignoring.",
+        writer_guid,
+        heartbeat.first_sn,
+        heartbeat.last_sn
       );
+      return false;
     }
 
     self
       .with_mutable_writer_proxy(writer_guid, |this, writer_proxy| {
         // Note: This is worker closure. Use `this` instead of `self`.
 
-        if heartbeat.count <= writer_proxy.received_heartbeat_count {
-          // This heartbeat was already seen an processed.
+        if !writer_proxy.accept_heartbeat(
+          heartbeat.first_sn,
+          heartbeat.last_sn,
+          heartbeat.count,
+          Timestamp::now(),
+        ) {
+          // Already seen and processed, or not credible.
           return false;
         }
-        writer_proxy.received_heartbeat_count = heartbeat.count;
 
         // remove changes until first_sn.
         writer_proxy.irrelevant_changes_up_to(heartbeat.first_sn);
@@ -1037,7 +1091,12 @@ impl Reader {
             let mut missing_frags = this.missing_frags_for(writer_guid, sn);
             let first_missing = missing_frags.next();
             if let Some(first) = first_missing {
-              let missing_frags_set = iter::once(first).chain(missing_frags).collect(); // "undo" the .next() above
+              // A FragmentNumberSet covers 256 numbers.
+              let end = u32::from(first).saturating_add(256);
+              let missing_frags_set = iter::once(first) // "undo" the .next() above
+                .chain(missing_frags)
+                .take_while(|f| u32::from(*f) < end)
+                .collect();
               let nf = NackFrag {
                 reader_id,
                 writer_id: writer_proxy.remote_writer_guid.entity_id,
@@ -1125,6 +1184,15 @@ impl Reader {
         );
         return;
       }
+      if !writer_proxy.is_plausible(gap.gap_list.base()) {
+        warn_sparsely!(
+          "GAP from {:?} up to {:?} is far beyond what the writer has sent. Ignoring. topic={:?}",
+          writer_guid,
+          gap.gap_list.base(),
+          self.topic_name
+        );
+        return;
+      }
       if gap.gap_list.base() <= SequenceNumber::new(0) {
         debug!(
           "Invalid GAP from {:?}: minimum of gap_list (={:?}) is zero or negative. topic={:?} \
@@ -1136,7 +1204,7 @@ impl Reader {
         );
         return;
       }
-      // TODO: check that maximum(gap_list) - minimum(gap_list) < 256 ?
+      // maximum(gap_list) - minimum(gap_list) < 256 was checked when reading it.
 
       // Irrelevant sequence numbers communicated in the Gap message are
       // composed of two groups:
@@ -1183,7 +1251,7 @@ impl Reader {
     heartbeatfrag: &HeartbeatFrag,
     _mr_state: &MessageReceiverState,
   ) {
-    info!(
+    debug!(
       "HeartbeatFrag handling not implemented. topic={:?}   {:?}",
       self.topic_name, heartbeatfrag
     );
@@ -1199,7 +1267,7 @@ impl Reader {
     match inline_qos.as_ref().and_then(|inline_qos_parameters| {
       InlineQos::status_info(inline_qos_parameters, representation_identifier).map_or_else(
         |e| {
-          error!("Deserializing status_info: {:?}", e);
+          warn_sparsely!("Deserializing status_info: {:?}", e);
           None
         },
         Some,
@@ -1565,6 +1633,7 @@ mod tests {
       Rc::new(UDPSender::new(0).unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // 2. Add info of a matched writer to the reader
@@ -1652,6 +1721,7 @@ mod tests {
       Rc::new(UDPSender::new(0).unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // 2. Add info of a matched writer to the reader
@@ -1760,6 +1830,7 @@ mod tests {
       Rc::new(UDPSender::new(0).unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // 2. Add info of a matched writer to the reader
@@ -1871,6 +1942,7 @@ mod tests {
       Rc::new(UDPSender::new(0).unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // 2. Add info of a matched writer to the reader
@@ -2011,6 +2083,7 @@ mod tests {
       Rc::new(UDPSender::new(0).unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // 2. Attempt to add info of a matched writer to the reader

@@ -20,7 +20,7 @@ use crate::{
   structure::{
     guid::{EntityId, GUID},
     locator::Locator,
-    sequence_number::{FragmentNumber, FragmentNumberSet, SequenceNumber, SequenceNumberRange},
+    sequence_number::{FragmentNumber, FragmentNumberSet, SequenceNumber},
   },
 };
 use super::reader::ReaderIngredients;
@@ -56,6 +56,8 @@ pub(crate) struct RtpsReaderProxy {
   expects_in_line_qos: bool,
   /// Specifies whether the remote Reader is responsive to the Writer
   is_active: bool,
+  /// Whether a reliable Writer waits for this Reader. Set when matched.
+  pub may_block: bool,
 
   // Reader has positively acked all SequenceNumbers _before_ this.
   // This is directly the same as readerSNState.base in ACKNACK submessage.
@@ -68,6 +70,9 @@ pub(crate) struct RtpsReaderProxy {
   // We will send the SNs as GAP until they have been acked.
   // This is to be used in Reliable mode only.
   pending_gap: BTreeSet<SequenceNumber>,
+  // Likewise for all before this one. A Writer may have millions of them when a
+  // volatile Reader comes.
+  pending_gap_before: SequenceNumber,
   // true = send repair data messages due to NACKs, buffer messages by DataWriter
   // false = send data messages directly from DataWriter
   pub repair_mode: bool,
@@ -107,9 +112,11 @@ impl RtpsReaderProxy {
       loopback_unicast_locators: Vec::default(),
       expects_in_line_qos,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),
+      pending_gap_before: SequenceNumber::new(1),
       repair_mode: false,
       repair_data_scheduled: false,
       repair_frags_scheduled: false,
@@ -236,9 +243,11 @@ impl RtpsReaderProxy {
       loopback_unicast_locators: Vec::new(),
       expects_in_line_qos: false,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),
+      pending_gap_before: SequenceNumber::new(1),
       repair_mode: false,
       repair_data_scheduled: false,
       repair_frags_scheduled: false,
@@ -314,9 +323,11 @@ impl RtpsReaderProxy {
       loopback_unicast_locators,
       expects_in_line_qos: discovered_reader_data.reader_proxy.expects_inline_qos,
       is_active: true,
+      may_block: true,
       all_acked_before: SequenceNumber::zero(),
       unsent_changes: BTreeSet::new(),
       pending_gap: BTreeSet::new(),
+      pending_gap_before: SequenceNumber::new(1),
       repair_mode: false,
       repair_data_scheduled: false,
       repair_frags_scheduled: false,
@@ -440,7 +451,7 @@ impl RtpsReaderProxy {
         // block real ACKNACKs (issue #405).
         let max_plausible_acked_before = last_available.plus_1();
         if new_all_acked_before > max_plausible_acked_before {
-          warn!(
+          warn_sparsely!(
             "Ignoring ACKNACK: base {:?} implies ack through unsent data (last sent seq={:?}, max \
              plausible all-acked-before {:?}) reader={:x?}",
             new_all_acked_before,
@@ -478,10 +489,13 @@ impl RtpsReaderProxy {
         // sanity check
         if let Some(&high) = self.unsent_changes.iter().next_back() {
           if high > last_available {
-            warn!(
+            warn_sparsely!(
               "ReaderProxy {:?} asks for {:?} but I have only up to {:?}. Truncating request. \
                ACKNACK = {:?}",
-              self.remote_reader_guid, self.unsent_changes, last_available, acknack
+              self.remote_reader_guid,
+              self.unsent_changes,
+              last_available,
+              acknack
             );
             // Requesting something which is not yet available is unreasonable.
             // Ignore the request from last_available + 1 onwards.
@@ -504,15 +518,36 @@ impl RtpsReaderProxy {
   }
 
   pub fn set_pending_gap_up_to(&mut self, last_gap_sn: SequenceNumber) {
-    // form SN range from 1 to last_gap_sn (inclusive)
-    let gap_sn_range = SequenceNumberRange::new(SequenceNumber::new(1), last_gap_sn);
-    // Convert to a set and insert the SNs to pending_gap
-    let gap_sn_set = BTreeSet::from_iter(gap_sn_range);
-    self.pending_gap.extend(gap_sn_set);
+    self.pending_gap_before = max(self.pending_gap_before, last_gap_sn.plus_1());
   }
 
+  /// Is there anything to be announced by GAP?
+  pub fn has_pending_gap(&self) -> bool {
+    !self.pending_gap.is_empty() || self.gap_before().is_some()
+  }
+
+  /// Is this one of what is to be announced by GAP?
+  pub fn is_pending_gap(&self, seq_num: SequenceNumber) -> bool {
+    seq_num < self.pending_gap_before || self.pending_gap.contains(&seq_num)
+  }
+
+  /// Everything before this is to be announced by GAP, if anything is.
+  pub fn gap_before(&self) -> Option<SequenceNumber> {
+    let acked_before = max(self.all_acked_before, SequenceNumber::new(1));
+    (self.pending_gap_before > acked_before).then_some(self.pending_gap_before)
+  }
+
+  /// Single ones to be announced by GAP.
   pub fn get_pending_gap(&self) -> &BTreeSet<SequenceNumber> {
     &self.pending_gap
+  }
+
+  /// The GAP went out.
+  pub fn mark_pending_gap_sent(&mut self) {
+    self.unsent_changes = self.unsent_changes.split_off(&self.pending_gap_before);
+    for sn in &self.pending_gap {
+      self.unsent_changes.remove(sn);
+    }
   }
 
   /// this should be called every time a new CacheChange is set to RTPS writer
@@ -551,13 +586,26 @@ impl RtpsReaderProxy {
 
   // Fragment handling
 
-  pub fn mark_frags_requested(&mut self, seq_num: SequenceNumber, frag_nums: &FragmentNumberSet) {
+  /// `frag_count` is how many fragments the sample has.
+  pub fn mark_frags_requested(
+    &mut self,
+    seq_num: SequenceNumber,
+    frag_nums: &FragmentNumberSet,
+    frag_count: usize,
+  ) {
+    let valid = 1..=frag_count;
+    if !frag_nums.iter().any(|f| valid.contains(&usize::from(f))) {
+      return;
+    }
     let req_set = self
       .frags_requested
       .entry(seq_num)
       .or_insert_with(|| BitVec::with_capacity(64)); // default capacity out of hat
 
-    for f in frag_nums.iter() {
+    for f in frag_nums
+      .iter()
+      .filter(|f| valid.contains(&usize::from(*f)))
+    {
       // -1 because FragmentNumbers start at 1
       let idx = usize::from(f) - 1;
       // The bit vector must be long enough to address `idx`. Grow it (filling
@@ -704,6 +752,37 @@ mod bounded_unsent_tests {
       MAX_UNSENT_CHANGES_PER_READER,
       rp.unsent_changes_count()
     );
+  }
+}
+
+#[cfg(test)]
+mod pending_gap_tests {
+  use super::*;
+  use crate::structure::guid::GuidPrefix;
+
+  #[test]
+  fn a_late_volatile_reader_costs_the_same_however_old_the_writer_is() {
+    let guid = GUID::new(GuidPrefix::UNKNOWN, EntityId::UNKNOWN);
+    let mut rp = RtpsReaderProxy::new(guid, QosPolicies::default(), false);
+    assert!(!rp.has_pending_gap());
+    rp.set_pending_gap_up_to(SequenceNumber::new(1 << 40));
+    assert!(rp.has_pending_gap() && rp.get_pending_gap().is_empty());
+    assert!(rp.is_pending_gap(SequenceNumber::new(1 << 40)));
+    assert!(!rp.is_pending_gap(SequenceNumber::new((1 << 40) + 1)));
+    rp.all_acked_before = SequenceNumber::new((1 << 40) + 1);
+    assert!(!rp.has_pending_gap(), "it has acknowledged the GAP");
+  }
+
+  #[test]
+  fn fragments_that_do_not_exist_are_not_requested() {
+    let guid = GUID::new(GuidPrefix::UNKNOWN, EntityId::UNKNOWN);
+    let mut rp = RtpsReaderProxy::new(guid, QosPolicies::default(), false);
+    for base in [0, 11, u32::MAX - 1] {
+      let mut set = FragmentNumberSet::new(FragmentNumber::new(base), 1);
+      set.test_insert(FragmentNumber::new(base));
+      rp.mark_frags_requested(SequenceNumber::new(1), &set, 10);
+      assert!(!rp.repair_frags_requested() && rp.frags_requested.is_empty());
+    }
   }
 }
 

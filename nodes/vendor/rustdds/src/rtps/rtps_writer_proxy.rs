@@ -1,13 +1,18 @@
-use core::ops::Bound::{Included, Unbounded};
-use std::{cmp::max, collections::BTreeMap};
+use std::{
+  cmp::{max, min},
+  collections::BTreeMap,
+};
 
 #[allow(unused_imports)]
 use log::{debug, error, info, trace, warn};
 
 use crate::{
   discovery::sedp_messages::DiscoveredWriterData,
-  rtps::constant::MAX_TRACKED_CHANGES_PER_WRITER,
+  rtps::constant::{
+    MAX_MISSING_WINDOW, MAX_PLAUSIBLE_SEQUENCE_JUMP, MAX_TRACKED_RANGES_PER_WRITER,
+  },
   structure::{
+    duration::Duration,
     guid::{EntityId, GUID},
     locator::Locator,
     sequence_number::SequenceNumber,
@@ -48,21 +53,19 @@ pub(crate) struct RtpsWriterProxy {
   // Received cannot transition to anything.
   // Not_available cannot transition to anything.
 
-  // We keep a map "changes" and a sequence number counters "ack_base", to keep track of these.
+  // We keep a set "accounted" and a sequence number counter "ack_base", to keep
+  // track of these.
 
-  // changes.get(sn) is interpreted as follows:
-  // * Some(Some(timestamp)) = received at timestamp
-  // * Some(None) = not_available
-  // * None = any state, see below:
-  //
   // All changes below ack_base are either received or not_available.
-  // All changes above hb_last are unknown (if they are not in "changes" map)
-  // All changes between ack_base and hb_last (inclusive) are missing.
+  // So are all changes in "accounted", which lie at or above ack_base.
+  // All others are missing up to what the last HEARTBEAT announced, and unknown
+  // above.
 
-  // Timestamps are stored, because they are used as keys into the DDS Cache.
-  changes: BTreeMap<SequenceNumber, Option<Timestamp>>,
+  // Ranges (first, one past last), disjoint and not adjacent. A range costs the
+  // same however many sequence numbers a packet claims to be in it.
+  accounted: BTreeMap<SequenceNumber, SequenceNumber>,
 
-  // The changes map is cleaned on heartbeat messages. The changes no longer available are dropped.
+  // Ranges are dropped when ack_base has passed them.
   pub received_heartbeat_count: i32,
 
   pub sent_ack_nack_count: i32,
@@ -75,6 +78,12 @@ pub(crate) struct RtpsWriterProxy {
   // These are used for quick tracking of
   last_received_sequence_number: SequenceNumber,
   last_received_timestamp: Timestamp,
+
+  // Highest sequence number that the Writer has credibly used, by DATA or
+  // HEARTBEAT. `None` until the first of them: a Writer may be old when we match.
+  horizon: Option<SequenceNumber>,
+  // The HEARTBEAT last refused as implausible.
+  implausible_heartbeat: Option<(SequenceNumber, Timestamp)>,
 }
 
 impl RtpsWriterProxy {
@@ -89,7 +98,7 @@ impl RtpsWriterProxy {
       unicast_locator_list,
       multicast_locator_list,
       remote_group_entity_id,
-      changes: BTreeMap::new(),
+      accounted: BTreeMap::new(),
       received_heartbeat_count: 0,
       sent_ack_nack_count: 0,
       // Sequence numbering must start at 1.
@@ -97,12 +106,14 @@ impl RtpsWriterProxy {
       ack_base: SequenceNumber::new(1),
       last_received_sequence_number: SequenceNumber::new(0),
       last_received_timestamp: Timestamp::INVALID,
+      horizon: None,
+      implausible_heartbeat: None,
     }
   }
 
   pub fn next_ack_nack_sequence_number(&mut self) -> i32 {
     let c = self.sent_ack_nack_count;
-    self.sent_ack_nack_count += 1;
+    self.sent_ack_nack_count = c.wrapping_add(1);
     c
   }
 
@@ -129,10 +140,70 @@ impl RtpsWriterProxy {
 
   // Check if we no samples in the received state.
   pub fn no_changes_received(&self) -> bool {
-    self.ack_base == SequenceNumber::new(0) && self.changes.is_empty()
+    self.ack_base == SequenceNumber::new(0) && self.accounted.is_empty()
   }
 
-  // Given an availability range from a HEARTBEAT, find out what we are missing.
+  /// Is this sequence number within reach of what the Writer has used so far?
+  pub fn is_plausible(&self, sn: SequenceNumber) -> bool {
+    self.horizon.is_none_or(|horizon| {
+      i64::from(sn) <= i64::from(horizon).saturating_add(MAX_PLAUSIBLE_SEQUENCE_JUMP)
+    })
+  }
+
+  fn extend_horizon(&mut self, sn: SequenceNumber) {
+    self.horizon = Some(self.horizon.map_or(sn, |horizon| max(horizon, sn)));
+  }
+
+  /// Should a HEARTBEAT be acted on? It should not if it repeats one that was
+  /// processed, or if what it announces is out of reach. The latter may still be
+  /// true of a Writer that we did not hear for long, so it is believed if a
+  /// later HEARTBEAT goes on from there, and no plausible one came in between.
+  pub fn accept_heartbeat(
+    &mut self,
+    first: SequenceNumber,
+    last: SequenceNumber,
+    count: i32,
+    now: Timestamp,
+  ) -> bool {
+    // Copies of a HEARTBEAT arrive close together. A count far below is a new
+    // beginning: otherwise one forged count would silence the Writer.
+    let older_by = self.received_heartbeat_count.wrapping_sub(count);
+    if self.horizon.is_some() && (0..HEARTBEAT_COUNT_MEMORY).contains(&older_by) {
+      return false;
+    }
+    let highest = max(first, last);
+    if !self.is_plausible(highest) {
+      let confirmed = self.implausible_heartbeat.is_some_and(|(before, when)| {
+        highest >= before
+          && i64::from(highest) - i64::from(before) <= MAX_PLAUSIBLE_SEQUENCE_JUMP
+          && now.duration_since(when) >= IMPLAUSIBLE_HEARTBEAT_CONFIRMATION
+      });
+      if !confirmed {
+        if self
+          .implausible_heartbeat
+          .is_none_or(|(before, _)| highest < before)
+        {
+          self.implausible_heartbeat = Some((highest, now));
+        }
+        return false;
+      }
+    }
+    self.implausible_heartbeat = None;
+    self.received_heartbeat_count = count;
+    self.extend_horizon(last);
+
+    // A GAP told us of more than the Writer says to have. Ask again for what is
+    // not there yet. Never for what was received.
+    if last.saturating_next() < self.ack_base {
+      let after_received = self.last_received_sequence_number.saturating_next();
+      self.ack_base = min(self.ack_base, after_received);
+      self.accounted = self.accounted.split_off(&self.ack_base);
+    }
+    true
+  }
+
+  // Given an availability range from a HEARTBEAT, find out what we are missing,
+  // as far as one ACKNACK can tell: up to MAX_MISSING_WINDOW from the first.
   //
   // Note: Heartbeat gives bounds only. Some samples within that range may
   // have been received already, or not really available, i.e. there may be GAPs
@@ -142,10 +213,11 @@ impl RtpsWriterProxy {
     hb_first_sn: SequenceNumber,
     hb_last_sn: SequenceNumber,
   ) -> Vec<SequenceNumber> {
-    // Need to verify first <= last, or BTreeMap::range will crash
     if hb_first_sn > hb_last_sn {
-      if hb_first_sn > hb_last_sn + SequenceNumber::from(1) {
-        warn!("Negative range of missing_seqnums first={hb_first_sn:?} last={hb_last_sn:?}");
+      if hb_first_sn > hb_last_sn.saturating_next() {
+        warn_sparsely!(
+          "Negative range of missing_seqnums first={hb_first_sn:?} last={hb_last_sn:?}"
+        );
       } else {
         // first == last+1
         // This is normal. See RTPS 2.5 Spec Section "8.3.8.6.3 Validity"
@@ -155,87 +227,70 @@ impl RtpsWriterProxy {
       return vec![];
     }
 
-    let mut missing_seqnums = Vec::with_capacity(32); // out of hat value
-
-    let relevant_interval = SequenceNumber::range_inclusive(
-      max(hb_first_sn, self.ack_base), // ignore those that we already have
-      hb_last_sn,
+    // The first missing one. Ranges are not adjacent, so at most one is skipped.
+    let mut next = max(hb_first_sn, self.ack_base); // ignore those that we already have
+    if let Some(end) = self.end_of_range_with(next) {
+      next = end;
+    }
+    if next > hb_last_sn {
+      return vec![];
+    }
+    // one past the last of interest
+    let end = min(
+      i64::from(hb_last_sn).saturating_add(1),
+      i64::from(next).saturating_add(MAX_MISSING_WINDOW),
     );
+    let end = SequenceNumber::from(end);
 
-    // iterator over known Received and Not_available changes.
-    let known =
-      // again check for negative intervals, or BTreeMap::range will crash
-      if relevant_interval.begin() <= relevant_interval.end() {
-        self.changes
-          .range( relevant_interval )
-          .map(|e| *e.0)
-          .collect()
-      } else { vec![] };
-    let mut known_iter = known.iter();
-    let mut known_head = known_iter.next();
-
-    // Iterate over all SequenceNumbers (indices) in the advertised range.
-    for s in relevant_interval {
-      match known_head {
-        None => missing_seqnums.push(s), // no known changes left => s is missing
-        Some(known_sn) => {
-          // there are known changes left
-          if *known_sn == s {
-            // and the index sequence matches it => not missing
-            // => advance to next known change and continue iteration
-            known_head = known_iter.next();
-          } else {
-            // but it is not yet this index s => s is missing
-            missing_seqnums.push(s);
-          }
+    let mut missing_seqnums = Vec::with_capacity(32); // out of hat value
+    let mut known = self.accounted.range(next..end).peekable();
+    while next < end {
+      match known.peek() {
+        Some((&first, &one_past)) if first == next => {
+          next = one_past;
+          known.next();
+        }
+        _ => {
+          missing_seqnums.push(next);
+          next = next.plus_1();
         }
       }
     }
-
     missing_seqnums
+  }
+
+  // One past the end of the range that contains this sequence number, if any.
+  fn end_of_range_with(&self, seqnum: SequenceNumber) -> Option<SequenceNumber> {
+    self
+      .accounted
+      .range(..=seqnum)
+      .next_back()
+      .map(|(_, &end)| end)
+      .filter(|&end| end > seqnum)
   }
 
   // Check if we have already received this sequence number
   // or it has been marked as not_available
   pub fn should_ignore_change(&self, seqnum: SequenceNumber) -> bool {
-    seqnum < self.ack_base || self.changes.contains_key(&seqnum)
+    seqnum < self.ack_base || self.end_of_range_with(seqnum).is_some()
   }
 
   // This is used to mark DATA as received.
   pub fn received_changes_add(&mut self, seq_num: SequenceNumber, receive_timestamp: Timestamp) {
-    self.changes.insert(seq_num, Some(receive_timestamp));
-
     // Update deadline tracker
     if seq_num > self.last_received_sequence_number {
-      self.last_received_sequence_number = seq_num;
       self.last_received_timestamp = receive_timestamp;
+      if self.is_plausible(seq_num) {
+        self.last_received_sequence_number = seq_num;
+        self.extend_horizon(seq_num);
+      }
     }
-
-    // We get to advance ack_base if it was equal to seq_num
-    // If ack_base < seq_num, we are still missing seq_num-1 or others below
-    // If ack_base > seq_num, this is either a duplicate or ack_base was wrong.
-    // Remember, ack_base is the SN one past the last received/irrelevant SN.
-    if seq_num == self.ack_base {
-      self.advance_ack_base();
-    }
-
-    // Bound the map even when ack_base cannot advance (best-effort loss leaves a
-    // permanent gap below the newly received sample).
-    self.enforce_change_map_cap();
+    self.account_for(seq_num, seq_num.saturating_next());
   }
 
   // Used to add individual irrelevant changes from GAP message
   pub fn set_irrelevant_change(&mut self, seq_num: SequenceNumber) {
-    // If sequence number is still in the relevant range,
-    // insert not_available marker
-    if seq_num >= self.ack_base {
-      self.changes.insert(seq_num, None);
-    }
-
-    if seq_num == self.ack_base {
-      // ack_base can be advanced
-      self.advance_ack_base();
-    }
+    self.account_for(seq_num, seq_num.saturating_next());
   }
 
   // Used to add range of irrelevant changes from GAP submessage or unavailable
@@ -247,55 +302,59 @@ impl RtpsWriterProxy {
   ) {
     // check sanity
     if remove_from > remove_until_before {
-      error!(
+      warn_sparsely!(
         "irrelevant_changes_range: negative range: remove_from={remove_from:?} \
          remove_until_before={remove_until_before:?}"
       );
       return;
     }
-    // now remove_from <= remove_until_before, i.e. at least zero to remove
-    //
-    // Two cases here:
-    // If remove_from <= self.ack_base, then we may proceed by moving
-    // ack_base to remove_until_before and clearing "changes" before that.
-    //
-    // Else (remove_from > self.ack_base), which means we must insert not_available
-    // markers to "changes".
-    //
-    if remove_from <= self.ack_base {
-      let mut removed_and_after = self.changes.split_off(&remove_from);
-      let mut after = removed_and_after.split_off(&remove_until_before);
-      // let removed = removed_and_after;
-      self.changes.append(&mut after);
-
-      if remove_until_before > self.ack_base {
-        // Move the base to skip the irrelevant changes
-        self.ack_base = remove_until_before;
-        // The new base might be a sample that we already have, move the base forward
-        // until we hit a missing one
-        self.advance_ack_base();
-      }
-
-      debug!(
-        "ack_base increased to {:?} by irrelevant_changes_range {:?} to {:?}. writer={:?}",
-        self.ack_base, remove_from, remove_until_before, self.remote_writer_guid
-      );
-    } else {
-      // TODO: This potentially generates a very large BTreeMap
-      for na in
-        SequenceNumber::range_inclusive(remove_from, remove_until_before - SequenceNumber::new(1))
-      {
-        self.changes.insert(na, None);
-      }
-      self.enforce_change_map_cap();
-    }
+    self.account_for(remove_from, remove_until_before);
   }
 
   // Used to mark messages irrelevant because of a HEARTBEAT message.
   //
   // smallest_seqnum is the lowest key to be retained
   pub fn irrelevant_changes_up_to(&mut self, smallest_seqnum: SequenceNumber) {
-    self.irrelevant_changes_range(SequenceNumber::new(0), smallest_seqnum);
+    if smallest_seqnum > self.ack_base {
+      self.irrelevant_changes_range(SequenceNumber::new(0), smallest_seqnum);
+    }
+  }
+
+  // Everything in begin..end is received or not available.
+  fn account_for(&mut self, begin: SequenceNumber, end: SequenceNumber) {
+    let begin = max(begin, self.ack_base);
+    if begin >= end {
+      return;
+    }
+    if begin == self.ack_base && self.accounted.is_empty() {
+      self.ack_base = end; // in order, nothing beyond: the usual case
+      return;
+    }
+
+    // Merge with ranges that overlap or touch.
+    let (mut merged_begin, mut merged_end) = (begin, end);
+    while let Some((&first, &one_past)) = self.accounted.range(..=merged_end).next_back() {
+      if one_past < begin {
+        break;
+      }
+      merged_begin = min(merged_begin, first);
+      merged_end = max(merged_end, one_past);
+      self.accounted.remove(&first);
+    }
+    if merged_begin <= self.ack_base {
+      self.ack_base = merged_end;
+    } else {
+      self.accounted.insert(merged_begin, merged_end);
+    }
+
+    // Memory-safety backstop: under best-effort loss `ack_base` can stall at a
+    // permanently missing sample while ranges pile up above it. Give up on the
+    // oldest missing ones.
+    while self.accounted.len() > MAX_TRACKED_RANGES_PER_WRITER {
+      if let Some((_, one_past)) = self.accounted.pop_first() {
+        self.ack_base = one_past;
+      }
+    }
   }
 
   fn discovered_or_default(drd: &[Locator], default: &[Locator]) -> Vec<Locator> {
@@ -325,82 +384,28 @@ impl RtpsWriterProxy {
       remote_group_entity_id: EntityId::UNKNOWN,
       unicast_locator_list,
       multicast_locator_list,
-      changes: BTreeMap::new(),
+      accounted: BTreeMap::new(),
       received_heartbeat_count: 0,
       sent_ack_nack_count: 0,
       ack_base: SequenceNumber::default(),
       last_received_sequence_number: SequenceNumber::new(0),
       last_received_timestamp: Timestamp::INVALID,
+      horizon: None,
+      implausible_heartbeat: None,
     }
   } // fn
 
-  // Advance ack_base as far as possible
-  // This function should be called after the writer proxy has modified its
-  // changes cache (for instance added a new received change) such that ack_base
-  // could be advanced
-  fn advance_ack_base(&mut self) {
-    // Start searching from current ack_base
-    let mut test_sn = self.ack_base;
-
-    for (&sn, _what) in self.changes.range((Included(&self.ack_base), Unbounded)) {
-      if sn == test_sn {
-        // test_sn found from changes, ack_base can be set to test_sn + 1
-        test_sn = test_sn + SequenceNumber::new(1);
-      } else {
-        // test_sn not found from changes, stop here
-        break;
-      }
-
-      // The changes cache contains a string of consecutive sequence numbers from
-      // ack_base-1 up to test_sn (excluded), so ack_base can be set to test_sn
-      self.ack_base = test_sn;
-    }
-
-    // Entries strictly below ack_base are already accounted for (received or
-    // not_available) and are never read again: `missing_seqnums` starts at
-    // max(hb_first, ack_base) and `should_ignore_change` treats anything below
-    // ack_base as handled regardless of the map. Historically these entries were
-    // only cleaned by HEARTBEAT/GAP, which best-effort writers never send, so
-    // the map grew by one entry per received sample. Drop them eagerly here.
-    self.prune_below_ack_base();
-  }
-
-  // Drop tracked changes below ack_base (they are already accounted for).
-  fn prune_below_ack_base(&mut self) {
-    // Only touch the map when there is actually something below ack_base to drop
-    // (the common stalled-gap case has nothing below ack_base, so we skip the
-    // split_off entirely and keep the receive path cheap).
-    if matches!(self.changes.keys().next(), Some(&first) if first < self.ack_base) {
-      // split_off returns everything from the key onward; keep that, drop the rest.
-      self.changes = self.changes.split_off(&self.ack_base);
-    }
-  }
-
-  // Memory-safety backstop: under best-effort loss `ack_base` can stall at a
-  // permanently missing sample while received sequence numbers pile up above it,
-  // so pruning below ack_base is not enough. When the map exceeds the cap, force
-  // ack_base past the oldest tracked change (giving up on the stalled gap as
-  // lost) so the map cannot grow without bound.
-  fn enforce_change_map_cap(&mut self) {
-    while self.changes.len() > MAX_TRACKED_CHANGES_PER_WRITER {
-      let oldest = match self.changes.keys().next() {
-        Some(&sn) => sn,
-        None => break,
-      };
-      self.changes.remove(&oldest);
-      if self.ack_base <= oldest {
-        self.ack_base = oldest + SequenceNumber::new(1);
-      }
-    }
-    // After forcing ack_base forward, drop anything now below it.
-    self.prune_below_ack_base();
-  }
-
   #[cfg(test)]
-  pub fn tracked_changes_count(&self) -> usize {
-    self.changes.len()
+  pub fn tracked_ranges_count(&self) -> usize {
+    self.accounted.len()
   }
 } // impl
+
+// How far back a HEARTBEAT's count counts as a copy of one already processed.
+const HEARTBEAT_COUNT_MEMORY: i32 = 1024;
+
+// A HEARTBEAT out of reach has to be repeated after this long to be believed.
+const IMPLAUSIBLE_HEARTBEAT_CONFIRMATION: Duration = Duration::from_secs(1);
 
 #[cfg(test)]
 mod bounded_map_tests {
@@ -429,9 +434,9 @@ mod bounded_map_tests {
     // Everything received in order: ack_base advanced past the last sample.
     assert_eq!(wp.all_ackable_before(), SequenceNumber::new(n + 1));
     assert!(
-      wp.tracked_changes_count() <= 1,
+      wp.tracked_ranges_count() <= 1,
       "changes map grew unbounded on contiguous delivery: {} entries",
-      wp.tracked_changes_count()
+      wp.tracked_ranges_count()
     );
   }
 
@@ -441,16 +446,104 @@ mod bounded_map_tests {
   #[test]
   fn changes_map_bounded_with_permanent_gap() {
     let mut wp = test_proxy();
-    // Sample 1 is never delivered; deliver a long run above it.
-    let n: i64 = MAX_TRACKED_CHANGES_PER_WRITER as i64 * 4;
-    for i in 2..=n {
-      wp.received_changes_add(SequenceNumber::new(i), Timestamp::INVALID);
+    // Every odd sample is lost.
+    let n: i64 = MAX_TRACKED_RANGES_PER_WRITER as i64 * 4;
+    for i in 1..=n {
+      wp.received_changes_add(SequenceNumber::new(2 * i), Timestamp::INVALID);
     }
     assert!(
-      wp.tracked_changes_count() <= MAX_TRACKED_CHANGES_PER_WRITER,
+      wp.tracked_ranges_count() <= MAX_TRACKED_RANGES_PER_WRITER,
       "changes map exceeded cap {} under a permanent gap: {} entries",
-      MAX_TRACKED_CHANGES_PER_WRITER,
-      wp.tracked_changes_count()
+      MAX_TRACKED_RANGES_PER_WRITER,
+      wp.tracked_ranges_count()
+    );
+  }
+  fn sn(n: i64) -> SequenceNumber {
+    SequenceNumber::new(n)
+  }
+
+  fn missing(wp: &RtpsWriterProxy, first: i64, last: i64) -> Vec<i64> {
+    let missing = wp.missing_seqnums(sn(first), sn(last));
+    missing.into_iter().map(i64::from).collect()
+  }
+
+  fn at(seconds: u32) -> Timestamp {
+    Timestamp::from_ticks(u64::from(seconds) << 32)
+  }
+
+  #[test]
+  fn what_is_missing_does_not_depend_on_the_order_of_arrival() {
+    let arrivals: [&[i64]; 3] = [&[1, 3, 4, 7], &[7, 4, 3, 1], &[3, 7, 1, 4]];
+    for order in arrivals {
+      let mut wp = test_proxy();
+      for &i in order {
+        wp.received_changes_add(sn(i), Timestamp::INVALID);
+      }
+      wp.irrelevant_changes_range(sn(6), sn(7));
+      assert_eq!(missing(&wp, 1, 9), vec![2, 5, 8, 9]);
+      assert_eq!(wp.all_ackable_before(), sn(2));
+      assert!(wp.should_ignore_change(sn(4)) && !wp.should_ignore_change(sn(5)));
+      wp.received_changes_add(sn(2), Timestamp::INVALID);
+      assert_eq!(wp.all_ackable_before(), sn(5));
+      wp.received_changes_add(sn(5), Timestamp::INVALID);
+      assert_eq!(wp.all_ackable_before(), sn(8));
+      assert_eq!(wp.tracked_ranges_count(), 0);
+    }
+  }
+
+  #[test]
+  fn a_huge_claim_costs_no_more_than_a_small_one() {
+    let mut wp = test_proxy();
+    assert_eq!(missing(&wp, 1, i64::MAX).len() as i64, MAX_MISSING_WINDOW);
+    wp.irrelevant_changes_range(sn(10), sn(200_000_000));
+    assert_eq!(wp.tracked_ranges_count(), 1);
+    assert_eq!(missing(&wp, 1, i64::MAX), (1..10).collect::<Vec<_>>());
+    wp.irrelevant_changes_range(sn(1), sn(i64::MAX));
+    wp.received_changes_add(sn(i64::MAX), Timestamp::INVALID);
+    assert!(missing(&wp, i64::MAX, i64::MAX).len() <= 1);
+  }
+
+  #[test]
+  fn a_forged_heartbeat_is_refused_and_the_true_ones_go_on() {
+    let mut wp = test_proxy();
+    assert!(wp.accept_heartbeat(sn(1), sn(10), 1, at(0)));
+    assert!(!wp.accept_heartbeat(sn(1), sn(10), 1, at(0)), "a copy");
+    assert!(!wp.accept_heartbeat(sn(1), sn(1 << 40), i32::MAX, at(1)));
+    assert!(!wp.accept_heartbeat(sn(1 << 40), sn(1 << 40), 7, at(1)));
+    assert!(wp.accept_heartbeat(sn(1), sn(11), 2, at(3)));
+    // plausible but for its count
+    assert!(wp.accept_heartbeat(sn(1), sn(11), i32::MAX, at(3)));
+    assert!(wp.accept_heartbeat(sn(1), sn(12), 3, at(3)));
+    assert!(
+      !wp.accept_heartbeat(sn(1), sn(1 << 40), 4, at(9)),
+      "not confirmed"
+    );
+  }
+
+  #[test]
+  fn a_writer_not_heard_for_long_is_believed_the_second_time() {
+    let mut wp = test_proxy();
+    assert!(wp.accept_heartbeat(sn(1), sn(10), 1, at(0)));
+    let far = 10 * MAX_PLAUSIBLE_SEQUENCE_JUMP;
+    assert!(!wp.accept_heartbeat(sn(far), sn(far + 10), 900, at(60)));
+    assert!(wp.accept_heartbeat(sn(far), sn(far + 20), 901, at(62)));
+  }
+
+  #[test]
+  fn a_forged_gap_is_undone_by_the_writers_heartbeat() {
+    let mut wp = test_proxy();
+    for i in 1..=5 {
+      wp.received_changes_add(sn(i), Timestamp::INVALID);
+    }
+    assert!(wp.is_plausible(sn(1000)) && !wp.is_plausible(sn(200_000_000)));
+    wp.irrelevant_changes_range(sn(6), sn(1000));
+    assert!(wp.should_ignore_change(sn(6)));
+    assert!(wp.accept_heartbeat(sn(1), sn(7), 1, at(0)));
+    assert_eq!(missing(&wp, 1, 7), vec![6, 7]);
+    assert!(!wp.should_ignore_change(sn(8)), "the next sample is heard");
+    assert!(
+      wp.should_ignore_change(sn(5)),
+      "what was received is not taken twice"
     );
   }
 }

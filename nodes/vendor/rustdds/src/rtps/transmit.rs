@@ -22,7 +22,7 @@
 //! interface" path, so reachability is never reduced.
 
 use std::{
-  collections::BTreeMap,
+  collections::{btree_map::Entry, BTreeMap, VecDeque},
   net::{IpAddr, SocketAddr},
   time::{Duration, Instant},
 };
@@ -134,7 +134,9 @@ impl ObservedRoutes {
     if source.ip().is_loopback() {
       self.seen_from_loopback = true;
     }
-    if let Some(iface) = iface {
+    if let Some(iface) = iface.filter(|iface| {
+      self.by_iface.contains_key(iface) || self.by_iface.len() < MAX_OBSERVED_INTERFACES
+    }) {
       self
         .by_iface
         .entry(iface)
@@ -204,7 +206,16 @@ impl ObservedRoutes {
 #[derive(Debug, Default)]
 pub struct InterfaceObservations {
   by_participant: BTreeMap<GuidPrefix, ObservedRoutes>,
+  // Those of `by_participant` that discovery does not know, oldest first. Any
+  // packet makes an entry, so these are bounded.
+  strangers: VecDeque<GuidPrefix>,
 }
+
+/// Observations kept of participants that are not discovered (yet).
+const MAX_STRANGERS: usize = 1024;
+
+/// Interfaces remembered of one participant.
+const MAX_OBSERVED_INTERFACES: usize = 16;
 
 impl InterfaceObservations {
   pub fn new() -> Self {
@@ -219,11 +230,23 @@ impl InterfaceObservations {
     iface: Option<InterfaceSelector>,
     source: SocketAddr,
   ) {
-    self
-      .by_participant
-      .entry(prefix)
-      .or_default()
-      .record(iface, source);
+    match self.by_participant.entry(prefix) {
+      Entry::Occupied(mut known) => known.get_mut().record(iface, source),
+      Entry::Vacant(new) => {
+        new.insert(ObservedRoutes::default()).record(iface, source);
+        self.strangers.push_back(prefix);
+        if self.strangers.len() > MAX_STRANGERS {
+          if let Some(oldest) = self.strangers.pop_front() {
+            self.by_participant.remove(&oldest);
+          }
+        }
+      }
+    }
+  }
+
+  /// The participant was discovered: keep what is known of it.
+  pub fn keep(&mut self, prefix: GuidPrefix) {
+    self.strangers.retain(|p| *p != prefix);
   }
 
   pub fn get(&self, prefix: GuidPrefix) -> Option<&ObservedRoutes> {
@@ -232,6 +255,7 @@ impl InterfaceObservations {
 
   pub fn remove(&mut self, prefix: GuidPrefix) {
     self.by_participant.remove(&prefix);
+    self.strangers.retain(|p| *p != prefix);
   }
 }
 

@@ -33,6 +33,7 @@ use crate::{
       NACK_RESPONSE_DELAY, NACK_SUPPRESSION_DURATION, REPAIR_BATCH_MAX_BYTES,
       REPAIR_INTERVAL_DEFAULT, REPAIR_INTERVAL_MAX, REPAIR_INTERVAL_MIN,
     },
+    dp_event_loop::{EventLoopOptions, ReaderMayBlock},
     outbound::{SocketId, TrafficClass},
     rtps_reader_proxy::RtpsReaderProxy,
     timed_event::DpTimerEvent,
@@ -199,11 +200,16 @@ pub(crate) struct Writer {
   // bootstrap same-host discovery in the first place). See
   // `src/rtps/loopback_same_host_design.md`.
   extra_unicast_destinations: Vec<Locator>,
+  // Instead of the above for so many messages yet: the first ones go further.
+  first_unicast_destinations: RefCell<(u32, Vec<Locator>)>,
 
   // Whether route selection may prefer a same-host peer's loopback locator.
   // Mirrors the participant-builder `same_host_loopback` knob; `true` by
   // default. Passed into `DefaultRouteSelector` on every route resolution.
   prefer_loopback_same_host: bool,
+
+  // Whose Readers may hold us up. See the participant builder.
+  reader_may_block: ReaderMayBlock,
 
   // Interface-aware transmit: per-remote observed receive interfaces/addresses,
   // shared (intra-thread) with the MessageReceiver that records them. Consulted
@@ -348,7 +354,9 @@ impl Writer {
       requested_incompatible_qos_count: 0,
       udp_sender,
       extra_unicast_destinations: Vec::new(),
+      first_unicast_destinations: RefCell::new((0, Vec::new())),
       prefer_loopback_same_host: true,
+      reader_may_block: EventLoopOptions::default().reader_may_block,
       interface_observations,
       local_interfaces,
       min_datagram_payload: FALLBACK_MAX_AGGREGATED_DATAGRAM_SIZE,
@@ -1157,7 +1165,7 @@ impl Writer {
 
         // sanity check requested sequence numbers
         if let Some(0) = an.reader_sn_state.iter().next().map(i64::from) {
-          warn!("Request for SN zero! : {an:?}");
+          warn_sparsely!("Request for SN zero! : {an:?}");
         }
 
         let reader_guid = GUID::new(reader_guid_prefix, an.reader_id);
@@ -1253,14 +1261,9 @@ impl Writer {
 
         // See if we need to respond by GAP message
         if let Some(reader_proxy) = self.readers.get(&reader_guid) {
-          if !reader_proxy.get_pending_gap().is_empty() {
+          if reader_proxy.has_pending_gap() {
             let gap_message = MessageBuilder::new()
-              .gap_msg(
-                reader_proxy.get_pending_gap(),
-                self.my_guid.entity_id,
-                self.endianness,
-                reader_guid,
-              )
+              .pending_gap_msg(reader_proxy, self.my_guid.entity_id, self.endianness)
               .add_header_and_build(self.my_guid.prefix);
             self.send_control_to_readers(
               DeliveryMode::Unicast,
@@ -1299,6 +1302,13 @@ impl Writer {
       AckSubmessage::NackFrag(ref nackfrag) => {
         // NackFrag is negative acknowledgement only, i.e. requesting missing fragments.
         let reader_guid = GUID::new(reader_guid_prefix, nackfrag.reader_id);
+        let Some(frag_count) = self
+          .send_buffer
+          .get_by_sn(nackfrag.writer_sn)
+          .map(|cc| cc.data_value.payload_size().div_ceil(FRAGMENT_SIZE))
+        else {
+          return; // a GAP or HEARTBEAT will tell that it is gone
+        };
         let Some(reader_proxy) = self.lookup_reader_proxy_mut(reader_guid) else {
           return;
         };
@@ -1311,7 +1321,11 @@ impl Writer {
           return;
         }
         reader_proxy.last_nackfrag_count = Some(nackfrag.count);
-        reader_proxy.mark_frags_requested(nackfrag.writer_sn, &nackfrag.fragment_number_state);
+        reader_proxy.mark_frags_requested(
+          nackfrag.writer_sn,
+          &nackfrag.fragment_number_state,
+          frag_count,
+        );
         self.schedule_repair_frags(reader_guid, self.nackfrag_response_delay);
       }
     }
@@ -1343,7 +1357,7 @@ impl Writer {
     let frontier = self
       .readers
       .values()
-      .filter(|rp| rp.qos().is_reliable())
+      .filter(|rp| rp.may_block && rp.qos().is_reliable())
       .map(RtpsReaderProxy::acked_up_to_before)
       .min();
     self.send_buffer.set_acked_frontier(frontier);
@@ -1430,7 +1444,7 @@ impl Writer {
         break;
       };
       let first_available = self.send_buffer.first_change_sequence_number();
-      let pending_gaps = reader_proxy.get_pending_gap().clone();
+      let is_pending_gap = reader_proxy.is_pending_gap(unsent_sn);
 
       let mut gap = MessageBuilder::new();
       let mut cache_change = None;
@@ -1449,7 +1463,7 @@ impl Writer {
           reader_guid,
         );
         reader_proxy.remove_from_unsent_set_all_before(first_available);
-      } else if !pending_gaps.contains(&unsent_sn) {
+      } else if !is_pending_gap {
         match self.send_buffer.get_by_sn(unsent_sn) {
           Some(cc) => cache_change = Some(cc),
           None => {
@@ -1470,16 +1484,9 @@ impl Writer {
       }
       // SNs we are not going to send to this reader: announce them once per
       // round, together with the first change that goes out.
-      if !pending_gaps.is_empty() && (!pending_gap_sent || pending_gaps.contains(&unsent_sn)) {
-        gap = gap.gap_msg(
-          &pending_gaps,
-          self.entity_id(),
-          self.endianness,
-          reader_guid,
-        );
-        for sn in &pending_gaps {
-          reader_proxy.mark_change_sent(*sn);
-        }
+      if is_pending_gap || (reader_proxy.has_pending_gap() && !pending_gap_sent) {
+        gap = gap.pending_gap_msg(reader_proxy, self.entity_id(), self.endianness);
+        reader_proxy.mark_pending_gap_sent();
         pending_gap_sent = true;
       }
       let gap_len = gap.submessage_bytes_len();
@@ -1668,6 +1675,7 @@ impl Writer {
       let acked_by_all_readers = self
         .readers
         .values()
+        .filter(|rp| rp.may_block)
         .map(RtpsReaderProxy::acked_up_to_before)
         .min()
         .unwrap_or_else(SequenceNumber::zero);
@@ -1909,7 +1917,16 @@ impl Writer {
 
         // Fixed extra unicast destinations (SPDP localhost peers): send the same
         // datagram unconditionally, deduplicated against everything already sent.
-        send_legacy!(self.extra_unicast_destinations);
+        let mut first = self.first_unicast_destinations.borrow_mut();
+        if first.0 > 0 {
+          send_legacy!(first.1);
+          first.0 -= 1;
+          if first.0 == 0 {
+            first.1 = Vec::new();
+          }
+        } else {
+          send_legacy!(self.extra_unicast_destinations);
+        }
       }
       Err(e) => error!("Failed to send message to readers. Encoding failed: {e:?}"),
     }
@@ -1958,14 +1975,27 @@ impl Writer {
   /// (in addition to matched readers), bypassing route selection. Used only for
   /// the built-in SPDP writer's "localhost SPDP peers". See
   /// [`Self::extra_unicast_destinations`].
-  pub fn set_extra_unicast_destinations(&mut self, locators: Vec<Locator>) {
+  ///
+  /// The first `first_messages` go to `first_locators` instead.
+  pub fn set_extra_unicast_destinations(
+    &mut self,
+    locators: Vec<Locator>,
+    first_locators: Vec<Locator>,
+    first_messages: u32,
+  ) {
     self.extra_unicast_destinations = locators;
+    self.first_unicast_destinations = RefCell::new((first_messages, first_locators));
   }
 
   /// Enable/disable preferring a same-host peer's loopback locator during route
   /// selection. See the participant-builder `same_host_loopback` knob.
   pub fn set_prefer_loopback_same_host(&mut self, enabled: bool) {
     self.prefer_loopback_same_host = enabled;
+  }
+
+  /// See the participant-builder `reader_may_block`.
+  pub fn set_reader_may_block(&mut self, reader_may_block: ReaderMayBlock) {
+    self.reader_may_block = reader_may_block;
   }
 
   pub fn update_reader_proxy(
@@ -2094,6 +2124,8 @@ impl Writer {
       .or_insert_with(|| {
         is_new = true;
         let mut new_proxy = updated_reader_proxy.clone();
+        new_proxy.may_block = self.my_guid.entity_id.kind().is_built_in()
+          || (self.reader_may_block)(new_proxy.remote_reader_guid.prefix);
         // Ensure loopback stays in the gated bucket even for proxies that
         // arrive with it inline (e.g. the built-in get_builtin_reader_proxy path).
         new_proxy.normalize_loopback();
@@ -2414,15 +2446,10 @@ impl<'a> Iterator for FragmentationIter<'a> {
 
             // If sending to a single reader, add a GAP message with pending gaps if any
             if let Some(reader) = target_reader_opt {
-              if !reader.get_pending_gap().is_empty() {
+              if reader.has_pending_gap() {
                 let gap_msg = MessageBuilder::new()
                   .dst_submessage(writer.endianness, reader.remote_reader_guid.prefix)
-                  .gap_msg(
-                    reader.get_pending_gap(),
-                    writer.entity_id(),
-                    writer.endianness,
-                    reader.remote_reader_guid,
-                  )
+                  .pending_gap_msg(reader, writer.entity_id(), writer.endianness)
                   .add_header_and_build(writer.my_guid.prefix);
                 // Leading GAP: if it blocks, resume from Fresh (re-send GAP too).
                 return Some((SampleCursor::Fresh, gap_msg));
@@ -2543,14 +2570,8 @@ impl<'a> Iterator for FragmentationIter<'a> {
             message_builder.dst_submessage(writer.endianness, reader.remote_reader_guid.prefix);
 
           // If the reader is pending GAPs on any sequence numbers, add a GAP
-          if !reader.get_pending_gap().is_empty() {
-            message_builder = message_builder.gap_msg(
-              reader.get_pending_gap(),
-              writer.entity_id(),
-              writer.endianness,
-              reader.remote_reader_guid,
-            );
-          }
+          message_builder =
+            message_builder.pending_gap_msg(reader, writer.entity_id(), writer.endianness);
         }
 
         // Add the DATA submessage
@@ -3013,6 +3034,48 @@ mod tests {
     }
 
     // A repeated ACKNACK count is a copy and changes nothing; a new count does.
+    #[test]
+    fn a_reader_that_may_not_block_is_not_waited_for_but_repaired() {
+      let mut fixture = Fixture::user(10, 8, None);
+      let bystander = GuidPrefix::new(&[3; 12]);
+      fixture
+        .writer
+        .set_reader_may_block(std::sync::Arc::new(move |prefix| prefix != bystander));
+      let mut reader_proxy = fixture.reader_proxy().clone();
+      let waited_for = reader_proxy.remote_reader_guid;
+      reader_proxy.remote_reader_guid.prefix = bystander;
+      let bystander = reader_proxy.remote_reader_guid;
+      let qos = reader_proxy.qos().clone();
+      fixture.writer.update_reader_proxy(&reader_proxy, &qos);
+
+      let all = SequenceNumber::new(10);
+      let send_buffer = fixture.writer.send_buffer.clone();
+      assert!(!send_buffer.is_acked_through(all));
+      // The one that is waited for acknowledges, the other asks for repairs.
+      for (reader, base, requested) in [(waited_for, 11, vec![]), (bystander, 2, vec![2, 3])] {
+        let acknack = AckNack {
+          reader_id: reader.entity_id,
+          writer_id: fixture.writer.guid().entity_id,
+          reader_sn_state: SequenceNumberSet::from_base_and_set(
+            SequenceNumber::new(base),
+            &requested.into_iter().map(SequenceNumber::new).collect(),
+          ),
+          count: 1,
+        };
+        fixture
+          .writer
+          .handle_ack_nack(reader.prefix, &AckSubmessage::AckNack(acknack));
+      }
+      assert!(send_buffer.is_acked_through(all));
+      assert_eq!(
+        fixture.writer.readers[&bystander].first_unsent_change(),
+        Some(SequenceNumber::new(2))
+      );
+      // Alone, it counts as little.
+      fixture.writer.reader_lost(waited_for);
+      assert!(send_buffer.is_acked_through(all));
+    }
+
     #[test]
     fn duplicate_acknack_count_is_ignored() {
       let mut f = Fixture::user(5, 8, None);

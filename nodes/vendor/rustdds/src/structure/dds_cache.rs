@@ -145,6 +145,9 @@ pub(crate) struct TopicCache {
   // would need 2^32 receives within it.
   last_added_instant: Timestamp,
 
+  // Changes that were offered so far, to collect garbage now and then.
+  add_count: usize,
+
   // sequence_numbers is an index to "changes" by GUID and SN
   sequence_numbers: BTreeMap<GUID, BTreeMap<SequenceNumber, Timestamp>>,
 
@@ -168,6 +171,7 @@ impl TopicCache {
       changes: BTreeMap::new(),
       changes_reallocated_up_to: Timestamp::ZERO,
       last_added_instant: Timestamp::ZERO,
+      add_count: 0,
       sequence_numbers: BTreeMap::new(),
       received_reliably_before: BTreeMap::new(),
     };
@@ -320,7 +324,8 @@ impl TopicCache {
     // But not at every insert, just to save time and effort.
     // Some heuristic to decide if we should collect now.
     // let payload_size = max(1, cache_change.data_value.payload_size());
-    let semi_random_number = i64::from(cache_change.sequence_number) as usize;
+    // Not by sequence number: senders choose those.
+    self.add_count = self.add_count.wrapping_add(1);
     // Garbage collect more often when samples are large, so the cache does not
     // balloon between collections for big (e.g. fragmented) payloads:
     //   payload <= 1 KiB   : GC every 64 samples (cheap amortization)
@@ -334,7 +339,7 @@ impl TopicCache {
     } else {
       1
     };
-    let gc_triggered = modulus <= 1 || semi_random_number.is_multiple_of(modulus);
+    let gc_triggered = modulus <= 1 || self.add_count.is_multiple_of(modulus);
     if gc_triggered {
       debug!("Garbage collecting topic {}", self.topic_name);
       self.remove_changes_before(Timestamp::ZERO);

@@ -48,6 +48,11 @@ impl SequenceNumber {
     SequenceNumber(self.0 + 1)
   }
 
+  /// The following number, or the greatest there is.
+  pub const fn saturating_next(&self) -> Self {
+    SequenceNumber(self.0.saturating_add(1))
+  }
+
   pub fn next(&self) -> SequenceNumber {
     self.plus_1()
   }

@@ -1263,6 +1263,7 @@ mod tests {
       Rc::new(UDPSender::new_with_random_port().unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // Create the corresponding matching DataReader
@@ -1448,6 +1449,7 @@ mod tests {
       Rc::new(UDPSender::new_with_random_port().unwrap()),
       new_shared_timer(),
       participant_status_sender,
+      Rc::default(),
     );
 
     // Create the corresponding matching DataReader

@@ -34,6 +34,9 @@ pub struct DataSampleCache<D: Keyed> {
   pub(crate) instance_map: BTreeMap<D::K, InstanceMetaData>, // ordered storage for instances
 }
 
+// Beyond this, instances of which no samples are left are forgotten.
+const MAX_INSTANCES: usize = 64 * 1024;
+
 pub(crate) struct InstanceMetaData {
   instance_samples: BTreeSet<Timestamp>, // which samples belong to this instance
   instance_state: InstanceState,         // latest known alive/not_alive state for this instance
@@ -122,6 +125,12 @@ where
       Sample::Value(_) => InstanceState::Alive,
       Sample::Dispose(_) => InstanceState::NotAliveDisposed,
     };
+
+    if self.instance_map.len() >= MAX_INSTANCES {
+      self
+        .instance_map
+        .retain(|_, imd| !imd.instance_samples.is_empty());
+    }
 
     // find or create metadata record
     let instance_metadata = if let Some(imd) = self.instance_map.get_mut(&instance_key) {

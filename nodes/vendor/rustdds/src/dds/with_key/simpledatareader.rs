@@ -54,8 +54,12 @@ pub(crate) struct ReadState<K: Key> {
   /// hash_to_key_map is used for decoding received key hashes back to original
   /// key values. This is needed when we receive a dispose message via hash
   /// only.
-  hash_to_key_map: BTreeMap<KeyHash, K>, // TODO: garbage collect this somehow
+  hash_to_key_map: BTreeMap<KeyHash, K>, // at most MAX_REMEMBERED_KEYS
 }
+
+// Instances whose keys are remembered to decode key hashes. Announcements of
+// participants make instances of any key.
+const MAX_REMEMBERED_KEYS: usize = 64 * 1024;
 
 impl<K: Key> ReadState<K> {
   fn new() -> Self {
@@ -223,6 +227,9 @@ where
       Sample::Dispose(k) => k.clone(),
     };
     hash_to_key_map.insert(instance_key.hash_key(false), instance_key);
+    if hash_to_key_map.len() > MAX_REMEMBERED_KEYS {
+      hash_to_key_map.pop_first();
+    }
   }
 
   fn deserialize_with<S>(
@@ -379,9 +386,12 @@ where
         // Advance read pointer, error or not, because otherwise
         // the SimpleDatareader is stuck.
         read_state_ref.latest_instant = max(latest_instant, timestamp);
-        read_state_ref
-          .last_read_sn
-          .insert(writer_guid, sequence_number);
+        if is_reliable {
+          // BEST_EFFORT reading does not use it, and anyone may write.
+          read_state_ref
+            .last_read_sn
+            .insert(writer_guid, sequence_number);
+        }
 
         // // Debug sanity check:
         // use crate::Duration;

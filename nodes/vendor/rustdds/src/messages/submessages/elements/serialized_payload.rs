@@ -3,7 +3,6 @@ use std::{cmp::min, io};
 use bytes::{Bytes, BytesMut};
 use speedy::{Context, Writable, Writer};
 use byteorder::ReadBytesExt;
-use log::warn;
 
 use crate::RepresentationIdentifier;
 
@@ -91,7 +90,7 @@ impl SerializedPayload {
     let value = if bytes.len() >= H_LEN {
       bytes.slice(H_LEN..)
     } else {
-      warn!("DATA submessage was smaller than submessage header: {bytes:?}");
+      warn_sparsely!("DATA submessage was smaller than submessage header: {bytes:?}");
       return Err(io::Error::other("Too short DATA submessage."));
     };
 
