@@ -7,11 +7,13 @@
 //! - [`player`]: when to send which message, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and our own recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
+//! - [`input`]: files from outside, regular and of bounded size
 //!
 //! Nothing here knows DDS: a thin shell hands samples to the writer and takes them from the player.
 
 pub mod export;
 pub mod import;
+pub mod input;
 pub mod ledger;
 pub mod player;
 pub mod reader;

@@ -4,6 +4,9 @@
 //! from its start as far as it goes. A chunk whose checksum fails is left out. Whatever could not be read is
 //! named by [`Recording::warnings`]; bytes never make it panic.
 //!
+//! Memory is bounded: a chunk may decompress to 64 times its size, or 64 MiB where that is more, and never to more than
+//! 1 GiB; all that is in memory at once, to 64 times the recording's size, or 256 MiB, and one chunk more.
+//!
 //! The file is mapped into memory: it must not be shortened by somebody else meanwhile (growing is fine).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,8 +17,10 @@ mod chunk;
 mod error;
 mod file;
 mod files;
+mod held;
 mod index;
 mod info;
+mod lengths;
 mod messages;
 mod records;
 mod verify;

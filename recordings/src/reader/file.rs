@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use mcap::MAGIC;
 use mcap::records::Record;
 use memmap2::Mmap;
+
+use crate::input;
 
 use super::index::{Entry, Index};
 use super::records::Records;
@@ -33,8 +34,8 @@ impl fmt::Debug for OpenFile {
 impl OpenFile {
     pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
         let io = |source| ReadError::Io { path: path.to_owned(), source };
-        let file = File::open(path).map_err(io)?;
-        if file.metadata().map_err(io)?.len() == 0 {
+        let (file, size) = input::open(path).map_err(io)?;
+        if size == 0 {
             return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
         }
         // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user

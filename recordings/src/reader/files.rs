@@ -6,7 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::input;
+
 use super::{ReadError, Warning, WarningKind};
+
+/// A `metadata.yaml` is smaller: bytes.
+const METADATA: u64 = 16 << 20;
 
 #[derive(Deserialize)]
 struct BagFile {
@@ -48,7 +53,7 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
 }
 
 fn listed(directory: &Path) -> Vec<String> {
-    let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap_or_default();
+    let text = input::text(&directory.join("metadata.yaml"), METADATA).unwrap_or_default();
     let names =
         serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
     // A name that leads out of the directory is not one of its parts.
