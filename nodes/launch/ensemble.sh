@@ -23,10 +23,11 @@ preparation=$(basename "$scene" .toml)
 columns=grains,phi,pressure_pa,k,z,eps,eps_stiffness,g_total,g_elastic,g_contact
 columns=$columns,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,grain_shear_modulus_pa,poisson
 
-# The first run of this name that came to its end; nothing if there is none.
+# The first run of this name that came to a good end; nothing if there is none. An interrupted one writes a summary, too,
+# and its last packing is not at rest.
 finished() {
     for summary in "$runs/$1"-*/summary.json; do
-        if [ -f "$summary" ]; then
+        if [ -f "$summary" ] && grep -q '^  "exit": 0,$' "$summary"; then
             dirname "$summary"
             return
         fi

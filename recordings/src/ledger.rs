@@ -10,8 +10,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+mod merge;
 mod sequence;
 
+pub use merge::merge;
 use sequence::Sequence;
 
 /// The RTPS identity of one writer: 16 bytes, shown as 32 hexadecimal digits.

@@ -4,6 +4,9 @@
 //! from its start as far as it goes. A chunk whose checksum fails is left out. Whatever could not be read is
 //! named by [`Recording::warnings`]; bytes never make it panic.
 //!
+//! Memory is bounded: a chunk may decompress to 64 times its size, or 64 MiB where that is more, and never to more than
+//! 1 GiB; all that is in memory at once, to 64 times the recording's size, or 256 MiB, and one chunk more.
+//!
 //! The file is mapped into memory: it must not be shortened by somebody else meanwhile (growing is fine).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,8 +17,10 @@ mod chunk;
 mod error;
 mod file;
 mod files;
+mod held;
 mod index;
 mod info;
+mod lengths;
 mod messages;
 mod records;
 mod verify;
@@ -24,8 +29,9 @@ pub use error::{ReadError, Warning, WarningKind};
 pub use info::{Info, TopicInfo};
 pub use messages::{Message, Messages, Payload};
 
-use crate::ledger::TopicTally;
-use crate::{LEDGER_KEY, METADATA_RECORD};
+use crate::bag_metadata::FileCount;
+use crate::ledger::{self, TopicTally};
+use crate::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use file::OpenFile;
 
 /// What a recording says about one topic.
@@ -208,9 +214,47 @@ impl Recording {
         self.files.iter().flat_map(|f| f.index.metadata.iter().map(|m| m.name.clone())).collect()
     }
 
-    /// The recorder's account, if the recording was finished by ours.
+    /// The account of the recorders, if the recording was finished by ours: of several recorders one after the other, and
+    /// of the files of each, as one. [`Recording::unaccounted`] names the files that it does not cover.
     pub fn ledger(&self) -> Option<Vec<TopicTally>> {
-        serde_json::from_str(self.metadata(METADATA_RECORD)?.get(LEDGER_KEY)?).ok()
+        let mut sessions = BTreeMap::new();
+        for (order, file) in self.files.iter().enumerate() {
+            if let Some((session, tallies)) = self.account(file) {
+                // The last file of a recorder accounts for those before.
+                let order = sessions.remove(&session).map_or(order, |(first, _)| first);
+                sessions.insert(session, (order, tallies));
+            }
+        }
+        let mut accounts: Vec<_> = sessions.into_values().collect();
+        accounts.sort_by_key(|(order, _)| *order);
+        if accounts.is_empty() {
+            return None;
+        }
+        Some(ledger::merge(accounts.into_iter().map(|(_, tallies)| tallies).collect()))
+    }
+
+    /// The files that no recorder accounted for: it was killed, or is still at work.
+    pub fn unaccounted(&self) -> Vec<PathBuf> {
+        self.files.iter().filter(|f| self.account(f).is_none()).map(|f| f.path.clone()).collect()
+    }
+
+    /// What a file says of its recorder and of what that has recorded so far.
+    fn account(&self, file: &OpenFile) -> Option<(String, Vec<TopicTally>)> {
+        let metadata = file.metadata(METADATA_RECORD, |w| self.warn(w))?;
+        let tallies = serde_json::from_str(metadata.get(LEDGER_KEY)?).ok()?;
+        // Files of an earlier version say no session: each is one.
+        let session = metadata.get(SESSION_KEY).cloned();
+        Some((session.unwrap_or_else(|| file.path.display().to_string()), tallies))
+    }
+
+    /// Name, times and messages of each file.
+    pub(crate) fn parts(&self) -> Vec<FileCount> {
+        self.files.iter().map(OpenFile::count).collect()
+    }
+
+    /// Messages on a topic, by its full name.
+    pub(crate) fn count(&self, topic: &str) -> u64 {
+        self.files.iter().map(|f| f.count_of(topic)).sum()
     }
 
     /// An overview.

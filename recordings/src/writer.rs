@@ -1,34 +1,38 @@
 //! A run directory, written so that a crash costs the open chunk at most.
 //!
-//! The file follows rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation
+//! The files follow rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation
 //! header, QoS and type hash in the channel's metadata. Chunks are built in memory and written whole, with
 //! their CRC; a chunk that is not empty is closed at the latest after [`WriterOptions::flush_interval`]. So
 //! what is on disk is at every moment a clean prefix, which [`crate::reader`] reads. A file is pushed to the
 //! device about once a second from another thread.
+//!
+//! A long run is split into files `<name>_0.mcap`, `<name>_1.mcap` … as rosbag2 does, since the index of a file is kept
+//! in memory until its end. Each part declares all topics and holds the account so far; log times increase over
+//! all of them.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use mcap::records::{MessageHeader, Metadata};
-use mcap::{Attachment, Compression, McapError, WriteOptions};
+use mcap::records::Metadata;
+use mcap::{Attachment, McapError};
 
+use crate::bag_metadata::{BagMetadata, TopicCount};
 use crate::ledger::{Guid, Ledger};
-use crate::{LEDGER_KEY, METADATA_RECORD};
+use crate::reader::Recording;
+use crate::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 
-mod bag_metadata;
 mod device_sync;
 mod error;
 mod free_space;
+pub(crate) mod part;
 mod topic_spec;
 
-use bag_metadata::{BagMetadata, TopicCount};
-use device_sync::DeviceSync;
 pub use error::WriteError;
 pub use free_space::free_space;
+use part::Part;
 pub use topic_spec::TopicSpec;
 
 /// A sample as it came from the network.
@@ -68,6 +72,10 @@ pub struct WriterOptions {
     pub flush_interval: Duration,
     /// Time between two pushes to the device.
     pub sync_interval: Duration,
+    /// Bytes of a file after which the next one is begun.
+    pub split_bytes: u64,
+    /// Age of a file at which the next one is begun: its index grows in memory, by some 6 MB an hour.
+    pub split_after: Duration,
     /// Bytes that must be free to begin.
     pub free_to_start: u64,
     /// Bytes that must stay free: below, the recording ends in good order while it still can.
@@ -80,6 +88,8 @@ impl Default for WriterOptions {
             chunk_size: 768 << 10,
             flush_interval: Duration::from_millis(400),
             sync_interval: Duration::from_secs(1),
+            split_bytes: 512 << 20,
+            split_after: Duration::from_secs(15 * 60),
             free_to_start: 64 << 20,
             free_to_continue: 32 << 20,
         }
@@ -89,11 +99,13 @@ impl Default for WriterOptions {
 /// What a finished recording is.
 #[derive(Clone, Debug)]
 pub struct Finished {
-    /// The MCAP file.
+    /// The last MCAP file.
     pub file: PathBuf,
-    /// Its size, bytes.
+    /// All MCAP files of this writer, in order.
+    pub files: Vec<PathBuf>,
+    /// Their size, bytes.
     pub bytes: u64,
-    /// Messages in it.
+    /// Messages in them.
     pub messages: u64,
     /// First log time, ns since 1970; 0 without messages.
     pub start: u64,
@@ -103,25 +115,30 @@ pub struct Finished {
     pub ledger: Ledger,
 }
 
-struct Channel {
-    spec: TopicSpec,
-    channel: u16,
-    messages: u64,
-}
-
 /// Writes one run. Call [`RunWriter::tick`] at least every 100 ms and [`RunWriter::finish`] at the end; a
 /// writer that is dropped instead finishes its file as well as it can and marks it `finished = false`.
 pub struct RunWriter {
     directory: PathBuf,
+    name: String,
+    /// Of the file being written.
+    number: u64,
     file: PathBuf,
     options: WriterOptions,
     /// `None` only after the end.
-    mcap: Option<mcap::Writer<BufWriter<File>>>,
-    sync: DeviceSync,
-    topics: BTreeMap<String, Channel>,
+    part: Option<Part>,
+    /// The topics, and the files that are complete, those of earlier writers included.
+    bag: BagMetadata,
+    /// Topics of this writer; earlier ones may have had others.
+    topics: BTreeSet<String>,
+    /// Files of this writer that are complete, and their size.
+    files: Vec<PathBuf>,
+    bytes: u64,
+    messages: u64,
     ledger: Ledger,
-    /// First and last log time.
+    /// First and last log time of this writer.
     bounds: Option<(u64, u64)>,
+    /// Last log time of all.
+    last: Option<u64>,
     /// Since when an unwritten message waits.
     pending: Option<Instant>,
     /// Payload bytes since free space was last looked at.
@@ -145,53 +162,82 @@ impl RunWriter {
         topics: &[TopicSpec],
         options: WriterOptions,
     ) -> Result<Self, WriteError> {
+        Self::begin(directory, name, topics, options, 0, BagMetadata::default())
+    }
+
+    /// Goes on with a run: begins `<directory>/<name>_<n>.mcap`, with the next number that is free. What is there
+    /// stays as it is; log times continue behind it, and `metadata.yaml` will name all files. The file of a recorder
+    /// that was killed should be [recovered](crate::recover) before, or other tools cannot read the run.
+    ///
+    /// # Errors
+    /// If a file of the run is being recorded, a topic contradicts one that is there, or as [`RunWriter::create`].
+    pub fn append(
+        directory: &Path,
+        name: &str,
+        topics: &[TopicSpec],
+        options: WriterOptions,
+    ) -> Result<Self, WriteError> {
+        let io = |source| WriteError::Io { path: directory.to_owned(), action: "read the directory", source };
+        let mut number = 0;
+        if directory.exists() {
+            for entry in fs::read_dir(directory).map_err(io)? {
+                let path = entry.map_err(io)?.path();
+                let text = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+                let part = text.strip_prefix(name).and_then(|t| t.strip_prefix('_'));
+                let part = part.and_then(|t| t.strip_suffix(".mcap")).and_then(|n| n.parse::<u64>().ok());
+                let Some(part) = part else { continue };
+                if File::open(&path).is_ok_and(|f| is_locked(&f)) {
+                    return Err(WriteError::InUse { path });
+                }
+                number = number.max(part.saturating_add(1));
+            }
+        }
+        let before = match Recording::open(directory) {
+            Ok(recording) => BagMetadata::of(&recording),
+            Err(_) => BagMetadata::default(),
+        };
+        Self::begin(directory, name, topics, options, number, before)
+    }
+
+    fn begin(
+        directory: &Path,
+        name: &str,
+        topics: &[TopicSpec],
+        options: WriterOptions,
+        number: u64,
+        before: BagMetadata,
+    ) -> Result<Self, WriteError> {
         let io = |path: &Path, action: &'static str| {
             let path = path.to_owned();
             move |source| WriteError::Io { path, action, source }
         };
         fs::create_dir_all(directory).map_err(io(directory, "make the directory"))?;
-        let file = directory.join(format!("{name}_0.mcap"));
+        let file = part_path(directory, name, number);
         let free = free_space(directory).map_err(io(directory, "ask for free space"))?;
         if free < options.free_to_start {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
         }
-        let handle = match File::create_new(&file) {
-            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-                return Err(WriteError::Exists { path: file });
-            }
-            other => other.map_err(io(&file, "create the file"))?,
-        };
-        let sync = DeviceSync::start(handle.try_clone().map_err(io(&file, "duplicate the handle"))?)
-            .map_err(io(&file, "start the thread that pushes data to the device"))?;
-        // disable_seeking: a chunk is written whole with its true header, so a crash leaves a clean prefix.
-        let mcap = WriteOptions::new()
-            .profile("ros2")
-            .library(concat!("grainlab ", env!("CARGO_PKG_VERSION")))
-            .compression(Some(Compression::Zstd))
-            .compression_level(1)
-            .compression_threads(0)
-            .chunk_size(Some(options.chunk_size))
-            .disable_seeking(true)
-            .create(BufWriter::with_capacity(64 << 10, handle))
-            .map_err(|source| WriteError::Format {
-                path: file.clone(),
-                action: "write the header",
-                source,
-            })?;
+        let part = Part::create(file.clone(), options.chunk_size, Instant::now())?;
         let mut writer = Self {
             directory: directory.to_owned(),
+            name: name.to_owned(),
+            number,
             file,
             options,
-            mcap: Some(mcap),
-            sync,
-            topics: BTreeMap::new(),
+            part: Some(part),
+            last: before.bounds().map(|(_, last)| last),
+            bag: before,
+            topics: BTreeSet::new(),
+            files: Vec::new(),
+            bytes: 0,
+            messages: 0,
             ledger: Ledger::default(),
             bounds: None,
             pending: None,
             unchecked: 0,
             ended: None,
-            metadata: BTreeMap::new(),
+            metadata: BTreeMap::from([(SESSION_KEY.to_owned(), session())]),
         };
         for topic in topics {
             writer.declare(topic)?;
@@ -212,20 +258,19 @@ impl RunWriter {
     }
 
     fn declare(&mut self, topic: &TopicSpec) -> Result<(), WriteError> {
-        if let Some(known) = self.topics.get(&topic.name) {
-            let same = known.spec == *topic;
-            return if same { Ok(()) } else { Err(WriteError::ConflictingTopic(topic.name.clone())) };
+        if let Some(known) = self.bag.topics.get(&topic.name) {
+            if known.spec != *topic {
+                return Err(WriteError::ConflictingTopic(topic.name.clone()));
+            }
+            if self.topics.contains(&topic.name) {
+                return Ok(());
+            }
         }
-        let channel = self.with("declare a topic", |mcap| {
-            let schema = mcap.add_schema(&topic.ros_type, "ros2msg", topic.definition.as_bytes())?;
-            let metadata = BTreeMap::from([
-                ("offered_qos_profiles".to_owned(), topic.qos.clone()),
-                ("topic_type_hash".to_owned(), topic.type_hash.clone()),
-            ]);
-            mcap.add_channel(schema, &topic.name, "cdr", &metadata)
-        })?;
+        self.with("declare a topic", |part| part.declare(topic))?;
         self.ledger.expect(&topic.name);
-        self.topics.insert(topic.name.clone(), Channel { spec: topic.clone(), channel, messages: 0 });
+        self.topics.insert(topic.name.clone());
+        let new = || TopicCount { spec: topic.clone(), messages: 0 };
+        self.bag.topics.entry(topic.name.clone()).or_insert_with(new);
         Ok(())
     }
 
@@ -237,9 +282,9 @@ impl RunWriter {
     /// If the topic was not declared, the sample is no CDR, or the recording has ended (disk full, write
     /// failure).
     pub fn write(&mut self, topic: &str, sample: &Incoming<'_>) -> Result<Outcome, WriteError> {
-        let Some(channel_id) = self.topics.get(topic).map(|t| t.channel) else {
+        if !self.topics.contains(topic) {
             return Err(WriteError::UnknownTopic(topic.to_owned()));
-        };
+        }
         if sample.payload.len() < 4 {
             let (topic, sequence) = (topic.to_owned(), sample.sequence);
             return Err(WriteError::NotCdr { topic, sequence, bytes: sample.payload.len() });
@@ -248,15 +293,20 @@ impl RunWriter {
             self.ledger.enter(topic, sample.guid, sample.sequence);
             return Ok(Outcome::Repeated);
         }
-        let log_time = self.bounds.map_or(sample.receive_time, |(_, last)| sample.receive_time.max(last + 1));
+        let after = self.last.map_or(0, |last| last.saturating_add(1));
+        let log_time = sample.receive_time.max(after);
         let publish_time = sample.source_time.unwrap_or(log_time).min(log_time);
-        let header = MessageHeader { channel_id, sequence: sample.sequence as u32, log_time, publish_time };
-        self.with("write a message", |mcap| mcap.write_to_known_channel(&header, sample.payload))?;
+        let sequence = sample.sequence as u32;
+        self.with("write a message", |part| {
+            part.write(topic, sequence, log_time, publish_time, sample.payload)
+        })?;
         self.ledger.enter(topic, sample.guid, sample.sequence);
-        if let Some(t) = self.topics.get_mut(topic) {
+        if let Some(t) = self.bag.topics.get_mut(topic) {
             t.messages += 1;
         }
+        self.messages += 1;
         self.bounds = Some((self.bounds.map_or(log_time, |(first, _)| first), log_time));
+        self.last = Some(log_time);
         let now = Instant::now();
         self.pending.get_or_insert(now);
         self.unchecked += sample.payload.len() as u64;
@@ -268,7 +318,8 @@ impl RunWriter {
     }
 
     /// Hands the open chunk to the system if its oldest message is older than the flush interval, and has the
-    /// file pushed to the device from time to time. Cheap when there is nothing to do.
+    /// file pushed to the device from time to time; begins the next file when this one is long enough. Cheap when there
+    /// is nothing to do.
     ///
     /// # Errors
     /// If the file cannot be written, or a push to the device failed.
@@ -279,9 +330,11 @@ impl RunWriter {
         {
             self.flush()?;
             self.require_space()?;
+            self.split_if_due(now)?;
         }
-        self.sync.request(now, self.options.sync_interval);
-        match self.sync.failure() {
+        let Some(part) = self.part.as_mut() else { return Ok(()) };
+        part.sync.request(now, self.options.sync_interval);
+        match part.sync.failure() {
             Some(source) => {
                 let error = WriteError::Io {
                     path: self.file.clone(),
@@ -309,11 +362,11 @@ impl RunWriter {
             media_type: media_type.to_owned(),
             data: Cow::Borrowed(bytes),
         };
-        self.with("attach a file", |mcap| mcap.attach(&attachment))?;
+        self.with("attach a file", |part| part.attach(&attachment))?;
         self.flush()
     }
 
-    /// Sets a key of the metadata record that [`RunWriter::finish`] writes.
+    /// Sets a key of the metadata record at the end of every file.
     pub fn set_metadata(&mut self, key: &str, value: &str) {
         self.metadata.insert(key.to_owned(), value.to_owned());
     }
@@ -344,71 +397,77 @@ impl RunWriter {
     }
 
     fn close(&mut self, finished: bool) -> Result<Finished, WriteError> {
-        let Some(mut mcap) = self.mcap.take() else {
-            return Err(self.already_ended());
-        };
-        let path = self.file.clone();
-        let format = |action: &'static str| {
-            let path = path.clone();
-            move |source| WriteError::mcap(&path, action, source)
-        };
-        let mut metadata = std::mem::take(&mut self.metadata);
-        metadata.insert("finished".into(), finished.to_string());
-        if let Some(reason) = &self.ended {
-            metadata.insert("ended_by".into(), reason.clone());
-        }
-        let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
-            path: path.clone(),
-            action: "express the account",
-            source: e.into(),
+        self.close_part(if finished { "true" } else { "false" })?;
+        self.bag.write(&self.directory).map_err(|source| WriteError::Io {
+            path: self.file.clone(),
+            action: "write metadata.yaml beside it",
+            source,
         })?;
-        metadata.insert(LEDGER_KEY.into(), tallies);
-        if let Err(source) = mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata }) {
-            // After a failed write the MCAP writer only says that it failed; the reason is the first error.
-            return Err(if self.ended.is_some() {
-                self.already_ended()
-            } else {
-                format("write the account")(source)
-            });
-        }
-        mcap.finish().map_err(format("write the index"))?;
-        let io = |action: &'static str| {
-            let path = path.clone();
-            move |source| WriteError::Io { path, action, source }
-        };
-        let handle =
-            mcap.into_inner().into_inner().map_err(|e| io("write the end of the file")(e.into_error()))?;
-        self.sync.stop();
-        handle.sync_all().map_err(io("push the recording to the device"))?;
-        let bytes = handle.metadata().map_err(io("ask for the size"))?.len();
         let (start, end) = self.bounds.unwrap_or((0, 0));
-        let messages = self.topics.values().map(|t| t.messages).sum();
-        let bag = BagMetadata {
-            file: &self.file,
-            start,
-            duration: end - start,
-            messages,
-            topics: self
-                .topics
-                .values()
-                .map(|t| TopicCount { spec: &t.spec, messages: t.messages })
-                .collect(),
-        };
-        bag.write(&self.directory).map_err(io("write metadata.yaml beside it"))?;
         Ok(Finished {
             file: self.file.clone(),
-            bytes,
-            messages,
+            files: std::mem::take(&mut self.files),
+            bytes: self.bytes,
+            messages: self.messages,
             start,
             end,
             ledger: std::mem::take(&mut self.ledger),
         })
     }
 
+    /// Completes the file being written, with the account so far.
+    fn close_part(&mut self, finished: &str) -> Result<(), WriteError> {
+        let Some(part) = self.part.take() else {
+            return Err(self.already_ended());
+        };
+        let mut metadata = self.metadata.clone();
+        metadata.insert("finished".into(), finished.into());
+        if let Some(reason) = &self.ended {
+            metadata.insert("ended_by".into(), reason.clone());
+        }
+        let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
+            path: self.file.clone(),
+            action: "express the account",
+            source: e.into(),
+        })?;
+        metadata.insert(LEDGER_KEY.into(), tallies);
+        let closed = match part.close(Metadata { name: METADATA_RECORD.into(), metadata }) {
+            Ok(closed) => closed,
+            // After a failed write the MCAP writer only says that it failed; the reason is the first error.
+            Err(_) if self.ended.is_some() => return Err(self.already_ended()),
+            Err(error) => return Err(error),
+        };
+        self.bytes += closed.bytes;
+        self.files.push(closed.path);
+        self.bag.files.push(closed.count);
+        Ok(())
+    }
+
+    /// Begins the next file if this one is old or large enough.
+    fn split_if_due(&mut self, now: Instant) -> Result<(), WriteError> {
+        let Some(part) = self.part.as_ref().filter(|part| part.has_messages()) else { return Ok(()) };
+        let old = now.saturating_duration_since(part.began()) >= self.options.split_after;
+        if !old && part.bytes() < self.options.split_bytes {
+            return Ok(());
+        }
+        let split = self.close_part("continued").and_then(|()| {
+            self.number += 1;
+            self.file = part_path(&self.directory, &self.name, self.number);
+            let mut next = Part::create(self.file.clone(), self.options.chunk_size, now)?;
+            let specs = self.topics.iter().filter_map(|name| self.bag.topics.get(name));
+            for topic in specs {
+                let declared = next.declare(&topic.spec);
+                declared.map_err(|e| WriteError::mcap(&self.file, "declare a topic", e))?;
+            }
+            self.part = Some(next);
+            self.flush()
+        });
+        split.inspect_err(|error| self.ended = Some(error.to_string()))
+    }
+
     fn flush(&mut self) -> Result<(), WriteError> {
-        self.with("write a chunk", |mcap| mcap.flush())?;
+        self.with("write a chunk", Part::flush)?;
         self.pending = None;
-        self.sync.note_written();
         Ok(())
     }
 
@@ -432,16 +491,16 @@ impl RunWriter {
         Err(error)
     }
 
-    /// Runs `action` on the MCAP writer unless the recording has ended; a failure ends it.
+    /// Runs `action` on the file being written unless the recording has ended; a failure ends it.
     fn with<T>(
         &mut self,
         what: &'static str,
-        action: impl FnOnce(&mut mcap::Writer<BufWriter<File>>) -> Result<T, McapError>,
+        action: impl FnOnce(&mut Part) -> Result<T, McapError>,
     ) -> Result<T, WriteError> {
-        let Some(mcap) = self.mcap.as_mut().filter(|_| self.ended.is_none()) else {
+        let Some(part) = self.part.as_mut().filter(|_| self.ended.is_none()) else {
             return Err(self.already_ended());
         };
-        action(mcap).map_err(|source| {
+        action(part).map_err(|source| {
             let error = WriteError::mcap(&self.file, what, source);
             self.ended = Some(error.to_string());
             error
@@ -458,8 +517,22 @@ impl Drop for RunWriter {
     fn drop(&mut self) {
         // No caller is left to take an error: the missing end of the file and of metadata.yaml tell it to
         // every reader.
-        if self.mcap.is_some() {
+        if self.part.is_some() {
             let _ = self.close(false);
         }
     }
+}
+
+fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
+    directory.join(format!("{name}_{number}.mcap"))
+}
+
+/// Whether a recorder holds the file. A file system without locks holds none.
+pub(crate) fn is_locked(file: &File) -> bool {
+    matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
+}
+
+/// What tells this writer from those before and after it in the same directory: when it began, in ns since 1970.
+fn session() -> String {
+    SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos()).to_string()
 }

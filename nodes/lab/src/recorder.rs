@@ -243,7 +243,7 @@ impl Recorder {
             let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
             Stranger { ignored, ..bus.describe(WriterId::of_participant(*participant)) }
         });
-        of_bus.into_iter().chain(of_binding).map(|s| StrangerView::of(&s)).collect()
+        strangers::grouped(of_bus.into_iter().chain(of_binding))
     }
 
     /// Waits for what is known to be on its way, then for a moment of silence if anyone may still speak.

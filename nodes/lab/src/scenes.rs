@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use node_kit::Exit;
+use recordings::input;
 use scene::Scene;
 use std::path::Path;
 
@@ -40,7 +41,8 @@ fn read(path: &str) -> Result<String, Failure> {
         let message = format!("no scene {path:?}: neither a file nor built in; built in are: {known}");
         return Err(Failure::usage(message));
     }
-    std::fs::read_to_string(path).map_err(|e| Failure::new(Exit::Failure, format!("scene {path}: {e}")))
+    input::text(Path::new(path), input::SETTINGS)
+        .map_err(|e| Failure::new(Exit::Failure, format!("scene {path}: {e}")))
 }
 
 #[cfg(test)]

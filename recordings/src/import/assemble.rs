@@ -172,6 +172,7 @@ pub(super) fn packing(
         SearchError::Crowded { solid_fraction, diameter, width } => {
             ImportError::Crowded { solid_fraction, diameter, width }
         }
+        SearchError::Clustered { together, pairs } => ImportError::Clustered { together, pairs },
     })?;
     packing.contacts = match listed {
         None => {

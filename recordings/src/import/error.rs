@@ -123,6 +123,16 @@ pub enum ImportError {
         /// m.
         width: f64,
     },
+    /// The grains lie in so small a part of the cell that contacts cannot be found in a useful time.
+    #[error(
+        "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to look at): check the cell, or list the contacts in the file"
+    )]
+    Clustered {
+        /// Most grains in one box.
+        together: usize,
+        /// Pairs to look at.
+        pairs: f64,
+    },
     /// The numbers are no packing.
     #[error(transparent)]
     Packing(#[from] PackingError),

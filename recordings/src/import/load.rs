@@ -1,14 +1,13 @@
 //! A path to packings.
 
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::fs;
+use std::io::{self, Read as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use flate2::read::MultiGzDecoder;
-
 use super::text::{lines, shown};
 use super::{ImportError, ImportOptions, Imported, csv, lammps_data, lammps_dump, recording, yade};
+use crate::input;
 use crate::reader::{Recording, Warning};
 
 /// What a path gave.
@@ -43,7 +42,8 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Loaded, ImportError>
 
 /// Gives `take` the packings of a file or run directory one by one, in order, until it has enough: of a
 /// recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump or data file, a YADE export;
-/// `.gz` is decompressed. The content decides, and where it does not, the name. Returned are the warnings of a
+/// `.gz` is decompressed, to 64 times its size or 16 MiB at most; texts have at most 4 GiB, and pipes and devices are
+/// refused. The content decides, and where it does not, the name. Returned are the warnings of a
 /// recording: data was lost if there are any.
 ///
 /// # Errors
@@ -144,29 +144,18 @@ fn by_name(extension: &str, stem: &str) -> Option<Format> {
 
 fn starts_with(path: &Path, magic: &[u8]) -> bool {
     let mut bytes = vec![0; magic.len()];
-    File::open(path).and_then(|mut f| f.read_exact(&mut bytes)).is_ok() && bytes == magic
+    input::open(path).and_then(|(mut f, _)| f.read_exact(&mut bytes)).is_ok() && bytes == magic
 }
 
 fn text(path: &Path) -> Result<String, ImportError> {
     let io = |source| ImportError::Io { path: path.to_owned(), source };
-    let mut bytes = fs::read(path).map_err(io)?;
+    let mut bytes = input::bytes(path, input::TEXT).map_err(io)?;
     let refuse = |kind, problem: String| ImportError::Io {
         path: path.to_owned(),
         source: io::Error::new(kind, problem),
     };
     if bytes.starts_with(&[0x1f, 0x8b]) {
-        let mut unpacked = Vec::new();
-        MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut unpacked).map_err(|e| match e.kind() {
-            io::ErrorKind::UnexpectedEof => refuse(
-                e.kind(),
-                format!(
-                    "the compressed file is cut off after {} bytes of text: copy it again",
-                    unpacked.len()
-                ),
-            ),
-            kind => refuse(kind, format!("the compressed file is damaged: {e}")),
-        })?;
-        bytes = unpacked;
+        bytes = input::gunzip(&bytes).map_err(io)?;
     }
     if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {
         let problem = "it is compressed otherwise than by gzip: unpack it first";

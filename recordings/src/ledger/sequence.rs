@@ -2,7 +2,12 @@
 
 use std::collections::BTreeMap;
 
-/// Which numbers of 1, 2, 3 … have come, kept as the ranges that have not.
+/// Ranges that are kept of one writer. Numbers come in order but for a few: thousands of gaps are the numbers of a
+/// writer that is broken or hostile, and may not fill the memory.
+const MOST_GAPS: usize = 4096;
+
+/// Which numbers of 1, 2, 3 … have come, kept as the ranges that have not. Once there are too many of these, the
+/// lowest is forgotten: its numbers then stay missing, and are repeats should they come after all.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Highest number that has come; 0 before the first.
@@ -27,22 +32,30 @@ impl Sequence {
             return false;
         }
         if number > self.highest {
-            if number > self.highest + 1 {
-                self.gaps.insert(self.highest + 1, number - 1);
+            // A first number below 1 says nothing of those before it.
+            if let Some(next) = self.highest.checked_add(1).filter(|next| *next < number) {
+                self.open(next, number - 1);
             }
             self.highest = number;
         } else if let Some((start, end)) = self.gap_of(number) {
             self.gaps.remove(&start);
             if start < number {
-                self.gaps.insert(start, number - 1);
+                self.open(start, number - 1);
             }
             if number < end {
-                self.gaps.insert(number + 1, end);
+                self.open(number + 1, end);
             }
         }
         self.first = Some(self.first.map_or(number, |f| f.min(number)));
         self.held += 1;
         true
+    }
+
+    fn open(&mut self, start: i64, end: i64) {
+        self.gaps.insert(start, end);
+        if self.gaps.len() > MOST_GAPS {
+            self.gaps.pop_first();
+        }
     }
 
     fn gap_of(&self, number: i64) -> Option<(i64, i64)> {

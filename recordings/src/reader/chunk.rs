@@ -6,9 +6,23 @@ use mcap::records::{ChunkHeader, Record};
 
 use super::records::RawRecord;
 
-/// Chunks that claim more uncompressed bytes than this are taken for damaged: a wrong length must not exhaust
-/// the memory.
+/// A chunk of any recorder is smaller than this, or holds one large message that does not compress so well.
+const SMALL: u64 = 64 << 20;
+
+/// Beyond [`SMALL`], uncompressed bytes that a byte of the file may stand for.
+const RATIO: u64 = 64;
+
+/// No chunk is larger.
 const LARGEST: u64 = 1 << 30;
+
+/// Logarithm of the window of zstd that is given memory for.
+const WINDOW: u32 = 26;
+
+/// Uncompressed bytes that a chunk may have of which `compressed` lie in the file: what it claims is not believed,
+/// since a few bytes can claim to be a gigabyte, and can be one.
+pub(super) fn limit(compressed: usize) -> u64 {
+    (compressed as u64).saturating_mul(RATIO).clamp(SMALL, LARGEST)
+}
 
 /// The records of a chunk, as bytes to walk over; or what is wrong with the chunk.
 pub(super) fn content(record: &RawRecord<'_>) -> Result<Vec<u8>, String> {
@@ -20,8 +34,12 @@ pub(super) fn content(record: &RawRecord<'_>) -> Result<Vec<u8>, String> {
 
 fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
     let size = header.uncompressed_size;
-    if size > LARGEST {
-        return Err(format!("it claims {size} uncompressed bytes, more than {LARGEST}"));
+    let most = limit(data.len());
+    if size > most {
+        return Err(format!(
+            "it claims {size} uncompressed bytes; of {} compressed ones, at most {most} are believed",
+            data.len()
+        ));
     }
     let mut content = Vec::with_capacity(size.min(4 << 20) as usize);
     // One byte more than claimed is asked for, so that a longer stream shows.
@@ -31,7 +49,11 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
             Ok(data.len())
         }
         "zstd" => {
-            zstd::stream::read::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content))
+            let decoder = zstd::stream::read::Decoder::new(data).and_then(|mut d| {
+                d.window_log_max(WINDOW)?;
+                Ok(d)
+            });
+            decoder.and_then(|d| d.take(size + 1).read_to_end(&mut content))
         }
         "lz4" => lz4::Decoder::new(data).and_then(|d| d.take(size + 1).read_to_end(&mut content)),
         other => return Err(format!("its compression {other:?} is not known (zstd, lz4 and none are)")),

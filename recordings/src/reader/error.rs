@@ -72,6 +72,8 @@ pub enum WarningKind {
     Orphans,
     /// A file that `metadata.yaml` names is missing.
     MissingFile,
+    /// A file that `metadata.yaml` does not name belongs to the recording.
+    Unlisted,
     /// The index contradicts the messages, or the checksum of the whole file fails.
     Inconsistent,
 }
@@ -88,6 +90,7 @@ impl fmt::Display for Warning {
             WarningKind::DamagedRecord => write!(f, "{path}: the record at byte {at} is left out: {detail}"),
             WarningKind::Orphans => write!(f, "{path}: in the chunk at byte {at}, {detail}"),
             WarningKind::MissingFile => write!(f, "{path} is missing: {detail}"),
+            WarningKind::Unlisted => write!(f, "{path} is read, too: {detail}"),
             WarningKind::Inconsistent => write!(f, "{path}, byte {at}: {detail}"),
         }
     }

@@ -2,12 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use mcap::MAGIC;
 use mcap::records::Record;
 use memmap2::Mmap;
+
+use crate::bag_metadata::FileCount;
+use crate::input;
 
 use super::index::{Entry, Index};
 use super::records::Records;
@@ -33,8 +35,8 @@ impl fmt::Debug for OpenFile {
 impl OpenFile {
     pub(super) fn map(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
         let io = |source| ReadError::Io { path: path.to_owned(), source };
-        let file = File::open(path).map_err(io)?;
-        if file.metadata().map_err(io)?.len() == 0 {
+        let (file, size) = input::open(path).map_err(io)?;
+        if size == 0 {
             return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
         }
         // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user
@@ -69,6 +71,22 @@ impl OpenFile {
 
     pub(super) fn warning(&self, offset: usize, kind: WarningKind, detail: String) -> Warning {
         Warning { path: self.path.clone(), offset: offset as u64, kind, detail }
+    }
+
+    /// Name, times and messages of the file.
+    pub(super) fn count(&self) -> FileCount {
+        let blocks = self.index.blocks.iter().map(|b| (b.start, b.end));
+        FileCount {
+            name: self.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
+            bounds: blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))),
+            messages: self.index.counts.values().sum(),
+        }
+    }
+
+    /// Messages on a topic.
+    pub(super) fn count_of(&self, topic: &str) -> u64 {
+        let of = |id: &u16| self.index.channels.get(id).is_some_and(|c| c.topic == topic);
+        self.index.counts.iter().filter(|(id, _)| of(id)).map(|(_, n)| n).sum()
     }
 
     pub(super) fn stored_files(&self, warn: impl Fn(Warning)) -> Vec<StoredFile> {

@@ -6,7 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::input;
+
 use super::{ReadError, Warning, WarningKind};
+
+/// A `metadata.yaml` is smaller: bytes.
+const METADATA: u64 = 16 << 20;
 
 #[derive(Deserialize)]
 struct BagFile {
@@ -24,7 +29,7 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
     if !fs::metadata(path).map_err(io)?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let mut files = Vec::new();
+    let mut files: Vec<PathBuf> = Vec::new();
     for name in listed(path) {
         let file = path.join(&name);
         if file.exists() {
@@ -34,21 +39,31 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
             warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::MissingFile, detail });
         }
     }
-    if files.is_empty() {
-        // Without metadata.yaml (the recorder was killed), or with a useless one: what is there.
-        for entry in fs::read_dir(path).map_err(io)? {
-            let file = entry.map_err(io)?.path();
-            if file.extension().is_some_and(|e| e == "mcap") {
-                files.push(file);
-            }
+    // Without metadata.yaml (the recorder was killed), or with a useless one: what is there.
+    let stems: BTreeSet<String> = files.iter().filter_map(|f| part(f)).map(|(stem, _)| stem).collect();
+    let nothing_listed = files.is_empty();
+    for entry in fs::read_dir(path).map_err(io)? {
+        let file = entry.map_err(io)?.path();
+        if file.extension().is_none_or(|e| e != "mcap") || files.contains(&file) {
+            continue;
         }
-        files.sort_by_key(|f| (part_number(f), f.clone()));
+        if nothing_listed {
+            files.push(file);
+        } else if part(&file).is_some_and(|(stem, _)| stems.contains(&stem)) {
+            // The run went on after metadata.yaml was written, and its recorder was killed.
+            let detail = "metadata.yaml does not name it, but its name is that of a part".to_owned();
+            warnings.insert(Warning { path: file.clone(), offset: 0, kind: WarningKind::Unlisted, detail });
+            files.push(file);
+        }
+    }
+    if nothing_listed || warnings.iter().any(|w| w.kind == WarningKind::Unlisted) {
+        files.sort_by_key(|f| (part(f).map(|(_, number)| number), f.clone()));
     }
     if files.is_empty() { Err(ReadError::Empty { path: path.to_owned() }) } else { Ok(files) }
 }
 
 fn listed(directory: &Path) -> Vec<String> {
-    let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap_or_default();
+    let text = input::text(&directory.join("metadata.yaml"), METADATA).unwrap_or_default();
     let names =
         serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
     // A name that leads out of the directory is not one of its parts.
@@ -56,7 +71,8 @@ fn listed(directory: &Path) -> Vec<String> {
     names.unwrap_or_default().into_iter().filter(inside).collect()
 }
 
-/// n of `<name>_<n>.mcap`: parts are numbered without leading zeros.
-fn part_number(file: &Path) -> Option<u64> {
-    file.file_stem()?.to_str()?.rsplit_once('_')?.1.parse().ok()
+/// `<name>` and n of `<name>_<n>.mcap`: parts are numbered without leading zeros.
+fn part(file: &Path) -> Option<(String, u64)> {
+    let (stem, number) = file.file_stem()?.to_str()?.rsplit_once('_')?;
+    Some((stem.to_owned(), number.parse().ok()?))
 }

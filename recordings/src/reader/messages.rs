@@ -8,6 +8,7 @@ use std::sync::Arc;
 use mcap::records::{MessageHeader, Record, op};
 
 use super::file::OpenFile;
+use super::held::{Content, Held};
 use super::index::Block;
 use super::records::{RawRecord, Records};
 use super::{ChannelInfo, Recording, WarningKind, chunk};
@@ -15,7 +16,7 @@ use super::{ChannelInfo, Recording, WarningKind, chunk};
 /// Bytes of a message, shared with the chunk they lie in.
 #[derive(Clone)]
 pub struct Payload {
-    chunk: Arc<[u8]>,
+    chunk: Arc<Content>,
     range: Range<usize>,
 }
 
@@ -23,7 +24,7 @@ impl Deref for Payload {
     type Target = [u8];
 
     fn deref(&self) -> &[u8] {
-        &self.chunk[self.range.clone()]
+        &self.chunk.bytes()[self.range.clone()]
     }
 }
 
@@ -58,6 +59,7 @@ pub struct Messages<'r> {
     blocks: Vec<(usize, usize)>,
     /// Messages read and not yet given, the earliest on top. Blocks of one file may overlap in time.
     pending: BinaryHeap<Reverse<Pending>>,
+    held: Held,
 }
 
 struct Pending {
@@ -97,12 +99,16 @@ impl<'r> Messages<'r> {
                 .extend(file.index.blocks.iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
         }
         blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].index.blocks[n].start, f, n)));
-        Self { recording, topics, start, end, blocks, pending: BinaryHeap::new() }
+        Self { recording, topics, start, end, blocks, pending: BinaryHeap::new(), held: Held::of(recording) }
     }
 
     fn read_block(&mut self, f: usize, n: usize) {
         let file = &self.recording.files[f];
         let block = &file.index.blocks[n];
+        if self.held.is_full() {
+            let detail = "too many bytes of chunks that claim the same time are in memory already".to_owned();
+            return self.recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
+        }
         let (topics, times) = (self.topics.as_ref(), self.start..self.end);
         let pending = &mut self.pending;
         let take = |position: usize, message: Message| {
@@ -112,7 +118,7 @@ impl<'r> Messages<'r> {
                     .push(Reverse(Pending { key: (message.log_time, f, block.offset, position), message }));
             }
         };
-        decode(self.recording, file, block, take);
+        decode(self.recording, file, block, &self.held, take);
     }
 }
 
@@ -145,7 +151,7 @@ pub(super) fn last_before(recording: &Recording, topic: &str, time: u64) -> Opti
         if best.as_ref().is_some_and(|m| m.log_time >= block.end) {
             break;
         }
-        decode(recording, file, block, |_, message| {
+        decode(recording, file, block, &Held::of(recording), |_, message| {
             let later = best.as_ref().is_none_or(|b| b.log_time <= message.log_time);
             if message.channel.topic == topic && message.log_time < time && later {
                 best = Some(message);
@@ -162,20 +168,27 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
 
 /// Gives each message of a block to `take`, with its position in the block; what cannot be read becomes a
 /// warning.
-fn decode(recording: &Recording, file: &OpenFile, block: &Block, mut take: impl FnMut(usize, Message)) {
+fn decode(
+    recording: &Recording,
+    file: &OpenFile,
+    block: &Block,
+    held: &Held,
+    mut take: impl FnMut(usize, Message),
+) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
-    let content: Arc<[u8]> = if block.is_chunk {
+    let content = if block.is_chunk {
         let record =
             Records::at(file.bytes(), block.offset as u64).ok_or_else(|| "it is no whole record".to_owned());
         match record.and_then(|r| chunk::content(&r)) {
-            Ok(content) => content.into(),
+            Ok(content) => content,
             Err(detail) => return damaged(detail),
         }
     } else {
-        file.bytes()[block.offset..block.end_offset].into()
+        file.bytes()[block.offset..block.end_offset].to_vec()
     };
+    let content = Arc::new(held.content(content));
     let mut orphans = 0u64;
-    for record in Records::new(&content, 0) {
+    for record in Records::new(content.bytes(), 0) {
         let record = match record {
             Ok(record) if record.opcode == op::MESSAGE => record,
             Ok(_) => continue,

@@ -1,6 +1,8 @@
 //! Framing: one byte of opcode, eight of length, the body.
 
-use mcap::records::{Record, op};
+use mcap::records::Record;
+
+use super::lengths;
 
 /// A record as it lies in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
@@ -22,29 +24,14 @@ impl<'a> RawRecord<'a> {
 
     /// The record, or what is wrong with it.
     pub(super) fn parse(&self) -> Result<Record<'a>, String> {
-        if self.opcode == op::ATTACHMENT && !attachment_fits(self.body) {
-            return Err("the attachment's lengths do not fit its record".into());
+        if !lengths::fit(self.opcode, self.body) {
+            return Err(format!("the lengths in it do not fit a record of type 0x{:02x}", self.opcode));
         }
         mcap::parse_record(self.opcode, self.body).map_err(|e| match e {
             mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
             other => other.to_string(),
         })
     }
-}
-
-/// Whether the fixed and variable parts of an attachment fit its body: `mcap::parse_record` takes that for
-/// granted.
-fn attachment_fits(body: &[u8]) -> bool {
-    let text_end = |start: usize| {
-        let length = body.get(start..start.checked_add(4)?)?;
-        let length = u32::from_le_bytes(length.try_into().ok()?) as usize;
-        start.checked_add(4)?.checked_add(length)
-    };
-    // Two times, two texts, the length of the data, the data, a CRC.
-    let fixed = 16;
-    text_end(fixed)
-        .and_then(text_end)
-        .is_some_and(|end| end.checked_add(12).is_some_and(|end| end <= body.len()))
 }
 
 /// Walks over records; ends at the end of the bytes, or with the offset of what is not a whole record.

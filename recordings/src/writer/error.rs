@@ -14,6 +14,12 @@ pub enum WriteError {
         /// The file in the way.
         path: PathBuf,
     },
+    /// A recorder is at work on the run.
+    #[error("{path} is being recorded: end that recorder first")]
+    InUse {
+        /// The file it writes.
+        path: PathBuf,
+    },
     /// Not enough space to begin or to go on.
     #[error(
         "{path}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space and run again"

@@ -50,6 +50,63 @@ proptest! {
     }
 }
 
+/// Every pair within the nearest images that can matter along each edge.
+fn all_pairs_within(cell: &Cell, x: &[Vec3], r: &[f64], images: [i8; 3]) -> Vec<(u32, u32, [i8; 3])> {
+    let mut found = Vec::new();
+    let [na, nb, nc] = images;
+    for i in 0..x.len() {
+        for j in i..x.len() {
+            for a in -na..=na {
+                for b in -nb..=nb {
+                    for c in -nc..=nc {
+                        let image = [a, b, c];
+                        let other = j > i || image > [0, 0, 0];
+                        if other && (x[j] - x[i] + cell.shift(image)).norm() < r[i] + r[j] {
+                            found.push((i as u32, j as u32, image));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+    /// Cells up to a million times as long as wide, and narrower than a few diameters, in every direction and
+    /// sheared.
+    #[test]
+    fn it_agrees_with_all_pairs_in_cells_of_any_shape(
+        lengths in proptest::array::uniform3(-1.0f64..6.0),
+        tilt in proptest::array::uniform3(-0.4f64..0.4),
+        near in 0usize..3,
+        grains in proptest::collection::vec((proptest::array::uniform3(0.0f64..1.0), 0.1f64..0.4), 1..25),
+    ) {
+        let mut edges = lengths.map(|e| 10f64.powf(e));
+        // One edge at least is of the size of a few grains, so that there are contacts.
+        edges[near] = edges[near].min(3.0);
+        let cell = Cell::new(Mat3::new(
+            edges[0], tilt[0] * edges[0].min(edges[1]), tilt[1] * edges[0].min(edges[2]),
+            0.0, edges[1], tilt[2] * edges[1].min(edges[2]),
+            0.0, 0.0, edges[2],
+        ));
+        prop_assume!(cell.is_some());
+        let cell = cell.unwrap();
+        let narrowest = (0..3).map(|k| cell.width(k)).fold(f64::INFINITY, f64::min);
+        prop_assume!(narrowest > 0.08);
+        // All within a few diameters of each other, wherever that is in the cell.
+        let x: Vec<Vec3> = grains.iter().map(|(f, _)| Vec3::from(*f) * 2.0).collect();
+        let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
+        let images = std::array::from_fn(|k| ((3.5 + 0.8) / cell.width(k)).ceil().min(60.0) as i8 + 1);
+        match find(&cell, &x, &r, &Material::GLASS) {
+            Ok(found) => prop_assert_eq!(keys(&found), all_pairs_within(&cell, &x, &r, images)),
+            Err(e) => prop_assert!(matches!(e, SearchError::Crowded { .. }), "{}", e),
+        }
+    }
+}
+
 #[test]
 fn one_grain_in_a_small_cell_touches_its_own_images() {
     let cell = Cell::cube(1.0).unwrap();
@@ -69,6 +126,21 @@ fn time_grows_with_the_number_of_grains_not_its_square() {
     let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
     assert_eq!(found.len(), 3 * x.len());
     assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
+}
+
+#[test]
+fn an_absurd_cell_costs_neither_memory_nor_time() {
+    let x: Vec<Vec3> = (0..5).map(|k| Vec3::new(0.9 * k as f64, 0.0, 0.0)).collect();
+    let r = [0.5; 5];
+    for long in [1e3, 1e6, 1e9, 4294967296.0, 1e30, 1e100, 1e200] {
+        for k in 0..3 {
+            let mut edges = Vec3::repeat(6.0);
+            edges[k] = long;
+            let Some(cell) = Cell::new(Mat3::from_diagonal(&edges)) else { continue };
+            let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+            assert_eq!(found.len(), 4, "{edges:?}");
+        }
+    }
 }
 
 #[test]

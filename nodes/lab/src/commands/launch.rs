@@ -13,6 +13,7 @@ use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
 use node_kit::{Exit, Network, RunId};
 use recordings::Recording;
+use recordings::input;
 use recordings::runs::{RUNS, create_run_directory};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -122,9 +123,8 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
             );
             return Err(Failure::usage(message));
         }
-        None => {
-            std::fs::read_to_string(path).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?
-        }
+        None => input::text(path, input::SETTINGS)
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?,
     };
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }

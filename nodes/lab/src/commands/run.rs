@@ -12,6 +12,7 @@ use emt_inversion::EmtInversion;
 use fabric_analyzer::FabricAnalyzer;
 use node_kit::run::NodeSpec;
 use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
+use recordings::input;
 use servo_controller::ServoController;
 use std::path::Path;
 
@@ -114,7 +115,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 Box::new(AcousticProbe::new(bus, settings)?)
             }
             _ => {
-                let read = |path: &str| std::fs::read_to_string(path).map_err(|e| e.to_string());
+                let read =
+                    |path: &str| input::text(Path::new(path), input::SETTINGS).map_err(|e| e.to_string());
                 let settings = emt_inversion::Settings::new(parameters, read);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(EmtInversion::new(bus, settings)?)

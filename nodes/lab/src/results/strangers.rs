@@ -20,15 +20,22 @@ pub(crate) struct StrangerView {
     pub(crate) ignored: BTreeMap<String, u64>,
 }
 
-impl StrangerView {
-    /// For a recording, and for `summary.json`.
-    pub(crate) fn of(stranger: &Stranger) -> Self {
-        Self {
-            who: stranger.to_string(),
-            run: stranger.run.map(|run| run.to_string()),
-            ignored: stranger.ignored.clone(),
+/// For a recording, and for `summary.json`: one for each process, and one for each other run.
+pub(crate) fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
+    let mut views: BTreeMap<String, StrangerView> = BTreeMap::new();
+    for stranger in strangers {
+        let run = stranger.run.map(|run| run.to_string());
+        let who = run.as_ref().map_or_else(|| stranger.to_string(), |run| format!("run {run}"));
+        let new = StrangerView { who: who.clone(), run, ignored: BTreeMap::new() };
+        let view = views.entry(who).or_insert(new);
+        for (topic, count) in stranger.ignored {
+            *view.ignored.entry(topic).or_default() += count;
         }
     }
+    views.into_values().collect()
+}
+
+impl StrangerView {
 
     /// For people.
     pub(crate) fn line(&self) -> String {

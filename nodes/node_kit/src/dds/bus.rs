@@ -105,7 +105,7 @@ impl DdsBus {
     pub fn join(network: Network, names: Names, identity: Identity) -> Result<Self, BusError> {
         let prefix = identity.guid_prefix();
         let gate = Arc::new(Gate::new(identity, prefix));
-        let (filter, listener) = (Arc::clone(&gate), Arc::clone(&gate));
+        let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(&gate));
         let participant = network
             .participant()
             .guid_prefix(GuidPrefix::new(&prefix))
@@ -113,6 +113,8 @@ impl DdsBus {
             .participant_listener(move |peer| {
                 listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
             })
+            // Who is not of the run gets what is there, and is not waited for.
+            .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
             .build()
             .map_err(|e| create_error("DDS participant", &e))?;
         let open = OpenParticipant::new();

@@ -48,7 +48,7 @@ impl Gate {
         if new {
             let stranger = admission.describe(&prefix(&writer));
             drop(admission);
-            log::warn!("{topic}: {stranger} is not of this run: what it publishes is ignored");
+            log::info!("{topic}: {stranger} is not of this run: what it publishes is ignored");
         }
         taken
     }
@@ -56,6 +56,11 @@ impl Gate {
     /// Whether endpoints of this participant count.
     pub(super) fn admits(&self, guid: &GUID) -> bool {
         lock(&self.admission).admits(&prefix(guid))
+    }
+
+    /// The same by its GUID prefix.
+    pub(super) fn admits_prefix(&self, prefix: &[u8]) -> bool {
+        <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }
 
     /// A participant was discovered, which listens there.

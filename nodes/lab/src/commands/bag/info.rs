@@ -3,7 +3,9 @@
 use crate::failure::Failure;
 use crate::output::{Format, Table, json, print};
 use node_kit::Exit;
-use recordings::Recording;
+use crate::results::strangers::{self, StrangerView};
+use recordings::{METADATA_RECORD, Recording};
+use serde::Serialize;
 use recordings::reader::Info;
 use std::path::PathBuf;
 
@@ -21,16 +23,40 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
-    let info = recording.info();
+    let view = View {
+        info: recording.info(),
+        run: recording.metadata(METADATA_RECORD).and_then(|record| record.get("run").cloned()),
+        strangers: strangers::strangers(&recording),
+    };
     let text = match args.format {
-        Format::Table => format!("{info}\n"),
-        Format::Json => json(&info)?,
-        Format::Csv => csv(&info),
+        Format::Table => table(&view),
+        Format::Json => json(&view)?,
+        Format::Csv => csv(&view.info),
     };
     print(&text)?;
     let warnings = recording.warnings();
     warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+}
+
+/// What the recording is, and what the recorder knew of its run.
+#[derive(Serialize)]
+struct View {
+    #[serde(flatten)]
+    info: Info,
+    /// Id of the run; null where the recorder was not bound to one.
+    run: Option<String>,
+    /// Processes whose messages were left out.
+    strangers: Vec<StrangerView>,
+}
+
+fn table(view: &View) -> String {
+    let mut text = format!("{}\n", view.info);
+    if let Some(run) = &view.run {
+        text += &format!("\nrun {run}\n");
+    }
+    view.strangers.iter().for_each(|s| text += &format!("{}\n", s.line()));
+    text
 }
 
 fn csv(info: &Info) -> String {

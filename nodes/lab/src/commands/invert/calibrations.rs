@@ -2,6 +2,8 @@
 
 use crate::failure::Failure;
 use emt::{Calibration, Model};
+use recordings::input;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The name that stands for each model's own.
@@ -40,7 +42,8 @@ fn load(name: &str) -> Result<Calibration, Failure> {
         let known = [&[DEFAULT], &Calibration::BUILTIN[..]].concat().join(", ");
         return Err(Failure::usage(format!("no calibration {name:?}; there are: {known}, or a FILE.toml")));
     }
-    let text = std::fs::read_to_string(name).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+    let text =
+        input::text(Path::new(name), input::SETTINGS).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
     Calibration::parse(&text).map_err(|e| Failure::usage(format!("{name}: {e}")))
 }
 

@@ -1,8 +1,10 @@
 //! The lines of a text as they come, in pieces of bounded size.
 
 use crate::failure::Failure;
+use recordings::input;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
 /// Most bytes taken at once: some thousand rows of a few numbers.
@@ -11,12 +13,17 @@ const PIECE: usize = 1 << 18;
 /// Longest line of a table, bytes. What is longer is cut just behind it, so that it cannot fill the memory.
 pub(super) const LONGEST: usize = 1 << 20;
 
+/// A line of so many bytes will not end.
+const ENDLESS: u64 = 64 << 20;
+
 /// A text under way.
 pub(super) struct Lines {
     source: Box<dyn Read>,
     name: String,
     /// Bytes of the line that has not ended yet.
     rest: Vec<u8>,
+    /// How many it has, with those that were cut.
+    unended: u64,
     /// Number of that line, from 1.
     number: u64,
     ended: bool,
@@ -29,18 +36,21 @@ pub(super) struct Piece {
 }
 
 impl Lines {
-    /// Of a file; `-` is the standard input.
+    /// Of a file or a pipe; `-` is the standard input. A device is refused: it may never end.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         if path.as_os_str() == "-" {
             return Ok(Self::new(Box::new(std::io::stdin()), "standard input".to_owned()));
         }
         let name = path.display().to_string();
-        let file = File::open(path).map_err(|e| Failure::failed(format!("{name}: {e}")))?;
+        let failed = |e: std::io::Error| Failure::failed(format!("{name}: {e}"));
+        let pipe = std::fs::metadata(path).is_ok_and(|m| m.file_type().is_fifo());
+        let file = if pipe { File::open(path) } else { input::open(path).map(|(file, _)| file) };
+        let file = file.map_err(failed)?;
         Ok(Self::new(Box::new(file), name))
     }
 
     pub(super) fn new(source: Box<dyn Read>, name: String) -> Self {
-        Self { source, name, rest: Vec::new(), number: 1, ended: false }
+        Self { source, name, rest: Vec::new(), unended: 0, number: 1, ended: false }
     }
 
     /// What to call it in a message.
@@ -61,7 +71,13 @@ impl Lines {
             if let Some(end) = new.iter().rposition(|b| *b == b'\n') {
                 let mut bytes = std::mem::replace(&mut self.rest, new[end + 1..].to_vec());
                 bytes.extend_from_slice(&new[..end]);
+                self.unended = 0;
                 return Ok(Some(self.cut(bytes)));
+            }
+            self.unended += count as u64;
+            if self.unended > ENDLESS {
+                let problem = format!("line {} has more than {ENDLESS} bytes: this is no table", self.number);
+                return Err(Failure::failed(format!("{}: {problem}", self.name)));
             }
             let room = (LONGEST + 1).saturating_sub(self.rest.len());
             self.rest.extend_from_slice(&new[..count.min(room)]);
@@ -130,5 +146,12 @@ mod tests {
         let found = all(&text, PIECE);
         assert!(found[0].1.len() > LONGEST && found[0].1.len() < LONGEST + 1 + PIECE, "{}", found[0].1.len());
         assert_eq!(found[1], (2, b"next".to_vec()));
+    }
+
+    #[test]
+    fn a_source_that_never_ends_a_line_is_given_up() {
+        let mut lines = Lines::new(Box::new(std::io::repeat(0)), "zeros".into());
+        assert!(lines.piece().err().unwrap().to_string().contains("no table"));
+        assert!(Lines::open(Path::new("/dev/zero")).err().unwrap().to_string().contains("device"));
     }
 }

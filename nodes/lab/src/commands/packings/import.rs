@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use grains::{Mat3, Vec3};
 use recordings::import::ImportOptions;
+use recordings::input;
 use std::path::PathBuf;
 
 /// Formats, for the help of a command.
@@ -62,7 +63,7 @@ impl Args {
         };
         let contact_forces = match &self.contact_forces {
             Some(path) => {
-                let text = std::fs::read_to_string(path);
+                let text = input::text(path, input::TEXT);
                 Some(text.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?)
             }
             None => None,

@@ -1,0 +1,144 @@
+//! Grains sorted into boxes, so that only those nearby are compared.
+
+use grains::{Cell, Vec3};
+
+use super::SearchError;
+
+/// Spheres of a packing fill less than the cell; overlapping ones that fill it this often are in the wrong units.
+const MOST_FULL: f64 = 20.0;
+
+/// Cells that a grain may span.
+const MOST_CELLS: f64 = 16.0;
+
+/// Pairs that may have to be looked at: about a minute.
+const MOST_PAIRS: f64 = 2e10;
+
+/// Boxes a grain, about: what the boxes of an empty part of the cell may cost in memory.
+const BOXES_A_GRAIN: f64 = 4.0;
+
+/// Boxes along one edge. Beyond it, rounding of a position within the cell could exceed the margin of the cutoff.
+const MOST_BOXES: i64 = 1 << 20;
+
+/// Grains of one box that are no sign of a cluster.
+const CLUSTER: usize = 1000;
+
+/// The least edge of a box (m) with which there are no more than about four boxes a grain, in a cell of any shape: along
+/// an edge that is shorter than a box there is one box, and the others share what is allowed.
+fn least_edge(cell: &Cell, grains: usize) -> f64 {
+    let mut widths: [f64; 3] = std::array::from_fn(|k| cell.width(k));
+    widths.sort_by(f64::total_cmp);
+    let [small, middle, large] = widths;
+    let allowed = BOXES_A_GRAIN * grains.max(1) as f64;
+    let one = large / allowed;
+    // Roots before products: the widths of an absurd cell may have no product.
+    let two = one.sqrt() * middle.sqrt();
+    let three = one.cbrt() * middle.cbrt() * small.cbrt();
+    one.max(two).max(three)
+}
+
+/// Grains sorted into boxes of the cell.
+pub(super) struct Grid {
+    /// Boxes along each edge vector.
+    boxes: [i64; 3],
+    /// How many boxes away, along each edge vector, a touching grain may be.
+    reach: [i64; 3],
+    /// Which copy of the cell each grain's position lies in.
+    pub(super) cells: Vec<[i64; 3]>,
+    /// Which box.
+    homes: Vec<[i64; 3]>,
+    /// Grains by box, and where each box starts.
+    sorted: Vec<usize>,
+    starts: Vec<usize>,
+}
+
+impl Grid {
+    pub(super) fn new(cell: &Cell, positions: &[Vec3], radii: &[f64]) -> Result<Self, SearchError> {
+        // A little more than two radii, so that rounding cannot put touching grains out of reach.
+        let cutoff = 2.0 * radii.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
+        let edge = cutoff.max(least_edge(cell, positions.len()));
+        let boxes: [i64; 3] =
+            std::array::from_fn(|k| ((cell.width(k) / edge).floor() as i64).clamp(1, MOST_BOXES));
+        let reach: [i64; 3] =
+            std::array::from_fn(|k| (cutoff * boxes[k] as f64 / cell.width(k)).ceil() as i64);
+        let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
+        let solid_fraction = volume / cell.volume();
+        let width = (0..3).map(|k| cell.width(k)).fold(f64::INFINITY, f64::min);
+        let product = |n: [i64; 3]| n.iter().map(|n| *n as f64).product::<f64>();
+        let grains = positions.len() as f64;
+        let pairs =
+            grains * grains * product(reach.map(|r| r.saturating_mul(2).saturating_add(1))) / product(boxes);
+        if !(solid_fraction <= MOST_FULL && cutoff <= MOST_CELLS * width && pairs <= MOST_PAIRS) {
+            return Err(SearchError::Crowded { solid_fraction, diameter: cutoff, width });
+        }
+        let mut cells = Vec::with_capacity(positions.len());
+        let mut homes = Vec::with_capacity(positions.len());
+        for x in positions {
+            let f = cell.fractional(x);
+            let copy = [f.x.floor(), f.y.floor(), f.z.floor()];
+            homes.push(std::array::from_fn(|k| {
+                let inside = (f[k] - copy[k]) * boxes[k] as f64;
+                (inside.floor() as i64).clamp(0, boxes[k] - 1)
+            }));
+            cells.push(copy.map(|c| c as i64));
+        }
+        let mut grid = Self { boxes, reach, cells, homes, sorted: Vec::new(), starts: Vec::new() };
+        // Counting sort: grains of a box stay in order of index.
+        let mut starts = vec![0; (boxes[0] * boxes[1] * boxes[2]) as usize + 1];
+        for home in &grid.homes {
+            starts[grid.number(home) + 1] += 1;
+        }
+        for b in 1..starts.len() {
+            starts[b] += starts[b - 1];
+        }
+        grid.starts = starts;
+        grid.require_end()?;
+        let mut next = grid.starts.clone();
+        grid.sorted = vec![0; positions.len()];
+        for i in 0..positions.len() {
+            let b = grid.number(&grid.homes[i]);
+            grid.sorted[next[b]] = i;
+            next[b] += 1;
+        }
+        Ok(grid)
+    }
+
+    /// Refuses what would take an hour: the estimate before took the grains for evenly spread.
+    fn require_end(&self) -> Result<(), SearchError> {
+        let together = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
+        let neighbours: f64 = self.reach.iter().map(|r| (2 * r + 1) as f64).product();
+        let squares: f64 = self.starts.windows(2).map(|w| ((w[1] - w[0]) as f64).powi(2)).sum();
+        let pairs = squares * neighbours;
+        // Evenly spread grains were judged above; here many boxes are empty.
+        if pairs > MOST_PAIRS && together > CLUSTER {
+            return Err(SearchError::Clustered { together, pairs });
+        }
+        Ok(())
+    }
+
+    fn number(&self, home: &[i64; 3]) -> usize {
+        ((home[0] * self.boxes[1] + home[1]) * self.boxes[2] + home[2]) as usize
+    }
+
+    /// Calls `each` with every grain in reach of grain `i`, and the copy of the cell in which it is seen from
+    /// the home of `i`.
+    pub(super) fn visit<E>(
+        &self,
+        i: usize,
+        mut each: impl FnMut(usize, [i64; 3]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (home, r) = (self.homes[i], self.reach);
+        for a in -r[0]..=r[0] {
+            for b in -r[1]..=r[1] {
+                for c in -r[2]..=r[2] {
+                    let at = [home[0] + a, home[1] + b, home[2] + c];
+                    let lattice = std::array::from_fn(|k| at[k].div_euclid(self.boxes[k]));
+                    let number = self.number(&std::array::from_fn(|k| at[k].rem_euclid(self.boxes[k])));
+                    for &j in &self.sorted[self.starts[number]..self.starts[number + 1]] {
+                        each(j, lattice)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

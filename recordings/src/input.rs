@@ -1,0 +1,147 @@
+//! Files from outside: regular ones, of bounded size.
+//!
+//! A device may never end, a pipe may never begin, and a few bytes of gzip may be gigabytes of text: none of them may
+//! take the memory or the time of a command.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
+use std::os::unix::fs::FileTypeExt;
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+
+/// Scenes, launch files, parameters and calibrations are smaller: bytes.
+pub const SETTINGS: u64 = 1 << 20;
+
+/// Tables and packings as text are smaller: bytes, decompressed.
+pub const TEXT: u64 = 4 << 30;
+
+/// Decompressed bytes that a byte of a compressed text may stand for. Numbers compress to a third; zeros to a
+/// thousandth.
+const RATIO: u64 = 64;
+
+/// What a compressed text may always be, bytes.
+const SMALL: u64 = 16 << 20;
+
+/// Opens a regular file; returns its size (bytes), too.
+///
+/// # Errors
+/// If it cannot be opened, or is a directory, a pipe or a device: those are refused before they are opened.
+pub fn open(path: &Path) -> io::Result<(File, u64)> {
+    let metadata = fs::metadata(path)?;
+    let kind = metadata.file_type();
+    let what = if kind.is_file() {
+        return Ok((File::open(path)?, metadata.len()));
+    } else if kind.is_dir() {
+        return Err(io::Error::new(ErrorKind::IsADirectory, "it is a directory, not a file"));
+    } else if kind.is_fifo() {
+        "a pipe"
+    } else if kind.is_socket() {
+        "a socket"
+    } else {
+        "a device"
+    };
+    let problem = format!("it is {what}, not a file: write what comes from it to a file first");
+    Err(io::Error::new(ErrorKind::InvalidInput, problem))
+}
+
+/// The content of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// As [`open`], or if it is larger.
+pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let (file, size) = open(path)?;
+    let too_large = || {
+        let problem = format!("it has more than {most} bytes, which is more than any such file has");
+        io::Error::new(ErrorKind::FileTooLarge, problem)
+    };
+    if size > most {
+        return Err(too_large());
+    }
+    let mut content = Vec::with_capacity(size as usize);
+    // The size may be a fiction, as those of /proc are.
+    file.take(most + 1).read_to_end(&mut content)?;
+    if content.len() as u64 > most { Err(too_large()) } else { Ok(content) }
+}
+
+/// The text of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// As [`bytes`], or if it is not UTF-8.
+pub fn text(path: &Path, most: u64) -> io::Result<String> {
+    String::from_utf8(bytes(path, most)?).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        io::Error::new(ErrorKind::InvalidData, format!("it is not text: byte {at} is no UTF-8"))
+    })
+}
+
+/// What `compressed`, of gzip, decompresses to: at most 64 times as many bytes, or 16 MiB where that is more.
+///
+/// # Errors
+/// If it is cut off, damaged, or decompresses to more.
+pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
+    let most = (compressed.len() as u64).saturating_mul(RATIO).max(SMALL).min(TEXT);
+    let mut content = Vec::new();
+    let read = MultiGzDecoder::new(compressed).take(most + 1).read_to_end(&mut content);
+    read.map_err(|e| match e.kind() {
+        ErrorKind::UnexpectedEof => {
+            let problem = format!(
+                "the compressed file is cut off after {} bytes of text: copy it again",
+                content.len()
+            );
+            io::Error::new(e.kind(), problem)
+        }
+        kind => io::Error::new(kind, format!("the compressed file is damaged: {e}")),
+    })?;
+    if content.len() as u64 > most {
+        let problem = format!(
+            "its {} compressed bytes are more than {most} bytes of text, which no table of numbers is: unpack it first",
+            compressed.len()
+        );
+        return Err(io::Error::new(ErrorKind::FileTooLarge, problem));
+    }
+    Ok(content)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+    use std::io::Write;
+
+    #[test]
+    fn devices_pipes_and_directories_are_refused_and_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for (path, word) in
+            [(Path::new("/dev/zero"), "device"), (folder.path(), "directory"), (&pipe, "pipe")]
+        {
+            let error = text(path, SETTINGS).unwrap_err().to_string();
+            assert!(error.contains(word), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_read_up_to_the_limit_and_not_beyond() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        std::fs::write(&path, "twelve bytes").unwrap();
+        assert_eq!(text(&path, 12).unwrap(), "twelve bytes");
+        assert_eq!(text(&path, 11).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        // Of these the system says that they have no bytes.
+        assert_eq!(bytes(Path::new("/proc/self/maps"), 10).unwrap_err().kind(), ErrorKind::FileTooLarge);
+    }
+
+    #[test]
+    fn a_few_bytes_are_not_decompressed_to_a_gigabyte() {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        let zeros = vec![b'0'; 1 << 20];
+        (0..64).for_each(|_| encoder.write_all(&zeros).unwrap());
+        let compressed = encoder.finish().unwrap();
+        let error = gunzip(&compressed).unwrap_err().to_string();
+        assert!(error.contains("compressed bytes"), "{error}");
+        assert!(gunzip(&compressed[..compressed.len() / 9]).unwrap_err().to_string().contains("cut off"));
+    }
+}

@@ -1,0 +1,153 @@
+//! One MCAP file that is being written.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, Compression, McapError, WriteOptions};
+
+use super::device_sync::DeviceSync;
+use super::{TopicSpec, WriteError};
+use crate::bag_metadata::FileCount;
+
+type Writer = mcap::Writer<BufWriter<File>>;
+
+pub(super) struct Part {
+    path: PathBuf,
+    mcap: Writer,
+    pub(super) sync: DeviceSync,
+    /// Another handle of the file, to ask for its size.
+    handle: File,
+    channels: BTreeMap<String, u16>,
+    messages: u64,
+    /// First and last log time.
+    bounds: Option<(u64, u64)>,
+    began: Instant,
+}
+
+/// A file that is complete.
+pub(super) struct Closed {
+    pub(super) path: PathBuf,
+    pub(super) bytes: u64,
+    pub(super) count: FileCount,
+}
+
+impl Part {
+    /// Begins the file, which must not exist. It stays locked while it is open: nobody recovers what is being
+    /// recorded.
+    pub(super) fn create(path: PathBuf, chunk_size: u64, began: Instant) -> Result<Self, WriteError> {
+        let io = |action: &'static str| {
+            let path = path.clone();
+            move |source| WriteError::Io { path, action, source }
+        };
+        let file = match File::create_new(&path) {
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
+            other => other.map_err(io("create the file"))?,
+        };
+        // A file system without locks has none to respect either.
+        let _ = file.try_lock();
+        let clone = || file.try_clone().map_err(io("duplicate the handle"));
+        let (handle, synced) = (clone()?, clone()?);
+        let sync =
+            DeviceSync::start(synced).map_err(io("start the thread that pushes data to the device"))?;
+        let mcap = options("")
+            .chunk_size(Some(chunk_size))
+            .create(BufWriter::with_capacity(64 << 10, file))
+            .map_err(|source| WriteError::mcap(&path, "write the header", source))?;
+        let channels = BTreeMap::new();
+        Ok(Self { path, mcap, sync, handle, channels, messages: 0, bounds: None, began })
+    }
+
+    pub(super) fn began(&self) -> Instant {
+        self.began
+    }
+
+    pub(super) fn has_messages(&self) -> bool {
+        self.bounds.is_some()
+    }
+
+    /// Bytes that are in the file by now; 0 if the system does not say.
+    pub(super) fn bytes(&self) -> u64 {
+        self.handle.metadata().map_or(0, |m| m.len())
+    }
+
+    pub(super) fn declare(&mut self, topic: &TopicSpec) -> Result<(), McapError> {
+        let schema = self.mcap.add_schema(&topic.ros_type, "ros2msg", topic.definition.as_bytes())?;
+        let metadata = BTreeMap::from([
+            ("offered_qos_profiles".to_owned(), topic.qos.clone()),
+            ("topic_type_hash".to_owned(), topic.type_hash.clone()),
+        ]);
+        let channel = self.mcap.add_channel(schema, &topic.name, "cdr", &metadata)?;
+        self.channels.insert(topic.name.clone(), channel);
+        Ok(())
+    }
+
+    /// Writes a message on a declared topic.
+    pub(super) fn write(
+        &mut self,
+        topic: &str,
+        sequence: u32,
+        log_time: u64,
+        publish_time: u64,
+        payload: &[u8],
+    ) -> Result<(), McapError> {
+        // Topics are declared in every part before anything is written.
+        let channel_id = self.channels.get(topic).copied().unwrap_or(0);
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time };
+        self.mcap.write_to_known_channel(&header, payload)?;
+        self.messages += 1;
+        self.bounds = Some((self.bounds.map_or(log_time, |(first, _)| first), log_time));
+        Ok(())
+    }
+
+    pub(super) fn attach(&mut self, attachment: &Attachment<'_>) -> Result<(), McapError> {
+        self.mcap.attach(attachment)
+    }
+
+    pub(super) fn flush(&mut self) -> Result<(), McapError> {
+        self.mcap.flush()?;
+        self.sync.note_written();
+        Ok(())
+    }
+
+    /// Writes the metadata record and the index, and returns when all of it is on the device.
+    pub(super) fn close(mut self, metadata: Metadata) -> Result<Closed, WriteError> {
+        let path = self.path.clone();
+        let format = |action: &'static str| {
+            let path = path.clone();
+            move |source| WriteError::mcap(&path, action, source)
+        };
+        let io = |action: &'static str| {
+            let path = path.clone();
+            move |source| WriteError::Io { path, action, source }
+        };
+        self.mcap.write_metadata(&metadata).map_err(format("write the account"))?;
+        self.mcap.finish().map_err(format("write the index"))?;
+        let handle = self
+            .mcap
+            .into_inner()
+            .into_inner()
+            .map_err(|e| io("write the end of the file")(e.into_error()))?;
+        self.sync.stop();
+        handle.sync_all().map_err(io("push the recording to the device"))?;
+        let bytes = handle.metadata().map_err(io("ask for the size"))?.len();
+        let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let count = FileCount { name, bounds: self.bounds, messages: self.messages };
+        Ok(Closed { path, bytes, count })
+    }
+}
+
+/// How every file of ours is written. A chunk is written whole with its true header (`disable_seeking`), so a crash
+/// leaves a clean prefix.
+pub(crate) fn options(remark: &str) -> WriteOptions {
+    WriteOptions::new()
+        .profile("ros2")
+        .library(format!("grainlab {}{remark}", env!("CARGO_PKG_VERSION")))
+        .compression(Some(Compression::Zstd))
+        .compression_level(1)
+        .compression_threads(0)
+        .disable_seeking(true)
+}
