@@ -24,7 +24,7 @@ use node_kit::{
 };
 use recordings::ledger::Guid;
 use recordings::writer::Finished;
-use recordings::{Incoming, Outcome, RunWriter, TopicSpec, TopicTally, WriterOptions};
+use recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -145,8 +145,17 @@ impl Recorder {
         let directory = settings.directory().map_err(|e| failed(&e))?;
         let name =
             directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
-        let mut writer =
-            RunWriter::create(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        let mut repeats = settings.whole_run.then(Repeats::default);
+        let mut authors = Authors::default();
+        let before = if settings.append { Recording::open(&directory).ok() } else { None };
+        if let Some(recording) = &before {
+            authors = strangers::authors(recording);
+            if let Some(repeats) = &mut repeats {
+                repeats.remember(recording).map_err(|e| failed(&e))?;
+            }
+        }
+        let begin = if before.is_some() { RunWriter::append } else { RunWriter::create };
+        let mut writer = begin(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
         if let Some(scene) = &settings.scene {
             writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
             writer.set_metadata("scene", &scene.scene.name);
@@ -171,9 +180,9 @@ impl Recorder {
             recorded: 0,
             company,
             binding: (settings.whole_run && run.is_none()).then(Binding::default),
-            repeats: settings.whole_run.then(Repeats::default),
+            repeats,
             contradictions: 0,
-            authors: Authors::default(),
+            authors,
         })
     }
 

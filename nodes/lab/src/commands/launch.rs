@@ -18,6 +18,11 @@ use recordings::runs::{RUNS, create_run_directory};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+mod order;
+mod resume;
+
+use order::Order;
+
 const EXAMPLES: &str = "\
 Examples:
   grainlab                                  the demo scene
@@ -26,6 +31,7 @@ Examples:
   grainlab launch acoustic method:=standing_wave speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
+  grainlab launch --resume recordings/runs/s2-1-1
 
 The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
@@ -47,6 +53,10 @@ pub(crate) struct Args {
     /// Folder in which the run gets a directory of its own
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
+    /// Goes on with this run, from the last packing in its recording, to the bytes that it would have come to; with its
+    /// own launch file, arguments, scene and seed
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "seed", "out"])]
+    resume: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -54,12 +64,15 @@ pub(crate) struct Args {
 
 impl Default for Args {
     fn default() -> Self {
-        Self { words: Vec::new(), scene: None, seed: None, out: RUNS.into(), format: Format::Table }
+        Self { words: Vec::new(), scene: None, seed: None, out: RUNS.into(), resume: None, format: Format::Table }
     }
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let Some(run) = &args.resume {
+        return resume::run(run, args.format);
+    }
     let (path, given) = split(&args.words)?;
     let file = read_file(path)?;
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
@@ -67,13 +80,22 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let scene = scenes::load(name, seed)?;
     let (domain, lock) = domain()?;
     let directory = run_directory(&args.out, &scene)?;
-    // Parameters are YAML: a path with a blank or a colon needs its quotes.
-    let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
-    let mut values = given;
-    values.insert("scene", path(&directory.join("scene.toml")));
-    values.insert("seed", scene.scene.seed.to_string());
-    values.insert("out", path(&directory));
-    let mut plans = file.nodes(&values).map_err(Failure::usage)?;
+    let given = given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+    let order = Order { launch: file.text().to_owned(), arguments: given, seed: scene.scene.seed };
+    order.keep(&directory)?;
+    let plans = order.plans(&directory)?;
+    conduct(plans, domain, lock, &directory, &scene, args.format)
+}
+
+/// Starts the processes, follows the run to its end, and reports it.
+fn conduct(
+    mut plans: Vec<NodePlan>,
+    domain: u16,
+    lock: Option<FreeDomain>,
+    directory: &Path,
+    scene: &SceneText,
+    format: Format,
+) -> Result<Exit, Failure> {
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     let run = Run { id: RunId::fresh(), domain };
     crate::output::say!(
@@ -84,9 +106,9 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         run.id,
         directory.display()
     );
-    let supervised = supervise(plans, run, &directory, scene.scene.phases.len());
+    let supervised = supervise(plans, run, directory, scene.scene.phases.len());
     drop(lock);
-    finish(args.format, &directory, &scene, run, supervised?)
+    finish(format, directory, scene, run, supervised?)
 }
 
 /// The launch file, if one is named, and the values for its arguments.

@@ -118,6 +118,7 @@ impl NodePlan {
 /// A launch file that was read, with what its arguments default to.
 #[derive(Debug)]
 pub(crate) struct LaunchFile {
+    text: String,
     arguments: Vec<(String, Option<String>)>,
     executables: Vec<Executable>,
 }
@@ -133,7 +134,12 @@ impl LaunchFile {
                 Entry::Executable(e) => executables.push(e),
             }
         }
-        Ok(Self { arguments, executables })
+        Ok(Self { text: text.to_owned(), arguments, executables })
+    }
+
+    /// What it was read from.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
     }
 
     /// The default of an argument without the quotes that keep an empty string a word; `None` if it has none.

@@ -5,6 +5,7 @@
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, from_cdr, topics};
+use recordings::{ReadError, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -62,9 +63,29 @@ pub(crate) struct Repeats {
     lockstep: BTreeMap<&'static str, Window>,
     /// Fingerprints of results, by topic and author.
     results: BTreeMap<&'static str, BTreeSet<(u64, u64)>>,
+    /// Fingerprints of the results of recorders before this one, by topic.
+    before: BTreeMap<&'static str, BTreeSet<u64>>,
 }
 
 impl Repeats {
+    /// Takes in what recorders before this one recorded.
+    pub(crate) fn remember(&mut self, recording: &Recording) -> Result<(), ReadError> {
+        let contract = |resolved: &str| {
+            Topic::by_name(resolved.rsplit('/').next().unwrap_or(resolved)).filter(|t| t.reproducible)
+        };
+        let channels = recording.channels();
+        let names = channels.iter().filter(|c| contract(&c.topic).is_some()).map(|c| c.topic.clone());
+        for message in recording.messages(&Selection::topics(names))? {
+            let Some(topic) = contract(&message.channel.topic) else { continue };
+            if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&topic.name) {
+                self.enter(topic, 0, &message.payload);
+            } else {
+                self.before.entry(topic.name).or_default().insert(fingerprint(&message.payload));
+            }
+        }
+        Ok(())
+    }
+
     /// Takes in one message of a topic; `author` is the same for a process and the one that takes its place. What cannot
     /// be decoded is new.
     pub(crate) fn enter(&mut self, topic: &Topic, author: u64, body: &[u8]) -> Novelty {
@@ -76,7 +97,8 @@ impl Repeats {
             name if name == topics::STRESS.name => from_cdr::<Stress>(body).map(|m| m.sequence),
             name if name == topics::STRAIN_RATE.name => from_cdr::<StrainRate>(body).map(|m| m.sequence),
             _ => {
-                let new = self.results.entry(topic.name).or_default().insert((author, fingerprint));
+                let known = self.before.get(topic.name).is_some_and(|known| known.contains(&fingerprint));
+                let new = !known && self.results.entry(topic.name).or_default().insert((author, fingerprint));
                 return if new { Novelty::New } else { Novelty::Repeat };
             }
         };

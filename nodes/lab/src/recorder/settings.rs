@@ -17,8 +17,11 @@ pub(crate) struct Settings {
     pub(crate) topics: Vec<Topic>,
     /// The scene of the run, which is attached.
     pub(crate) scene: Option<SceneText>,
-    /// Messages that were published before this recorder was there count as lost, too.
+    /// One run is recorded, from its first message on: what is missing at its beginning counts as lost, too, and what its
+    /// processes say again is recorded once.
     pub(crate) whole_run: bool,
+    /// Goes on with the recording that is there, in its next file.
+    pub(crate) append: bool,
 }
 
 /// The parameters of the node.
@@ -40,6 +43,7 @@ pub(crate) fn parameters() -> Vec<ParameterSpec> {
             "scene of the run, a built-in name or a file, attached to the recording",
         ),
         ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
+        ParameterSpec::new("append", false, "go on with the recording in output, in its next file"),
     ]
 }
 
@@ -53,6 +57,7 @@ impl Settings {
             topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
             scene: text("scene").map(|s| scenes::load(&s, seed)).transpose()?,
             whole_run: true,
+            append: parameters.get("append"),
         })
     }
 

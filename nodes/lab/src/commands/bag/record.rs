@@ -41,6 +41,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         topics: recorder::contract_topics(&args.topics)?,
         scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
         whole_run: false,
+        append: false,
     };
     let spec = NodeSpec {
         name: "recorder",

@@ -1,0 +1,75 @@
+//! What was launched, kept beside the recording so that the run can be resumed as it was begun.
+
+use crate::failure::Failure;
+use crate::launch::plan::{LaunchFile, NodePlan};
+use crate::output::json;
+use recordings::input;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Name of the file in the run directory.
+const FILE: &str = "launch.json";
+
+/// A launch file with what its arguments were.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Order {
+    /// Text of the launch file.
+    pub(super) launch: String,
+    /// Values given for its arguments, but for scene, seed and out.
+    pub(super) arguments: BTreeMap<String, String>,
+    /// Seed in force.
+    pub(super) seed: u64,
+}
+
+impl Order {
+    /// Writes it into the run directory.
+    pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
+        let path = directory.join(FILE);
+        std::fs::write(&path, json(self)?).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+    }
+
+    /// Reads it back.
+    pub(super) fn read(directory: &Path) -> Result<Self, Failure> {
+        let path = directory.join(FILE);
+        let failed = |e: &dyn std::fmt::Display| {
+            Failure::failed(format!("{}: {e}: only a run that `grainlab launch` began can be resumed", path.display()))
+        };
+        let text = input::text(&path, input::SETTINGS).map_err(|e| failed(&e))?;
+        serde_json::from_str(&text).map_err(|e| failed(&e))
+    }
+
+    /// The processes to start, for a run in this directory.
+    pub(super) fn plans(&self, directory: &Path) -> Result<Vec<NodePlan>, Failure> {
+        // Parameters are YAML: a path with a blank or a colon needs its quotes.
+        let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
+        let mut values: BTreeMap<&str, String> =
+            self.arguments.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
+        values.insert("scene", path(&directory.join("scene.toml")));
+        values.insert("seed", self.seed.to_string());
+        values.insert("out", path(directory));
+        let file = LaunchFile::parse(&self.launch).map_err(Failure::usage)?;
+        file.nodes(&values).map_err(Failure::usage)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::launch::plan::BUILT_IN;
+
+    #[test]
+    fn what_was_launched_is_read_back_as_it_was() {
+        let directory = tempfile::tempdir().unwrap();
+        let arguments = BTreeMap::from([("simd".to_owned(), "scalar".to_owned())]);
+        let order = Order { launch: BUILT_IN[0].1.to_owned(), arguments, seed: 7 };
+        order.keep(directory.path()).unwrap();
+        let known = Order::read(directory.path()).unwrap();
+        assert_eq!(known, order);
+        let plans = known.plans(directory.path()).unwrap();
+        let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
+        assert!(simulator.arguments.contains(&"simd:=scalar".to_owned()) && simulator.arguments.contains(&"seed:=7".to_owned()));
+        let elsewhere = tempfile::tempdir().unwrap();
+        assert!(Order::read(elsewhere.path()).unwrap_err().to_string().contains("can be resumed"));
+    }
+}

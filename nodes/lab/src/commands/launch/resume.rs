@@ -1,0 +1,54 @@
+//! `grainlab launch --resume RUN`: a run goes on from the last packing in its recording.
+//!
+//! What is recorded stays as it is. The recorder goes on in the next file of the recording; what the processes say once
+//! more, with the same bytes, is not recorded again.
+
+use super::order::Order;
+use super::{conduct, domain};
+use crate::failure::Failure;
+use crate::output::Format;
+use crate::results::last_packing;
+use crate::scenes;
+use grainlab_msgs::{from_cdr, msg, topics};
+use node_kit::Exit;
+use recordings::{Recording, Selection};
+use std::path::Path;
+
+pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
+    let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
+    let directory = directory.canonicalize().map_err(|e| failed(&e))?;
+    let order = Order::read(&directory)?;
+    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), Some(order.seed))?;
+    let mut plans = order.plans(&directory)?;
+    // Without a recording the run begins anew, in its own directory.
+    if let Ok(recording) = Recording::open(&directory) {
+        if is_finished(&recording) {
+            return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
+        }
+        let path = serde_json::Value::from(directory.to_string_lossy());
+        for plan in &mut plans {
+            let given = match plan.node.as_deref() {
+                Some("recorder") => "append:=true".to_owned(),
+                Some("dem_simulator") if last_packing::count(&directory) > 0 => format!("resume:={path}"),
+                _ => continue,
+            };
+            plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
+        }
+    }
+    let (domain, lock) = domain()?;
+    conduct(plans, domain, lock, &directory, &scene, format)
+}
+
+/// Whether the loading path was done, and its last packing is there with what was inferred from it.
+fn is_finished(recording: &Recording) -> bool {
+    let last = |name: &str| {
+        let channels = recording.channels();
+        let topic = channels.iter().find(|c| c.topic.rsplit('/').next() == Some(name))?;
+        let messages = recording.messages(&Selection::topics([topic.topic.clone()])).ok()?;
+        messages.last().map(|m| m.payload.to_vec())
+    };
+    let state = last(topics::RUN_STATE.name).and_then(|body| from_cdr::<msg::RunState>(&body).ok());
+    let found = last(topics::MICROSTRUCTURE.name).and_then(|body| from_cdr::<msg::Microstructure>(&body).ok());
+    let done = state.filter(|s| s.state == msg::RunState::FINISHED).map(|s| s.last_packing_step);
+    done.is_some() && done == found.map(|m| m.source_step)
+}
