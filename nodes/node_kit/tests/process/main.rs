@@ -2,6 +2,7 @@
 //!
 //! A child is this test executable again, running one ignored test named by its role.
 
+mod bystander;
 mod leaving;
 mod roles;
 mod stopping;
