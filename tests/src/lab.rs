@@ -38,6 +38,7 @@ impl Lab {
             .args(arguments)
             .current_dir(self.folder())
             .env("ROS_DOMAIN_ID", self.domain.to_string())
+            .env_remove("GRAINLAB_RUN")
             .env_remove("ROS_STATIC_PEERS")
             .env_remove("ROS_LOCALHOST_ONLY")
             .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")

@@ -5,7 +5,7 @@
 //! - [`Recorder`]: the node; [`Finished`]: what it leaves behind
 
 mod binding;
-mod repeats;
+pub(crate) mod repeats;
 mod settings;
 
 pub(crate) use settings::{Settings, contract_topics, parameters};

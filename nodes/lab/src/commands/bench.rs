@@ -4,6 +4,7 @@ mod accuracy;
 mod acoustics;
 mod cpu_time;
 mod dem;
+mod faults;
 mod folder;
 mod lockstep;
 mod numbers;
@@ -24,6 +25,8 @@ pub(crate) enum Command {
     Acoustics(acoustics::Args),
     /// The particle engine: particle-steps per second by size, threads, instruction set and features.
     Dem(dem::Args),
+    /// Runs in which everything fails that may fail, each drawn from a seed: the same results, or an error.
+    Faults(faults::Args),
     /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
     Lockstep(lockstep::Args),
     /// The stiffness of a packing: time against error of every method and tolerance.
@@ -36,6 +39,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Accuracy(args) => accuracy::run(args),
         Command::Acoustics(args) => acoustics::run(args),
         Command::Dem(args) => dem::run(args),
+        Command::Faults(args) => faults::run(args),
         Command::Lockstep(args) => lockstep::run(args),
         Command::Stiffness(args) => stiffness::run(args),
     }

@@ -39,6 +39,11 @@ impl MemoryBus {
         self.interrupted = true;
     }
 
+    /// Whether a sample is there to be taken now.
+    pub fn has_arrivals(&self) -> bool {
+        self.has_data()
+    }
+
     pub(super) fn has_data(&self) -> bool {
         let state = self.hub.state.borrow();
         self.readers.iter().any(|r| state.readers[*r].has_data(state.now))

@@ -15,10 +15,11 @@ pub struct Faults {
 
 /// The SplitMix64 generator: eight bytes of state, the same numbers on every machine.
 #[derive(Clone, Debug)]
-pub(super) struct Dice(u64);
+pub struct Dice(u64);
 
 impl Dice {
-    pub(super) fn new(seed: u64) -> Self {
+    /// The numbers of this seed.
+    pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
@@ -31,8 +32,13 @@ impl Dice {
     }
 
     /// Evenly from 0 to 1, 1 excluded.
-    fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly from 0 to `count`, that excluded; 0 for none.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
     }
 
     /// When the copies of one sample arrive, from now. Empty if it is lost. Draws the same count of numbers whatever the

@@ -24,6 +24,8 @@ pub struct Hub {
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) now: Duration,
+    /// What the wall clock was set forward by, ns; negative for back.
+    wall_offset: i64,
     dice: Dice,
     faults: BTreeMap<String, Faults>,
     participants: u32,
@@ -58,6 +60,7 @@ impl Hub {
     pub fn new(seed: u64) -> Self {
         let state = State {
             now: Duration::ZERO,
+            wall_offset: 0,
             dice: Dice::new(seed),
             faults: BTreeMap::new(),
             participants: 0,
@@ -94,6 +97,11 @@ impl Hub {
         self.state.borrow_mut().now += time;
     }
 
+    /// Sets the wall clock forward, or back; the time that only goes forward is not touched.
+    pub fn set_wall_clock(&self, forward_nanos: i64) {
+        self.state.borrow_mut().wall_offset += forward_nanos;
+    }
+
     /// When the next sample on its way arrives, if one is.
     pub fn next_arrival(&self) -> Option<Duration> {
         let state = self.state.borrow();
@@ -127,7 +135,7 @@ pub(super) fn writer_id(participant: Participant, entity: usize) -> WriterId {
 
 impl State {
     pub(super) fn wall_nanos(&self) -> u64 {
-        EPOCH_NANOS + self.now.as_nanos() as u64
+        (EPOCH_NANOS + self.now.as_nanos() as u64).saturating_add_signed(self.wall_offset)
     }
 
     pub(super) fn add_writer(&mut self, participant: Participant, topic: String, qos: Qos) -> usize {

@@ -9,6 +9,6 @@ mod hub;
 mod schedule;
 
 pub use bus::MemoryBus;
-pub use faults::Faults;
+pub use faults::{Dice, Faults};
 pub use hub::Hub;
 pub use schedule::{Actor, run_until};

@@ -1,0 +1,148 @@
+//! Who is not of the run: publishes what the run publishes, otherwise.
+
+use super::plan;
+use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
+use node_kit::memory::Dice;
+use node_kit::{Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId};
+use std::time::Duration;
+
+/// What is forged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Forgery {
+    StrainRate,
+    Stress,
+    Packing,
+    Moduli,
+    Microstructure,
+    Finished,
+    Failed,
+    Garbage,
+}
+
+impl Forgery {
+    pub(super) const ALL: [Forgery; 8] = [
+        Forgery::StrainRate,
+        Forgery::Stress,
+        Forgery::Packing,
+        Forgery::Moduli,
+        Forgery::Microstructure,
+        Forgery::Finished,
+        Forgery::Failed,
+        Forgery::Garbage,
+    ];
+
+    fn topics(self) -> (Topic, Topic) {
+        match self {
+            Forgery::StrainRate => (topics::STRESS, topics::STRAIN_RATE),
+            Forgery::Stress => (topics::STRESS, topics::STRESS),
+            Forgery::Packing => (topics::PACKING, topics::PACKING),
+            Forgery::Moduli => (topics::MODULI, topics::MODULI),
+            Forgery::Microstructure => (topics::MODULI, topics::MICROSTRUCTURE),
+            Forgery::Finished | Forgery::Failed => (topics::STRESS, topics::RUN_STATE),
+            Forgery::Garbage => (topics::STRESS, topics::STRAIN_RATE),
+        }
+    }
+}
+
+/// One stranger on its bus.
+pub(super) struct Stranger {
+    plan: plan::Stranger,
+    bus: MemoryBus,
+    input: SubscriptionId,
+    output: PublisherId,
+    dice: Dice,
+    pub(super) forged: u64,
+}
+
+impl Stranger {
+    /// Says something before anybody asks: an answer of zeros, an old result.
+    pub(super) fn join(hub: &Hub, plan: plan::Stranger, seed: u64) -> Result<Self, BusError> {
+        let identity = match plan.of_a_run {
+            true => Identity::member_of(RunId::named("another"), 1),
+            false => Identity::default(),
+        };
+        let mut bus = hub.bus_as(Names::new("stranger")?, identity);
+        let (from, to) = plan.forgery.topics();
+        let input = bus.subscribe(&from, Demand::best_effort(1000))?;
+        let output = bus.advertise(&to)?;
+        let early = match plan.forgery {
+            Forgery::StrainRate => Some(to_cdr(&StrainRate::default())),
+            Forgery::Finished => Some(to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() })),
+            _ => None,
+        };
+        let mut stranger = Self { plan, bus, input, output, dice: Dice::new(seed), forged: 0 };
+        if let Some(body) = early {
+            stranger.publish(&body, None)?;
+        }
+        Ok(stranger)
+    }
+
+    fn publish(&mut self, body: &[u8], about: Option<node_kit::SampleId>) -> Result<(), BusError> {
+        self.forged += 1;
+        self.bus.publish_about(self.output, body, about).map(drop)
+    }
+
+    /// Forges a share of what it heard; true if it heard anything.
+    pub(super) fn step(&mut self) -> Result<bool, BusError> {
+        let mut heard = false;
+        let own = self.bus.published().first().map(|p| p.writer.participant());
+        while let Some(sample) = self.bus.take(self.input)? {
+            heard = true;
+            if Some(sample.info.writer.participant()) == own || self.dice.unit() >= self.plan.share {
+                continue;
+            }
+            let by = 0.5 + self.dice.unit();
+            if let Some(body) = forged(self.plan.forgery, &sample, by) {
+                // As a servo of its own would: about the request.
+                let about = (self.dice.below(2) == 0).then(|| sample.info.id());
+                self.publish(&body, about)?;
+            }
+        }
+        // Time passes with the run, not with strangers.
+        let _ = self.bus.now() + Duration::ZERO;
+        Ok(heard)
+    }
+}
+
+fn decoded<T: Message>(sample: &Sample) -> Option<T> {
+    from_cdr(&sample.body).ok()
+}
+
+/// Another message than this one, off by a factor.
+fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
+    let scale = |values: &mut [f64]| values.iter_mut().for_each(|v| *v *= by);
+    Some(match forgery {
+        Forgery::StrainRate => {
+            let mut answer = servo_controller::answer(&decoded::<Stress>(sample)?).ok()?;
+            scale(&mut answer.rate);
+            to_cdr(&answer)
+        }
+        Forgery::Stress => {
+            let mut stress: Stress = decoded(sample)?;
+            scale(&mut stress.stress);
+            to_cdr(&stress)
+        }
+        Forgery::Packing => {
+            let mut packing: Packing = decoded(sample)?;
+            scale(&mut packing.contact_normal_force);
+            to_cdr(&packing)
+        }
+        Forgery::Moduli => {
+            let mut moduli: Moduli = decoded(sample)?;
+            moduli.g12 *= by;
+            to_cdr(&moduli)
+        }
+        Forgery::Microstructure => {
+            let source_step = decoded::<Moduli>(sample)?.source_step;
+            to_cdr(&Microstructure { source_step, source: "moduli".to_owned(), ..Microstructure::default() })
+        }
+        Forgery::Finished => to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() }),
+        Forgery::Failed => to_cdr(&RunState { state: RunState::FAILED, ..RunState::default() }),
+        Forgery::Garbage => {
+            let mut body = sample.body.clone();
+            body.truncate(4 + (by * 40.0) as usize);
+            body
+        }
+    })
+}

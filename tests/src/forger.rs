@@ -1,0 +1,173 @@
+//! A process that is not of the run and says what the run says, otherwise: a second servo, an analyzer of another opinion,
+//! an old result that is still latched.
+
+use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
+use grainlab_msgs::{Message, Topic, from_cdr, topics};
+use node_kit::{Bus, DdsBus, Demand, Names, Network, Publisher, Sample, SubscriptionId};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// What is forged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Forgery {
+    /// Every request is answered by another law, as a servo would: about the request.
+    SecondServo,
+    /// Every request is published again with other stress.
+    Stress,
+    /// Every packing is published again with other forces.
+    Packing,
+    /// Moduli are doubled.
+    Moduli,
+    /// Coordination numbers of nine.
+    Microstructure,
+    /// The run is said to be finished.
+    Finished,
+    /// The run is said to have failed.
+    Failed,
+    /// Answers to no request, before any is asked: all zero.
+    EarlyAnswer,
+    /// A microstructure of long ago, latched, of the very packing that the run will have.
+    OldMicrostructure {
+        /// Step of that packing.
+        step: u64,
+    },
+}
+
+/// All of them but the last.
+pub const FORGERIES: [Forgery; 8] = [
+    Forgery::SecondServo,
+    Forgery::Stress,
+    Forgery::Packing,
+    Forgery::Moduli,
+    Forgery::Microstructure,
+    Forgery::Finished,
+    Forgery::Failed,
+    Forgery::EarlyAnswer,
+];
+
+/// A forger at work, on a thread with a participant of its own; it leaves when it is dropped.
+#[derive(Debug)]
+pub struct Forger {
+    stop: Arc<AtomicBool>,
+    sent: Arc<AtomicU64>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Forger {
+    /// Begins to forge in this domain of loopback.
+    pub fn start(domain: u16, forgery: Forgery) -> Self {
+        let (stop, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+        let (asked, count) = (Arc::clone(&stop), Arc::clone(&sent));
+        let thread = std::thread::spawn(move || {
+            let names = Names::new("forger").unwrap_or_else(|e| panic!("{e}"));
+            let mut bus =
+                DdsBus::open(Network::localhost(domain), names).unwrap_or_else(|e| panic!("no bus: {e}"));
+            forge(&mut bus, forgery, &asked, &count);
+        });
+        Self { stop, sent, thread: Some(thread) }
+    }
+
+    /// Messages forged so far.
+    pub fn sent(&self) -> u64 {
+        self.sent.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Forger {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            assert!(thread.join().is_ok(), "the forger panicked");
+        }
+    }
+}
+
+fn decoded<T: Message>(sample: &Sample) -> T {
+    from_cdr(&sample.body).unwrap_or_else(|e| panic!("a message of the run: {e}"))
+}
+
+fn forge(bus: &mut DdsBus, forgery: Forgery, stop: &AtomicBool, sent: &AtomicU64) {
+    let (from, to) = match forgery {
+        Forgery::SecondServo => (topics::STRESS, topics::STRAIN_RATE),
+        Forgery::Stress => (topics::STRESS, topics::STRESS),
+        Forgery::Packing => (topics::PACKING, topics::PACKING),
+        Forgery::Moduli => (topics::MODULI, topics::MODULI),
+        Forgery::Microstructure => (topics::MICROSTRUCTURE, topics::MICROSTRUCTURE),
+        Forgery::Finished | Forgery::Failed => (topics::STRESS, topics::RUN_STATE),
+        Forgery::EarlyAnswer => (topics::STRESS, topics::STRAIN_RATE),
+        Forgery::OldMicrostructure { .. } => (topics::MICROSTRUCTURE, topics::MICROSTRUCTURE),
+    };
+    let input = subscribe(bus, &from);
+    let output = bus.advertise(&to).unwrap_or_else(|e| panic!("{e}"));
+    let typed: Publisher<StrainRate> =
+        Publisher::advertise(bus, &topics::STRAIN_RATE).unwrap_or_else(|e| panic!("{e}"));
+    let count = || sent.fetch_add(1, Ordering::Relaxed);
+    if let Forgery::OldMicrostructure { step } = forgery {
+        let old = Microstructure { source_step: step, source: "moduli".into(), ..Microstructure::default() };
+        bus.publish(output, &grainlab_msgs::to_cdr(&old)).unwrap_or_else(|e| panic!("{e}"));
+        count();
+    }
+    let own = bus.participant();
+    while !stop.load(Ordering::Relaxed) {
+        if forgery == Forgery::EarlyAnswer {
+            // A late forgery is as harmless; flooding is another matter.
+            let _ = typed.publish(bus, &StrainRate::default());
+            count();
+        }
+        while let Ok(Some(sample)) = bus.take(input) {
+            if sample.info.writer.participant() == own {
+                continue;
+            }
+            if let Some((body, about)) = forged(forgery, &sample) {
+                let _ = bus.publish_about(output, &body, about);
+                count();
+            }
+        }
+        bus.wait(Duration::from_millis(20));
+    }
+}
+
+fn subscribe(bus: &mut DdsBus, topic: &Topic) -> SubscriptionId {
+    bus.subscribe(topic, Demand::best_effort(1000)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Another message than this one, and what it is said to be about.
+fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<node_kit::SampleId>)> {
+    let info = &sample.info;
+    let body = match forgery {
+        Forgery::SecondServo => {
+            let stress: Stress = decoded(sample);
+            let mut answer = servo_controller::answer(&stress).ok()?;
+            answer.rate.iter_mut().for_each(|rate| *rate *= 0.5);
+            return Some((grainlab_msgs::to_cdr(&answer), Some(info.id())));
+        }
+        Forgery::Stress => {
+            let mut stress: Stress = decoded(sample);
+            stress.stress.iter_mut().for_each(|s| *s *= 1.5);
+            grainlab_msgs::to_cdr(&stress)
+        }
+        Forgery::Packing => {
+            let mut packing: Packing = decoded(sample);
+            packing.contact_normal_force.iter_mut().for_each(|f| *f *= 1.5);
+            grainlab_msgs::to_cdr(&packing)
+        }
+        Forgery::Moduli => {
+            let mut moduli: Moduli = decoded(sample);
+            (moduli.g12, moduli.g13, moduli.theta) = (2.0 * moduli.g12, 2.0 * moduli.g13, 2.0 * moduli.theta);
+            grainlab_msgs::to_cdr(&moduli)
+        }
+        Forgery::Microstructure => {
+            let mut found: Microstructure = decoded(sample);
+            found.estimates.iter_mut().for_each(|e| e.k = 9.0);
+            grainlab_msgs::to_cdr(&found)
+        }
+        Forgery::Finished | Forgery::Failed => {
+            let state = if forgery == Forgery::Finished { RunState::FINISHED } else { RunState::FAILED };
+            grainlab_msgs::to_cdr(&RunState { state, message: "forged".into(), ..RunState::default() })
+        }
+        Forgery::EarlyAnswer | Forgery::OldMicrostructure { .. } => return None,
+    };
+    Some((body, info.about))
+}
