@@ -13,6 +13,7 @@ use node_kit::run::NodeSpec;
 use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, run_node};
 use recordings::input;
 use servo_controller::ServoController;
+use std::path::Path;
 
 /// Every node: its name, what it does, its parameters.
 pub(crate) fn nodes() -> Vec<NodeSpec> {

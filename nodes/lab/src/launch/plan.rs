@@ -1,7 +1,7 @@
 //! Launch files: the YAML form of ROS 2 launch, as much of it as starts our nodes.
 
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The launch files built in; the first is run without another.
 pub(crate) const BUILT_IN: [(&str, &str); 2] = [
@@ -35,6 +35,12 @@ pub(crate) enum PlanError {
     /// A value of `output` or `respawn` that is not supported.
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
+    /// A name that could not be the name of a log.
+    #[error("executable name {0:?}: use lower case letters, digits, _ and - (it names a file)")]
+    Name(String),
+    /// Two processes would write one log.
+    #[error("two executables are called {0:?}: give one of them another name")]
+    Twice(String),
     /// A node that no laboratory works without, or with two of.
     #[error("the launch file starts {count} of {node}; there must be one")]
     Count { node: &'static str, count: usize },
@@ -135,6 +141,10 @@ impl LaunchFile {
         }
         let nodes: Vec<NodePlan> =
             self.executables.iter().map(|e| e.plan(&variables)).collect::<Result<_, _>>()?;
+        let mut names = BTreeSet::new();
+        if let Some(plan) = nodes.iter().find(|n| !names.insert(n.name.as_str())) {
+            return Err(PlanError::Twice(plan.name.clone()));
+        }
         for node in ["recorder", "dem_simulator"] {
             let count = nodes.iter().filter(|n| n.node == node).count();
             if count != 1 {
@@ -155,6 +165,10 @@ impl Executable {
             return Err(PlanError::Command { cmd: self.cmd.clone() });
         }
         let name = self.name.clone().unwrap_or_else(|| node.clone());
+        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
+        if name.is_empty() || !name.chars().all(plain) {
+            return Err(PlanError::Name(name));
+        }
         let refuse = |key, value: &str, allowed| PlanError::Value {
             name: name.clone(),
             key,

@@ -67,6 +67,9 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
         (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
         (one("executable: {cmd: grainlab run recorder}"), "0 of dem_simulator"),
+        (one("executable: {cmd: grainlab run recorder, name: ../../evil}"), "../../evil"),
+        (one("executable: {cmd: grainlab run recorder, name: ''}"), "lower case"),
+        (one("executable: {cmd: grainlab run recorder}\n- executable: {cmd: grainlab run recorder}"), "two"),
         (one("arg: {name: scene}"), "no default"),
         ("lunch: []".to_owned(), "lunch"),
     ] {
@@ -93,4 +96,22 @@ fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
     let simulator = plans.iter().find(|p| p.node == "dem_simulator").unwrap();
     let (ros, _) = node_kit::RosArgs::parse(&simulator.arguments).unwrap();
     assert_eq!(ros.parameters.iter().rfind(|p| p.name == "look_around").unwrap().yaml, "2.0");
+}
+
+#[test]
+fn a_mutated_launch_file_gives_plans_or_an_error() {
+    fuzzing::Target {
+        name: "launch",
+        seeds: [DEFAULT, ACOUSTIC].map(|t| t.as_bytes().to_vec()).into(),
+        words: &["launch:", "- arg:", "- executable:", "cmd:", "name:", "$(var", ")", "$(", "'", "&a", "*a", "respawn"],
+        memory: (usize::MAX, 0),
+        decode: &mut |bytes| {
+            let text = String::from_utf8_lossy(bytes);
+            for plan in nodes(&text, &[("scene", "s 1.toml"), ("seed", "3")]).unwrap_or_default() {
+                let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+                assert!(plan.name.chars().all(plain) && !plan.name.is_empty(), "{:?}", plan.name);
+            }
+        },
+    }
+    .run();
 }
