@@ -56,9 +56,8 @@ impl Target<'_> {
         let seconds = std::env::var("GRAINLAB_FUZZ_SECONDS").ok().and_then(|s| s.parse::<f64>().ok());
         let start = Instant::now();
         // A longer run tries other inputs than the last one.
-        let first = seconds.map_or(1, |_| {
-            std::time::SystemTime::UNIX_EPOCH.elapsed().map_or(1, |d| d.as_nanos() as u64)
-        });
+        let first = seconds
+            .map_or(1, |_| std::time::SystemTime::UNIX_EPOCH.elapsed().map_or(1, |d| d.as_nanos() as u64));
         let mut tried = 0;
         while seconds.map_or(tried < INPUTS, |s| start.elapsed().as_secs_f64() < s) {
             let number = first.wrapping_add(tried);
@@ -83,7 +82,12 @@ impl Target<'_> {
             Ok(()) => return,
         };
         let kept = keep(self.name, bytes);
-        panic!("{}, {what} ({} bytes): {problem}; the input is in {}", self.name, bytes.len(), kept.display());
+        panic!(
+            "{}, {what} ({} bytes): {problem}; the input is in {}",
+            self.name,
+            bytes.len(),
+            kept.display()
+        );
     }
 }
 

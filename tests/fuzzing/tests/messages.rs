@@ -68,9 +68,13 @@ fn every_message_gives_a_value_or_an_error() {
         drop(Moduli::try_from(m));
         drop(ModuliReading::try_from(m));
     });
-    decode("cdr-wave-speeds", msg::WaveSpeeds { speeds: vec![msg::WaveSpeed::default(); 3], ..Default::default() }, |m| {
-        drop(WaveSpeedsReading::try_from(m));
-    });
+    decode(
+        "cdr-wave-speeds",
+        msg::WaveSpeeds { speeds: vec![msg::WaveSpeed::default(); 3], ..Default::default() },
+        |m| {
+            drop(WaveSpeedsReading::try_from(m));
+        },
+    );
     decode("cdr-waveform", msg::Waveform::default(), |m| drop(WaveformReading::try_from(m)));
     let estimates = vec![msg::Estimate::default(); 2];
     decode("cdr-microstructure", msg::Microstructure { estimates, ..Default::default() }, |m| {

@@ -23,7 +23,8 @@ fn seeds(folder: &Path) -> Vec<Vec<u8>> {
             _ => ("/stress", to_cdr(&msg::Stress { sequence: n as u64, ..Default::default() })),
         };
         let receive_time = 1_000_000 * n as u64;
-        let sample = Incoming { guid: Guid([1; 16]), sequence: n, source_time: None, receive_time, payload: &payload };
+        let sample =
+            Incoming { guid: Guid([1; 16]), sequence: n, source_time: None, receive_time, payload: &payload };
         run.write(topic, &sample).unwrap();
     }
     let file = run.finish().unwrap().file;

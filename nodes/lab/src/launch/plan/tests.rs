@@ -103,7 +103,20 @@ fn a_mutated_launch_file_gives_plans_or_an_error() {
     fuzzing::Target {
         name: "launch",
         seeds: [DEFAULT, ACOUSTIC].map(|t| t.as_bytes().to_vec()).into(),
-        words: &["launch:", "- arg:", "- executable:", "cmd:", "name:", "$(var", ")", "$(", "'", "&a", "*a", "respawn"],
+        words: &[
+            "launch:",
+            "- arg:",
+            "- executable:",
+            "cmd:",
+            "name:",
+            "$(var",
+            ")",
+            "$(",
+            "'",
+            "&a",
+            "*a",
+            "respawn",
+        ],
         memory: (usize::MAX, 0),
         decode: &mut |bytes| {
             let text = String::from_utf8_lossy(bytes);

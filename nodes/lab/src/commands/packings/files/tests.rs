@@ -37,9 +37,10 @@ fn a_damaged_chunk_of_the_packing_is_named_and_is_data_loss() {
         bytes[chunk + bit / 8] ^= 1 << (bit % 8);
         let (complaints, exit) = outcome(&bytes);
         let text = complaints.join("\n");
-        // The bounds of times in the chunk's own header are not what it is found by: the message is read then.
+        // A chunk whose length is a little longer, or whose own times are others, is read all the same.
         let read_all_the_same = text.contains("message 1 on /packing");
         assert!(exit == Exit::DataLoss || read_all_the_same, "bit {bit}: {text}");
-        assert!(text.contains(&format!("byte {chunk}")) || text.contains("checksum"), "bit {bit}: {text}");
+        let named = text.contains(&format!("byte {chunk}")) || text.contains("checksum");
+        assert!(named || read_all_the_same, "bit {bit}: {text}");
     }
 }
