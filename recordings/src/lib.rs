@@ -4,6 +4,7 @@
 //! - [`writer`]: a run directory (`<name>_0.mcap` … and `metadata.yaml`) written crash-safe
 //! - [`ledger`]: what was recorded, lost and repeated, per topic and per writer
 //! - [`reader`]: recordings by topic and time, tolerant of truncation and damage, which it names
+//! - [`recover()`]: the proper end for the file of a recorder that was killed
 //! - [`player`]: when to send which message, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and our own recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
@@ -18,12 +19,14 @@ pub mod input;
 pub mod ledger;
 pub mod player;
 pub mod reader;
+mod recover;
 pub mod runs;
 pub mod writer;
 
 pub use ledger::{Guid, Ledger, TopicTally};
 pub use player::{Play, PlayError, PlayOptions, Player};
 pub use reader::{Message, ReadError, Recording, Selection, Warning};
+pub use recover::{RecoverError, RecoveredFile, Recovery, recover};
 pub use writer::{Incoming, Outcome, RunWriter, TopicSpec, WriteError, WriterOptions};
 
 /// Name of the metadata record that holds what the laboratory knows about a run: the caller's keys, and

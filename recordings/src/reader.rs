@@ -24,10 +24,12 @@ mod lengths;
 mod messages;
 mod records;
 mod verify;
+pub(crate) mod walk;
 
 pub use error::{ReadError, Warning, WarningKind};
 pub use info::{Info, TopicInfo};
 pub use messages::{Message, Messages, Payload};
+pub use verify::Check;
 
 use crate::bag_metadata::FileCount;
 use crate::ledger::{self, TopicTally};
@@ -133,6 +135,11 @@ impl Recording {
     /// The path it was opened by.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Its files, in order.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.files.iter().map(|f| f.path.clone()).collect()
     }
 
     /// What could not be read so far: damage inside a chunk shows when the chunk is read. Data was lost if
@@ -262,12 +269,19 @@ impl Recording {
         info::of(self)
     }
 
-    /// Reads everything and returns all that is wrong: every checksum, and the counts of the index against
-    /// the messages.
+    /// Reads everything and returns all that is wrong: every checksum, the index against the messages, log times that go
+    /// back, and the account against what is there.
     pub fn verify(&self) -> Vec<Warning> {
-        for file in &self.files {
-            verify::file(file, |w| self.warn(w));
-        }
-        self.warnings()
+        self.check().warnings
+    }
+
+    /// The same but for the account: of a recovered file it counts what could no longer be read, too.
+    pub(crate) fn verify_files(&self) -> Vec<Warning> {
+        verify::files(self)
+    }
+
+    /// The same as [`Recording::verify`], with what was found.
+    pub fn check(&self) -> Check {
+        verify::recording(self)
     }
 }

@@ -145,7 +145,7 @@ fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<node_kit
         }
         Forgery::Stress => {
             let mut stress: Stress = decoded(sample);
-            stress.stress.iter_mut().for_each(|s| *s *= 1.5);
+            stress.stress.zz *= 1.5;
             grainlab_msgs::to_cdr(&stress)
         }
         Forgery::Packing => {

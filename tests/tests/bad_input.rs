@@ -99,3 +99,73 @@ fn a_second_simulator_on_the_same_topic_is_refused_and_harms_nothing() {
     launcher.signal(libc::SIGINT);
     assert_eq!(launcher.ended(LIMIT).code, Some(130), "the first run was still going");
 }
+
+#[test]
+fn a_refused_launch_leaves_no_folder() {
+    let lab = Lab::new();
+    let file = |name: &str, text: &str| {
+        let path = lab.folder().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.to_string_lossy().into_owned()
+    };
+    let built_in = include_str!("../../nodes/launch/demo.launch.yaml");
+    let large = "#".repeat(2 << 20);
+    for (name, text, code, word) in [
+        ("empty.launch.yaml", "launch: []", 2, "recorder"),
+        ("evil.launch.yaml", &built_in.replacen("name: ", "name: ../../evil_", 1), 2, "evil"),
+        ("unknown.launch.yaml", &built_in.replace("run servo_controller", "run servo"), 2, "servo"),
+        ("foreign.launch.yaml", &built_in.replace("grainlab run servo", "missing run servo"), 2, "missing"),
+        ("large.launch.yaml", &large, 1, "1048576"),
+    ] {
+        let path = file(name, text);
+        refused(&lab, &["launch", &path], code, &[word]);
+    }
+    refused(&lab, &["launch", "no_such:=1"], 2, &["no_such"]);
+    refused(&lab, &["launch", "/dev/zero"], 1, &["device"]);
+    refused(&lab, &["launch", "--scene", "/dev/zero"], 1, &["device"]);
+    assert!(!lab.folder().join("recordings").exists(), "a run was begun");
+}
+
+#[test]
+fn what_is_no_file_is_refused_at_once() {
+    let lab = Lab::new();
+    let pipe = lab.folder().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let pipe = pipe.to_string_lossy();
+    for path in ["/dev/zero", &pipe] {
+        let word = if path == "/dev/zero" { "device" } else { "pipe" };
+        refused(&lab, &["analyze", path], 1, &[path, word]);
+        refused(&lab, &["bag", "info", path], 1, &[path, word]);
+        refused(&lab, &["bag", "check", path], 1, &[path, word]);
+        refused(&lab, &["bag", "recover", path], 1, &[path, word]);
+    }
+    refused(&lab, &["invert", "--table", "/dev/zero"], 1, &["/dev/zero", "device"]);
+    let folder = lab.folder().to_string_lossy().into_owned();
+    refused(&lab, &["invert", "--table", &folder], 1, &["directory"]);
+}
+
+#[test]
+fn a_cell_a_billion_times_as_long_as_wide_is_measured_or_refused_in_little_memory() {
+    let lab = Lab::new();
+    for long in ["1e3", "1e9", "1e30"] {
+        let mut text = format!(
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n5\nITEM: BOX BOUNDS pp pp pp\n0 {long}\n0 6e-3\n0 6e-3\n\
+             ITEM: ATOMS id radius x y z\n"
+        );
+        (0..5).for_each(|k| text += &format!("{k} 1e-3 {} 1e-3 1e-3\n", 1.9e-3 * f64::from(k)));
+        let path = lab.folder().join("long.dump");
+        std::fs::write(&path, text).unwrap();
+        let path = path.to_string_lossy();
+        let flags = ["--shear-modulus", "29e9", "--poisson", ".2", "--friction", ".1", "--density", "2500"];
+        // A quarter of a gigabyte is what the process itself takes; the boxes of before took twenty.
+        let limited = format!("ulimit -v 1500000; exec \"$0\" analyze {path} {}", flags.join(" "));
+        let output = std::process::Command::new("bash")
+            .args(["-c", &limited])
+            .arg(system_tests::lab::grainlab())
+            .output()
+            .unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code().is_some_and(|c| c <= 4), "{long}: {:?} {stderr}", output.status);
+        assert!(!stderr.contains("panicked") && !stderr.contains("allocation"), "{long}: {stderr}");
+    }
+}

@@ -49,6 +49,14 @@ pub struct Message {
     pub payload: Payload,
 }
 
+impl Message {
+    /// Whether topic, times, sequence and bytes are the same.
+    pub(crate) fn says_the_same(&self, other: &Self) -> bool {
+        let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
+        key(self) == key(other) && *self.channel == *other.channel && *self.payload == *other.payload
+    }
+}
+
 /// Messages of a recording in order of log time.
 pub struct Messages<'r> {
     recording: &'r Recording,

@@ -1,53 +1,205 @@
-//! A complete check of one file.
+//! A complete check of a recording.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use mcap::MAGIC;
 use mcap::records::{Record, op};
+use serde::Serialize;
 
 use super::file::OpenFile;
 use super::records::{FRAME, RawRecord, Records};
-use super::{Warning, WarningKind, chunk, messages};
+use super::{Recording, Warning, WarningKind, chunk, messages};
 
-/// Reports everything in `file` that is damaged or contradicts its index.
-pub(super) fn file(file: &OpenFile, mut warn: impl FnMut(Warning)) {
-    let mut counts = BTreeMap::<u16, u64>::new();
-    let mut ended = false;
-    for record in Records::new(file.bytes(), MAGIC.len()) {
-        let record = match record {
-            Ok(record) => record,
-            Err(at) => {
-                // Of a file without its proper end, opening it has said so.
-                if file.index.complete {
-                    let detail = "no whole record starts here; what follows can be reached by the index only"
-                        .to_owned();
-                    warn(file.warning(at, WarningKind::Inconsistent, detail));
-                }
-                break;
+/// What a complete check found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Files read.
+    pub files: Vec<PathBuf>,
+    /// Their size, bytes.
+    pub bytes: u64,
+    /// Records in them, those within chunks included.
+    pub records: u64,
+    /// Chunks, each with its checksum.
+    pub chunks: u64,
+    /// Messages in them.
+    pub messages: u64,
+    /// Stored files.
+    pub attachments: u64,
+    /// Messages lost by the account of the recorders; `None` without an account.
+    pub lost: Option<u64>,
+    /// Files that no recorder accounted for: it was killed, or is still at work.
+    pub unaccounted: Vec<PathBuf>,
+    /// All that is wrong.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads everything but the account.
+pub(super) fn files(recording: &Recording) -> Vec<Warning> {
+    Found::of(recording);
+    recording.warnings()
+}
+
+/// Reads everything.
+pub(super) fn recording(recording: &Recording) -> Check {
+    let found = Found::of(recording);
+    let ledger = recording.ledger();
+    let unaccounted = recording.unaccounted();
+    if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
+        for topic in ledger {
+            let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
+            if topic.recorded != there {
+                let detail = format!(
+                    "the account says that {} messages on {} were recorded, the files hold {there}",
+                    topic.recorded, topic.name
+                );
+                let path = recording.path().to_owned();
+                recording.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
             }
-        };
-        match record.opcode {
-            op::CHUNK => match chunk::content(&record) {
-                Ok(content) => count(&content, &mut counts),
-                Err(detail) => warn(file.warning(record.offset, WarningKind::DamagedChunk, detail)),
-            },
-            op::MESSAGE => count_one(&record, &mut counts),
-            op::DATA_END => {
-                if let Some(detail) = data_checksum(file, &record) {
-                    warn(file.warning(record.offset, WarningKind::Inconsistent, detail));
+        }
+    }
+    Check {
+        files: recording.paths(),
+        bytes: recording.files.iter().map(|f| f.bytes().len() as u64).sum(),
+        records: found.records,
+        chunks: found.chunks,
+        messages: found.messages,
+        attachments: found.attachments,
+        lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
+        unaccounted,
+        warnings: recording.warnings(),
+    }
+}
+
+/// Counts of all files.
+#[derive(Default)]
+struct Found {
+    records: u64,
+    chunks: u64,
+    messages: u64,
+    attachments: u64,
+    by_topic: BTreeMap<String, u64>,
+    /// Highest log time of the files before, and of this one.
+    last: u64,
+    last_of_file: Option<u64>,
+}
+
+impl Found {
+    fn of(recording: &Recording) -> Self {
+        let mut found = Self::default();
+        for file in &recording.files {
+            found.last_of_file = None;
+            found.file(file, &mut |w| recording.warn(w));
+        }
+        found
+    }
+
+    /// Reports everything in `file` that is damaged or contradicts its index.
+    fn file(&mut self, file: &OpenFile, warn: &mut dyn FnMut(Warning)) {
+        let mut counts = BTreeMap::<u16, u64>::new();
+        let mut chunks = BTreeSet::new();
+        let mut ended = false;
+        for record in Records::new(file.bytes(), MAGIC.len()) {
+            let record = match record {
+                Ok(record) => record,
+                Err(at) => {
+                    // Of a file without its proper end, opening it has said so.
+                    if file.index.complete {
+                        let detail =
+                            "no whole record starts here; what follows can be reached by the index only"
+                                .to_owned();
+                        warn(file.warning(at, WarningKind::Inconsistent, detail));
+                    }
+                    break;
                 }
-                ended = true;
-                break;
+            };
+            self.records += 1;
+            match record.opcode {
+                op::CHUNK => {
+                    chunks.insert(record.offset);
+                    match chunk::content(&record) {
+                        Ok(content) => self.chunk(file, &record, &content, &mut counts, warn),
+                        Err(detail) => warn(file.warning(record.offset, WarningKind::DamagedChunk, detail)),
+                    }
+                }
+                op::MESSAGE => self.message(file, &record, record.offset, &mut counts, warn),
+                op::DATA_END => {
+                    if let Some(detail) = data_checksum(file, &record) {
+                        warn(file.warning(record.offset, WarningKind::Inconsistent, detail));
+                    }
+                    ended = true;
+                    break;
+                }
+                opcode => match record.parse() {
+                    Ok(_) => self.attachments += u64::from(opcode == op::ATTACHMENT),
+                    Err(detail) => warn(file.warning(record.offset, WarningKind::DamagedRecord, detail)),
+                },
             }
-            _ => {
-                if let Err(detail) = record.parse() {
-                    warn(file.warning(record.offset, WarningKind::DamagedRecord, detail));
+        }
+        self.last = self.last.max(self.last_of_file.unwrap_or(0));
+        if ended || !file.index.complete {
+            against_index(file, counts, &chunks, warn);
+        }
+    }
+
+    fn chunk(
+        &mut self,
+        file: &OpenFile,
+        chunk: &RawRecord<'_>,
+        content: &[u8],
+        counts: &mut BTreeMap<u16, u64>,
+        warn: &mut dyn FnMut(Warning),
+    ) {
+        self.chunks += 1;
+        for record in Records::new(content, 0) {
+            match record {
+                Ok(record) => {
+                    self.records += 1;
+                    if record.opcode == op::MESSAGE {
+                        self.message(file, &record, chunk.offset, counts, warn);
+                    }
+                }
+                Err(at) => {
+                    let detail = format!("byte {at} of its content starts no whole record");
+                    warn(file.warning(chunk.offset, WarningKind::DamagedChunk, detail));
                 }
             }
         }
     }
-    if file.index.complete && !ended {
-        return;
+
+    fn message(
+        &mut self,
+        file: &OpenFile,
+        record: &RawRecord<'_>,
+        at: usize,
+        counts: &mut BTreeMap<u16, u64>,
+        warn: &mut dyn FnMut(Warning),
+    ) {
+        let Some((header, _)) = messages::message(record) else { return };
+        self.messages += 1;
+        *counts.entry(header.channel_id).or_default() += 1;
+        if let Some(channel) = file.index.channels.get(&header.channel_id) {
+            *self.by_topic.entry(channel.topic.clone()).or_default() += 1;
+        }
+        // Within a file the messages of several publishers may come in any order (rosbag2 allows it); files follow
+        // each other.
+        if self.last_of_file.is_none() && header.log_time < self.last {
+            let detail = "it begins before the file before it ends".to_owned();
+            warn(file.warning(at, WarningKind::Inconsistent, detail));
+        }
+        self.last_of_file = Some(self.last_of_file.map_or(header.log_time, |t| t.max(header.log_time)));
+    }
+}
+
+fn against_index(
+    file: &OpenFile,
+    mut counts: BTreeMap<u16, u64>,
+    chunks: &BTreeSet<usize>,
+    warn: &mut dyn FnMut(Warning),
+) {
+    for block in file.index.blocks.iter().filter(|b| b.is_chunk && !chunks.contains(&b.offset)) {
+        let detail = "the index says that a chunk starts here; none does".to_owned();
+        warn(file.warning(block.offset, WarningKind::Inconsistent, detail));
     }
     counts.retain(|channel, _| file.index.channels.contains_key(channel));
     for (channel, info) in &file.index.channels {
@@ -58,18 +210,6 @@ pub(super) fn file(file: &OpenFile, mut warn: impl FnMut(Warning)) {
                 format!("the index counts {claimed} messages on {}, the file holds {found}", info.topic);
             warn(file.warning(file.bytes().len(), WarningKind::Inconsistent, detail));
         }
-    }
-}
-
-fn count(content: &[u8], counts: &mut BTreeMap<u16, u64>) {
-    for record in Records::new(content, 0).flatten().filter(|r| r.opcode == op::MESSAGE) {
-        count_one(&record, counts);
-    }
-}
-
-fn count_one(record: &RawRecord<'_>, counts: &mut BTreeMap<u16, u64>) {
-    if let Some((header, _)) = messages::message(record) {
-        *counts.entry(header.channel_id).or_default() += 1;
     }
 }
 

@@ -121,6 +121,54 @@ fn a_topic_that_is_not_there_is_answered_with_those_that_are() {
     assert!(error.contains("/stress,") && error.contains("stresses"), "{error}");
 }
 
+/// A file of `chunks` chunks of the same time, each one message of `bytes` zeros.
+fn bomb(chunks: u32, bytes: usize) -> Vec<u8> {
+    let mut writer = mcap::WriteOptions::new()
+        .compression_threads(0)
+        .chunk_size(None)
+        .create(std::io::Cursor::new(Vec::new()))
+        .unwrap();
+    let schema = writer.add_schema("grainlab_msgs/msg/Stress", "ros2msg", b"uint8 x").unwrap();
+    let channel = writer.add_channel(schema, "/stress", "cdr", &Default::default()).unwrap();
+    let zeros = vec![0; bytes];
+    for sequence in 0..chunks {
+        for log_time in [1, 2] {
+            let header =
+                mcap::records::MessageHeader { channel_id: channel, sequence, log_time, publish_time: 1 };
+            writer
+                .write_to_known_channel(&header, if log_time == 1 { &zeros } else { &[0, 1, 0, 0] })
+                .unwrap();
+        }
+        writer.flush().unwrap();
+    }
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
+}
+
+#[test]
+fn a_chunk_of_a_few_bytes_is_not_believed_to_be_a_hundred_megabytes() {
+    let bytes = bomb(1, 100 << 20);
+    assert!(bytes.len() < 20_000, "{}", bytes.len());
+    let (found, warnings) = read(&bytes);
+    assert!(found.is_empty() && warnings == [WarningKind::DamagedChunk], "{warnings:?}");
+    // Of one that is within bounds, and of recordings of any size, everything is read.
+    let (found, warnings) = read(&bomb(2, 20 << 20));
+    assert_eq!((found.len(), warnings), (4, vec![]));
+}
+
+#[test]
+fn chunks_that_claim_the_same_time_are_not_all_in_memory_together() {
+    let recording = Recording::from_bytes("bomb.mcap", bomb(20, 60 << 20)).unwrap();
+    let mut held = Vec::new();
+    let mut messages = recording.messages(&Selection::default()).unwrap();
+    held.extend(messages.by_ref().take(1));
+    // Twenty of sixty megabytes begin at one time; a quarter of a gigabyte is read at once.
+    let large: usize = held.iter().chain(messages.collect::<Vec<_>>().iter()).map(|m| m.payload.len()).sum();
+    assert!(large <= 320 << 20, "{large}");
+    assert!(recording.warnings().iter().all(|w| w.kind == WarningKind::DamagedChunk));
+    assert!(recording.warnings().len() >= 14, "{:?}", recording.warnings().len());
+}
+
 mod arbitrary_bytes {
     use super::*;
     use proptest::prelude::*;

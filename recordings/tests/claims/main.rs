@@ -5,6 +5,7 @@ mod damage;
 mod imports;
 mod malformed;
 mod playback;
+mod recovery;
 mod reference_packing;
 mod round_trips;
 mod support;

@@ -1,8 +1,10 @@
 //! `grainlab bag`: recordings, as `ros2 bag`.
 
+mod check;
 mod info;
 mod play;
 mod record;
+mod recover;
 
 use crate::failure::Failure;
 use clap::Subcommand;
@@ -17,6 +19,10 @@ pub(crate) enum Command {
     Play(play::Args),
     /// Show what a recording holds.
     Info(info::Args),
+    /// Read every record of a recording and name all that is wrong.
+    Check(check::Args),
+    /// Finish the recording of a recorder that was killed, so that other tools read it.
+    Recover(recover::Args),
 }
 
 /// Runs the command.
@@ -25,5 +31,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Record(args) => record::run(args),
         Command::Play(args) => play::run(args),
         Command::Info(args) => info::run(args),
+        Command::Check(args) => check::run(args),
+        Command::Recover(args) => recover::run(args),
     }
 }

@@ -78,10 +78,16 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
     let scene = scenes::load(name, seed)?;
+    let order = |given: BTreeMap<&str, String>| Order {
+        launch: file.text().to_owned(),
+        arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+        seed: scene.scene.seed,
+    };
+    // All that can be refused is refused before the run has a directory.
+    refuse_unknown_nodes(&order(given.clone()).plans(Path::new("."))?)?;
     let (domain, lock) = domain()?;
     let directory = run_directory(&args.out, &scene)?;
-    let given = given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-    let order = Order { launch: file.text().to_owned(), arguments: given, seed: scene.scene.seed };
+    let order = order(given);
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
     conduct(plans, domain, lock, &directory, &scene, args.format)
@@ -108,7 +114,42 @@ fn conduct(
     );
     let supervised = supervise(plans, run, directory, scene.scene.phases.len());
     drop(lock);
-    finish(format, directory, scene, run, supervised?)
+    let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
+    let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
+    if failed && remove_if_unused(directory) {
+        return Ok(supervised.exit);
+    }
+    finish(format, directory, scene, run, supervised)
+}
+
+/// A launch file that names a node that does not exist would end in the midst of its start.
+fn refuse_unknown_nodes(plans: &[NodePlan]) -> Result<(), Failure> {
+    let known: Vec<&str> = crate::commands::run::nodes().iter().map(|n| n.name).collect();
+    let unknown = |plan: &&NodePlan| plan.node.as_deref().is_some_and(|node| !known.contains(&node));
+    match plans.iter().find(unknown) {
+        Some(plan) => {
+            let (name, node) = (&plan.name, plan.node.as_deref().unwrap_or_default());
+            let known = known.join(", ");
+            Err(Failure::usage(format!("executable {name}: there is no node {node:?}; there are: {known}")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Removes the directory of a run that did not start: nothing but the scene, and logs without a word, is in it. False if
+/// there is more.
+fn remove_if_unused(directory: &Path) -> bool {
+    let logs = directory.join("logs");
+    let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
+    let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
+        entries.all(|e| e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs))
+    });
+    let silent = match std::fs::read_dir(&logs) {
+        Ok(mut entries) => entries.all(|e| e.as_ref().is_ok_and(empty)),
+        Err(_) => true,
+    };
+    // What cannot be removed stays: the reason for which the run did not start is told in any case.
+    unused && silent && std::fs::remove_dir_all(directory).is_ok()
 }
 
 /// The launch file, if one is named, and the values for its arguments.
@@ -242,17 +283,35 @@ fn finish(
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    std::fs::write(&path, &text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
     summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
     summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
-    print(&match format {
-        Format::Json => text,
+    // Printed before anything that may fail: the result is not lost with the disk.
+    let printed = print(&match format {
+        Format::Json => text.clone(),
         Format::Csv => state::csv(&states),
         Format::Table => {
             let text = summary_text::text(&summary);
             format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())
         }
-    })?;
+    });
+    for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
+        crate::output::say!("grainlab: {failure}");
+        // A run that lost data because the disk was full has lost data; that its summary is missing, too, is no other fault.
+        exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
+    }
     Ok(exit)
 }
+
+/// Writes a file whole or not at all.
+fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
+    let partial = path.with_extension("json.part");
+    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
+    written.map_err(|e| {
+        let _ = std::fs::remove_file(&partial);
+        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
+    })
+}
+
+#[cfg(test)]
+mod tests;

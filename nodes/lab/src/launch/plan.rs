@@ -1,7 +1,7 @@
 //! Launch files: the YAML form of ROS 2 launch, as much of it as starts processes: nodes of ours, and any other program.
 
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The launch files built in; the first is run without another.
 pub(crate) const BUILT_IN: [(&str, &str); 2] = [
@@ -33,6 +33,12 @@ pub(crate) enum PlanError {
     /// A value of `output` or `respawn` that is not supported.
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
+    /// A name that could not be the name of a log.
+    #[error("executable name {0:?}: use lower case letters, digits, _ and - (it names a file)")]
+    Name(String),
+    /// Two processes would write one log.
+    #[error("two executables are called {0:?}: give one of them another name")]
+    Twice(String),
     /// A node that no laboratory works without, or with two of.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
     Count { node: &'static str, count: usize, allowed: &'static str },
@@ -161,6 +167,10 @@ impl LaunchFile {
         }
         let nodes: Vec<NodePlan> =
             self.executables.iter().map(|e| e.plan(&variables)).collect::<Result<_, _>>()?;
+        let mut names = BTreeSet::new();
+        if let Some(plan) = nodes.iter().find(|n| !names.insert(n.name.as_str())) {
+            return Err(PlanError::Twice(plan.name.clone()));
+        }
         if nodes.len() > PLACES {
             return Err(PlanError::Many { count: nodes.len(), most: PLACES });
         }
@@ -183,11 +193,16 @@ impl Executable {
             _ => return Err(PlanError::Command { cmd: self.cmd.clone() }),
         };
         let (program, arguments) = (words[0].clone(), words[1..].to_vec());
+        let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
         let by_itself = || {
             let file = std::path::Path::new(&program).file_stem();
-            file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned())
+            let stem = file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned());
+            stem.to_ascii_lowercase().chars().map(|c| if plain(c) { c } else { '_' }).collect()
         };
         let name = self.name.clone().or_else(|| node.clone()).unwrap_or_else(by_itself);
+        if name.is_empty() || !name.chars().all(plain) {
+            return Err(PlanError::Name(name));
+        }
         let refuse = |key, value: &str, allowed| PlanError::Value {
             name: name.clone(),
             key,

@@ -66,3 +66,38 @@ impl Rows {
 fn without_mark(line: &[u8]) -> &[u8] {
     line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::invert::answer::Answer;
+    use crate::commands::invert::way;
+
+    #[test]
+    fn a_mutated_table_gives_answers_or_faults_of_rows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        let held_out = include_str!("../../../../../tests/golden/ensembles/held_out.csv");
+        let head: Vec<&str> = held_out.lines().take(6).collect();
+        let small = "sample,g12_pa,g13_pa,theta_pa,pressure_pa,phi,gamma_over_delta\nx,1.042e8,1.124e8,1.36e8,5e4,0.633,-0.06\n";
+        let ways = way::ways(&[], &["default".to_owned()], None).unwrap();
+        fuzzing::Target {
+            name: "table",
+            seeds: vec![head.join("\n").into_bytes(), small.as_bytes().to_vec()],
+            words: &[",", "\"", "g12_pa", "c11_pa", "c33_pa", "phi", "pressure_pa", "k", "eps"],
+            memory: (usize::MAX, 0),
+            decode: &mut |bytes| {
+                std::fs::write(&path, bytes).unwrap();
+                let Ok(mut rows) = Rows::open(&path, &[], Defaults::default()) else { return };
+                let answer = |number, row: Result<Row, BadRow>| match row {
+                    Ok(row) => Answer::of(row.state, Some(number), &ways),
+                    Err(bad) => Answer::of_bad_row(bad, number),
+                };
+                while let Ok(Some(answers)) = rows.next(answer) {
+                    answers.iter().for_each(|a| _ = (a.exit(), a.complaint(&ways), a.inferences(&ways)));
+                }
+            },
+        }
+        .run();
+    }
+}

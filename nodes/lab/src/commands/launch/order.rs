@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Name of the file in the run directory.
-const FILE: &str = "launch.json";
+pub(super) const FILE: &str = "launch.json";
 
 /// A launch file with what its arguments were.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -21,7 +21,10 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
     // Without a recording the run begins anew, in its own directory.
-    if let Ok(recording) = Recording::open(&directory) {
+    if Recording::open(&directory).is_ok() {
+        // The file of a recorder that was killed is finished first, so that other tools read the whole run.
+        recordings::recover(&directory).map_err(|e| failed(&e))?;
+        let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         if is_finished(&recording) {
             return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
         }

@@ -220,9 +220,10 @@ fn read(
                 _ => Exit::Failure,
             };
             let mut complaints = Vec::new();
-            // A recording that is cut off before its first packing has lost data; that is why there is none.
+            // A recording that is cut off before its first packing, or whose chunk with it is damaged, has lost data;
+            // that is why there is none.
             if let Ok(recording) = Recording::open(path) {
-                complaints = lines(&recording.warnings());
+                complaints = lines(&recording.verify());
                 exit = if complaints.is_empty() { exit } else { Exit::DataLoss };
             }
             complaints.push(error.to_string());
@@ -237,3 +238,6 @@ fn without_path(error: &ImportError) -> &ImportError {
         other => other,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -68,6 +68,9 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
         (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
         (one("executable: {cmd: grainlab run recorder}"), "0 of dem_simulator"),
+        (one("executable: {cmd: grainlab run recorder, name: ../../evil}"), "../../evil"),
+        (one("executable: {cmd: grainlab run recorder, name: ''}"), "lower case"),
+        (one("executable: {cmd: grainlab run recorder}\n- executable: {cmd: grainlab run recorder}"), "two"),
         (one("arg: {name: scene}"), "no default"),
         ("lunch: []".to_owned(), "lunch"),
     ] {
@@ -114,4 +117,35 @@ fn a_run_may_have_several_inversions_and_one_of_everything_else() {
         let error = nodes(&again(node), &[]).unwrap_err();
         assert!(matches!(error, PlanError::Count { count: 2, .. }), "{error}");
     }
+}
+
+#[test]
+fn a_mutated_launch_file_gives_plans_or_an_error() {
+    fuzzing::Target {
+        name: "launch",
+        seeds: [DEFAULT, ACOUSTIC].map(|t| t.as_bytes().to_vec()).into(),
+        words: &[
+            "launch:",
+            "- arg:",
+            "- executable:",
+            "cmd:",
+            "name:",
+            "$(var",
+            ")",
+            "$(",
+            "'",
+            "&a",
+            "*a",
+            "respawn",
+        ],
+        memory: (usize::MAX, 0),
+        decode: &mut |bytes| {
+            let text = String::from_utf8_lossy(bytes);
+            for plan in nodes(&text, &[("scene", "s 1.toml"), ("seed", "3")]).unwrap_or_default() {
+                let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+                assert!(plan.name.chars().all(plain) && !plan.name.is_empty(), "{:?}", plan.name);
+            }
+        },
+    }
+    .run();
 }

@@ -55,7 +55,7 @@ impl Record {
 
     /// The first topic on which two records differ. Requests and answers have an order; results come when they come.
     pub(super) fn difference(&self, other: &Record) -> Option<&'static str> {
-        let sorted = |record: &Record, name| {
+        let sorted = |record: &Record, name: &str| {
             let mut bodies = record.bodies.get(name).cloned().unwrap_or_default();
             bodies.sort();
             bodies

@@ -120,7 +120,7 @@ fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
         }
         Forgery::Stress => {
             let mut stress: Stress = decoded(sample)?;
-            scale(&mut stress.stress);
+            stress.stress.zz *= by;
             to_cdr(&stress)
         }
         Forgery::Packing => {

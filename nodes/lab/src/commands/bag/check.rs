@@ -1,0 +1,80 @@
+//! `grainlab bag check`.
+
+use crate::failure::Failure;
+use crate::output::{Format, Table, json, print, say};
+use node_kit::Exit;
+use recordings::Recording;
+use recordings::reader::Check;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag check recordings/runs/demo-1-1
+  grainlab bag check run.mcap --format json
+
+Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
+of files, and the account of the recorder against what is there. Exit 0 if nothing is wrong, 3 if anything is.";
+
+/// Which recording.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let check = Recording::open(&args.path).map_err(Failure::failed)?.check();
+    let sound = check.warnings.is_empty() && check.unaccounted.is_empty() && check.lost.unwrap_or(0) == 0;
+    print(&match args.format {
+        Format::Table => text(&check),
+        Format::Json => json(&check)?,
+        Format::Csv => csv(&check),
+    })?;
+    if args.format != Format::Table {
+        check.warnings.iter().for_each(|w| say!("grainlab: {w}"));
+    }
+    Ok(if sound { Exit::Done } else { Exit::DataLoss })
+}
+
+fn text(check: &Check) -> String {
+    let mut lines = vec![format!(
+        "{} file(s), {} bytes: {} records, {} chunks, {} messages, {} stored files",
+        check.files.len(),
+        check.bytes,
+        check.records,
+        check.chunks,
+        check.messages,
+        check.attachments
+    )];
+    lines.extend(check.warnings.iter().map(ToString::to_string));
+    for path in &check.unaccounted {
+        let what = "there is no account of it: its recorder was killed, is at work, or is not ours";
+        lines.push(format!("{}: {what}", path.display()));
+    }
+    if let Some(lost) = check.lost.filter(|n| *n > 0) {
+        lines.push(format!("by the account, {lost} messages were published and not recorded"));
+    }
+    if lines.len() == 1 {
+        lines.push("every record, checksum, index and account is right".to_owned());
+    }
+    lines.join("\n") + "\n"
+}
+
+fn csv(check: &Check) -> String {
+    let mut t = Table::new(["file", "byte", "kind", "detail"]);
+    for w in &check.warnings {
+        let kind = serde_json::to_value(w.kind).ok().and_then(|k| k.as_str().map(str::to_owned));
+        t.row([
+            w.path.display().to_string(),
+            w.offset.to_string(),
+            kind.unwrap_or_default(),
+            w.detail.clone(),
+        ]);
+    }
+    t.csv()
+}

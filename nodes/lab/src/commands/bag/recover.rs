@@ -1,0 +1,50 @@
+//! `grainlab bag recover`.
+
+use crate::failure::Failure;
+use crate::output::{print, say};
+use node_kit::Exit;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag recover recordings/runs/demo-1-1
+
+Finishes the recording of a recorder that was killed, so that other tools read it: every message that can be read keeps its
+bytes, times and sequence number, and every file gets its index and its end; the directory gets a metadata.yaml. The file as
+it was stays beside it as NAME.mcap.orig: remove it when you trust the new one. Done again, nothing changes. A recording that
+is complete is left alone. Exit 3 if something could not be read; it is named.";
+
+/// Which recording.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let done = recordings::recover(&args.path).map_err(|e| {
+        let exit = match e {
+            recordings::RecoverError::Damaged { .. } => Exit::DataLoss,
+            _ => Exit::Failure,
+        };
+        Failure::new(exit, e)
+    })?;
+    let mut text = String::new();
+    for file in &done.files {
+        let path = file.path.display();
+        text += &match &file.original {
+            None => format!("{path}: complete, {} messages; nothing was to be done\n", file.messages),
+            Some(original) => {
+                format!("{path}: recovered, {} messages; as it was: {}\n", file.messages, original.display())
+            }
+        };
+    }
+    if done.metadata_written {
+        text += &format!("{}: metadata.yaml was written\n", done.path.display());
+    }
+    print(&text)?;
+    done.unreadable().for_each(|w| say!("grainlab: {w}"));
+    Ok(if done.unreadable().next().is_none() { Exit::Done } else { Exit::DataLoss })
+}

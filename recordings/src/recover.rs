@@ -1,0 +1,222 @@
+//! Finishes the file of a recorder that was killed, so that every tool reads it.
+//!
+//! What can be read is written again, message by message, with a proper end: bytes, log times, publish times and sequences of
+//! messages, schemas, channels with their metadata, attachments and metadata records stay as they are. Nothing is
+//! made up: a chunk that is damaged is left out and named. The new file is written beside the old one, checked, and
+//! takes its name; the old one stays as `<name>.mcap.orig`. A directory gets a new `metadata.yaml`.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::bag_metadata::BagMetadata;
+use crate::input;
+use crate::reader::{ReadError, Recording, Warning, WarningKind};
+use crate::writer::is_locked;
+
+mod rewrite;
+
+/// What became of a recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct Recovery {
+    /// The recording.
+    pub path: PathBuf,
+    /// Its files, in order.
+    pub files: Vec<RecoveredFile>,
+    /// Whether a new `metadata.yaml` was written.
+    pub metadata_written: bool,
+}
+
+/// What became of one file.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecoveredFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Messages in it now.
+    pub messages: u64,
+    /// Where the file is as it was; `None` if nothing had to be done.
+    pub original: Option<PathBuf>,
+    /// What of it could not be read, and is not in the new file.
+    pub unreadable: Vec<Warning>,
+}
+
+impl Recovery {
+    /// Whether anything had to be done.
+    pub fn changed(&self) -> bool {
+        self.metadata_written || self.files.iter().any(|f| f.original.is_some())
+    }
+
+    /// What of the recording could not be read.
+    pub fn unreadable(&self) -> impl Iterator<Item = &Warning> {
+        self.files.iter().flat_map(|f| &f.unreadable)
+    }
+}
+
+/// Why a recording cannot be recovered. What there was stays as it was.
+#[derive(Debug, thiserror::Error)]
+pub enum RecoverError {
+    /// It cannot be read at all.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A recorder is at work on it.
+    #[error("{path} is being recorded: end the recorder first, it then finishes the file itself")]
+    InUse {
+        /// The file.
+        path: PathBuf,
+    },
+    /// It has its proper end, and damage before it: to write it again could only lose more.
+    #[error(
+        "{path} is complete but damaged ({first}): nothing was changed; what is left of it is read as it is, `grainlab bag check` names all of the damage"
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The first that is wrong.
+        first: Box<Warning>,
+    },
+    /// The file system refused.
+    #[error("{path}: cannot {action}: {source}; the recording is as it was")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// What it said.
+        source: io::Error,
+    },
+    /// The new file does not hold what it should.
+    #[error("{path}: the new file is not what it should be ({problem}); the recording is as it was")]
+    Check {
+        /// The new file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Finishes the file, or all files of the directory, that a killed recorder left without their end. Done a second time,
+/// it changes nothing.
+///
+/// # Errors
+/// If a recorder is at work, a complete file is damaged, the file system refuses, or there is no recording.
+pub fn recover(path: &Path) -> Result<Recovery, RecoverError> {
+    let recording = Recording::open(path)?;
+    let paths = recording.paths();
+    for path in &paths {
+        if input::open(path).is_ok_and(|(file, _)| is_locked(&file)) {
+            return Err(RecoverError::InUse { path: path.clone() });
+        }
+    }
+    drop(recording);
+    let mut files = Vec::with_capacity(paths.len());
+    for path in paths {
+        files.push(file(path)?);
+    }
+    let metadata_written = path.is_dir() && bring_up_to_date(path, &files)?;
+    Ok(Recovery { path: path.to_owned(), files, metadata_written })
+}
+
+fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
+    let recording = Recording::open(&path)?;
+    let opened = recording.warnings();
+    let needs_end = |w: &Warning| matches!(w.kind, WarningKind::Truncated | WarningKind::NoIndex);
+    if !opened.iter().any(needs_end) {
+        return match recording.verify_files().into_iter().next() {
+            None => {
+                let messages = recording.parts().iter().map(|p| p.messages).sum();
+                Ok(RecoveredFile { path, messages, original: None, unreadable: Vec::new() })
+            }
+            Some(first) => Err(RecoverError::Damaged { path, first: Box::new(first) }),
+        };
+    }
+    let io = |action: &'static str| {
+        let path = path.clone();
+        move |source| RecoverError::Io { path, action, source }
+    };
+    let new = beside(&path, ".recovering");
+    let wrong = |problem: String| RecoverError::Check { path: new.clone(), problem };
+    let written = rewrite::rewrite(&path, &new);
+    let written = written.map_err(|e| match e {
+        rewrite::RewriteError::Read(e) => RecoverError::Read(e),
+        rewrite::RewriteError::Write(source) => {
+            RecoverError::Io { path: new.clone(), action: "write", source }
+        }
+    });
+    let outcome = written.and_then(|written| {
+        let faults = Recording::open(&new)?.verify_files();
+        match faults.first() {
+            Some(fault) => Err(wrong(fault.to_string())),
+            None => compare(&recording, &Recording::open(&new)?).map_err(wrong).map(|()| written),
+        }
+    });
+    let written = outcome.inspect_err(|_| _ = fs::remove_file(&new))?;
+    drop(recording);
+    let original = keep(&path).map_err(io("keep the original beside it"))?;
+    fs::rename(&new, &path).map_err(io("put the new file in its place"))?;
+    sync_directory(&path).map_err(io("push the directory to the device"))?;
+    Ok(RecoveredFile {
+        path,
+        messages: written.messages,
+        original: Some(original),
+        unreadable: written.unreadable,
+    })
+}
+
+/// Whether the messages of both are the same.
+fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
+    let all = crate::reader::Selection::default();
+    let (mut a, mut b) =
+        (old.messages(&all).map_err(|e| e.to_string())?, new.messages(&all).map_err(|e| e.to_string())?);
+    for n in 1u64.. {
+        match (a.next(), b.next()) {
+            (None, None) => break,
+            (Some(a), Some(b)) if a.says_the_same(&b) => {}
+            _ => return Err(format!("message {n} is another than in the original")),
+        }
+    }
+    Ok(())
+}
+
+/// The original under another name: a second link to it, so that there is no moment without a recording; where the file
+/// system has no links, it is renamed.
+fn keep(path: &Path) -> io::Result<PathBuf> {
+    for n in 0u32.. {
+        let suffix = if n == 0 { ".orig".to_owned() } else { format!(".orig{n}") };
+        let kept = beside(path, &suffix);
+        match fs::hard_link(path, &kept) {
+            Ok(()) => return Ok(kept),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+            Err(_) if !kept.exists() => return fs::rename(path, &kept).map(|()| kept),
+            Err(e) => return Err(e),
+        }
+    }
+    Err(io::Error::other("no free name"))
+}
+
+/// Whether `metadata.yaml` had to be written: it is missing, or files were recovered, or it does not name all of them.
+fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, RecoverError> {
+    let recording = Recording::open(directory)?;
+    let unlisted = recording.warnings().iter().any(|w| w.kind == WarningKind::Unlisted);
+    let missing = !directory.join("metadata.yaml").exists();
+    if !(unlisted || missing || files.iter().any(|f| f.original.is_some())) {
+        return Ok(false);
+    }
+    let written = BagMetadata::of(&recording).write(directory);
+    let path = directory.to_owned();
+    written.map_err(|source| RecoverError::Io { path, action: "write metadata.yaml", source })?;
+    Ok(true)
+}
+
+fn beside(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_name().map(OsString::from).unwrap_or_default();
+    name.push(suffix);
+    path.with_file_name(name)
+}
+
+fn sync_directory(path: &Path) -> io::Result<()> {
+    let directory = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(directory)?.sync_all()
+}

@@ -1,0 +1,155 @@
+//! All that can be read of a file, written again with a proper end.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::Path;
+
+use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader};
+use mcap::{Attachment, McapError};
+
+use crate::METADATA_RECORD;
+use crate::reader::walk::{Walk, Walked};
+use crate::reader::{ReadError, Warning};
+use crate::writer::part;
+
+/// What was written.
+pub(super) struct Written {
+    pub(super) messages: u64,
+    pub(super) unreadable: Vec<Warning>,
+}
+
+pub(super) enum RewriteError {
+    Read(ReadError),
+    Write(io::Error),
+}
+
+impl From<McapError> for RewriteError {
+    fn from(error: McapError) -> Self {
+        Self::Write(match error {
+            McapError::Io(source) => source,
+            other => io::Error::other(other),
+        })
+    }
+}
+
+impl From<io::Error> for RewriteError {
+    fn from(error: io::Error) -> Self {
+        Self::Write(error)
+    }
+}
+
+/// Writes what can be read of `from` to the new file `to`, and pushes it to the device.
+pub(super) fn rewrite(from: &Path, to: &Path) -> Result<Written, RewriteError> {
+    let walk = Walk::open(from).map_err(RewriteError::Read)?;
+    // What an earlier attempt left behind.
+    let file = File::create(to)?;
+    let mcap = part::options(" (recovered)")
+        .profile(walk.profile())
+        // Chunks end where they ended.
+        .chunk_size(None)
+        .create(BufWriter::with_capacity(64 << 10, file))?;
+    let mut copy = Copy {
+        mcap,
+        schemas: BTreeMap::new(),
+        channels: BTreeMap::new(),
+        orphans: BTreeSet::new(),
+        known: BTreeMap::new(),
+        messages: 0,
+    };
+    let mut unreadable = Vec::new();
+    let mut failure = None;
+    walk.each(&mut |walked| {
+        let outcome = match walked {
+            Walked::Record(record) => copy.record(record),
+            Walked::ChunkEnd => copy.mcap.flush().map_err(RewriteError::from),
+            Walked::Unreadable(warning) => {
+                unreadable.push(warning);
+                Ok(())
+            }
+        };
+        failure = outcome.err();
+        failure.is_none()
+    });
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    copy.finish(&mut unreadable, &walk)
+}
+
+struct Copy {
+    mcap: mcap::Writer<BufWriter<File>>,
+    schemas: BTreeMap<u16, (SchemaHeader, Vec<u8>)>,
+    /// Id in the old file → id in the new one.
+    channels: BTreeMap<u16, u16>,
+    /// Channels with messages whose declaration was lost.
+    orphans: BTreeSet<u16>,
+    /// What the recorder knew of the run, where it came to write it.
+    known: BTreeMap<String, String>,
+    messages: u64,
+}
+
+impl Copy {
+    fn record(&mut self, record: Record<'_>) -> Result<(), RewriteError> {
+        match record {
+            Record::Schema { header, data } => {
+                self.schemas.entry(header.id).or_insert((header, data.into_owned()));
+            }
+            Record::Channel(channel) => self.channel(&channel)?,
+            Record::Message { header, data } => self.message(&header, &data)?,
+            Record::Attachment { header, data, .. } => self.mcap.attach(&Attachment {
+                log_time: header.log_time,
+                create_time: header.create_time,
+                name: header.name,
+                media_type: header.media_type,
+                data: Cow::Borrowed(&data),
+            })?,
+            // Written at the end, with what the recovery adds.
+            Record::Metadata(m) if m.name == METADATA_RECORD => self.known = m.metadata,
+            Record::Metadata(m) => self.mcap.write_metadata(&m)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn channel(&mut self, channel: &Channel) -> Result<(), RewriteError> {
+        if self.channels.contains_key(&channel.id) {
+            return Ok(());
+        }
+        let schema = match self.schemas.get(&channel.schema_id) {
+            Some((header, data)) => self.mcap.add_schema(&header.name, &header.encoding, data)?,
+            None if channel.schema_id == 0 => 0,
+            // Its schema was lost with a chunk: without it nobody can read the messages.
+            None => return Ok(()),
+        };
+        let Channel { topic, message_encoding, metadata, .. } = channel;
+        let id = self.mcap.add_channel(schema, topic, message_encoding, metadata)?;
+        self.channels.insert(channel.id, id);
+        Ok(())
+    }
+
+    fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), RewriteError> {
+        let Some(channel_id) = self.channels.get(&header.channel_id).copied() else {
+            self.orphans.insert(header.channel_id);
+            return Ok(());
+        };
+        self.mcap.write_to_known_channel(&MessageHeader { channel_id, ..*header }, data)?;
+        self.messages += 1;
+        Ok(())
+    }
+
+    fn finish(mut self, unreadable: &mut Vec<Warning>, walk: &Walk) -> Result<Written, RewriteError> {
+        unreadable.extend(self.orphans.iter().map(|id| walk.orphans(*id)));
+        let mut metadata = std::mem::take(&mut self.known);
+        metadata.insert("recovered".into(), "true".into());
+        metadata.entry("finished".into()).or_insert_with(|| "false".into());
+        let texts: Vec<String> = unreadable.iter().map(ToString::to_string).collect();
+        metadata.insert("recovered_without".into(), serde_json::Value::from(texts).to_string());
+        self.mcap.write_metadata(&Metadata { name: METADATA_RECORD.into(), metadata })?;
+        self.mcap.finish()?;
+        let file = self.mcap.into_inner().into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.sync_all()?;
+        Ok(Written { messages: self.messages, unreadable: std::mem::take(unreadable) })
+    }
+}

@@ -1,0 +1,163 @@
+//! A recording that was cut off gets its proper end, and loses nothing that could be read.
+
+use std::fs;
+use std::path::Path;
+
+use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
+use recordings::reader::WarningKind;
+use recordings::{METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, recover};
+
+type Said = (String, u32, u64, u64, Vec<u8>);
+
+fn said(path: &Path) -> Vec<Said> {
+    let recording = Recording::open(path).unwrap();
+    let messages = recording.messages(&Selection::default()).unwrap();
+    messages
+        .map(|m| (m.channel.topic.clone(), m.sequence, m.log_time, m.publish_time, m.payload.to_vec()))
+        .collect()
+}
+
+/// Where the last file is attached, behind all messages and before the account and the index.
+fn before_the_end(bytes: &[u8]) -> usize {
+    bytes.windows(8).position(|w| w == b"late.txt").unwrap()
+}
+
+/// A run directory whose recorder was killed: the file ends at `cut`, and there is no metadata.yaml.
+fn killed(root: &Path, bytes: &[u8], cut: usize) -> std::path::PathBuf {
+    let directory = root.join(format!("cut-{cut}"));
+    fs::create_dir(&directory).unwrap();
+    fs::write(directory.join(format!("cut-{cut}_0.mcap")), &bytes[..cut]).unwrap();
+    directory
+}
+
+#[test]
+fn a_file_cut_anywhere_keeps_every_message_that_could_be_read() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = run_in(&root, 400);
+    for cut in (20..bytes.len()).step_by(bytes.len() / 60).chain([bytes.len() - 1]) {
+        let directory = killed(root.path(), &bytes, cut);
+        let (before, files) = (said(&directory), Recording::open(&directory).unwrap().stored_files());
+        let channels = Recording::open(&directory).unwrap().channels();
+        let done = recover(&directory).unwrap();
+        assert!(done.changed() && done.files[0].messages == before.len() as u64, "cut at {cut}: {done:?}");
+        assert_eq!(said(&directory), before, "cut at {cut}");
+        let recording = Recording::open(&directory).unwrap();
+        assert_eq!(recording.verify(), [], "cut at {cut}");
+        assert_eq!(recording.stored_files(), files, "cut at {cut}");
+        assert_eq!(recording.channels(), channels, "cut at {cut}");
+        assert!(recording.info().complete && directory.join("metadata.yaml").exists());
+        assert_eq!(recording.metadata(METADATA_RECORD).unwrap()["recovered"], "true");
+        let original = done.files[0].original.clone().unwrap();
+        assert_eq!(fs::read(original).unwrap(), &bytes[..cut]);
+        // Again: nothing is to be done, and no byte changes.
+        let file = directory.join(format!("cut-{cut}_0.mcap"));
+        let recovered = fs::read(&file).unwrap();
+        let again = recover(&directory).unwrap();
+        assert!(!again.changed() && again.files[0].original.is_none());
+        assert_eq!(fs::read(&file).unwrap(), recovered);
+    }
+}
+
+#[test]
+fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, mut bytes) = run_in(&root, 1000);
+    let cut = bytes.len() * 3 / 4;
+    let at = before_the_end(&bytes) * 2 / 3;
+    bytes[at] ^= 8;
+    let directory = killed(root.path(), &bytes, cut);
+    let before = said(&directory);
+    let done = recover(&directory).unwrap();
+    assert!(done.unreadable().any(|w| w.kind == WarningKind::DamagedChunk), "{done:?}");
+    assert!(before.len() > 300 && said(&directory) == before);
+    let metadata = Recording::open(&directory).unwrap().metadata(METADATA_RECORD).unwrap();
+    assert!(metadata["recovered_without"].contains("chunk"), "{metadata:?}");
+    assert!(!recover(&directory).unwrap().changed());
+    // The recorder came to write its account: what the damage cost stays known.
+    let faults = Recording::open(&directory).unwrap().verify();
+    assert!(!faults.is_empty() && faults.iter().all(|w| w.detail.contains("account")), "{faults:?}");
+}
+
+#[test]
+fn a_whole_recording_is_left_alone_and_a_damaged_one_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, mut bytes) = run_in(&root, 300);
+    assert!(!recover(&directory).unwrap().changed());
+    let file = directory.join("demo-7-1_0.mcap");
+    assert_eq!(fs::read(&file).unwrap(), bytes);
+    bytes[3000] ^= 1;
+    fs::write(&file, &bytes).unwrap();
+    let error = recover(&directory).unwrap_err();
+    assert!(matches!(error, RecoverError::Damaged { .. }), "{error}");
+    assert_eq!(fs::read(&file).unwrap(), bytes);
+}
+
+#[test]
+fn a_recording_under_way_is_refused_and_recovered_when_its_recorder_is_gone() {
+    let root = tempfile::tempdir().unwrap();
+    let directory = root.path().join("r");
+    let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
+    run.write("/stress", &sample(SIMULATOR, 1, START, &stress(1))).unwrap();
+    let error = recover(&directory).unwrap_err();
+    assert!(matches!(error, RecoverError::InUse { .. }), "{error}");
+    run.finish().unwrap();
+    assert!(!recover(&directory).unwrap().changed());
+}
+
+#[test]
+fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, bytes) = run_in(&root, 200);
+    let first = said(&directory);
+    // The first recorder was killed after 200 messages and before its end.
+    fs::remove_file(directory.join("metadata.yaml")).unwrap();
+    fs::write(directory.join("demo-7-1_0.mcap"), &bytes[..before_the_end(&bytes)]).unwrap();
+    recover(&directory).unwrap();
+    let kept = said(&directory);
+    assert_eq!(kept, first[..kept.len()]);
+    for session in 1..3i64 {
+        let mut run = RunWriter::append(&directory, "demo-7-1", &contract(), options()).unwrap();
+        assert!(run.file().ends_with(format!("demo-7-1_{session}.mcap")));
+        let held = RunWriter::append(&directory, "demo-7-1", &contract(), options()).err().unwrap();
+        assert!(held.to_string().contains("is being recorded"), "{held}");
+        for n in 1..=50 {
+            // The clock went back: log times still increase.
+            run.write("/stress", &sample(SIMULATOR, 1000 * session + n, START, &stress(n as u64))).unwrap();
+        }
+        assert_eq!(run.finish().unwrap().messages, 50);
+    }
+    let recording = Recording::open(&directory).unwrap();
+    assert_eq!(recording.verify(), []);
+    assert_eq!(recording.paths().len(), 3);
+    let all = said(&directory);
+    assert_eq!(all.len(), kept.len() + 100);
+    assert!(all.windows(2).all(|w| w[0].2 < w[1].2));
+    let text = fs::read_to_string(directory.join("metadata.yaml")).unwrap();
+    let yaml: serde_json::Value = serde_saphyr::from_str(&text).unwrap();
+    let bag = &yaml["rosbag2_bagfile_information"];
+    assert_eq!(bag["message_count"].as_u64(), Some(all.len() as u64));
+    let counts: Vec<u64> =
+        bag["files"].as_array().unwrap().iter().map(|f| f["message_count"].as_u64().unwrap()).collect();
+    assert_eq!(counts, [kept.len() as u64, 50, 50]);
+    // Both accounts are one; of the first recorder, which was killed, there is none.
+    let ledger = recording.ledger().unwrap();
+    assert_eq!(ledger.iter().find(|t| t.name == "/stress").unwrap().recorded, 100);
+    assert_eq!(recording.unaccounted(), [directory.join("demo-7-1_0.mcap")]);
+}
+
+#[test]
+fn a_part_that_metadata_yaml_does_not_know_is_read_and_named() {
+    let root = tempfile::tempdir().unwrap();
+    let (directory, _) = run_in(&root, 30);
+    let whole = said(&directory).len();
+    let mut run = RunWriter::append(&directory, "demo-7-1", &contract(), options()).unwrap();
+    run.write("/stress", &sample(SIMULATOR, 31, START, &stress(31))).unwrap();
+    let yaml = fs::read(directory.join("metadata.yaml")).unwrap();
+    run.finish().unwrap();
+    fs::write(directory.join("metadata.yaml"), yaml).unwrap();
+    let recording = Recording::open(&directory).unwrap();
+    let kinds: Vec<WarningKind> = recording.warnings().iter().map(|w| w.kind).collect();
+    assert_eq!((said(&directory).len(), kinds), (whole + 1, vec![WarningKind::Unlisted]));
+    assert!(recover(&directory).unwrap().metadata_written);
+    assert_eq!(Recording::open(&directory).unwrap().warnings(), []);
+}

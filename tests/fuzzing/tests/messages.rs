@@ -1,0 +1,94 @@
+//! CDR of every message, and the boundary to the kernels' types.
+
+use fuzzing::{Counting, Target};
+use grainlab_msgs::boundary::{
+    EstimateReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer, StressRequest,
+    WaveSpeedsReading, WaveformReading, packing_message,
+};
+use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
+use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
+use grains::{Cell, Contact, Fabric, Mat3, Material, Moduli, Packing, Vec3};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A decoded message is at most some times as large as its bytes: a string of no byte has four in CDR and 24 in memory.
+const MEMORY: (usize, usize) = (1 << 20, 64);
+
+fn packing() -> Packing {
+    let contact = |i, j, z: f64| Contact {
+        i,
+        j,
+        image: [0, 0, 0],
+        overlap: 1e-6,
+        normal: Vec3::z() * z,
+        normal_force: 1.0,
+        tangential_force: Vec3::x(),
+    };
+    Packing {
+        step: 7,
+        time: 0.1,
+        cell: Cell::cube(1e-2).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0, 1, 2],
+        radii: vec![1e-3; 3],
+        positions: (0..3).map(|k| Vec3::z() * (k as f64 * 1.999e-3)).collect(),
+        velocities: vec![Vec3::zeros(); 3],
+        spins: vec![Vec3::zeros(); 3],
+        contacts: vec![contact(0, 1, 1.0), contact(1, 2, 1.0)],
+        material: Material::GLASS,
+        friction: 0.3,
+        time_step: 1e-7,
+    }
+}
+
+fn decode<T: Message + Default>(name: &str, seed: T, mut beyond: impl FnMut(&T)) {
+    Target {
+        name,
+        seeds: vec![to_cdr(&seed), to_cdr(&T::default())],
+        words: &[],
+        memory: MEMORY,
+        decode: &mut |bytes| {
+            if let Ok(message) = from_cdr::<T>(bytes) {
+                beyond(&message);
+            }
+        },
+    }
+    .run();
+}
+
+#[test]
+fn every_message_gives_a_value_or_an_error() {
+    decode("cdr-packing", packing_message(&packing(), "demo", vec![7; 9]), |m| drop(Packing::try_from(m)));
+    decode("cdr-stress", msg::Stress::default(), |m| drop(StressRequest::try_from(m)));
+    decode("cdr-strain-rate", msg::StrainRate::default(), |m| drop(StrainRateAnswer::try_from(m)));
+    decode("cdr-run-state", msg::RunState::default(), |m| drop(RunStateReading::try_from(m)));
+    decode("cdr-fabric", msg::Fabric::default(), |m| drop(Fabric::try_from(m)));
+    decode("cdr-moduli", msg::Moduli::default(), |m| {
+        drop(Moduli::try_from(m));
+        drop(ModuliReading::try_from(m));
+    });
+    decode(
+        "cdr-wave-speeds",
+        msg::WaveSpeeds { speeds: vec![msg::WaveSpeed::default(); 3], ..Default::default() },
+        |m| {
+            drop(WaveSpeedsReading::try_from(m));
+        },
+    );
+    decode("cdr-waveform", msg::Waveform::default(), |m| drop(WaveformReading::try_from(m)));
+    let estimates = vec![msg::Estimate::default(); 2];
+    decode("cdr-microstructure", msg::Microstructure { estimates, ..Default::default() }, |m| {
+        drop(MicrostructureReading::try_from(m));
+        m.estimates.iter().for_each(|e| drop(EstimateReading::try_from(e)));
+    });
+    decode("cdr-packing-chunk", msg::PackingChunk::default(), |_| ());
+    decode("cdr-packing-credit", msg::PackingCredit::default(), |_| ());
+    decode("cdr-log", rcl_interfaces::Log::default(), |_| ());
+    decode("cdr-clock", rosgraph_msgs::Clock::default(), |_| ());
+    decode("cdr-tf", tf2_msgs::TFMessage::default(), |_| ());
+    let values = vec![KeyValue { key: "published /stress".into(), value: "7 00".into() }; 3];
+    let status = vec![DiagnosticStatus { name: "grainlab: x".into(), values, ..Default::default() }; 2];
+    decode("cdr-diagnostics", DiagnosticArray { status, ..Default::default() }, |m| {
+        drop(node_kit::Report::from_message(m));
+    });
+}
