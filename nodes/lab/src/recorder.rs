@@ -30,8 +30,16 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Samples that may wait while the disk is slow: some seconds of the fastest lockstep.
-const BACKLOG: u32 = 20_000;
+/// Samples that may wait while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many of each topic,
+/// also after they were taken, so that a topic of few or long messages gets less.
+fn backlog(topic: &Topic) -> u32 {
+    match topic.name {
+        name if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&name) => 20_000,
+        name if name == topics::PACKING.name => 16,
+        name if name == topics::WAVEFORM.name => 512,
+        _ => 1_000,
+    }
+}
 
 /// The writer wants to be called this often.
 const TICK: Duration = Duration::from_millis(100);
@@ -125,7 +133,7 @@ impl Recorder {
         let mut channels = Vec::new();
         let mut specs = Vec::new();
         for topic in &settings.topics {
-            let demand = Demand::reliable(BACKLOG);
+            let demand = Demand::reliable(backlog(topic));
             let source = if topic.info == topics::PACKING.info {
                 Source::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
             } else {
