@@ -1209,7 +1209,7 @@ impl Discovery {
                 _ => (),
               }
             })
-            .collect()
+            .collect();
         }
         // Somebody sends what is not endpoint data. Go on with the next.
         Err(ReadError::Deserialization { reason }) => {
@@ -1298,7 +1298,7 @@ impl Discovery {
                 _ => (),
               }
             })
-            .collect()
+            .collect();
         }
         // Somebody sends what is not endpoint data. Go on with the next.
         Err(ReadError::Deserialization { reason }) => {
