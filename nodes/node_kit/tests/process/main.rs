@@ -3,14 +3,17 @@
 //! A child is this test executable again, running one ignored test named by its role.
 
 mod bystander;
+mod fuzz;
 mod leaving;
 mod roles;
+mod rtps;
 mod stopping;
 
 use node_kit::Network;
 use node_kit::dds::ClaimedDomain;
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Set for children.
@@ -27,11 +30,22 @@ fn claim() -> ClaimedDomain {
 struct Role {
     child: Child,
     name: &'static str,
+    /// Read all the time: a child that says much must not wait for us.
+    out: Option<JoinHandle<String>>,
+    err: Option<JoinHandle<String>>,
+}
+
+fn collect(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut text = Vec::new();
+        let _ = pipe.read_to_end(&mut text);
+        String::from_utf8_lossy(&text).into_owned()
+    })
 }
 
 impl Role {
     fn start(name: &'static str, network: Network) -> Self {
-        let child = Command::new(std::env::current_exe().unwrap())
+        let mut child = Command::new(std::env::current_exe().unwrap())
             .args(["--exact", &format!("roles::{name}"), "--ignored", "--nocapture", "--test-threads=1"])
             .env(CHILD, "1")
             .env("ROS_DOMAIN_ID", network.domain.to_string())
@@ -42,7 +56,9 @@ impl Role {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        Self { child, name }
+        let out = child.stdout.take().map(collect);
+        let err = child.stderr.take().map(collect);
+        Self { child, name, out, err }
     }
 
     fn signal(&self, signal: i32) {
@@ -60,9 +76,8 @@ impl Role {
             assert!(start.elapsed() < PATIENCE * 2, "{} did not end", self.name);
             std::thread::sleep(Duration::from_millis(20));
         };
-        let (mut out, mut err) = (String::new(), String::new());
-        self.child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
-        self.child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        let text = |pipe: Option<JoinHandle<String>>| pipe.unwrap().join().unwrap();
+        let (out, err) = (text(self.out.take()), text(self.err.take()));
         (status.code(), out, err)
     }
 }

@@ -1,10 +1,11 @@
 //! What the children do. Each is ignored: it runs only when a test starts it by name.
 
-use grainlab_msgs::msg::RunState;
+use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use node_kit::pingpong::{bus_listen, bus_pong};
 use node_kit::{
-    Bus, DdsBus, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, Scope, run_node,
+    Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, Scope,
+    Subscription, SubscriptionId, run_node,
 };
 use std::time::Duration;
 
@@ -149,4 +150,55 @@ fn answerer() {
         return;
     }
     bus_pong(&mut bus("answerer")).unwrap();
+}
+
+/// Subscribes and advertises every topic of the contract, and answers each stress.
+struct Victim {
+    stress: Subscription<Stress>,
+    rate: Publisher<StrainRate>,
+    others: Vec<SubscriptionId>,
+}
+
+impl Node for Victim {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        while let Some((stress, _)) = self.stress.take_valid(bus)? {
+            let rate = StrainRate { sequence: stress.sequence, ..StrainRate::default() };
+            // A reader that never acknowledges may be invented; the question is asked again.
+            if let Err(error) = self.rate.publish(bus, &rate) {
+                log::warn!("{error}");
+            }
+        }
+        for other in &self.others {
+            while bus.take(*other)?.is_some() {}
+        }
+        Ok(Next::Wait(Duration::from_millis(500)))
+    }
+
+    fn health(&self) -> Health {
+        Health::ok("answering")
+    }
+}
+
+#[test]
+#[ignore = "a role, started by other tests"]
+fn victim() {
+    if !is_child() {
+        return;
+    }
+    let spec = NodeSpec { name: "victim", summary: "answers", scope: Scope::Everyone, parameters: Vec::new() };
+    let exit = run_node(&spec, &RosArgs::default(), |bus, _| {
+        let rate = Publisher::advertise(bus, &topics::STRAIN_RATE)?;
+        let stress = Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(64))?;
+        let mut others = Vec::new();
+        for topic in topics::TOPICS {
+            if ![topics::STRESS.name, topics::STRAIN_RATE.name].contains(&topic.name) {
+                others.push(bus.subscribe(topic, Demand::reliable(100))?);
+            }
+            if topic.writer == topics::STRESS.writer {
+                bus.advertise(topic)?;
+            }
+        }
+        Ok(Box::new(Victim { stress, rate, others }))
+    });
+    std::process::exit(i32::from(exit.code()))
 }

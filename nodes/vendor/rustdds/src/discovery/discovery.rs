@@ -1219,7 +1219,7 @@ impl Discovery {
                 _ => (),
               }
             })
-            .collect()
+            .collect();
         }
         // Somebody sends what is not endpoint data. Go on with the next.
         Err(ReadError::Deserialization { reason }) => {
@@ -1308,7 +1308,7 @@ impl Discovery {
                 _ => (),
               }
             })
-            .collect()
+            .collect();
         }
         // Somebody sends what is not endpoint data. Go on with the next.
         Err(ReadError::Deserialization { reason }) => {

@@ -239,7 +239,7 @@ impl UDPSender {
       }
       Err(e) if e.kind() == io::ErrorKind::WouldBlock => SendOutcome::WouldBlock,
       Err(e) => {
-        warn!("raw_send: {id:?} to {addr} : {e:?} len={}", buffer.len());
+        warn_sparsely!("raw_send: {id:?} to {addr} : {e:?} len={}", buffer.len());
         SendOutcome::Dropped
       }
     }
@@ -340,7 +340,7 @@ impl UDPSender {
       Locator::UdpV4(sa) => Some(SocketAddr::from(*sa)),
       Locator::UdpV6(sa) => Some(SocketAddr::from(*sa)),
       Locator::Invalid | Locator::Reserved => {
-        error!("{ctx}: Cannot send to {locator:?}");
+        warn_sparsely!("{ctx}: Cannot send to {locator:?}");
         None
       }
       Locator::Other { kind, .. } => {

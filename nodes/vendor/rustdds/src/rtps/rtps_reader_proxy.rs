@@ -472,7 +472,7 @@ impl RtpsReaderProxy {
             self.all_acked_before, new_all_acked_before, self.remote_reader_guid, acknack.count
           );
           for nack_sn in acknack.reader_sn_state.iter() {
-            if nack_sn >= self.all_acked_before {
+            if nack_sn >= self.all_acked_before && nack_sn <= last_available {
               self.unsent_changes.insert(nack_sn);
             }
           }

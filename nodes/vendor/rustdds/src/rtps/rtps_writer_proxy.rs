@@ -192,6 +192,21 @@ impl RtpsWriterProxy {
     self.received_heartbeat_count = count;
     self.extend_horizon(last);
 
+    // DATA told us of more than the Writer says to have written, and not just now,
+    // so it was not from the Writer.
+    if last < self.last_received_sequence_number
+      && now.duration_since(self.last_received_timestamp) >= IMPLAUSIBLE_HEARTBEAT_CONFIRMATION
+    {
+      let next = last.saturating_next();
+      self.last_received_sequence_number = last;
+      self.horizon = Some(last);
+      self.ack_base = min(self.ack_base, next);
+      self.accounted.split_off(&next);
+      if let Some(mut highest) = self.accounted.last_entry() {
+        let end = min(*highest.get(), next);
+        *highest.get_mut() = end;
+      }
+    }
     // A GAP told us of more than the Writer says to have. Ask again for what is
     // not there yet. Never for what was received.
     if last.saturating_next() < self.ack_base {
@@ -527,6 +542,20 @@ mod bounded_map_tests {
     let far = 10 * MAX_PLAUSIBLE_SEQUENCE_JUMP;
     assert!(!wp.accept_heartbeat(sn(far), sn(far + 10), 900, at(60)));
     assert!(wp.accept_heartbeat(sn(far), sn(far + 20), 901, at(62)));
+  }
+
+  #[test]
+  fn forged_data_far_ahead_is_undone_by_the_writers_heartbeat() {
+    let mut wp = test_proxy();
+    assert!(wp.accept_heartbeat(sn(1), sn(3), 1, at(0)));
+    for i in [1, 2, 3, 300_000] {
+      wp.received_changes_add(sn(i), at(1));
+    }
+    wp.irrelevant_changes_range(sn(4), sn(300_000));
+    assert!(wp.should_ignore_change(sn(4)));
+    assert!(wp.accept_heartbeat(sn(1), sn(4), 2, at(3)));
+    assert_eq!(wp.all_ackable_before(), sn(5));
+    assert!(!wp.should_ignore_change(sn(5)) && wp.should_ignore_change(sn(3)));
   }
 
   #[test]

@@ -1468,9 +1468,11 @@ impl Writer {
           Some(cc) => cache_change = Some(cc),
           None => {
             // we are running out of excuses
-            error!(
+            warn_sparsely!(
               "handle_repair_data_send_worker {:?} seq.number {:?} missing. first_change={:?}",
-              self.my_guid, unsent_sn, first_available
+              self.my_guid,
+              unsent_sn,
+              first_available
             );
             gap = gap.gap_msg(
               &BTreeSet::from([unsent_sn]),

@@ -103,9 +103,13 @@ impl<'a, C: Context> Readable<'a, C> for StringWithNul {
     let assumed_nul = raw_str.pop(); //
     match assumed_nul {
       Some('\0') => { /* fine */ }
-      Some(other) => error!("StringWithNul deserialize: Expected NUL character, decoded {other:?}"),
+      Some(other) => {
+        warn_sparsely!("StringWithNul deserialize: Expected NUL character, decoded {other:?}")
+      }
       None => {
-        error!("StringWithNul deserialize: Expected NUL character, but end of input reached.");
+        warn_sparsely!(
+          "StringWithNul deserialize: Expected NUL character, but end of input reached."
+        );
       }
     }
     Ok(StringWithNul { string: raw_str })
@@ -161,7 +165,7 @@ where
     .ok_or(PlCdrDeserializeError::MissingField(pid, name.to_string()))
     .and_then(|p| {
       D::read_from_buffer_with_ctx(ctx, &p.value).map_err(|e| {
-        error!("PL_CDR Deserializing {name}");
+        warn_sparsely!("PL_CDR Deserializing {name}");
         e.into()
       })
     })
@@ -185,7 +189,7 @@ where
     .iter()
     .map(|p| {
       D::read_from_buffer_with_ctx(ctx.clone(), &p.value).map_err(|e| {
-        error!("PL_CDR Deserializing {name}");
+        warn_sparsely!("PL_CDR Deserializing {name}");
         e.into()
       })
     })
@@ -209,7 +213,7 @@ where
     .and_then(|v| v.first()) // Option<Parameter> here
     .map(|p| {
       D::read_from_buffer_with_ctx(ctx, &p.value).map_err(|e| {
-        error!("PL_CDR Deserializing {name}");
+        warn_sparsely!("PL_CDR Deserializing {name}");
         info!("Parameter payload was {:x?}", p.value);
         e.into()
       })
