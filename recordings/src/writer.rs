@@ -12,9 +12,9 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Instant, SystemTime};
 
 use mcap::records::Metadata;
 use mcap::{Attachment, McapError};
@@ -27,11 +27,16 @@ use crate::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 mod device_sync;
 mod error;
 mod free_space;
+mod names;
+mod options;
 pub(crate) mod part;
 mod topic_spec;
 
 pub use error::WriteError;
 pub use free_space::free_space;
+pub(crate) use names::is_locked;
+use names::{next_number, part_path, session};
+pub use options::WriterOptions;
 use part::Part;
 pub use topic_spec::TopicSpec;
 
@@ -60,40 +65,6 @@ pub enum Outcome {
     },
     /// It was recorded before: counted, not written again.
     Repeated,
-}
-
-/// How a recording is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WriterOptions {
-    /// Uncompressed bytes after which a chunk is closed.
-    pub chunk_size: u64,
-    /// Age of the oldest message at which an open chunk is closed and handed to the system.
-    /// [`RunWriter::tick`] must be called often enough for the sum to stay below what a crash may cost.
-    pub flush_interval: Duration,
-    /// Time between two pushes to the device.
-    pub sync_interval: Duration,
-    /// Bytes of a file after which the next one is begun.
-    pub split_bytes: u64,
-    /// Age of a file at which the next one is begun: its index grows in memory, by some 6 MB an hour.
-    pub split_after: Duration,
-    /// Bytes that must be free to begin.
-    pub free_to_start: u64,
-    /// Bytes that must stay free: below, the recording ends in good order while it still can.
-    pub free_to_continue: u64,
-}
-
-impl Default for WriterOptions {
-    fn default() -> Self {
-        Self {
-            chunk_size: 768 << 10,
-            flush_interval: Duration::from_millis(400),
-            sync_interval: Duration::from_secs(1),
-            split_bytes: 512 << 20,
-            split_after: Duration::from_secs(15 * 60),
-            free_to_start: 64 << 20,
-            free_to_continue: 32 << 20,
-        }
-    }
 }
 
 /// What a finished recording is.
@@ -177,21 +148,7 @@ impl RunWriter {
         topics: &[TopicSpec],
         options: WriterOptions,
     ) -> Result<Self, WriteError> {
-        let io = |source| WriteError::Io { path: directory.to_owned(), action: "read the directory", source };
-        let mut number = 0;
-        if directory.exists() {
-            for entry in fs::read_dir(directory).map_err(io)? {
-                let path = entry.map_err(io)?.path();
-                let text = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-                let part = text.strip_prefix(name).and_then(|t| t.strip_prefix('_'));
-                let part = part.and_then(|t| t.strip_suffix(".mcap")).and_then(|n| n.parse::<u64>().ok());
-                let Some(part) = part else { continue };
-                if File::open(&path).is_ok_and(|f| is_locked(&f)) {
-                    return Err(WriteError::InUse { path });
-                }
-                number = number.max(part.saturating_add(1));
-            }
-        }
+        let number = next_number(directory, name)?;
         let before = match Recording::open(directory) {
             Ok(recording) => BagMetadata::of(&recording),
             Err(_) => BagMetadata::default(),
@@ -521,18 +478,4 @@ impl Drop for RunWriter {
             let _ = self.close(false);
         }
     }
-}
-
-fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
-    directory.join(format!("{name}_{number}.mcap"))
-}
-
-/// Whether a recorder holds the file. A file system without locks holds none.
-pub(crate) fn is_locked(file: &File) -> bool {
-    matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
-}
-
-/// What tells this writer from those before and after it in the same directory: when it began, in ns since 1970.
-fn session() -> String {
-    SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos()).to_string()
 }

@@ -196,8 +196,13 @@ struct Columns {
 
 impl Columns {
     fn new(line: &Line<'_>, names: &str) -> Result<Self, ImportError> {
+        let announced = names.split_whitespace().count();
         let names: BTreeMap<String, usize> =
             names.split_whitespace().enumerate().map(|(k, n)| (n.to_owned(), k)).collect();
+        // Which of the two would be meant, nothing says.
+        if names.len() != announced {
+            return Err(line.error("a column occurs twice: dump each quantity once"));
+        }
         let three = |form: &str| {
             let find = |axis: &str| names.get(&format!("{axis}{form}")).copied();
             Some([find("x")?, find("y")?, find("z")?])

@@ -1,0 +1,43 @@
+//! The files of a run: how they are called, and whether a recorder is at work on them.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::WriteError;
+
+/// Part `number` of the recording `name`.
+pub(super) fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
+    directory.join(format!("{name}_{number}.mcap"))
+}
+
+/// The number of the part behind all that are there.
+pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteError> {
+    let io = |source| WriteError::Io { path: directory.to_owned(), action: "read the directory", source };
+    let mut next = 0;
+    if !directory.exists() {
+        return Ok(next);
+    }
+    for entry in fs::read_dir(directory).map_err(io)? {
+        let path = entry.map_err(io)?.path();
+        let text = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let part = text.strip_prefix(name).and_then(|t| t.strip_prefix('_'));
+        let part = part.and_then(|t| t.strip_suffix(".mcap")).and_then(|n| n.parse::<u64>().ok());
+        let Some(part) = part else { continue };
+        if File::open(&path).is_ok_and(|f| is_locked(&f)) {
+            return Err(WriteError::InUse { path });
+        }
+        next = next.max(part.saturating_add(1));
+    }
+    Ok(next)
+}
+
+/// Whether a recorder holds the file. A file system without locks holds none.
+pub(crate) fn is_locked(file: &File) -> bool {
+    matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
+}
+
+/// What tells this writer from those before and after it in the same directory: when it began, in ns since 1970.
+pub(super) fn session() -> String {
+    SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos()).to_string()
+}

@@ -1,0 +1,37 @@
+//! How a recording is written.
+
+use std::time::Duration;
+
+/// How a recording is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WriterOptions {
+    /// Uncompressed bytes after which a chunk is closed.
+    pub chunk_size: u64,
+    /// Age of the oldest message at which an open chunk is closed and handed to the system.
+    /// [`RunWriter::tick`](super::RunWriter::tick) must be called often enough for the sum to stay below what a crash may cost.
+    pub flush_interval: Duration,
+    /// Time between two pushes to the device.
+    pub sync_interval: Duration,
+    /// Bytes of a file after which the next one is begun.
+    pub split_bytes: u64,
+    /// Age of a file at which the next one is begun: its index grows in memory, by some 6 MB an hour.
+    pub split_after: Duration,
+    /// Bytes that must be free to begin.
+    pub free_to_start: u64,
+    /// Bytes that must stay free: below, the recording ends in good order while it still can.
+    pub free_to_continue: u64,
+}
+
+impl Default for WriterOptions {
+    fn default() -> Self {
+        Self {
+            chunk_size: 768 << 10,
+            flush_interval: Duration::from_millis(400),
+            sync_interval: Duration::from_secs(1),
+            split_bytes: 512 << 20,
+            split_after: Duration::from_secs(15 * 60),
+            free_to_start: 64 << 20,
+            free_to_continue: 32 << 20,
+        }
+    }
+}
