@@ -11,6 +11,9 @@ const GRACE: Duration = Duration::from_secs(2);
 /// and is still there is none of those.
 const SILENCE: Duration = Duration::from_secs(75);
 
+/// Rivals that are kept in mind: one is enough to refuse a run.
+const KEPT: usize = 512;
+
 type Participant = [u8; 12];
 
 /// What is known of other writers of `stress`. A living simulator says where it stands (`run_state`, latched and once a
@@ -41,6 +44,9 @@ impl Rivals {
     /// A `run_state` of this writer has arrived. True the first time, if it is a rival's.
     pub(crate) fn hear(&mut self, writer: WriterId, now: Duration) -> bool {
         let participant = writer.participant();
+        if self.heard.len() >= KEPT {
+            return false;
+        }
         participant != self.own && self.heard.insert(participant, now).is_none()
     }
 

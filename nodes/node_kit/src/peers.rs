@@ -12,6 +12,9 @@ use std::time::Duration;
 /// A heartbeat comes each second. A node that computes does not beat, so silence alone is no death.
 pub const SILENCE: Duration = Duration::from_secs(5);
 
+/// Peers that are kept: of more, the one that was silent for longest is forgotten.
+const KEPT: usize = 512;
+
 /// Heartbeats kept between two looks: a minute of a full laboratory.
 const BACKLOG: u32 = 512;
 
@@ -61,10 +64,20 @@ impl Peers {
         let reports = Report::from_message(message);
         for report in &reports {
             let participant = info.writer.participant();
+            if self.by_participant.len() >= KEPT && !self.by_participant.contains_key(&participant) {
+                self.forget_quietest();
+            }
             self.by_participant
                 .insert(participant, Peer { report: report.clone(), participant, last_heard: now });
         }
         reports
+    }
+
+    fn forget_quietest(&mut self) {
+        let quietest = self.by_participant.values().min_by_key(|p| p.last_heard).map(|p| p.participant);
+        if let Some(participant) = quietest {
+            self.by_participant.remove(&participant);
+        }
     }
 
     /// Every peer, in the order of its GUID.

@@ -88,7 +88,13 @@ impl<T: Message> Subscription<T> {
             match self.take(bus) {
                 Ok(taken) => return Ok(taken),
                 Err(TakeError::Bus(error)) => return Err(error),
-                Err(refused @ TakeError::Decode { .. }) => log::warn!("{refused}"),
+                Err(refused @ TakeError::Decode { .. }) => {
+                    // A flood of such samples must not fill the disk with lines.
+                    let count: u64 = bus.received().iter().map(|r| r.refused).sum();
+                    if count.is_power_of_two() {
+                        log::warn!("{refused} ({count} samples refused so far)");
+                    }
+                }
             }
         }
     }

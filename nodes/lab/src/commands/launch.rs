@@ -11,6 +11,7 @@ use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
+use grainlab_msgs::topics;
 use node_kit::{Exit, Network, RunId};
 use recordings::Recording;
 use recordings::input;
@@ -260,7 +261,8 @@ fn finish(
     }
     let mut back = back;
     let missing = missing(&supervised.heard, &back);
-    if !missing.is_empty() {
+    let analyzed = supervised.children.iter().any(|c| c.plan.is(topics::FABRIC.writer));
+    if !missing.is_empty() || (analyzed && back.not_analysed > 0) {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
     }

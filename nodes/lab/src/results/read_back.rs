@@ -32,6 +32,8 @@ pub(crate) struct ReadBack {
     pub(crate) reports: BTreeMap<(String, u32), Report>,
     /// Messages of packings.
     pub(crate) packings: usize,
+    /// Packings without a structure.
+    pub(crate) not_analysed: usize,
     /// Steps of the packings of which there is a result, by topic.
     pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Who was on the bus beside the run.
@@ -109,7 +111,10 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
             // An instrument's data are of no packing of the run.
             (None, None) if step == 0 => {}
             (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
-            (_, None) => back.complaints.push(format!("the packing of step {step} was not analysed")),
+            (_, None) => {
+                back.not_analysed += 1;
+                back.complaints.push(format!("the packing of step {step} was not analysed"));
+            }
         }
     }
     back.complaints.extend(recording.warnings().iter().map(ToString::to_string));
