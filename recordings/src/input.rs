@@ -80,7 +80,7 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
 /// # Errors
 /// If it is cut off, damaged, or decompresses to more.
 pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
-    let most = (compressed.len() as u64).saturating_mul(RATIO).max(SMALL).min(TEXT);
+    let most = (compressed.len() as u64).saturating_mul(RATIO).clamp(SMALL, TEXT);
     let mut content = Vec::new();
     let read = MultiGzDecoder::new(compressed).take(most + 1).read_to_end(&mut content);
     read.map_err(|e| match e.kind() {

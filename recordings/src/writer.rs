@@ -138,7 +138,7 @@ impl RunWriter {
 
     /// Goes on with a run: begins `<directory>/<name>_<n>.mcap`, with the next number that is free. What is there
     /// stays as it is; log times continue behind it, and `metadata.yaml` will name all files. The file of a recorder
-    /// that was killed should be [recovered](crate::recover) before, or other tools cannot read the run.
+    /// that was killed should be [recovered](crate::recover()) before, or other tools cannot read the run.
     ///
     /// # Errors
     /// If a file of the run is being recorded, a topic contradicts one that is there, or as [`RunWriter::create`].
