@@ -6,6 +6,7 @@ use crate::launch::Run;
 use crate::launch::supervisor::{Heard, Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
+use crate::results::continuity;
 use crate::results::read_back::{self, ReadBack};
 use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
@@ -260,7 +261,11 @@ fn finish(
         exit = worse(exit, Exit::DataLoss);
     }
     let mut back = back;
-    let missing = missing(&supervised.heard, &back);
+    let mut missing = missing(&supervised.heard, &back);
+    // A run that was cut off has a request without its answer.
+    if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
+        missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
+    }
     let analyzed = supervised.children.iter().any(|c| c.plan.is(topics::FABRIC.writer));
     if !missing.is_empty() || (analyzed && back.not_analysed > 0) {
         exit = worse(exit, Exit::DataLoss);

@@ -2,6 +2,7 @@
 
 pub(crate) mod acoustic;
 mod acoustic_text;
+pub(crate) mod continuity;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod last_packing;
