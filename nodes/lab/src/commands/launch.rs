@@ -266,8 +266,10 @@ fn finish(
     if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
         missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
     }
-    let analyzed = supervised.children.iter().any(|c| c.plan.is(topics::FABRIC.writer));
-    if !missing.is_empty() || (analyzed && back.not_analysed > 0) {
+    let has = |node: &str| supervised.children.iter().any(|c| c.plan.is(node));
+    let unanswered = (has(topics::FABRIC.writer) && back.not_analysed > 0)
+        || (has(topics::MICROSTRUCTURE.writer) && back.not_inverted > 0);
+    if !missing.is_empty() || unanswered {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
     }

@@ -23,6 +23,9 @@ pub(crate) struct InvertedState {
     pub(crate) results: Vec<Inference>,
 }
 
+/// Topics of data that an inversion answers.
+const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
+
 /// What was read back.
 #[derive(Debug, Default)]
 pub(crate) struct ReadBack {
@@ -32,8 +35,12 @@ pub(crate) struct ReadBack {
     pub(crate) reports: BTreeMap<(String, u32), Report>,
     /// Messages of packings.
     pub(crate) packings: usize,
+    /// Data of packings without a microstructure.
+    pub(crate) not_inverted: usize,
     /// Packings without a structure.
     pub(crate) not_analysed: usize,
+    /// Microstructures, by the topic of their data and the step of the packing.
+    pub(crate) inverted: BTreeSet<(String, u64)>,
     /// Steps of the packings of which there is a result, by topic.
     pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Who was on the bus beside the run.
@@ -84,6 +91,11 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         } else {
             let by = authors.node(&message.channel.topic, message.log_time);
             enter(&mut about, topic, &message.payload, by).map(|step| {
+                if topic.name == topics::MICROSTRUCTURE.name
+                    && let Ok(found) = decoded::<msg::Microstructure>(&message.payload)
+                {
+                    back.inverted.insert((found.source, step));
+                }
                 if topic.name == topics::PACKING.name {
                     back.packings += 1;
                 } else {
@@ -114,6 +126,14 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
             (_, None) => {
                 back.not_analysed += 1;
                 back.complaints.push(format!("the packing of step {step} was not analysed"));
+            }
+        }
+    }
+    for (topic, steps) in back.results.iter().filter(|(topic, _)| INVERTED.contains(topic)) {
+        for step in steps.iter().filter(|step| **step > 0) {
+            if !back.inverted.contains(&((*topic).to_owned(), *step)) {
+                back.not_inverted += 1;
+                back.complaints.push(format!("the {topic} of step {step} were not inverted"));
             }
         }
     }

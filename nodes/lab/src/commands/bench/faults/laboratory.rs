@@ -86,9 +86,10 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
     let outcome = match laboratory.conduct(plan) {
         Ok(()) => {
             let record = laboratory.record.take();
-            match record.contradictions {
-                0 => Outcome::Finished(record),
-                n => Outcome::Failed(format!("{n} messages contradict what was recorded")),
+            match (record.contradictions, record.lacks()) {
+                (0, None) => Outcome::Finished(record),
+                (0, Some(lack)) => Outcome::Failed(format!("{lack}: exit 3")),
+                (n, _) => Outcome::Failed(format!("{n} messages contradict what was recorded: exit 1")),
             }
         }
         Err(outcome) => outcome,

@@ -7,7 +7,7 @@ use grains::Packing;
 use node_kit::identity::member_of;
 use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -51,6 +51,22 @@ impl Record {
         let Some(step) = state.last_packing_step else { return true };
         let found = self.bodies.get(topics::MICROSTRUCTURE.name).into_iter().flatten();
         found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
+    }
+
+    /// What a finished run lacks: a packing without a structure, moduli that nobody inverted. The launcher ends such a run
+    /// with exit 3.
+    pub(super) fn lacks(&self) -> Option<String> {
+        let steps = |topic: &Topic, step: fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
+            self.bodies.get(topic.name).into_iter().flatten().filter_map(|body| step(body)).collect()
+        };
+        let packings = steps(&topics::PACKING, |b| from_cdr::<msg::Packing>(b).ok().map(|m| m.step));
+        let fabrics = steps(&topics::FABRIC, |b| from_cdr::<msg::Fabric>(b).ok().map(|m| m.source_step));
+        let moduli = steps(&topics::MODULI, |b| from_cdr::<msg::Moduli>(b).ok().map(|m| m.source_step));
+        let found = steps(&topics::MICROSTRUCTURE, |b| {
+            from_cdr::<msg::Microstructure>(b).ok().map(|m| m.source_step)
+        });
+        let packing = packings.difference(&fabrics).next().map(|s| format!("the packing of step {s} was not analysed"));
+        packing.or_else(|| moduli.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted")))
     }
 
     /// The first topic on which two records differ. Requests and answers have an order; results come when they come.
