@@ -1147,6 +1147,11 @@ impl Reader {
       );
       return;
     }
+    if self.reliability == policy::Reliability::BestEffort {
+      // It waits for nothing, so there is nothing to be told. A forged GAP would
+      // make it drop the samples that follow, and no HEARTBEAT would undo that.
+      return;
+    }
     let all_ackable_before;
     {
       let writer_proxy = if let Some(wp) = self.matched_writer_mut(writer_guid) {
