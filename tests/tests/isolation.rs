@@ -100,7 +100,8 @@ fn sprayed(range: &str, lo: &str) -> Option<[u64; 3]> {
 fn nothing_from_another_host_reaches_a_node_that_stays_on_this_one() {
     for lo in ["multicast off", "multicast on"] {
         let Some([reached, refused, grown]) = sprayed("LOCALHOST", lo) else { return };
-        assert!(refused > SPRAYS / 2, "only {refused} datagrams came, loopback {lo}");
+        // Half of them go to the group, which this host has not joined there, and are not counted.
+        assert!(refused > SPRAYS / 4, "only {refused} datagrams came, loopback {lo}");
         assert!(reached < 100, "{reached} datagrams of {SPRAYS} reached a socket, loopback {lo}");
         assert!(grown < 10, "the node grew by {grown} MB, loopback {lo}");
     }
