@@ -1887,7 +1887,11 @@ mod tests {
     // Create the DDS cache and a topic
     let dds_cache = Arc::new(RwLock::new(DDSCache::new()));
     let topic_name = "test_name";
-    let qos_policy = QosPolicies::qos_none();
+    let qos_policy = QosPolicyBuilder::new()
+      .reliability(Reliability::Reliable {
+        max_blocking_time: Duration::from_millis(100),
+      })
+      .build();
 
     let topic_cache_handle = dds_cache.write().unwrap().add_new_topic(
       topic_name.to_string(),
@@ -1918,7 +1922,7 @@ mod tests {
       topic_name: topic_name.to_string(),
       topic_cache_handle,
       like_stateless: false,
-      qos_policy,
+      qos_policy: qos_policy.clone(),
       data_reader_command_receiver: reader_command_receiver,
       data_reader_waker,
       poll_event_sender: notification_event_sender,
@@ -1946,7 +1950,7 @@ mod tests {
       EntityId::UNKNOWN,
       mr_state.unicast_reply_locator_list.to_vec(),
       mr_state.multicast_reply_locator_list.to_vec(),
-      &QosPolicies::qos_none(),
+      &qos_policy,
     );
 
     // 3. Feed the reader a gap message which marks sequence numbers 1-2 & 4 as
