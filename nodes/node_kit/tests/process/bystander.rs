@@ -5,7 +5,8 @@ use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::topics;
 use rustdds::policy::{Durability, History, Reliability, ResourceLimits};
 use rustdds::{
-    DomainParticipantBuilder, DomainParticipantStatusEvent as Event, QosPolicyBuilder, StatusEvented, TopicKind,
+    DomainParticipantBuilder, DomainParticipantStatusEvent as Event, QosPolicyBuilder, StatusEvented,
+    TopicKind,
 };
 use std::net::Ipv4Addr;
 use std::time::{Duration, Instant};
@@ -42,12 +43,7 @@ fn a_stopped_reader_that_may_not_block_never_holds_up_a_writer() {
     let name = format!("rt/{}", topics::STRAIN_RATE.name);
     let info = topics::STRAIN_RATE.info;
     let topic = participant
-        .create_topic(
-            name,
-            format!("{}::msg::dds_::{}_", info.package, info.name),
-            &qos,
-            TopicKind::NoKey,
-        )
+        .create_topic(name, format!("{}::msg::dds_::{}_", info.package, info.name), &qos, TopicKind::NoKey)
         .unwrap();
     let publisher = participant.create_publisher(&qos).unwrap();
     let writer = publisher.create_datawriter_no_key_cdr::<StrainRate>(&topic, Some(qos)).unwrap();

@@ -6,9 +6,7 @@ use super::rtps::{Datagram, Random, heard, mutated, ports_in_use, send, sniffer}
 use super::{PATIENCE, Role, claim};
 use node_kit::pingpong::bus_ping;
 use node_kit::{DdsBus, Names, Network};
-use rustdds::{
-    DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented,
-};
+use rustdds::{DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
@@ -75,7 +73,9 @@ fn forged(readers: &[Endpoint], writers: &[Endpoint], random: &mut Random) -> Ve
         1 => datagram.heartbeat(writer, random.of(&CLAIMS), claim, count),
         2 => datagram.gap(writer, random.of(&CLAIMS), claim, random.of(&[0, 256, 300])),
         3 => datagram.data(writer, claim, &[0, 1, 0, 0, 1, 2, 3, 4]),
-        4 => datagram.data_frag(writer, claim, 1, 1024, random.of(&[1025, 16 << 20, 2_000_000_000, u32::MAX])),
+        4 => {
+            datagram.data_frag(writer, claim, 1, 1024, random.of(&[1025, 16 << 20, 2_000_000_000, u32::MAX]))
+        }
         5 => datagram.data_frag(writer, random.next() as i64 >> 40, 1, 1, random.of(&[2, 1 << 24])),
         6 => Datagram::from(&reader_prefix).acknack(reader, writer, claim, random.of(&[0, 1, 256]), count),
         _ => Datagram::from(&reader_prefix).nack_frag(
@@ -100,6 +100,44 @@ fn asks(network: Network, name: &str) -> DdsBus {
     let mut bus = DdsBus::open(network, Names::new(name).unwrap()).unwrap();
     assert_eq!(bus_ping(&mut bus, 20).unwrap().len(), 20, "{name} is not answered");
     bus
+}
+
+#[test]
+fn forged_heartbeats_gaps_and_fragments_cost_no_sample() {
+    let claimed = claim();
+    let network = claimed.network();
+    let victim = Role::start("victim", network);
+    let listener = Role::start("our_listener", network);
+    let mut partner = asks(network, "partner");
+    std::thread::sleep(Duration::from_secs(1));
+    let exchanges = bus_ping(&mut partner, 200).unwrap().len();
+    assert_eq!(exchanges, 200);
+    let (_, writers) = learn(network);
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let first = 7400 + 250 * network.domain;
+    for port in ports_in_use(first..first + 250) {
+        for (prefix, writer) in &writers {
+            let writer = *writer;
+            let forged = [
+                Datagram::from(prefix).heartbeat(writer, 1, 1 << 40, 1_000_000),
+                Datagram::from(prefix).gap(writer, 1, 200_000_000, 0),
+                Datagram::from(prefix).data_frag(writer, 1_000_000, 1, 1024, 2_000_000_000),
+                Datagram::from(prefix).data_frag(writer, 1_000_000, 1, 1024, 16 << 20),
+            ];
+            for datagram in forged {
+                send(&socket, &datagram.0, port);
+            }
+        }
+    }
+    assert_eq!(bus_ping(&mut partner, 200).unwrap().len(), 200, "the exchange goes on");
+    let peak = memory_mb(victim.child.id(), "VmHWM:").max(memory_mb(listener.child.id(), "VmHWM:"));
+    assert!(peak < MEMORY_MB, "{peak} MB");
+    let (code, out, err) = listener.end();
+    assert_eq!(code, Some(0), "{err}");
+    // Two topics, two rounds since it was there.
+    let received = out.split("received ").nth(1).and_then(|r| r.split_whitespace().next()).unwrap();
+    assert!(received.parse::<usize>().unwrap() >= 4 * exchanges, "{out}");
+    assert!(out.contains("missing 0"), "{out}");
 }
 
 #[test]

@@ -56,7 +56,14 @@ impl Datagram {
         self.submessage(0x15, 0x04, &body)
     }
 
-    pub(super) fn data_frag(self, writer: [u8; 4], number: i64, fragment: u32, size: u16, whole: u32) -> Self {
+    pub(super) fn data_frag(
+        self,
+        writer: [u8; 4],
+        number: i64,
+        fragment: u32,
+        size: u16,
+        whole: u32,
+    ) -> Self {
         let mut body = [&[0, 0, 28, 0][..], &[0; 4], &writer, &sequence(number)].concat();
         body.extend_from_slice(&fragment.to_le_bytes());
         body.extend_from_slice(&1u16.to_le_bytes());
@@ -67,12 +74,18 @@ impl Datagram {
     }
 
     pub(super) fn acknack(self, reader: [u8; 4], writer: [u8; 4], base: i64, bits: u32, count: i32) -> Self {
-        let body =
-            [&reader[..], &writer, &sequence(base), &number_set(bits), &count.to_le_bytes()].concat();
+        let body = [&reader[..], &writer, &sequence(base), &number_set(bits), &count.to_le_bytes()].concat();
         self.submessage(0x06, 0, &body)
     }
 
-    pub(super) fn nack_frag(self, reader: [u8; 4], writer: [u8; 4], number: i64, base: u32, count: i32) -> Self {
+    pub(super) fn nack_frag(
+        self,
+        reader: [u8; 4],
+        writer: [u8; 4],
+        number: i64,
+        base: u32,
+        count: i32,
+    ) -> Self {
         let body = [
             &reader[..],
             &writer,

@@ -1164,6 +1164,11 @@ impl Reader {
       );
       return;
     }
+    if self.reliability == policy::Reliability::BestEffort {
+      // It waits for nothing, so there is nothing to be told. A forged GAP would
+      // make it drop the samples that follow, and no HEARTBEAT would undo that.
+      return;
+    }
     let all_ackable_before;
     {
       let writer_proxy = if let Some(wp) = self.matched_writer_mut(writer_guid) {
@@ -1899,7 +1904,11 @@ mod tests {
     // Create the DDS cache and a topic
     let dds_cache = Arc::new(RwLock::new(DDSCache::new()));
     let topic_name = "test_name";
-    let qos_policy = QosPolicies::qos_none();
+    let qos_policy = QosPolicyBuilder::new()
+      .reliability(Reliability::Reliable {
+        max_blocking_time: Duration::from_millis(100),
+      })
+      .build();
 
     let topic_cache_handle = dds_cache.write().unwrap().add_new_topic(
       topic_name.to_string(),
@@ -1930,7 +1939,7 @@ mod tests {
       topic_name: topic_name.to_string(),
       topic_cache_handle,
       like_stateless: false,
-      qos_policy,
+      qos_policy: qos_policy.clone(),
       data_reader_command_receiver: reader_command_receiver,
       data_reader_waker,
       poll_event_sender: notification_event_sender,
@@ -1958,7 +1967,7 @@ mod tests {
       EntityId::UNKNOWN,
       mr_state.unicast_reply_locator_list.to_vec(),
       mr_state.multicast_reply_locator_list.to_vec(),
-      &QosPolicies::qos_none(),
+      &qos_policy,
     );
 
     // 3. Feed the reader a gap message which marks sequence numbers 1-2 & 4 as
