@@ -147,7 +147,11 @@ fn starts_with(path: &Path, magic: &[u8]) -> bool {
     File::open(path).and_then(|mut f| f.read_exact(&mut bytes)).is_ok() && bytes == magic
 }
 
-fn text(path: &Path) -> Result<String, ImportError> {
+/// The text of a file; `.gz` is decompressed.
+///
+/// # Errors
+/// If it cannot be read, is damaged or is no text.
+pub fn text(path: &Path) -> Result<String, ImportError> {
     let io = |source| ImportError::Io { path: path.to_owned(), source };
     let mut bytes = fs::read(path).map_err(io)?;
     let refuse = |kind, problem: String| ImportError::Io {
