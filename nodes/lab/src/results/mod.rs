@@ -2,6 +2,7 @@
 
 pub(crate) mod acoustic;
 mod acoustic_text;
+pub(crate) mod doubts;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod probe;
