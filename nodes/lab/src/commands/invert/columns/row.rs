@@ -222,6 +222,17 @@ mod tests {
         assert_eq!(full.asymmetry, Some(medium.residual));
         assert_ne!(full.moduli.get(Modulus::C11), Some(300.0));
 
+        // About the axis of the row, which a packing measured about it has in its columns.
+        let axis = "reference_axis_x,reference_axis_y,reference_axis_z";
+        let about = |cells: &str| {
+            state(&format!("p_pa,{},{axis}", matrix_names().join(",")), &format!("5e4,{row},{cells}"))
+        };
+        let turned = Stiffness::from_row_major(&entries).transverse_isotropy_about(&Vec3::x());
+        assert_eq!(about("2,0,0").unwrap().moduli, Moduli::of_medium(&turned));
+        assert_eq!(about("0,0,1").unwrap().moduli, full.moduli);
+        assert_eq!(about(",,").unwrap().moduli, full.moduli);
+        assert!(about("0,0,0").unwrap_err().contains("no direction"));
+
         // One half of it says the same.
         let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();
         let names = matrix_names();
