@@ -23,7 +23,7 @@ mod text;
 pub mod yade;
 
 pub use error::ImportError;
-pub use load::{Loaded, each, load};
+pub use load::{Loaded, each, load, text};
 pub use settings::{ImportOptions, Setting};
 
 /// A packing and where it comes from.

@@ -69,9 +69,12 @@ pub struct ModuliReading {
     pub method: ModuliMethod,
     /// Number of grains.
     pub grains: Option<u32>,
+    /// Reference axis h, unit, which g12, g13, c11, c33, c13, the covariance, γ/Δ and ε are about; e3 if the sender named
+    /// none. Stiffnesses are in the frame of the cell.
+    pub reference_axis: Vec3,
     /// Shear modulus in the plane of isotropy, Pa.
     pub g12: Option<f64>,
-    /// Shear modulus along e3, Pa.
+    /// Shear modulus along h, Pa.
     pub g13: Option<f64>,
     /// Voigt bulk modulus Θ, Pa.
     pub theta: Option<f64>,
@@ -113,7 +116,7 @@ pub struct ModuliReading {
     pub material: Material,
 }
 
-/// The message of the moduli of a packing; `header` and `source_step` are those of the packing. `pressure` in Pa. The
+/// The message of the moduli of a packing about the reference axis of `fabric`; `header` and `source_step` are those of the packing. `pressure` in Pa. The
 /// covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
 pub fn moduli_message(
     header: Header,
@@ -124,7 +127,8 @@ pub fn moduli_message(
     solid_fraction: f64,
     material: &Material,
 ) -> Result<msg::Moduli, BoundaryError> {
-    let projected = moduli.stiffness.transverse_isotropy();
+    let axis = fabric.structure.reference_axis;
+    let projected = moduli.stiffness.transverse_isotropy_about(&axis);
     let [total, elastic, contact] = ratios(&fabric.anisotropy);
     let message = msg::Moduli {
         header,
@@ -135,6 +139,7 @@ pub fn moduli_message(
         stiffness_stddev: moduli.stddev.row_major(),
         stiffness_affine: moduli.affine.row_major(),
         stiffness_mean_spin: moduli.mean_spin.row_major(),
+        reference_axis: vector_message(&axis),
         g12: projected.g12,
         g13: projected.g13,
         theta: moduli.stiffness.bulk_voigt(),
@@ -169,7 +174,8 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
     fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
         CHECK.header(&m.header)?;
         let stiffness = known_stiffness("stiffness", &m.stiffness)?;
-        let projected = stiffness.map(|c| c.transverse_isotropy());
+        let reference_axis = CHECK.direction("reference_axis", &m.reference_axis)?.unwrap_or_else(Vec3::z);
+        let projected = stiffness.map(|c| c.transverse_isotropy_about(&reference_axis));
         for (i, stddev) in m.stiffness_stddev.iter().enumerate() {
             CHECK.not_negative(&format!("stiffness_stddev[{i}]"), *stddev)?;
         }
@@ -180,6 +186,7 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
             source_step: m.source_step,
             method: method(m.method)?,
             grains: Some(m.grains).filter(|n| *n > 0),
+            reference_axis,
             g12: not_zero("g12", m.g12)?,
             g13: not_zero("g13", m.g13)?,
             theta: not_zero("theta", m.theta)?,

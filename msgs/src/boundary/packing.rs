@@ -79,7 +79,7 @@ impl TryFrom<&msg::Packing> for Packing {
             friction: m.friction,
             time_step: m.time_step,
         };
-        Ok(packing.validated()?)
+        Ok(packing.validated()?.consistent()?)
     }
 }
 

@@ -3,7 +3,7 @@ use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use proptest::array::{uniform3, uniform9};
-use proptest::collection::{btree_map, vec};
+use proptest::collection::vec;
 use proptest::prelude::*;
 
 const INF: f64 = f64::INFINITY;
@@ -18,13 +18,6 @@ fn vector() -> impl Strategy<Value = Vec3> {
     uniform3(number()).prop_map(Vec3::from)
 }
 
-fn unit() -> impl Strategy<Value = Vec3> {
-    uniform3(-1.0..1.0f64)
-        .prop_map(Vec3::from)
-        .prop_filter("long enough", |v| v.norm() > 0.1)
-        .prop_map(|v| v.normalize())
-}
-
 fn positive() -> impl Strategy<Value = f64> {
     1e-9..1e9f64
 }
@@ -36,36 +29,59 @@ fn matrix() -> impl Strategy<Value = Mat3> {
         .prop_filter("regular", |m| m.determinant() > 0.05)
 }
 
-prop_compose! {
-    fn contact()(
-        overlap in positive(), normal in unit(), normal_force in number(), tangential_force in vector(),
-    ) -> Contact {
-        Contact { i: 0, j: 0, image: [0; 3], overlap, normal, normal_force, tangential_force }
+/// Every contact of these spheres with images up to two cells away, with a share of Hertz's force.
+fn contacts(
+    cell: &Cell,
+    material: &Material,
+    grains: &[(f64, Vec3)],
+    share: f64,
+    tangential_force: Vec3,
+) -> Vec<Contact> {
+    let mut found = Vec::new();
+    for (i, j) in (0..grains.len()).flat_map(|i| (i..grains.len()).map(move |j| (i, j))) {
+        for n in 0..125i8 {
+            let image = [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2];
+            let branch = grains[j].1 - grains[i].1 + cell.shift(image);
+            let overlap = grains[i].0 + grains[j].0 - branch.norm();
+            if overlap > 1e-9 && branch.norm() > 1e-6 && (i < j || image > [0; 3]) {
+                let radius = grains::material::effective_radius(grains[i].0, grains[j].0);
+                let normal_force = share * material.normal_force(radius, overlap);
+                let (normal, (i, j)) = (branch.normalize(), (i as u32, j as u32));
+                found.push(Contact { i, j, image, overlap, normal, normal_force, tangential_force });
+            }
+        }
     }
+    found
 }
 
 prop_compose! {
-    fn packing()(grains in vec((any::<u32>(), positive(), vector(), vector(), vector()), 1..6))(
-        contacts in btree_map((0..grains.len() as u32, 0..grains.len() as u32, uniform3(-2i8..3)), contact(), 0..9),
+    fn packing()(
+        grains in vec((0.05..0.3f64, uniform3(-1.0..1.0f64).prop_map(Vec3::from), vector(), vector()), 1..6),
         (step, time, time_step) in (any::<u64>(), number(), positive()),
         (cell, deformation) in (matrix(), matrix()),
         (shear_modulus, poisson_ratio, density) in (positive(), 0.0..=0.5f64, positive()),
         friction in prop_oneof![Just(INF), Just(0.0), positive()],
-        grains in Just(grains),
+        (first, share, tangential_force) in (any::<u32>(), -1.0..50.0f64, vector()),
     ) -> Packing {
-        let ordered = contacts.into_iter().filter(|((i, j, _), _)| i <= j);
+        // A cell that is large enough for five of the largest.
+        let cell = Cell::new(matrix_of(&cell)).unwrap();
+        let material = Material { shear_modulus, poisson_ratio, density };
+        let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
         Packing {
-            step, time, time_step, deformation, friction,
-            cell: Cell::new(cell).unwrap(),
-            ids: grains.iter().map(|g| g.0).collect(),
-            radii: grains.iter().map(|g| g.1).collect(),
-            positions: grains.iter().map(|g| g.2).collect(),
-            velocities: grains.iter().map(|g| g.3).collect(),
-            spins: grains.iter().map(|g| g.4).collect(),
-            contacts: ordered.map(|((i, j, image), c)| Contact { i, j, image, ..c }).collect(),
-            material: Material { shear_modulus, poisson_ratio, density },
+            step, time, time_step, deformation, friction, cell, material,
+            ids: (0..grains.len() as u32).map(|k| first.wrapping_add(k)).collect(),
+            radii: grains.iter().map(|g| g.0).collect(),
+            positions: grains.iter().map(|g| g.1).collect(),
+            velocities: grains.iter().map(|g| g.2).collect(),
+            spins: grains.iter().map(|g| g.3).collect(),
+            contacts: contacts(&cell, &material, &spheres, share, tangential_force),
         }
     }
+}
+
+/// The same shape with the volume of a cube of 0.9.
+fn matrix_of(cell: &Mat3) -> Mat3 {
+    cell * (0.9 / cell.determinant().cbrt())
 }
 
 proptest! {
@@ -166,6 +182,20 @@ fn each_fault_of_a_packing_is_refused_by_name() {
             (
                 |m| m.contact_normal_force[0] = NAN,
                 "Packing is refused: contact_normal_force[0] is not finite",
+            ),
+            (|m| m.id[1] = 4, "Packing is refused: grains 0 and 1 have the same id 4"),
+            (|m| m.radius = vec![0.7, 0.7], "Packing is refused: solid_fraction[0] = 2.8"),
+            (
+                |m| m.contact_overlap[0] = 1e-4,
+                "Packing is refused: overlap (m) of contact 0, of grains 0 and 1, is 1e-4, but positions and radii give",
+            ),
+            (
+                |m| m.contact_normal.copy_from_slice(&[0.0, 1.0, 0.0]),
+                "Packing is refused: angle of the normal (rad) of contact 0",
+            ),
+            (
+                |m| m.contact_normal_force[0] = 1e12,
+                "Packing is refused: normal force (N), at most a hundred times Hertz's, of contact 0",
             ),
             (
                 |m| m.contact_tangential_force[1] = INF,

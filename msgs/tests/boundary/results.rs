@@ -80,9 +80,27 @@ fn moduli_cross_the_wire_and_back() {
     }
 }
 
+/// Without an axis in the message everything is about e3.
+#[test]
+fn moduli_are_about_the_reference_axis_of_the_fabric_which_the_message_carries() {
+    let sent = moduli_sent();
+    let about = fabric().structure.reference_axis;
+    assert_eq!(about, Vec3::x());
+    let r = ModuliReading::try_from(&sent).unwrap();
+    let t = moduli().stiffness.transverse_isotropy_about(&about);
+    assert_eq!((r.reference_axis, r.g12, r.g13, r.c33), (about, Some(t.g12), Some(t.g13), Some(t.c33)));
+    assert!((t.c33 / moduli().stiffness.0[(0, 0)] - 1.0).abs() < 1e-14, "C11 is along x");
+    let nameless = msg::Moduli { reference_axis: Default::default(), ..sent };
+    assert_eq!(ModuliReading::try_from(&nameless).unwrap().reference_axis, Vec3::z());
+}
+
 #[test]
 fn an_inversion_reads_what_the_analysis_measured() {
-    let r = ModuliReading::try_from(&moduli_sent()).unwrap();
+    let mut upright = fabric();
+    upright.structure.reference_axis = Vec3::z();
+    let sent = moduli_message(header(), 7, &upright, &moduli(), 5e4, 0.64, &Material::GLASS).unwrap();
+    let r = ModuliReading::try_from(&sent).unwrap();
+    assert_eq!(r.reference_axis, Vec3::z());
     // The projection of a stiffness that is transversely isotropic is exact up to rounding.
     for (read, measured) in [
         (r.g12.unwrap(), 140e6),

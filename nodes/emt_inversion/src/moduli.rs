@@ -6,7 +6,7 @@ use emt::{Conditions, Gamma, Measured, Moduli, Modulus, Observation};
 use grainlab_msgs::boundary::ModuliReading;
 use grains::{Mat3, Stiffness, Vec3};
 
-/// Sine of the angle to e3 below which an axis is e3: rounding.
+/// Sine of the angle between axes below which they are one: rounding.
 const ALONG: f64 = 1e-9;
 
 /// The moduli about the axis set, all of them where the full stiffness is known, with their errors and their state.
@@ -14,24 +14,34 @@ const ALONG: f64 = 1e-9;
 /// Without errors in the data, each modulus measured gets the error of the settings; of a full stiffness these are five,
 /// and Θ follows from them.
 pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observed, Unobservable> {
+    let stated = reading.reference_axis;
     let axis = match settings.axis {
+        Axis::Stated => stated,
         Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
         Axis::Found => reading.axis.ok_or(Unobservable::NoAxis)?,
     };
     let along_e3 = axis.xy().norm() < ALONG;
+    let as_stated = axis.cross(&stated).norm() < ALONG;
+    // The scene's strain is symmetric about e3, and no other axis: from that one alone γ/Δ is known about another.
+    if !as_stated && stated.xy().norm() >= ALONG {
+        return Err(Unobservable::OtherAxis { stated: stated.into(), asked: axis.into() });
+    }
     let conditions = Conditions {
         pressure: Measured::exact(reading.pressure),
-        gamma: about(&axis, Gamma::of(&reading.gamma_over_delta, settings.gamma)),
+        gamma: {
+            let gamma = Gamma::of(&reading.gamma_over_delta, settings.gamma);
+            if as_stated { gamma } else { about(&axis, gamma) }
+        },
         solid_fraction: reading.solid_fraction.map(Measured::exact),
         material: Some(reading.material),
     };
-    // The covariance of the message is that of the moduli about e3.
-    let covariance = reading.covariance.filter(|_| along_e3).map(|c| Mat3::from_row_slice(&c));
+    // The covariance of the message is that of the moduli about the axis stated.
+    let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));
     let observation = match &reading.stiffness {
         Some(stiffness) if along_e3 => Observation::of_stiffness(stiffness, conditions),
         Some(stiffness) => turned(stiffness, &axis, conditions),
-        None if along_e3 => {
+        None if as_stated => {
             let (g12, g13, theta) = (reading.g12, reading.g13, reading.theta);
             Observation::new(Moduli::of_values([g12, g13, theta, None, None, None]), conditions)
         }

@@ -22,7 +22,7 @@ pub(crate) enum Unobservable {
     /// The axis is to come with the data, and did not.
     #[error("the axis is to be the one found, and these data name none: set the parameter axis")]
     NoAxis,
-    /// Moduli about e3 cannot be turned.
+    /// Moduli cannot be turned.
     #[error(
         "the moduli given are those about e3, and without the full stiffness they say nothing about the axis \
          ({:.4}, {:.4}, {:.4})", axis[0], axis[1], axis[2]
@@ -30,6 +30,18 @@ pub(crate) enum Unobservable {
     NoStiffness {
         /// The axis.
         axis: [f64; 3],
+    },
+    /// Moduli, strain ratios and anisotropy are about one axis, and another is asked for.
+    #[error(
+        "these moduli and their gamma/Delta are about ({:.4}, {:.4}, {:.4}), and the parameter axis asks for \
+         ({:.4}, {:.4}, {:.4}): give the analyzer that axis, or leave the parameter at stated",
+        stated[0], stated[1], stated[2], asked[0], asked[1], asked[2]
+    )]
+    OtherAxis {
+        /// The axis of the moduli.
+        stated: [f64; 3],
+        /// The axis asked for.
+        asked: [f64; 3],
     },
     /// Wave speeds without a medium.
     #[error(transparent)]

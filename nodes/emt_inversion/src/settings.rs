@@ -20,9 +20,10 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ),
         ParameterSpec::new(
             "axis",
-            "e3",
-            "axis of symmetry: e3, found (the one that the data name; of wave speeds that name none, the one that they tell), \
-             or a direction x,y,z of any length; of moduli, other than e3 needs the full stiffness",
+            "stated",
+            "axis of symmetry: stated (the one that the moduli are about; of wave speeds e3), e3, found (the one that the data \
+             name; of wave speeds that name none, the one that they tell), or a direction x,y,z of any length; moduli about \
+             another axis than e3 are taken about that one alone, those about e3 are turned where the full stiffness is known",
         ),
         ParameterSpec::new(
             "gamma_over_delta",
@@ -55,6 +56,8 @@ pub struct Settings {
 /// An axis of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
+    /// The one that the moduli are about; of wave speeds e3.
+    Stated,
     /// That of the scene.
     E3,
     /// The one that comes with the data; of wave speeds that come with none, the one that they tell.
@@ -70,7 +73,7 @@ impl Default for Settings {
         Self {
             models: Models::all(),
             calibration: CalibrationChoice::Default,
-            axis: Axis::E3,
+            axis: Axis::Stated,
             gamma: GammaSource::Total,
             modulus_error: 0.01,
         }
@@ -109,7 +112,7 @@ pub enum SettingsError {
     },
     /// Not an axis.
     #[error(
-        "parameter \"axis\" = {0:?} is no axis: e3, found, or three numbers x,y,z that are finite and not all zero"
+        "parameter \"axis\" = {0:?} is no axis: stated, e3, found, or three numbers x,y,z that are finite and not all zero"
     )]
     Axis(String),
 }
@@ -145,6 +148,7 @@ impl Settings {
 
 fn axis(text: &str) -> Result<Axis, SettingsError> {
     match text.trim() {
+        "stated" => return Ok(Axis::Stated),
         "e3" => return Ok(Axis::E3),
         "found" => return Ok(Axis::Found),
         _ => {}

@@ -16,7 +16,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     let speeds = reading.measured();
     let mut notes = Vec::new();
     let axis = match settings.axis {
-        Axis::E3 => Vec3::z(),
+        Axis::Stated | Axis::E3 => Vec3::z(),
         Axis::Given(axis) => axis,
         Axis::Found => match reading.axis {
             Some(axis) => axis,

@@ -17,7 +17,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "axis",
             axis,
-            "axis of eps and of the ratios gamma/Delta: x, y, z, of any length but zero; stiffnesses stay in the cell's frame",
+            "axis of eps, of the ratios gamma/Delta and of G12 and G13: x, y, z, of any length but zero; the messages carry it, the 36 entries of a stiffness stay in the cell's frame",
         )
         .within(Range::Double { min: -1e9, max: 1e9 }),
         ParameterSpec::new(

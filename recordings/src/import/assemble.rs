@@ -190,7 +190,7 @@ pub(super) fn packing(
     };
     notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
-    let packing = packing.validated()?;
+    let packing = packing.validated()?.consistent()?;
     Ok(Imported { header: packing_header(&packing), packing, step: state.step, source, notes })
 }
 

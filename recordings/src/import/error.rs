@@ -111,6 +111,27 @@ pub enum ImportError {
         "grains {0} and {1} touch across more than 127 cells: fold positions into the cell, or check its size"
     )]
     FarImage(u32, u32),
+    /// Contact forces without tangential ones, of a packing with friction.
+    #[error(
+        "contact forces all point along their contacts, with a friction of {friction}: of granular pair styles LAMMPS gives \
+         the normal force alone as fx fy fz. Add the tangential force, p1 p2 p3: compute pl all property/local patom1 patom2, \
+         compute pf all pair/local dist fx fy fz p1 p2 p3, dump forces all local 1 forces.dump c_pl[*] c_pf[*], dump_modify \
+         forces format float %.17g; or give --friction 0 if there is none"
+    )]
+    NoTangentialForces {
+        /// Friction coefficient.
+        friction: f64,
+    },
+    /// Grains and contact forces are of different steps.
+    #[error(
+        "the contact forces are of step {forces} and the grains of step {grains}: dump both at the same step"
+    )]
+    OtherStep {
+        /// Step of the contact forces.
+        forces: u64,
+        /// Step of the grains.
+        grains: u64,
+    },
     /// The cell is so small, or the grains so large, that they would fill it many times over.
     #[error(
         "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, the largest is {diameter:.3e} m wide and the cell {width:.3e} m: check the units of the cell and of the radii"

@@ -48,14 +48,24 @@ pub fn each(
             reason: "give the forces with one frame at a time",
         });
     }
-    let local = options.contact_forces.as_deref().map(lammps_local::contacts).transpose()?;
+    let forces = options.contact_forces.as_deref();
+    let local = forces.map(|text| lammps_local::contacts(text, &options.contact_columns)).transpose()?;
     let mut frames = Frames::new(text);
     let mut number = 0;
     while let Some(frame) = frames.next()? {
         number += 1;
         let source =
             if count > 1 { format!("LAMMPS dump, frame {number} of {count}") } else { "LAMMPS dump".into() };
-        if take(frame.packing(options, local.as_deref(), source)?).is_break() {
+        let of_step = frame.step;
+        let listed = local.as_ref().map(|local| local.contacts.as_slice());
+        let imported = frame.packing(options, listed, source)?;
+        if let Some(local) = &local {
+            if let Some(forces) = local.step.filter(|step| *step != of_step) {
+                return Err(ImportError::OtherStep { forces, grains: of_step });
+            }
+            local.whole(&imported.packing)?;
+        }
+        if take(imported).is_break() {
             break;
         }
     }

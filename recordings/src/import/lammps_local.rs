@@ -1,45 +1,143 @@
 //! Contact forces of a LAMMPS `dump local`.
 //!
-//! The dump does not say what its columns are. They are taken to be those of
-//! `compute pl all property/local patom1 patom2` and `compute pf all pair/local dist fx fy fz`:
-//! `c_pl[1] c_pl[2]` are the ids, `c_pf[2] c_pf[3] c_pf[4]` the force on the first grain.
+//! Of every granular pair style `compute pair/local` gives the normal force alone as `fx fy fz`, and the tangential force
+//! as `p1 p2 p3`; both act on the first of the two grains. The dump that is taken:
+//!
+//! ```text
+//! compute pl all property/local patom1 patom2
+//! compute pf all pair/local dist fx fy fz p1 p2 p3
+//! dump forces all local 1 forces.dump c_pl[*] c_pf[*]
+//! dump_modify forces format float %.17g
+//! ```
+//!
+//! The dump does not say what its columns are: those are their names by default. Columns that `dump_modify colname` has
+//! called `patom1 patom2 fx fy fz p1 p2 p3` are found by these names, and any others by
+//! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which LAMMPS
+//! lists as long as they are neighbours, have no force and are left out.
 
 use super::assemble::{ListedContact, ListedForce};
 use super::error::ImportError;
 use super::text::lines;
+use grains::Vec3;
 
-const COLUMNS: [&str; 5] = ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]"];
+/// Ids of the two grains, normal force, tangential force.
+const BY_NUMBER: [&str; 8] =
+    ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]", "c_pf[5]", "c_pf[6]", "c_pf[7]"];
+const BY_NAME: [&str; 8] = ["patom1", "patom2", "fx", "fy", "fz", "p1", "p2", "p3"];
 
-/// The contacts of the last frame.
-pub(super) fn contacts(text: &str) -> Result<Vec<ListedContact>, ImportError> {
-    let mut columns: Option<[usize; 5]> = None;
-    let mut contacts = Vec::new();
-    for line in lines(text).filter(|l| !l.text.trim().is_empty()) {
-        if let Some(item) = line.text.trim().strip_prefix("ITEM:") {
-            let names = item.trim().strip_prefix("ENTRIES").map(|n| n.split_whitespace().collect::<Vec<_>>());
-            columns = names.map(|names| find(&names).ok_or_else(|| line.error(NEEDED))).transpose()?;
-            if columns.is_some() {
-                contacts.clear();
+/// Columns without which there is no force.
+const LEAST: usize = 5;
+
+/// Tangential forces up to this share of the force are rounding of its direction: 17 digits leave less, 6 more.
+const CENTRAL: f64 = 1e-9;
+
+/// What a dump holds.
+#[derive(Debug)]
+pub(super) struct Local {
+    /// Time step of the last frame, if it says one.
+    pub(super) step: Option<u64>,
+    /// Its pairs that carry force.
+    pub(super) contacts: Vec<ListedContact>,
+    /// Whether tangential forces were among the columns.
+    tangential: bool,
+}
+
+/// The contacts of the last frame. `chosen` are the columns in the order of those by default, five or eight; none for
+/// these.
+pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportError> {
+    let mut columns: Option<Vec<usize>> = None;
+    let mut local = Local { step: None, contacts: Vec::new(), tangential: false };
+    let (mut entries, mut rows, mut last) = (None, 0usize, None);
+    let mut text = lines(text).filter(|l| !l.text.trim().is_empty());
+    while let Some(line) = text.next() {
+        last = Some(line);
+        if let Some(item) = line.text.trim().strip_prefix("ITEM:").map(str::trim) {
+            columns = None;
+            let mut follow =
+                || text.next().ok_or_else(|| line.error(format!("the file ends within ITEM: {item}")));
+            if item == "TIMESTEP" {
+                let value = follow()?;
+                local.step = Some(value.number("the time step", value.text)?);
+            } else if item.starts_with("NUMBER OF") {
+                let value = follow()?;
+                entries = Some(value.number::<usize>("the number of entries", value.text)?);
+            } else if let Some(names) = item.strip_prefix("ENTRIES") {
+                let names: Vec<&str> = names.split_whitespace().collect();
+                let found = find(&names, chosen).map_err(|problem| line.error(problem))?;
+                local.tangential = found.len() == BY_NAME.len();
+                local.contacts.clear();
+                rows = 0;
+                columns = Some(found);
             }
-        } else if let Some(columns) = columns {
+        } else if let Some(columns) = &columns {
+            rows += 1;
             let words = line.words();
             let field =
                 |k: usize| words.get(columns[k]).copied().ok_or_else(|| line.error("a column is missing"));
-            contacts.push(ListedContact {
+            let mut force = line.vector("force", [field(2)?, field(3)?, field(4)?])?;
+            if local.tangential {
+                force += line.vector("tangential force", [field(5)?, field(6)?, field(7)?])?;
+            }
+            if force == Vec3::zeros() {
+                continue;
+            }
+            local.contacts.push(ListedContact {
                 line: line.number,
                 ids: (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?),
                 normal: None,
                 overlap: None,
-                force: ListedForce::Total(line.vector("force", [field(2)?, field(3)?, field(4)?])?),
+                force: ListedForce::Total(force),
             });
         }
     }
-    if columns.is_none() && contacts.is_empty() { Err(ImportError::Empty) } else { Ok(contacts) }
+    match (last, entries) {
+        (None, _) => Err(ImportError::Empty),
+        (Some(line), Some(entries)) if entries != rows => Err(line.error(format!(
+            "the last frame has {rows} entries and says that it has {entries}: the file is cut off"
+        ))),
+        (Some(line), _) if columns.is_none() => Err(line.error(NEEDED)),
+        _ => Ok(local),
+    }
 }
 
-const NEEDED: &str = "columns c_pl[1] c_pl[2] c_pf[2] c_pf[3] c_pf[4] are needed: dump local of property/local patom1 patom2 as pl and pair/local dist fx fy fz as pf";
+impl Local {
+    /// Refuses normal forces taken for all of the force: without columns of the tangential ones, where there is friction,
+    /// some force must point across its contact.
+    pub(super) fn whole(&self, packing: &grains::Packing) -> Result<(), ImportError> {
+        let central = |c: &grains::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
+        let lacking = !self.tangential && packing.friction > 0.0 && packing.contacts.iter().all(central);
+        if lacking && !packing.contacts.is_empty() {
+            return Err(ImportError::NoTangentialForces { friction: packing.friction });
+        }
+        Ok(())
+    }
+}
 
-fn find(names: &[&str]) -> Option<[usize; 5]> {
-    let [a, b, c, d, e] = COLUMNS.map(|wanted| names.iter().position(|n| *n == wanted));
-    Some([a?, b?, c?, d?, e?])
+const NEEDED: &str = "columns c_pl[1] c_pl[2] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_pf[6] c_pf[7] are needed: dump local of \
+    compute pl all property/local patom1 patom2 and compute pf all pair/local dist fx fy fz p1 p2 p3; name others with \
+    --contact-columns";
+
+/// Places of the columns, all eight or five.
+fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
+    let place = |wanted: &str| names.iter().position(|n| *n == wanted);
+    if !chosen.is_empty() {
+        if chosen.len() != LEAST && chosen.len() != BY_NAME.len() {
+            let count = chosen.len();
+            return Err(format!(
+                "{count} columns are named; five or eight are needed: {}",
+                BY_NAME.join(" ")
+            ));
+        }
+        let missing = |name: &String| format!("there is no column {name}; there are: {}", names.join(" "));
+        return chosen.iter().map(|name| place(name).ok_or_else(|| missing(name))).collect();
+    }
+    for wanted in [BY_NAME, BY_NUMBER] {
+        let places: Vec<usize> = wanted.iter().map_while(|name| place(name)).collect();
+        if places.len() >= LEAST {
+            // Some of the three are not a force.
+            let whole = places.len() == wanted.len();
+            return Ok(places[..if whole { wanted.len() } else { LEAST }].to_vec());
+        }
+    }
+    Err(NEEDED.to_owned())
 }

@@ -147,7 +147,11 @@ fn starts_with(path: &Path, magic: &[u8]) -> bool {
     input::open(path).and_then(|(mut f, _)| f.read_exact(&mut bytes)).is_ok() && bytes == magic
 }
 
-fn text(path: &Path) -> Result<String, ImportError> {
+/// The text of a file; `.gz` is decompressed.
+///
+/// # Errors
+/// If it cannot be read, is damaged or is no text.
+pub fn text(path: &Path) -> Result<String, ImportError> {
     let io = |source| ImportError::Io { path: path.to_owned(), source };
     let mut bytes = input::bytes(path, input::TEXT).map_err(io)?;
     let refuse = |kind, problem: String| ImportError::Io {

@@ -23,6 +23,10 @@ pub struct ImportOptions {
     pub topic: Option<String>,
     /// Text of a LAMMPS `dump local` with the contact forces of the one frame of a dump.
     pub contact_forces: Option<String>,
+    /// Its columns, where they are not those by default: ids of the two grains, normal force on the first, tangential
+    /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for those
+    /// by default.
+    pub contact_columns: Vec<String>,
 }
 
 /// Something that must be known of a packing.

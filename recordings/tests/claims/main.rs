@@ -3,6 +3,7 @@
 mod contact_search;
 mod damage;
 mod imports;
+mod lammps_forces;
 mod malformed;
 mod playback;
 mod recovery;

@@ -6,7 +6,7 @@ use crate::message::{Message, definition};
 use serde::{Deserialize, Serialize};
 
 /// Effective stiffness, with what an inversion needs beside it.
-/// Voigt order xx yy zz yz xz xy, engineering shear. e3 = z is the axis of the scene.
+/// Voigt order xx yy zz yz xz xy, engineering shear, stiffnesses in the frame of the cell. h is the reference axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moduli {
     /// copied from the source
@@ -29,9 +29,11 @@ pub struct Moduli {
     /// Pa, row-major, affine motion with one spin of all grains, all 0 = not computed
     #[serde(with = "crate::fixed_array")]
     pub stiffness_mean_spin: [f64; 36],
-    /// Pa, shear modulus in the plane of isotropy: (C11 + C22)/8 - C12/4 + C66/2, 0 = unknown
+    /// h, unit, what the fields from g12 on are about, all 0 = e3 = z
+    pub reference_axis: Vector3,
+    /// Pa, shear modulus across h: with h as e3 (C11 + C22)/8 - C12/4 + C66/2, 0 = unknown
     pub g12: f64,
-    /// Pa, shear modulus along e3: (C44 + C55)/2, 0 = unknown
+    /// Pa, shear modulus along h: with h as e3 (C44 + C55)/2, 0 = unknown
     pub g13: f64,
     /// Pa, Voigt bulk modulus C_iijj/9, 0 = unknown
     pub theta: f64,
@@ -63,7 +65,7 @@ pub struct Moduli {
     pub k: f64,
     /// measured k without rattlers, 0 = unknown
     pub z: f64,
-    /// measured fabric anisotropy, valid only if k is known
+    /// measured fabric anisotropy about h, valid only if k is known
     pub eps: f64,
     /// Pa
     pub grain_shear_modulus: f64,
@@ -105,6 +107,7 @@ impl Default for Moduli {
             stiffness_stddev: [f64::default(); 36],
             stiffness_affine: [f64::default(); 36],
             stiffness_mean_spin: [f64::default(); 36],
+            reference_axis: Default::default(),
             g12: Default::default(),
             g13: Default::default(),
             theta: Default::default(),
@@ -136,7 +139,7 @@ impl Message for Moduli {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
-    const HASH: &'static str = "RIHS01_75e6a4e979049896abedb4e982322c480b1bd930c9d0cd07ec059af07a425e03";
+    const HASH: &'static str = "RIHS01_318c2b545bbf49b10543bcb934dc26d3dd5fa095965753bc4c4c3277acc1c604";
     const DEFINITION: &'static str = definition!(
         "msg/Moduli.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

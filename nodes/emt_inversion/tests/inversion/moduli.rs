@@ -260,6 +260,37 @@ fn the_strain_ratio_turns_with_the_axis() {
     assert!(about(Vec3::new(1.0, 1.0, 1.0).normalize()).abs() < 1e-15);
 }
 
+/// S1 lying on its side, measured about its axis: moduli and strain ratio are those of S1 as they stand, and are turned
+/// neither once nor twice.
+#[test]
+fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
+    let axis = Vec3::new(0.6, -0.48, 0.64);
+    let upright = corrected(&s1_stiffness(), &Settings::default());
+    let lying = Moduli {
+        reference_axis: Vector3 { x: axis.x, y: axis.y, z: axis.z },
+        g12: s1().g12,
+        g13: s1().g13,
+        gamma_over_delta_total_known: true,
+        gamma_over_delta_contact_known: true,
+        ..turned(axis)
+    };
+    for about in [Axis::Stated, Axis::Found, Axis::Given(axis), Axis::Given(-axis)] {
+        let e = corrected(&lying, &Settings { axis: about, ..Settings::default() });
+        assert_eq!(e.gamma_over_delta, -0.0623, "{about:?}");
+        assert!((e.k - upright.k).abs() < 1e-6 && (e.eps - upright.eps).abs() < 1e-9, "{about:?} {e:?}");
+    }
+    // Without a stiffness there is nothing to turn, and the same to learn.
+    let three = Moduli { stiffness: [0.0; 36], ..lying.clone() };
+    let e = corrected(&three, &Settings::default());
+    assert_eq!(e.eps, corrected(&s1(), &Settings::default()).eps);
+    for about in [Axis::E3, Axis::Given(Vec3::x())] {
+        let e = corrected(&lying, &Settings { axis: about, ..Settings::default() });
+        assert_eq!((e.status, e.k_known), (Estimate::STATUS_UNDETERMINED, false));
+        let why = e.warnings.join("; ");
+        assert!(why.contains("are about (0.6000, -0.4800, 0.6400)") && why.contains("stated"), "{why}");
+    }
+}
+
 #[test]
 fn an_axis_that_the_data_cannot_be_turned_to_leaves_them_undetermined() {
     let because = |moduli: &Moduli, axis| {

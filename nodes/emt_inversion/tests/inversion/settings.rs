@@ -97,7 +97,10 @@ fn a_calibration_that_is_none_is_refused_by_name() {
 #[test]
 fn an_axis_is_a_word_or_three_numbers_of_any_length_but_zero() {
     let axis = |text: &str| given(&["-p", &format!("axis:={text}")]).map(|s| s.axis);
-    assert_eq!((axis("e3"), axis("found")), (Ok(Axis::E3), Ok(Axis::Found)));
+    assert_eq!(
+        (axis("e3"), axis("found"), axis("stated")),
+        (Ok(Axis::E3), Ok(Axis::Found), Ok(Axis::Stated))
+    );
     assert_eq!(axis("0,0,2"), Ok(Axis::Given(Vec3::z())));
     assert_eq!(axis("1e300, 0, 0"), Ok(Axis::Given(Vec3::x())), "no overflow on the way to a unit vector");
     let Ok(Axis::Given(v)) = axis("'-1,2,-2'") else { panic!("a direction") };

@@ -8,6 +8,7 @@
 //! - [`cell`]: the periodic cell
 //! - [`material`]: the grain's material and the contact stiffnesses that follow from it (Eqs. 8 and 9)
 //! - [`packing`]: grains, cell and contact network at one instant
+//!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`stress`]: the one definition of stress
 //! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
 //! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
@@ -17,6 +18,7 @@
 //! - [`results`]: what the kernels report
 
 pub mod cell;
+mod consistency;
 pub mod control;
 pub mod material;
 pub mod packing;

@@ -114,6 +114,35 @@ pub enum PackingError {
         /// Number of grains.
         grains: usize,
     },
+    /// An id occurs twice.
+    #[error("grains {first} and {second} have the same id {id} (indices count from 0)")]
+    DuplicateId {
+        /// The id.
+        id: u32,
+        /// Index of the first grain with it.
+        first: u32,
+        /// Index of the second.
+        second: u32,
+    },
+    /// A contact does not belong to the positions and radii.
+    #[error(
+        "{quantity} of contact {contact}, of grains {i} and {j}, is {given:e}, but positions and radii give {found:e}: contacts \
+         and positions are not of the same state"
+    )]
+    Contradiction {
+        /// Index of the contact.
+        contact: usize,
+        /// Its first grain.
+        i: u32,
+        /// Its second grain.
+        j: u32,
+        /// What disagrees, with its unit.
+        quantity: &'static str,
+        /// As the contact has it.
+        given: f64,
+        /// As positions and radii have it; the limit, for a force.
+        found: f64,
+    },
     /// Contacts are not strictly sorted by (i, j, image) with i ≤ j.
     #[error(
         "contact {contact} is out of order: contacts must be sorted by i, j, image, with i <= j and no duplicates"

@@ -87,6 +87,9 @@ impl Stiffness {
     /// Projection on the stiffnesses that are isotropic about the unit vector `axis`; the moduli are those of a frame with
     /// that axis as e3.
     pub fn transverse_isotropy_about(&self, axis: &Vec3) -> TransverseIsotropy {
+        if *axis == Vec3::z() {
+            return self.transverse_isotropy();
+        }
         // Half a turn about x takes −z to z.
         let opposite = || Rotation3::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI);
         let turn = Rotation3::rotation_between(axis, &Vec3::z()).unwrap_or_else(opposite);

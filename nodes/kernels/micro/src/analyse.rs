@@ -23,8 +23,9 @@ pub struct Settings {
     pub solver: Solver,
     /// Iterations after which the solve gives up.
     pub max_iterations: u32,
-    /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken. Any length but zero. Stiffnesses stay in
-    /// the frame of the cell.
+    /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken, and what is read off the
+    /// stiffness as moduli ([`grains::structure::Structure::reference_axis`] keeps it). Any length but zero. The stiffnesses
+    /// themselves stay in the frame of the cell.
     pub axis: Vec3,
     /// Whether contacts keep their tangential stiffness ("friction set very high"), or have none (frictionless).
     pub tangential: bool,

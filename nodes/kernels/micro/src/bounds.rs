@@ -49,7 +49,7 @@ pub fn reuss_bulk(packing: &Packing, tangential: bool) -> Option<f64> {
 pub(crate) type SpinEnergy = (Matrix3<f64>, Matrix6x3<f64>);
 
 impl Network {
-    /// With the spin θ of all grains a contact feels −2λ θ×n = −θ×l.
+    /// With the spin θ of all grains a contact feels −(λ_i + λ_j) θ×n = −θ×l.
     pub(crate) fn spin_energy(&self) -> SpinEnergy {
         let (mut spin, mut coupling) = (Matrix3::zeros(), Matrix6x3::zeros());
         for s in self.springs() {

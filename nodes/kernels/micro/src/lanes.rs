@@ -18,6 +18,8 @@ pub(crate) trait Real: Copy {
     fn times(self, other: Self) -> Self;
     /// self · factor + term, rounded once.
     fn times_plus(self, factor: Self, term: Self) -> Self;
+    /// term − self · factor, rounded once.
+    fn times_off(self, factor: Self, term: Self) -> Self;
 }
 
 macro_rules! real {
@@ -44,6 +46,10 @@ macro_rules! real {
             fn times_plus(self, factor: Self, term: Self) -> Self {
                 self.mul_add(factor, term)
             }
+            #[inline(always)]
+            fn times_off(self, factor: Self, term: Self) -> Self {
+                (-self).mul_add(factor, term)
+            }
         }
     };
 }
@@ -61,6 +67,8 @@ pub(crate) trait Lanes: Copy {
     fn mul(self, a: Self::Row, b: Self::Row) -> Self::Row;
     /// a b + c.
     fn mul_add(self, a: Self::Row, b: Self::Row, c: Self::Row) -> Self::Row;
+    /// c − a b.
+    fn mul_sub_from(self, a: Self::Row, b: Self::Row, c: Self::Row) -> Self::Row;
 }
 
 /// One column after the other, or what the compiler makes of that.
@@ -109,6 +117,14 @@ impl<T: Real> Lanes for Plain<T> {
         }
         a
     }
+
+    #[inline(always)]
+    fn mul_sub_from(self, mut a: [T; WIDTH], b: [T; WIDTH], c: [T; WIDTH]) -> [T; WIDTH] {
+        for l in 0..WIDTH {
+            a[l] = a[l].times_off(b[l], c[l]);
+        }
+        a
+    }
 }
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -151,6 +167,11 @@ mod x86 {
         fn mul_add(self, a: f32x8, b: f32x8, c: f32x8) -> f32x8 {
             self.mul_add_f32x8(a, b, c)
         }
+
+        #[inline(always)]
+        fn mul_sub_from(self, a: f32x8, b: f32x8, c: f32x8) -> f32x8 {
+            cast(self.fma._mm256_fnmadd_ps(cast(a), cast(b), cast(c)))
+        }
     }
 }
 
@@ -175,6 +196,7 @@ mod tests {
             same(avx2.add(x, y), plain.add(a, b));
             same(avx2.mul(x, y), plain.mul(a, b));
             same(avx2.mul_add(x, y, z), plain.mul_add(a, b, c));
+            same(avx2.mul_sub_from(x, y, z), plain.mul_sub_from(a, b, c));
             same(avx2.splat(a[3]), plain.splat(a[3]));
         }
     }

@@ -1,8 +1,9 @@
 //! The frozen contact network as a linear operator.
 //!
 //! Contact c between grains i and j, n from i to j, branch l = |l| n, springs k_c = k_n nn + k_t (1 − nn), all stuck:
-//! the relative displacement at the contact is u_c = u_j − u_i + E·l − λ(θ_i + θ_j)×n with the lever λ = |l|/2, with
-//! which a rigid rotation of the pair costs nothing. Rotations are held as φ = θ a (a the mean branch length over 2),
+//! the relative displacement at the contact is u_c = u_j − u_i + E·l − (λ_i θ_i + λ_j θ_j)×n. The contact acts at the
+//! levers λ_i = R_i − δ/2 and λ_j = R_j − δ/2 from the centres; they are (|l| ± (R_i − R_j))/2, so that they add up to
+//! |l| and a rigid rotation of the pair costs nothing. Rotations are held as φ = θ a (a the mean branch length over 2),
 //! so that every degree of freedom is a displacement in m and every load a force in N.
 
 use crate::error::MicroError;
@@ -28,7 +29,7 @@ const UNIT: Motion<6> = {
     unit
 };
 
-/// One contact of the network, in what the operator needs: 64 bytes.
+/// One contact of the network, in what the operator needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring {
     pub(crate) i: u32,
@@ -36,8 +37,10 @@ pub(crate) struct Spring {
     pub(crate) normal: [f64; 3],
     /// |l|/2, m.
     half_branch: f64,
-    /// |l|/(2a): lever of a scaled rotation.
-    pub(crate) lever: f64,
+    /// |l|/(2a): mean lever of a scaled rotation.
+    lever: f64,
+    /// Levers of i and j over their mean, 1 ± (R_i − R_j)/|l|: exactly 1 where radii are equal.
+    share: [f64; 2],
     /// k_t, N/m.
     pub(crate) tangential: f64,
     /// k_n − k_t, N/m.
@@ -57,8 +60,8 @@ pub struct Link {
     pub branch: [f64; 3],
     /// Unit normal, along the branch.
     pub normal: [f64; 3],
-    /// Lever of a scaled rotation φ: |l|/(2a) with a the [`Network::rotation_length`].
-    pub lever: f64,
+    /// Levers of scaled rotations φ of `i` and `j`: (R − δ/2)/a with a the [`Network::rotation_length`].
+    pub levers: [f64; 2],
     /// k_t, N/m.
     pub tangential: f64,
     /// k_n − k_t, N/m.
@@ -93,12 +96,14 @@ impl Network {
             }
             let (k_n, k_t) = packing.contact_stiffness(c);
             let k_t = if tangential { k_t } else { 0.0 };
+            let skew = (packing.radii[c.i as usize] - packing.radii[c.j as usize]) / length;
             springs.push(Spring {
                 i: c.i,
                 j: c.j,
                 normal: normal.into(),
                 half_branch: 0.5 * length,
                 lever: 0.0,
+                share: [1.0 + skew, 1.0 - skew],
                 tangential: k_t,
                 excess: k_n - k_t,
                 geometric: 0.0,
@@ -165,7 +170,7 @@ impl Network {
             j: s.j,
             branch: s.normal.map(|n| 2.0 * s.half_branch * n),
             normal: s.normal,
-            lever: s.lever,
+            levers: s.levers(),
             tangential: s.tangential,
             excess: s.excess,
         })
@@ -293,13 +298,20 @@ impl Spring {
         std::array::from_fn(|row| std::array::from_fn(|column| sum(row, column)))
     }
 
-    /// u_j − u_i − lever (φ_i + φ_j)×n: what the contact feels of the motions `a` of i and `b` of j.
+    /// Levers of scaled rotations of i and j.
+    pub(crate) fn levers(&self) -> [f64; 2] {
+        self.share.map(|share| self.lever * share)
+    }
+
+    /// u_j − u_i − (lever_i φ_i + lever_j φ_j)×n: what the contact feels of the motions `a` of i and `b` of j.
     #[inline(always)]
     fn relative<const L: usize>(&self, a: &Motion<L>, b: &Motion<L>) -> [[f64; L]; 3] {
         let [nx, ny, nz] = self.normal.map(|n| n * self.lever);
+        let [i, j] = self.share;
         let mut w = [[0.0; L]; 3];
         for l in 0..L {
-            let (px, py, pz) = (a[3][l] + b[3][l], a[4][l] + b[4][l], a[5][l] + b[5][l]);
+            let (px, py, pz) =
+                (i * a[3][l] + j * b[3][l], i * a[4][l] + j * b[4][l], i * a[5][l] + j * b[5][l]);
             w[0][l] = b[0][l] - a[0][l] - (py * nz - pz * ny);
             w[1][l] = b[1][l] - a[1][l] - (pz * nx - px * nz);
             w[2][l] = b[2][l] - a[2][l] - (px * ny - py * nx);
@@ -349,7 +361,7 @@ impl Spring {
         f
     }
 
-    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on both; and `h`, which is without torque.
+    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on each; and `h`, which is without torque.
     #[inline(always)]
     fn scatter<const L: usize>(&self, f: &[[f64; L]; 3], h: &[[f64; L]; 3], y: &mut [Motion<L>]) {
         let [nx, ny, nz] = self.normal.map(|n| n * self.lever);
@@ -359,19 +371,20 @@ impl Spring {
             torque[1][l] = nz * f[0][l] - nx * f[2][l];
             torque[2][l] = nx * f[1][l] - ny * f[0][l];
         }
+        let [i, j] = self.share;
         // One grain after the other: they are the same one if the contact is with an own image.
         let on_i = &mut y[self.i as usize];
         for k in 0..3 {
             for l in 0..L {
                 on_i[k][l] -= f[k][l] + h[k][l];
-                on_i[3 + k][l] -= torque[k][l];
+                on_i[3 + k][l] -= i * torque[k][l];
             }
         }
         let on_j = &mut y[self.j as usize];
         for k in 0..3 {
             for l in 0..L {
                 on_j[k][l] += f[k][l] + h[k][l];
-                on_j[3 + k][l] -= torque[k][l];
+                on_j[3 + k][l] -= j * torque[k][l];
             }
         }
     }

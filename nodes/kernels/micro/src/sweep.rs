@@ -56,7 +56,8 @@ struct Half<T> {
     later: u32,
     /// Towards the later grain.
     normal: [T; 3],
-    lever: T,
+    /// Of the earlier and the later grain.
+    levers: [T; 2],
     tangential: T,
     excess: T,
     geometric: T,
@@ -214,10 +215,12 @@ impl<T: Real> Half<T> {
     fn of(s: &Spring, places: &[u32], unit: f64) -> (u32, Self) {
         let (i, j) = (places[s.i as usize], places[s.j as usize]);
         let side = if i < j { 1.0 } else { -1.0 };
+        let [on_i, on_j] = s.levers();
+        let levers = if i < j { [on_i, on_j] } else { [on_j, on_i] };
         let half = Self {
             later: i.max(j),
             normal: s.normal.map(|n| T::of(side * n)),
-            lever: T::of(s.lever),
+            levers: levers.map(T::of),
             tangential: T::of(s.tangential / unit),
             excess: T::of(s.excess / unit),
             geometric: T::of(s.geometric / unit),
@@ -228,33 +231,35 @@ impl<T: Real> Half<T> {
     /// `rest` of the later grain less what the motion `a` of the earlier one does to it.
     #[inline(always)]
     fn push<V: Lanes<T = T>, const G: bool>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off::<V, G>(v, a, self.lever, rest)
+        self.taken_off::<V, G>(v, a, self.levers, rest)
     }
 
-    /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arm on the
-    /// other side.
+    /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arms on the
+    /// other sides.
     #[inline(always)]
     fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
-        self.taken_off::<V, G>(v, b, T::of(-1.0).times(self.lever), rest)
+        let [earlier, later] = self.levers;
+        self.taken_off::<V, G>(v, b, [later, earlier].map(|arm| T::of(-1.0).times(arm)), rest)
     }
 
+    /// With the levers of the grain that moves and of the one that is moved.
     #[inline(always)]
     fn taken_off<V: Lanes<T = T>, const G: bool>(
         &self,
         v: V,
         a: &Six<V>,
-        lever: T,
+        levers: [T; 2],
         mut rest: Six<V>,
     ) -> Six<V> {
         let [nx, ny, nz] = splats(v, &self.normal);
-        let (ahead, back) = (v.splat(lever), v.splat(T::of(-1.0).times(lever)));
-        let [mx, my, mz] = [v.mul(ahead, nx), v.mul(ahead, ny), v.mul(ahead, nz)];
-        let [ox, oy, oz] = [v.mul(back, nx), v.mul(back, ny), v.mul(back, nz)];
+        let [from, to] = [v.splat(levers[0]), v.splat(levers[1])];
+        let [mx, my, mz] = [v.mul(from, nx), v.mul(from, ny), v.mul(from, nz)];
+        let [tx, ty, tz] = [v.mul(to, nx), v.mul(to, ny), v.mul(to, nz)];
         let (tangential, excess) = (v.splat(self.tangential), v.splat(self.excess));
         // u + φ×m, of this grain alone.
-        let wx = v.mul_add(a[4], mz, v.mul_add(a[5], oy, a[0]));
-        let wy = v.mul_add(a[5], mx, v.mul_add(a[3], oz, a[1]));
-        let wz = v.mul_add(a[3], my, v.mul_add(a[4], ox, a[2]));
+        let wx = v.mul_add(a[4], mz, v.mul_sub_from(a[5], my, a[0]));
+        let wy = v.mul_add(a[5], mx, v.mul_sub_from(a[3], mz, a[1]));
+        let wz = v.mul_add(a[3], my, v.mul_sub_from(a[4], mx, a[2]));
         let along = v.mul(excess, v.mul_add(nz, wz, v.mul_add(ny, wy, v.mul(nx, wx))));
         let fx = v.mul_add(tangential, wx, v.mul(along, nx));
         let fy = v.mul_add(tangential, wy, v.mul(along, ny));
@@ -262,10 +267,10 @@ impl<T: Real> Half<T> {
         rest[0] = v.add(rest[0], fx);
         rest[1] = v.add(rest[1], fy);
         rest[2] = v.add(rest[2], fz);
-        // −m×f.
-        rest[3] = v.mul_add(oy, fz, v.mul_add(mz, fy, rest[3]));
-        rest[4] = v.mul_add(oz, fx, v.mul_add(mx, fz, rest[4]));
-        rest[5] = v.mul_add(ox, fy, v.mul_add(my, fx, rest[5]));
+        // −t×f.
+        rest[3] = v.mul_sub_from(ty, fz, v.mul_add(tz, fy, rest[3]));
+        rest[4] = v.mul_sub_from(tz, fx, v.mul_add(tx, fz, rest[4]));
+        rest[5] = v.mul_sub_from(tx, fy, v.mul_add(ty, fx, rest[5]));
         if G {
             // −g (1 − nn) u.
             let (gain, loss) = (v.splat(self.geometric), v.splat(T::of(-1.0).times(self.geometric)));

@@ -58,7 +58,8 @@ pub(crate) struct Args {
     yade_script: bool,
     #[command(flatten)]
     import: import::Args,
-    /// Axis of eps and of the ratios gamma/Delta; stiffnesses stay in the frame of the cell
+    /// Axis of eps, of the ratios gamma/Delta, of G12, G13 and the ti_ moduli; the 36 entries of a stiffness stay in the
+    /// frame of the cell
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
     /// Relative residual at which the stiffness solve stops

@@ -46,8 +46,9 @@ Examples:
 A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
 columns are ignored:
   p_kpa, p_pa or pressure_pa           confining pressure, the one that is needed
-  g12_pa g13_pa theta_pa c11_pa c33_pa c13_pa   moduli about e3 (c66_pa and c44_pa are other names of g12_pa and g13_pa)
-  c11_pa c12_pa ... c66_pa             all 36, or one half: a stiffness, projected on its medium isotropic about e3
+  g12_pa g13_pa theta_pa c11_pa c33_pa c13_pa   moduli about the axis (c66_pa and c44_pa are other names of g12_pa and g13_pa)
+  c11_pa c12_pa ... c66_pa             all 36, or one half: a stiffness, projected on its medium isotropic about
+  reference_axis_x reference_axis_y reference_axis_z   this axis, which all other columns are about, too; without, e3
   ti_c11_pa ti_c33_pa ti_c13_pa        the same moduli as grainlab analyze has projected them
   g12_sigma_pa ... c13_sigma_pa        standard deviations; also pressure_sigma_pa, gamma_over_delta_sigma, phi_sigma
   gamma_over_delta                     ratio of deviatoric to volumetric strain; as grainlab analyze measures it: g_total,

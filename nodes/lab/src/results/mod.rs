@@ -3,6 +3,7 @@
 pub(crate) mod acoustic;
 mod acoustic_text;
 pub(crate) mod continuity;
+pub(crate) mod doubts;
 pub(crate) mod inference;
 mod inference_text;
 pub(crate) mod last_packing;

@@ -6,7 +6,7 @@ use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells}
 use super::symmetry::SymmetryView;
 use crate::output::{Table, exact};
 use grainlab_msgs::boundary::ModuliMethod;
-use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor};
+use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor, Vec3};
 use serde::Serialize;
 
 /// What was measured on one packing. Undefined values are null, and `warnings` says why.
@@ -25,10 +25,16 @@ pub(crate) struct State {
     pub(crate) contacts: u32,
     /// L, Voigt order, tensor components.
     pub(crate) fabric: [f64; 6],
+    /// About the reference axis.
     pub(crate) eps: f64,
-    /// The same with every contact weighted by its normal stiffness.
+    /// The same with every contact weighted by its normal stiffness; null without contacts.
     pub(crate) eps_stiffness: Option<f64>,
+    /// The axis found.
     pub(crate) axis: [f64; 3],
+    /// What eps, g, G12, G13 and the ti_ moduli are about; the stiffnesses are in the frame of the cell.
+    pub(crate) reference_axis: [f64; 3],
+    /// Mean net force of the grains that take part over the mean contact force; null without forces.
+    pub(crate) unbalanced: Option<f64>,
     pub(crate) g: Ratios,
     /// How the stiffness was found: frozen_network, prestressed_network, probe, affine or acoustic.
     pub(crate) method: Option<&'static str>,
@@ -41,7 +47,7 @@ pub(crate) struct State {
     pub(crate) g12_pa: Option<f64>,
     pub(crate) g13_pa: Option<f64>,
     pub(crate) theta_pa: Option<f64>,
-    /// C11, C33 and C13 of the projection on media isotropic about e3.
+    /// C11, C33 and C13 of the projection on media isotropic about the reference axis.
     pub(crate) ti_c11_pa: Option<f64>,
     pub(crate) ti_c33_pa: Option<f64>,
     pub(crate) ti_c13_pa: Option<f64>,
@@ -77,27 +83,26 @@ impl From<&Anisotropy> for Ratios {
     }
 }
 
-/// G12, G13 and Theta of a stiffness, Pa.
-pub(crate) fn three_moduli(c: &Stiffness) -> [f64; 3] {
-    let t = c.transverse_isotropy();
+/// G12 and G13 about the unit vector `axis`, and Theta of a stiffness, Pa.
+pub(crate) fn three_moduli(c: &Stiffness, axis: &Vec3) -> [f64; 3] {
+    let t = c.transverse_isotropy_about(axis);
     [t.g12, t.g13, c.bulk_voigt()]
 }
 
-/// ε about e3 of the contacts weighted by their normal stiffness and squared branch: the deviator of C_ijkk of the affine
-/// stiffness, where tangential springs cancel. `None` without contacts.
-pub(crate) fn eps_stiffness(affine: &Stiffness) -> Option<f64> {
-    let row = |i: usize| (0..3).map(|j| affine.0[(i, j)]).sum::<f64>();
-    let [xx, yy, zz] = [row(0), row(1), row(2)];
-    let trace = xx + yy + zz;
-    (trace > 0.0).then(|| 2.5 * (zz - 0.5 * (xx + yy)) / trace)
+/// ε about the reference axis of the contacts weighted by their normal stiffness: of the fabric `stiffness_fabric`. `None`
+/// without contacts.
+pub(crate) fn eps_stiffness(fabric: &Fabric) -> Option<f64> {
+    let weighted = &fabric.stiffness_fabric;
+    (fabric.contacts > 0).then(|| micro::fabric::eps(weighted, &fabric.structure.reference_axis))
 }
 
 impl State {
     /// Puts together what was measured.
     pub(crate) fn new(source: String, packing: &Packing, fabric: &Fabric, moduli: Option<&Moduli>) -> Self {
         let stress = grains::stress::stress(packing).tensor;
-        let three = moduli.map(|m| three_moduli(&m.stiffness));
-        let projected = moduli.map(|m| m.stiffness.transverse_isotropy());
+        let axis = fabric.structure.reference_axis;
+        let three = moduli.map(|m| three_moduli(&m.stiffness, &axis));
+        let projected = moduli.map(|m| m.stiffness.transverse_isotropy_about(&axis));
         let rows = |c: &Stiffness| std::array::from_fn(|i| std::array::from_fn(|j| c.0[(i, j)]));
         Self {
             source,
@@ -112,8 +117,10 @@ impl State {
             contacts: fabric.contacts,
             fabric: fabric.contact_fabric.voigt(),
             eps: fabric.eps,
-            eps_stiffness: moduli.and_then(|m| eps_stiffness(&m.affine)),
+            eps_stiffness: eps_stiffness(fabric),
             axis: fabric.axis.into(),
+            reference_axis: axis.into(),
+            unbalanced: micro::balance::unbalanced(packing, &micro::rattlers::participating(packing)),
             g: Ratios::from(&fabric.anisotropy),
             method: moduli.map(|m| ModuliMethod::from(m.method).word()),
             stiffness_pa: moduli.map(|m| rows(&m.stiffness)),
@@ -157,7 +164,8 @@ impl State {
     /// G12, G13 and Theta: relaxed and affine, Pa.
     pub(crate) fn moduli(&self) -> Option<([f64; 3], [f64; 3])> {
         let affine = self.stiffness_affine_pa.as_ref().map(of_rows)?;
-        Some((three_moduli(&self.stiffness()?), three_moduli(&affine)))
+        let axis = Vec3::from(self.reference_axis);
+        Some((three_moduli(&self.stiffness()?, &axis), three_moduli(&affine, &axis)))
     }
 }
 
@@ -194,6 +202,8 @@ pub(crate) fn table(states: &[State]) -> Table {
     header.extend(entries("mean_spin_c"));
     header.extend(["eps_stiffness", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"].map(String::from));
     header.extend(["grain_shear_modulus_pa", "poisson"].map(String::from));
+    let about = ["reference_axis_x", "reference_axis_y", "reference_axis_z", "unbalanced"];
+    header.extend(about.map(String::from));
     let mut t = Table::new(header);
     for s in states {
         let number = |v: f64| exact(Some(v));
@@ -218,6 +228,8 @@ pub(crate) fn table(states: &[State]) -> Table {
         }
         cells.extend([s.eps_stiffness, s.ti_c11_pa, s.ti_c33_pa, s.ti_c13_pa].map(exact));
         cells.extend([s.grain_shear_modulus_pa, s.poisson].map(number));
+        cells.extend(s.reference_axis.map(number));
+        cells.push(exact(s.unbalanced));
         t.row(cells);
     }
     t
@@ -226,7 +238,7 @@ pub(crate) fn table(states: &[State]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::{Cell, Contact, Mat3, Material, Vec3};
+    use grains::{Cell, Contact, Mat3, Material};
 
     /// One grain touching its own images along the three edges, or none.
     fn lattice(touching: bool) -> Packing {

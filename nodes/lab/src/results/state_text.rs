@@ -9,18 +9,22 @@ use crate::output::{Table, fixed};
 pub(crate) fn text(s: &State) -> String {
     let [l11, l22, l33, ..] = s.fabric;
     let mut text = format!(
-        "  {} grains, {} contacts, {} rattlers; phi {:.4}, p {:.4} kPa, q/p {}\n",
+        "  {} grains, {} contacts, {} rattlers; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}\n",
         s.grains,
         s.contacts,
         s.rattlers,
         s.phi,
         s.pressure_pa / 1e3,
         s.stress_ratio().map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}")),
+        s.unbalanced.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}")),
     );
     text += &format!(
         "  k {:.3}, z {:.3}; L11 {l11:.4}, L22 {l22:.4}, L33 {l33:.4}, eps {:.4}\n",
         s.k, s.z, s.eps
     );
+    if s.reference_axis != [0.0, 0.0, 1.0] {
+        text += &format!("  eps, gamma/Delta, G12 and G13 are about {}\n", direction(&s.reference_axis));
+    }
     text += &format!(
         "  gamma/Delta: total {}, elastic {}, contact {}\n",
         fixed(s.g.total, 4),

@@ -2,7 +2,7 @@
 //!
 //! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. A contact with the
 //! branch l feels, up to a factor of modulus one, c (w_j − w_i) + is (w_j + w_i) of displacements and c (φ_j + φ_i) + is (φ_j − φ_i)
-//! of rotations, with c = cos(q·l/2) and s = sin(q·l/2). In these amplitudes a uniform motion is a plane wave, and a long
+//! of rotations times their levers, with c = cos(q·l/2) and s = sin(q·l/2). In these amplitudes a uniform motion is a plane wave, and a long
 //! wave changes little from grain to grain.
 
 use crate::dispersion::row::{Amplitude, Row};
@@ -17,7 +17,10 @@ struct Joint {
     i: u32,
     j: u32,
     normal: [f64; 3],
+    /// Mean lever of the two grains.
     lever: f64,
+    /// Levers of i and j over their mean: exactly 1 where radii are equal.
+    share: [f64; 2],
     tangential: f64,
     excess: f64,
     cos: f64,
@@ -37,8 +40,10 @@ impl<'a> Bloch<'a> {
     pub(crate) fn new(carrier: &'a Carrier, q: &Vec3) -> Self {
         let joint = |l: Link| {
             let half = 0.5 * q.dot(&Vec3::from(l.branch));
-            let Link { i, j, normal, lever, tangential, excess, .. } = l;
-            Joint { i, j, normal, lever, tangential, excess, cos: half.cos(), sin: half.sin() }
+            let Link { i, j, normal, levers, tangential, excess, .. } = l;
+            let lever = 0.5 * (levers[0] + levers[1]);
+            let share = levers.map(|own| own / lever);
+            Joint { i, j, normal, lever, share, tangential, excess, cos: half.cos(), sin: half.sin() }
         };
         let joints: Vec<Joint> = carrier.network.links().map(joint).collect();
         let mut blocks = vec![[[0.0; 6]; 6]; carrier.mass.len()];
@@ -138,17 +143,20 @@ impl Joint {
             felt.re[k] = c * (b.re[k] - a.re[k]) - s * (b.im[k] + a.im[k]);
             felt.im[k] = c * (b.im[k] - a.im[k]) + s * (b.re[k] + a.re[k]);
         }
+        let [of_i, of_j] = self.share;
         for k in 3..6 {
-            felt.re[k] = c * (b.re[k] + a.re[k]) - s * (b.im[k] - a.im[k]);
-            felt.im[k] = c * (b.im[k] + a.im[k]) + s * (b.re[k] - a.re[k]);
+            let (a_re, a_im) = (of_i * a.re[k], of_i * a.im[k]);
+            let (b_re, b_im) = (of_j * b.re[k], of_j * b.im[k]);
+            felt.re[k] = c * (b_re + a_re) - s * (b_im - a_im);
+            felt.im[k] = c * (b_im + a_im) + s * (b_re - a_re);
         }
         let (re, im) = (self.spring(&felt.re), self.spring(&felt.im));
         // The adjoint: ∓c − is … on i and j for displacements, c ± is for rotations.
         let (mut on_i, mut on_j) = (Amplitude::STILL, Amplitude::STILL);
         for k in 0..6 {
-            let side = if k < 3 { -1.0 } else { 1.0 };
-            on_j.re[k] = c * re[k] + s * im[k];
-            on_j.im[k] = c * im[k] - s * re[k];
+            let [side, arm] = if k < 3 { [-1.0, 1.0] } else { self.share };
+            on_j.re[k] = arm * (c * re[k] + s * im[k]);
+            on_j.im[k] = arm * (c * im[k] - s * re[k]);
             on_i.re[k] = side * (c * re[k] - s * im[k]);
             on_i.im[k] = side * (c * im[k] + s * re[k]);
         }
@@ -167,7 +175,7 @@ impl Joint {
         let fx = self.tangential * wx + nx * along;
         let fy = self.tangential * wy + ny * along;
         let fz = self.tangential * wz + nz * along;
-        // −m×f, the torque on either grain.
+        // −m×f, the torque on either grain but for the share of its lever.
         [fx, fy, fz, mz * fy - my * fz, mx * fz - mz * fx, my * fx - mx * fy]
     }
 

@@ -100,12 +100,12 @@ fn softest(
             }
             debug_assert!(i == Some(at) || j == Some(at));
             let (n, mut felt) = (Vec3::from(link.normal), DMatrix::<f64>::zeros(3, rows));
-            for (place, sign) in [(i, -1.0), (j, 1.0)] {
+            for (place, sign, lever) in [(i, -1.0, link.levers[0]), (j, 1.0, link.levers[1])] {
                 let Some(place) = place else { continue };
                 for k in 0..3 {
                     felt[(k, 6 * place + k)] += sign;
                     // −λ φ×n.
-                    let turned = -link.lever * Vec3::ith(k, 1.0).cross(&n);
+                    let turned = -lever * Vec3::ith(k, 1.0).cross(&n);
                     for row in 0..3 {
                         felt[(row, 6 * place + 3 + k)] += turned[row];
                     }

@@ -19,15 +19,17 @@ pub(crate) fn dense_stiffness(p: &Packing, tangential: bool) -> Matrix6<f64> {
         let k_t = if tangential { k_t } else { 0.0 };
         let spring = n * n.transpose() * k_n + (Mat3::identity() - n * n.transpose()) * k_t;
         let mut b = DMatrix::zeros(3, dof);
-        // −λ θ×n = +λ n×θ
-        let lever = n.cross_matrix() * (0.5 * l.norm() / length);
+        // −λ θ×n = +λ n×θ, with λ = R − δ/2 of each grain and the δ of the positions.
+        let radii = [c.i, c.j].map(|grain| p.radii[grain as usize]);
+        let overlap = radii[0] + radii[1] - l.norm();
+        let [on_i, on_j] = radii.map(|radius| n.cross_matrix() * ((radius - 0.5 * overlap) / length));
         for r in 0..3 {
             for s in 0..3 {
                 let one = if r == s { 1.0 } else { 0.0 };
                 b[(r, 6 * c.j as usize + s)] += one;
                 b[(r, 6 * c.i as usize + s)] -= one;
-                b[(r, 6 * c.i as usize + 3 + s)] += lever[(r, s)];
-                b[(r, 6 * c.j as usize + 3 + s)] += lever[(r, s)];
+                b[(r, 6 * c.i as usize + 3 + s)] += on_i[(r, s)];
+                b[(r, 6 * c.j as usize + 3 + s)] += on_j[(r, s)];
             }
         }
         let spring = DMatrix::from_fn(3, 3, |r, s| spring[(r, s)]);

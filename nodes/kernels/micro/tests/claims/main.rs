@@ -12,4 +12,5 @@ mod lattices;
 mod probe;
 mod reference;
 mod samples;
+mod sizes;
 mod structure;

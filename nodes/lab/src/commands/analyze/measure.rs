@@ -1,6 +1,7 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::commands::packings::Measure;
+use crate::results::doubts::doubts;
 use crate::results::probe::{ProbeView, ScanView};
 use crate::results::state::State;
 use fabric_analyzer::{Measured, messages};
@@ -53,6 +54,7 @@ impl Measure for Analysis {
             state.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
         }
         state.warnings.clone_from(&imported.notes);
+        state.warnings.extend(doubts(packing, &state));
         state.warnings.extend(moduli.err().map(ToString::to_string));
         state.warnings.extend(found.probe.as_ref().and_then(one_sided));
         let messages = messages(&imported.header, packing, found).map_err(|e| named(&e));

@@ -30,6 +30,8 @@ pub(crate) struct Columns {
     /// All 36 entries of a stiffness, row by row. With them C11, C33 and C13 are entries of a matrix and no moduli of a
     /// medium: those are then its projection.
     stiffness: Option<[usize; 36]>,
+    /// Axis that the stiffness is projected about, which moduli, strain ratios and truth are about, too; e3 without.
+    reference_axis: Option<[usize; 3]>,
     /// Whether the moduli are named as those that `grainlab analyze` projects a stiffness on.
     projected: bool,
     theta_printed: Option<usize>,
@@ -97,6 +99,7 @@ impl Columns {
             sigma: find_all(&find, SIGMA_KEYS)?,
             projected: stiffness.is_some() || find("ti_c11_pa")?.is_some(),
             stiffness,
+            reference_axis: axis_columns(&find)?,
             theta_printed: find("theta_printed_pa")?,
             gamma: find("gamma_over_delta")?,
             gamma_sigma: find("gamma_over_delta_sigma")?,
@@ -119,6 +122,18 @@ impl Columns {
     /// Whether a column says what one of these is.
     pub(crate) fn has_truth(&self) -> bool {
         self.truth.iter().any(Option::is_some)
+    }
+}
+
+/// Columns reference_axis_x, _y, _z: all or none.
+fn axis_columns(find: &impl Fn(&str) -> Result<Option<usize>, String>) -> Result<Option<[usize; 3]>, String> {
+    let columns = find_all(find, ["reference_axis_x", "reference_axis_y", "reference_axis_z"])?;
+    match columns {
+        [Some(x), Some(y), Some(z)] => Ok(Some([x, y, z])),
+        [None, None, None] => Ok(None),
+        _ => {
+            Err("columns reference_axis_x, reference_axis_y, reference_axis_z: all three or none".to_owned())
+        }
     }
 }
 

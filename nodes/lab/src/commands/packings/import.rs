@@ -13,7 +13,14 @@ is finished and ends with 130. Formats are told by content: a recording, CSV (p,
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
 (atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
 comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
-from positions, with Hertz normal forces and no tangential ones.";
+from positions, with Hertz normal forces and no tangential ones. The contact forces of a LAMMPS dump come from these lines,
+all of which are needed where there is friction (fx fy fz of granular pair styles is the normal force alone):
+  compute pl all property/local patom1 patom2
+  compute pf all pair/local dist fx fy fz p1 p2 p3
+  dump forces all local 1 forces.dump c_pl[*] c_pf[*]
+  dump_modify forces format float %.17g
+Columns are found by these names, by those of dump_modify colname (patom1 patom2 fx fy fz p1 p2 p3), or by
+--contact-columns.";
 
 /// A flag goes before what a file or its sidecar says.
 #[derive(Debug, clap::Args)]
@@ -39,9 +46,12 @@ pub(crate) struct Args {
     /// Topic that holds the packings: of recordings, or of a live run
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
-    /// LAMMPS `dump local` with the contact forces of a single-frame dump
+    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its columns
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
+    /// Its columns, where they are others: ids, normal force, tangential force (or ids and the whole force)
+    #[arg(long, value_name = "ID,ID,FX,FY,FZ,P1,P2,P3", value_delimiter = ',', requires = "contact_forces")]
+    contact_columns: Vec<String>,
 }
 
 impl Args {
@@ -63,8 +73,8 @@ impl Args {
         };
         let contact_forces = match &self.contact_forces {
             Some(path) => {
-                let text = input::text(path, input::TEXT);
-                Some(text.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?)
+                let text = recordings::import::text(path);
+                Some(text.map_err(|e| Failure::failed(e.to_string()))?)
             }
             None => None,
         };
@@ -77,6 +87,7 @@ impl Args {
             radius: self.radius,
             topic: Some(self.topic.clone()),
             contact_forces,
+            contact_columns: self.contact_columns.clone(),
         })
     }
 }

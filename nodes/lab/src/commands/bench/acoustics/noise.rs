@@ -75,9 +75,8 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
         &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
     )
     .map_err(|e| invalid(&e))?;
-    let affine = analysis.moduli.as_ref().ok().map(|m| m.affine);
-    let truth =
-        Counted { fabric: analysis.fabric.clone(), eps_stiffness: affine.as_ref().and_then(eps_stiffness) };
+    let (fabric, by_stiffness) = (analysis.fabric.clone(), eps_stiffness(&analysis.fabric));
+    let truth = Counted { fabric, eps_stiffness: by_stiffness };
     let header = Default::default();
     let analysed = fabric_analyzer::messages(&header, packing, analysis).map_err(|e| invalid(&e))?;
     let moduli = analysed.moduli.map_err(|e| invalid(&e))?;

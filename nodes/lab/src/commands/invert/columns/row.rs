@@ -4,8 +4,8 @@ use super::Columns;
 use crate::commands::invert::cells::cells;
 use crate::commands::invert::lines::LONGEST;
 use crate::commands::invert::state::State;
-use emt::{Conditions, Measured, Moduli, Observation, Structure};
-use grains::{Anisotropy, Stiffness};
+use emt::{Measured, Moduli, Structure};
+use grains::{Anisotropy, Stiffness, Vec3};
 use std::borrow::Cow;
 
 /// A row that is a state.
@@ -70,7 +70,7 @@ impl Columns {
             Ok(Some(Measured { value, stddev: stddev(sigma)? }))
         };
         let mut state = State::at(Measured { value: pressure, stddev: stddev(self.pressure_sigma)? });
-        (state.moduli, state.asymmetry) = self.moduli(cells, pressure)?;
+        (state.moduli, state.asymmetry) = self.moduli(cells)?;
         for (sigma, column) in state.sigma.iter_mut().zip(self.sigma) {
             *sigma = cells.positive(column)?;
         }
@@ -93,8 +93,9 @@ impl Columns {
         })
     }
 
-    /// Those of the stiffness where it is there and not empty, else the ones given; and what is not isotropic about e3.
-    fn moduli(&self, cells: &Cells<'_>, pressure: f64) -> Result<(Moduli, Option<f64>), String> {
+    /// Those of the stiffness where it is there and not empty, else the ones given; and what is not isotropic about the
+    /// reference axis.
+    fn moduli(&self, cells: &Cells<'_>) -> Result<(Moduli, Option<f64>), String> {
         let given = Moduli::of_values(cells.several(self.moduli)?);
         let Some(stiffness) = &self.stiffness else { return Ok((given, None)) };
         let entries = cells.several(stiffness.map(Some))?;
@@ -107,8 +108,25 @@ impl Columns {
         }
         let entries = entries.map(Option::unwrap_or_default);
         let stiffness = Stiffness::from_row_major(&entries);
-        let observation = Observation::of_stiffness(&stiffness, Conditions::at(pressure));
-        Ok((observation.moduli, observation.asymmetry))
+        let medium = stiffness.transverse_isotropy_about(&self.axis(cells)?);
+        Ok((Moduli::of_medium(&medium), Some(medium.residual)))
+    }
+
+    /// The reference axis, a unit vector; e3 where the row says none.
+    fn axis(&self, cells: &Cells<'_>) -> Result<Vec3, String> {
+        let Some(columns) = self.reference_axis else { return Ok(Vec3::z()) };
+        let axis = cells.several(columns.map(Some))?;
+        if axis == [None; 3] {
+            return Ok(Vec3::z());
+        }
+        let axis = Vec3::from(axis.map(|c| c.unwrap_or(f64::NAN)));
+        // As it is where it is e3: no rounding then.
+        let unit = if axis == Vec3::z() { axis } else { axis.normalize() };
+        if unit.iter().all(|c| c.is_finite()) {
+            Ok(unit)
+        } else {
+            Err("columns reference_axis_x, reference_axis_y, reference_axis_z are no direction".to_owned())
+        }
     }
 }
 
@@ -203,6 +221,17 @@ mod tests {
         assert_eq!(full.moduli, Moduli::of_medium(&medium));
         assert_eq!(full.asymmetry, Some(medium.residual));
         assert_ne!(full.moduli.get(Modulus::C11), Some(300.0));
+
+        // About the axis of the row, which a packing measured about it has in its columns.
+        let axis = "reference_axis_x,reference_axis_y,reference_axis_z";
+        let about = |cells: &str| {
+            state(&format!("p_pa,{},{axis}", matrix_names().join(",")), &format!("5e4,{row},{cells}"))
+        };
+        let turned = Stiffness::from_row_major(&entries).transverse_isotropy_about(&Vec3::x());
+        assert_eq!(about("2,0,0").unwrap().moduli, Moduli::of_medium(&turned));
+        assert_eq!(about("0,0,1").unwrap().moduli, full.moduli);
+        assert_eq!(about(",,").unwrap().moduli, full.moduli);
+        assert!(about("0,0,0").unwrap_err().contains("no direction"));
 
         // One half of it says the same.
         let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();

@@ -1,0 +1,192 @@
+//! Whether the contacts of a packing are those of its positions and radii.
+
+use crate::packing::{Contact, Packing, PackingError};
+
+/// Overlap and normal may differ from those of the positions by this share, and by rounding.
+const SHARE: f64 = 1e-9;
+
+/// Rounding of a distance, in units in the last place of the coordinates.
+const ROUNDING: f64 = 64.0;
+
+/// No contact presses or pulls more than this many times as hard as Hertz's law at its overlap: far more than viscous
+/// forces, another contact law or another material in the same units make of it.
+const HARDEST: f64 = 100.0;
+
+impl Packing {
+    /// The packing itself if its numbers belong together, else the first fault found: ids that are all different, a solid
+    /// fraction of at most 1, overlaps and normals those of positions and radii to 1e-9 and rounding, no contact twice (a
+    /// grain touches an own image on both sides at once, which is one contact), normal forces of at most a hundred times
+    /// Hertz's. The packing is taken to be a [validated](Packing::validated) one. Linear in grains and contacts, but for the
+    /// sorting of ids that are out of order.
+    ///
+    /// Not checked is whether all contacts are listed, nor whether forces balance: a packing in motion is one, too.
+    pub fn consistent(self) -> Result<Self, PackingError> {
+        self.check_ids()?;
+        let solid_fraction = self.solid_fraction();
+        if solid_fraction > 1.0 {
+            let requirement = "at most 1: the spheres do not fit into their cell";
+            return Err(PackingError::Range {
+                field: "solid_fraction",
+                index: 0,
+                value: solid_fraction,
+                requirement,
+            });
+        }
+        let cell = self.cell.matrix().amax();
+        for (index, c) in self.contacts.iter().enumerate() {
+            self.check_contact(index, c, cell)?;
+            // Both names of the contact with an own image are next to each other in the list of that grain.
+            let opposite = c.image.map(|k| k.saturating_neg());
+            if c.i == c.j && opposite < c.image {
+                let own = self.contacts[..index].iter().rev().take_while(|b| b.i == c.i);
+                if own.into_iter().any(|b| b.j == c.j && b.image == opposite) {
+                    return Err(PackingError::ContactOrder { contact: index });
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    fn check_ids(&self) -> Result<(), PackingError> {
+        if self.ids.windows(2).all(|w| w[0] < w[1]) {
+            return Ok(());
+        }
+        let mut order: Vec<u32> = (0..self.ids.len() as u32).collect();
+        order.sort_by_key(|k| (self.ids[*k as usize], *k));
+        match order.windows(2).find(|w| self.ids[w[0] as usize] == self.ids[w[1] as usize]) {
+            Some(w) => {
+                Err(PackingError::DuplicateId { id: self.ids[w[0] as usize], first: w[0], second: w[1] })
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn check_contact(&self, index: usize, c: &Contact, cell: f64) -> Result<(), PackingError> {
+        let (i, j) = (c.i as usize, c.j as usize);
+        let branch = self.branch(c);
+        let distance = branch.norm();
+        let fault = |quantity, given, found| {
+            Err(PackingError::Contradiction { contact: index, i: c.i, j: c.j, quantity, given, found })
+        };
+        let steps = c.image.iter().map(|k| f64::from(k.unsigned_abs())).fold(1.0, f64::max);
+        let largest = self.positions[i].amax() + self.positions[j].amax() + steps * cell;
+        let rounding = ROUNDING * f64::EPSILON * largest;
+        let overlap = self.radii[i] + self.radii[j] - distance;
+        // Written so that NaN, of infinite distances, is a fault.
+        let overlaps = (c.overlap - overlap).abs() <= SHARE * c.overlap + rounding;
+        if !overlaps {
+            return fault("overlap (m)", c.overlap, overlap);
+        }
+        let angle = (c.normal * distance - branch).norm();
+        if angle.is_nan() || angle > SHARE * distance + rounding {
+            return fault("angle of the normal (rad)", angle / distance, 0.0);
+        }
+        let most = HARDEST * self.material.normal_force(self.effective_radius(c), c.overlap);
+        if c.normal_force.abs() > most {
+            return fault("normal force (N), at most a hundred times Hertz's,", c.normal_force, most);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cell, Mat3, Material, Vec3};
+
+    /// Two grains that touch across a face of a sheared cell; the second one also touches its own image.
+    fn pair() -> Packing {
+        let (a, b) = (Vec3::new(0.02, 0.3, 0.4), Vec3::new(0.92, 0.31, 0.42));
+        let cell = Cell::new(Mat3::new(1.0, 0.2, 0.0, 0.0, 0.118, -0.1, 0.0, 0.0, 1.0)).unwrap();
+        let contact = |i: u32, j: u32, image, from: Vec3, to: Vec3, radii: f64| {
+            let branch = to - from + cell.shift(image);
+            let overlap = radii - branch.norm();
+            let normal_force = Material::GLASS.normal_force(0.03, overlap);
+            Contact {
+                i,
+                j,
+                image,
+                overlap,
+                normal: branch.normalize(),
+                normal_force,
+                tangential_force: Vec3::zeros(),
+            }
+        };
+        Packing {
+            step: 0,
+            time: 0.0,
+            cell,
+            deformation: Mat3::identity(),
+            ids: vec![7, 3],
+            radii: vec![0.05, 0.06],
+            positions: vec![a, b],
+            velocities: vec![Vec3::zeros(); 2],
+            spins: vec![Vec3::zeros(); 2],
+            contacts: vec![contact(0, 1, [-1, 0, 0], a, b, 0.11)],
+            material: Material::GLASS,
+            friction: 0.1,
+            time_step: 0.0,
+        }
+    }
+
+    fn fault(change: impl FnOnce(&mut Packing)) -> String {
+        let mut p = pair().validated().unwrap();
+        change(&mut p);
+        p.validated().unwrap().consistent().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_packing_whose_numbers_belong_together_passes() {
+        assert_eq!(pair().consistent(), Ok(pair()));
+        let gas = Packing { contacts: Vec::new(), ..pair() };
+        assert_eq!(gas.clone().consistent(), Ok(gas));
+    }
+
+    #[test]
+    fn what_does_not_belong_together_is_named() {
+        assert!(fault(|p| p.ids[1] = 7).contains("same id 7"));
+        assert!(
+            fault(|p| p.contacts[0].overlap *= 1.0 + 1e-7)
+                .contains("overlap (m) of contact 0, of grains 0 and 1")
+        );
+        assert!(fault(|p| p.positions[1].x -= 1e-7).contains("overlap"));
+        assert!(fault(|p| p.radii[0] *= 1e-3).contains("overlap"));
+        assert!(fault(|p| p.contacts[0].image = [0, 0, 0]).contains("overlap"));
+        assert!(fault(|p| p.contacts[0].normal = -p.contacts[0].normal).contains("normal (rad)"));
+        assert!(fault(|p| p.contacts[0].normal_force *= 1e3).contains("normal force"));
+        assert!(fault(|p| p.radii = vec![0.4, 0.4]).contains("solid_fraction"));
+    }
+
+    /// Cells are narrow in shear, and grains wander.
+    #[test]
+    fn images_and_grains_far_from_the_cell_are_within_rounding() {
+        let mut p = pair();
+        let shift = [3i8, -50, 2];
+        p.positions[0] += p.cell.shift(shift);
+        p.contacts[0].image = [2, -50, 2];
+        assert!(p.consistent().is_ok());
+    }
+
+    #[test]
+    fn a_contact_with_an_own_image_has_one_name() {
+        let mut p = pair();
+        p.cell = Cell::cube(0.1).unwrap();
+        p.radii = vec![0.051];
+        (p.ids, p.positions) = (vec![1], vec![Vec3::zeros()]);
+        (p.velocities, p.spins) = (vec![Vec3::zeros()], vec![Vec3::zeros()]);
+        let own = |k: i8| Contact {
+            i: 0,
+            j: 0,
+            image: [0, 0, k],
+            overlap: 0.102 - 0.1,
+            normal: Vec3::z() * f64::from(k),
+            normal_force: 1.0,
+            tangential_force: Vec3::zeros(),
+        };
+        p.contacts = vec![own(1)];
+        assert!(p.clone().validated().unwrap().consistent().is_ok());
+        p.contacts = vec![own(-1), own(1)];
+        let twice = p.validated().unwrap().consistent();
+        assert_eq!(twice, Err(PackingError::ContactOrder { contact: 1 }));
+    }
+}

@@ -1,0 +1,143 @@
+//! What makes a measured state doubtful, said beside it.
+
+use super::state::State;
+use grains::Packing;
+use recordings::import::contacts;
+use std::collections::BTreeSet;
+
+/// Unbalanced force ratio from which the stiffness of the network is not that of a packing at rest. Packings that have
+/// come to rest are below 1e-3; contact forces that are not those of the positions leave some tenths.
+const RESTLESS: f64 = 0.01;
+
+/// Θ may be below its bound by this share: packings whose stress is not quite isotropic.
+const BELOW: f64 = 1e-3;
+
+/// Every doubt about `packing` and what was measured on it, in words.
+pub(crate) fn doubts(packing: &Packing, state: &State) -> Vec<String> {
+    [restless(state), below_its_bound(state), pulling(packing), missing(packing, state)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn restless(state: &State) -> Option<String> {
+    let unbalanced = state.unbalanced.filter(|u| u.is_nan() || *u > RESTLESS)?;
+    Some(format!(
+        "forces do not balance: the mean net force of a grain is {unbalanced:.2e} of the mean contact force (more than \
+         {RESTLESS}): the packing moves, or contact forces are missing or wrong; stress and stiffness are those of a packing \
+         that is not at rest"
+    ))
+}
+
+fn below_its_bound(state: &State) -> Option<String> {
+    let (theta, bound) = (state.theta_pa?, state.theta_bound_pa?);
+    (theta < bound * (1.0 - BELOW)).then(|| {
+        format!(
+            "Theta {:.4e} Pa is below its lower bound by the forces present, {:.4e} Pa: contacts are missing, or forces are \
+             not those of a packing at rest",
+            theta, bound
+        )
+    })
+}
+
+fn pulling(packing: &Packing) -> Option<String> {
+    let mut pulling = packing.contacts.iter().filter(|c| c.normal_force < 0.0);
+    let first = pulling.next()?;
+    let [i, j] = [first.i, first.j].map(|g| packing.ids[g as usize]);
+    let count = pulling.count() + 1;
+    Some(format!(
+        "{count} contact(s) pull (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"
+    ))
+}
+
+/// Contacts by position that the list lacks; files have said so when they were read.
+fn missing(packing: &Packing, state: &State) -> Option<String> {
+    if state.warnings.iter().any(|w| w.contains("are not listed")) {
+        return None;
+    }
+    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material).ok()?;
+    let listed: BTreeSet<_> = packing.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
+    // Of a contact with an own image, either of the two names may be listed.
+    let has = |c: &grains::Contact| {
+        listed.contains(&(c.i, c.j, c.image))
+            || (c.i == c.j && listed.contains(&(c.i, c.j, c.image.map(|k| k.saturating_neg()))))
+    };
+    // Touching by less than rounding is not a contact.
+    let rounding = 64.0 * f64::EPSILON * packing.cell.matrix().amax();
+    let mut missing = found.iter().filter(|c| c.overlap > rounding && !has(c));
+    let first = missing.next()?;
+    let [i, j] = [first.i, first.j].map(|g| packing.ids[g as usize]);
+    let count = missing.count() + 1;
+    Some(format!(
+        "{count} contact(s) overlap by position but are not listed, the first of grains {i} and {j}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grains::{Cell, Contact, Mat3, Material, Vec3};
+
+    /// A simple cubic lattice of one grain, at rest.
+    fn lattice() -> Packing {
+        let overlap = 2e-4 - (2e-4 - 1e-7);
+        let contact = |axis: usize| {
+            let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+            (image[axis], normal[axis]) = (1, 1.0);
+            let normal_force = Material::GLASS.normal_force(5e-5, overlap);
+            Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+        };
+        Packing {
+            step: 0,
+            time: 0.0,
+            cell: Cell::cube(2e-4 - 1e-7).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![5],
+            radii: vec![1e-4],
+            positions: vec![Vec3::zeros()],
+            velocities: vec![Vec3::zeros()],
+            spins: vec![Vec3::zeros()],
+            contacts: [2, 1, 0].map(contact).to_vec(),
+            material: Material::GLASS,
+            friction: 0.3,
+            time_step: 0.0,
+        }
+    }
+
+    fn said(change: impl FnOnce(&mut Packing)) -> String {
+        let mut packing = lattice();
+        change(&mut packing);
+        let a = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        let state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
+        doubts(&packing, &state).join("; ")
+    }
+
+    #[test]
+    fn nothing_is_doubted_of_a_packing_at_rest() {
+        assert_eq!(said(|_| ()), "");
+    }
+
+    #[test]
+    fn a_contact_that_is_missing_and_one_that_pulls_are_said() {
+        assert!(
+            said(|p| _ = p.contacts.pop()).contains("1 contact(s) overlap by position but are not listed")
+        );
+        let pulls = said(|p| p.contacts[1].normal_force *= -1.0);
+        assert!(pulls.contains("1 contact(s) pull") && pulls.contains("grains 5 and 5"), "{pulls}");
+    }
+
+    #[test]
+    fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_said() {
+        let packing = lattice();
+        let a = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        let mut state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
+        assert_eq!(state.unbalanced, Some(0.0));
+        state.theta_bound_pa = state.theta_pa.map(|t| 1.1 * t);
+        state.unbalanced = Some(0.2);
+        let said = doubts(&packing, &state).join("; ");
+        assert!(
+            said.contains("below its lower bound") && said.contains("2.00e-1 of the mean contact force"),
+            "{said}"
+        );
+    }
+}

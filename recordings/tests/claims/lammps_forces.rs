@@ -1,0 +1,96 @@
+//! Contact forces as LAMMPS dumps them, of a packing that LAMMPS made (`tests/golden/lammps/make.in`).
+
+use grains::stress::stress;
+use grains::{Packing, Vec3};
+use recordings::import::{self, ImportError, ImportOptions, load};
+use std::path::{Path, PathBuf};
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/lammps").join(name)
+}
+
+/// With these contact forces and columns.
+fn options(forces: String, columns: &[&str]) -> ImportOptions {
+    ImportOptions {
+        shear_modulus: Some(29e9),
+        poisson_ratio: Some(0.2),
+        density: Some(2500.0),
+        friction: Some(0.3),
+        contact_forces: Some(forces),
+        contact_columns: columns.iter().map(|c| (*c).to_owned()).collect(),
+        ..ImportOptions::default()
+    }
+}
+
+fn forces() -> String {
+    import::text(&golden("forces.dump.gz")).unwrap()
+}
+
+fn packing(options: &ImportOptions) -> Result<Packing, ImportError> {
+    let imported = load(&golden("grains.dump.gz"), options)?.packings.remove(0);
+    assert!(imported.notes.is_empty(), "{:?}", imported.notes);
+    Ok(imported.packing)
+}
+
+fn problem(options: &ImportOptions) -> String {
+    load(&golden("grains.dump.gz"), options).unwrap_err().to_string()
+}
+
+#[test]
+fn normal_and_tangential_forces_of_lammps_give_its_stress_and_balance_every_grain() {
+    let p = packing(&options(forces(), &[])).unwrap();
+    assert_eq!((p.grains(), p.contacts.len()), (400, 847));
+    let known = std::fs::read_to_string(golden("stress.txt")).unwrap();
+    let known: Vec<f64> = known.split_whitespace().map(|v| v.parse().unwrap()).collect();
+    let s = stress(&p).tensor.voigt();
+    // LAMMPS's order is xx yy zz xy xz yz.
+    for (found, k) in s.into_iter().zip([0, 1, 2, 5, 4, 3]) {
+        assert!((found - known[k]).abs() < 1e-6 * known[0], "{found} {}", known[k]);
+    }
+    let (mut net, mut mean) = (vec![Vec3::zeros(); p.grains()], 0.0);
+    for c in &p.contacts {
+        let on_j = c.normal * c.normal_force - c.tangential_force;
+        net[c.j as usize] += on_j;
+        net[c.i as usize] -= on_j;
+        mean += on_j.norm() / p.contacts.len() as f64;
+    }
+    let worst = net.iter().map(Vec3::norm).fold(0.0, f64::max);
+    assert!(worst < 1e-9 * mean, "{worst:e} of {mean:e}");
+    let limit = p.contacts.iter().map(|c| c.tangential_force.norm() / c.normal_force).fold(0.0, f64::max);
+    assert!((0.25..0.3001).contains(&limit), "{limit}");
+}
+
+#[test]
+fn columns_are_found_by_the_names_given_too() {
+    let expected = packing(&options(forces(), &[])).unwrap();
+    let default = "c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_pf[6] c_pf[7]";
+    let named = forces().replace(default, "patom1 patom2 dist fx fy fz p1 p2 p3");
+    assert_ne!(named, forces());
+    assert_eq!(packing(&options(named, &[])).unwrap(), expected);
+    let other = forces().replace(default, "a b d n1 n2 n3 t1 t2 t3");
+    let columns = ["a", "b", "n1", "n2", "n3", "t1", "t2", "t3"];
+    assert_eq!(packing(&options(other.clone(), &columns)).unwrap(), expected);
+    let wrong = problem(&options(other.clone(), &["a", "b", "n1", "n2", "n3", "t1", "t2", "u"]));
+    assert!(wrong.contains("no column u") && wrong.contains("t3"), "{wrong}");
+    assert!(problem(&options(other, &columns[..4])).contains("five or eight"), "four columns");
+}
+
+/// They are all that `compute pair/local dist fx fy fz` gives of a granular pair style.
+#[test]
+fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named() {
+    let central = ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]"];
+    let with = options(forces(), &central);
+    let error = problem(&with);
+    assert!(error.contains("p1 p2 p3") && error.contains("compute pf all pair/local"), "{error}");
+    let smooth = ImportOptions { friction: Some(0.0), ..with };
+    assert!(packing(&smooth).is_ok());
+}
+
+#[test]
+fn forces_of_another_step_and_cut_files_are_refused() {
+    let later = forces().replacen("TIMESTEP\n1", "TIMESTEP\n9", 1);
+    assert!(problem(&options(later, &[])).contains("same step"), "another step");
+    let text = forces();
+    let cut = text.trim_end().rfind('\n').unwrap();
+    assert!(problem(&options(text[..cut].to_owned(), &[])).contains("cut off"), "a line less");
+}
