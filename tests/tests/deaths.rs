@@ -25,10 +25,23 @@ fn messages(run: &Path) -> usize {
 }
 
 #[test]
-fn the_death_of_the_simulator_ends_the_run_with_exit_code_1_and_a_finished_recording() {
+fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_finished_recording() {
     let lab = Lab::new();
-    let (launcher, simulator) = under_way(&lab, "dem_simulator");
-    send(simulator, libc::SIGKILL);
+    let (launcher, first) = under_way(&lab, "dem_simulator");
+    let mut victim = first;
+    for _ in 0..4 {
+        send(victim, libc::SIGKILL);
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(5) {
+            match children(launcher.pid(), "run dem_simulator").as_slice() {
+                [next] if *next != victim => {
+                    victim = *next;
+                    break;
+                }
+                _ => std::thread::sleep(Duration::from_millis(20)),
+            }
+        }
+    }
     let ended = launcher.ended(LIMIT);
     assert_eq!(ended.code, Some(1), "{}\n{}", ended.stdout, ended.stderr);
     assert!(ended.stderr.contains("dem_simulator"), "{}", ended.stderr);

@@ -27,7 +27,7 @@ fn two_runs_of_one_scene_and_seed_are_byte_identical_and_another_seed_is_not() {
 }
 
 #[test]
-fn deaths_of_servo_analyzer_and_inversion_change_no_byte() {
+fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
     let (quiet, deadly) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&longer_scene(&quiet), &[]);
 
@@ -35,7 +35,7 @@ fn deaths_of_servo_analyzer_and_inversion_change_no_byte() {
     let mut launcher = deadly.start(&["launch", "--scene", &scene.to_string_lossy()]);
     let pid = launcher.pid();
     let mut victims =
-        vec!["servo_controller", "fabric_analyzer", "servo_controller", "emt_inversion", "servo_controller"];
+        vec!["servo_controller", "fabric_analyzer", "dem_simulator", "servo_controller", "emt_inversion", "servo_controller"];
     let begin = Instant::now();
     let mut last_kill = Instant::now();
     while let Some(node) = victims.first() {
@@ -53,4 +53,44 @@ fn deaths_of_servo_analyzer_and_inversion_change_no_byte() {
     let ended = launcher.ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
     assert_same(&expected, &deadly.last_run());
+}
+
+#[test]
+fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
+    let (quiet, broken) = (Lab::new(), Lab::new());
+    let expected = quiet.launch(&longer_scene(&quiet), &[]);
+    for (node, signal) in [("launch", libc::SIGKILL), ("run recorder", libc::SIGKILL), ("run dem_simulator", libc::SIGABRT)] {
+        let scene = longer_scene(&broken);
+        let out = node.replace(' ', "_");
+        let launcher = broken.start(&["launch", "--scene", &scene.to_string_lossy(), "--out", &out]);
+        let run = broken.folder().join(&out).join("tiny-1-1");
+        let begin = Instant::now();
+        while recorded(&run) < 300 {
+            assert!(begin.elapsed() < LIMIT, "{node}: nothing is recorded");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        match node {
+            "launch" => launcher.signal(signal),
+            _ => children(launcher.pid(), node).iter().for_each(|pid| send(*pid, signal)),
+        }
+        let ended = launcher.ended(LIMIT);
+        if node == "run dem_simulator" {
+            // The launcher resumes it by itself.
+            assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+        } else {
+            assert_ne!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+            // Processes whose launcher was killed finish by themselves.
+            std::thread::sleep(Duration::from_secs(3));
+            let resumed = broken.run(&["launch", "--resume", &run.to_string_lossy()]);
+            assert_eq!(resumed.code, Some(0), "{node}\n{}\n{}", resumed.stdout, resumed.stderr);
+        }
+        assert_same(&expected, &run);
+        let again = broken.run(&["launch", "--resume", &run.to_string_lossy()]);
+        assert_eq!(again.code, Some(2), "{}", again.stderr);
+    }
+}
+
+fn recorded(run: &std::path::Path) -> usize {
+    let Ok(recording) = recordings::Recording::open(run) else { return 0 };
+    recording.messages(&recordings::Selection::topics(["/stress"])).map_or(0, Iterator::count)
 }

@@ -2,11 +2,11 @@
 //!
 //! `NODE_KIT_FUZZ=100000` sends so many instead of a few thousand.
 
-use super::rtps::{Datagram, Random, heard, mutated, ports_in_use, send, sniffer};
+use super::flood::{flood, learn, overheard};
+use super::rtps::{Datagram, ports_in_use, send, sniffer};
 use super::{PATIENCE, Role, claim};
 use node_kit::pingpong::bus_ping;
 use node_kit::{DdsBus, Names, Network};
-use rustdds::{DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
@@ -18,76 +18,6 @@ const FEW: usize = 6000;
 
 /// Time in which the victim ends after SIGINT.
 const END: Duration = Duration::from_secs(15);
-
-/// Numbers that a packet may claim.
-const CLAIMS: [i64; 9] = [-1, 0, 1, 2, 300, 1 << 20, 200_000_000, 1 << 40, i64::MAX];
-
-/// Endpoints of the domain, as 12 and 4 bytes.
-type Endpoint = ([u8; 12], [u8; 4]);
-
-/// Readers and writers that discovery shows to anyone.
-fn learn(network: Network) -> (Vec<Endpoint>, Vec<Endpoint>) {
-    let spy = DomainParticipantBuilder::new(network.domain)
-        .with_only_networks([Ipv4Addr::LOCALHOST])
-        .build()
-        .unwrap();
-    let status = spy.status_listener();
-    let (mut readers, mut writers) = (Vec::new(), Vec::new());
-    let split = |guid: rustdds::GUID| {
-        let bytes = guid.to_bytes();
-        (bytes[..12].try_into().unwrap(), bytes[12..].try_into().unwrap())
-    };
-    let start = Instant::now();
-    while start.elapsed() < Duration::from_secs(2) {
-        match status.try_recv_status() {
-            Some(Event::WriterDetected { writer }) => writers.push(split(writer.guid)),
-            Some(Event::ReaderDetected { reader }) => readers.push(split(reader.guid)),
-            Some(_) => {}
-            None => std::thread::sleep(Duration::from_millis(5)),
-        }
-    }
-    let own = spy.guid().to_bytes();
-    writers.retain(|w: &Endpoint| w.0 != own[..12]);
-    readers.retain(|r: &Endpoint| r.0 != own[..12]);
-    // Built-in endpoints have the same identifiers everywhere.
-    for (prefix, _) in writers.clone() {
-        for (writer, reader) in [([0, 0, 3, 0xc2], [0, 0, 3, 0xc7]), ([0, 0, 4, 0xc2], [0, 0, 4, 0xc7])] {
-            writers.push((prefix, writer));
-            readers.push((prefix, reader));
-        }
-        writers.push((prefix, [0, 1, 0, 0xc2]));
-    }
-    (readers, writers)
-}
-
-/// One forged datagram with true identities.
-fn forged(readers: &[Endpoint], writers: &[Endpoint], random: &mut Random) -> Vec<u8> {
-    let (prefix, writer) = random.of(writers);
-    let (reader_prefix, reader) = random.of(readers);
-    let claim = random.of(&CLAIMS);
-    let any = random.next() as i32;
-    let count = random.of(&[1, 7, i32::MAX, any]);
-    let datagram = Datagram::from(&prefix);
-    match random.below(8) {
-        0 => datagram.heartbeat(writer, 1, claim, count),
-        1 => datagram.heartbeat(writer, random.of(&CLAIMS), claim, count),
-        2 => datagram.gap(writer, random.of(&CLAIMS), claim, random.of(&[0, 256, 300])),
-        3 => datagram.data(writer, claim, &[0, 1, 0, 0, 1, 2, 3, 4]),
-        4 => {
-            datagram.data_frag(writer, claim, 1, 1024, random.of(&[1025, 16 << 20, 2_000_000_000, u32::MAX]))
-        }
-        5 => datagram.data_frag(writer, random.next() as i64 >> 40, 1, 1, random.of(&[2, 1 << 24])),
-        6 => Datagram::from(&reader_prefix).acknack(reader, writer, claim, random.of(&[0, 1, 256]), count),
-        _ => Datagram::from(&reader_prefix).nack_frag(
-            reader,
-            writer,
-            random.of(&[1, 2, 3]),
-            claim as u32,
-            count,
-        ),
-    }
-    .0
-}
 
 /// Kilobytes of a line of `/proc/PID/status`.
 fn memory_mb(pid: u32, line: &str) -> u64 {
@@ -112,7 +42,7 @@ fn forged_heartbeats_gaps_and_fragments_cost_no_sample() {
     std::thread::sleep(Duration::from_secs(1));
     let exchanges = bus_ping(&mut partner, 200).unwrap().len();
     assert_eq!(exchanges, 200);
-    let (_, writers) = learn(network);
+    let (_, writers) = learn(network.domain);
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let first = 7400 + 250 * network.domain;
     for port in ports_in_use(first..first + 250) {
@@ -145,38 +75,18 @@ fn mutated_and_forged_datagrams_take_no_memory_and_end_nothing() {
     let datagrams = std::env::var("NODE_KIT_FUZZ").map_or(FEW, |n| n.parse().unwrap());
     let claimed = claim();
     let network = claimed.network();
-    let first = 7400 + 250 * network.domain;
-    let ports = first..first + 250;
-
     let sniffer = sniffer();
     if sniffer.is_none() {
         eprintln!("no right to hear packets: forged datagrams only, no mutated ones");
     }
     let victim = Role::start("victim", network);
     let mut partner = asks(network, "partner");
-    let mut originals = Vec::new();
-    while let Some(datagram) = sniffer.as_ref().and_then(|s| heard(s, ports.clone())) {
-        originals.push(datagram);
-    }
+    let originals = overheard(sniffer.as_ref(), network.domain);
     assert!(sniffer.is_none() || originals.len() > 50, "{} heard", originals.len());
-    let (readers, writers) = learn(network);
+    let (readers, writers) = learn(network.domain);
     assert!(readers.len() > 5 && writers.len() > 5, "{} readers, {} writers", readers.len(), writers.len());
 
-    let targets = ports_in_use(ports);
-    assert!(targets.len() >= 4, "{targets:?}");
-    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-    let random = &mut Random(0x9e37_79b9_7f4a_7c15);
-    for i in 0..datagrams {
-        let datagram = if i % 2 == 0 && !originals.is_empty() {
-            mutated(&originals[random.below(originals.len())], random)
-        } else {
-            forged(&readers, &writers, random)
-        };
-        send(&socket, &datagram, random.of(&targets));
-        if i % 100 == 99 {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
+    flood(network.domain, datagrams, &originals, &readers, &writers);
 
     let pid = victim.child.id();
     let peak = memory_mb(pid, "VmHWM:");

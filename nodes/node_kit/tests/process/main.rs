@@ -3,6 +3,7 @@
 //! A child is this test executable again, running one ignored test named by its role.
 
 mod bystander;
+mod flood;
 mod fuzz;
 mod leaving;
 mod roles;

@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use grains::{Mat3, Vec3};
 use recordings::import::ImportOptions;
-use recordings::input;
 use std::path::PathBuf;
 
 /// Formats, for the help of a command.

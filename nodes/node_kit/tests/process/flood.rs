@@ -1,0 +1,117 @@
+//! A flood of mutated and forged datagrams to every port of a domain of loopback.
+
+use super::rtps::{Datagram, Random, heard, mutated, ports_in_use, send};
+use rustdds::{DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented};
+use std::net::{Ipv4Addr, UdpSocket};
+use std::os::fd::OwnedFd;
+use std::time::{Duration, Instant};
+
+/// Numbers that a packet may claim.
+const CLAIMS: [i64; 9] = [-1, 0, 1, 2, 300, 1 << 20, 200_000_000, 1 << 40, i64::MAX];
+
+/// Endpoints of the domain, as 12 and 4 bytes.
+pub(super) type Endpoint = ([u8; 12], [u8; 4]);
+
+/// Readers and writers of a domain of loopback, as discovery shows them to anyone.
+pub(super) fn learn(domain: u16) -> (Vec<Endpoint>, Vec<Endpoint>) {
+    let spy = DomainParticipantBuilder::new(domain)
+        .with_only_networks([Ipv4Addr::LOCALHOST])
+        .build()
+        .unwrap();
+    let status = spy.status_listener();
+    let (mut readers, mut writers) = (Vec::new(), Vec::new());
+    let split = |guid: rustdds::GUID| {
+        let bytes = guid.to_bytes();
+        (bytes[..12].try_into().unwrap(), bytes[12..].try_into().unwrap())
+    };
+    let start = Instant::now();
+    while start.elapsed() < Duration::from_secs(2) {
+        match status.try_recv_status() {
+            Some(Event::WriterDetected { writer }) => writers.push(split(writer.guid)),
+            Some(Event::ReaderDetected { reader }) => readers.push(split(reader.guid)),
+            Some(_) => {}
+            None => std::thread::sleep(Duration::from_millis(5)),
+        }
+    }
+    let own = spy.guid().to_bytes();
+    writers.retain(|w: &Endpoint| w.0 != own[..12]);
+    readers.retain(|r: &Endpoint| r.0 != own[..12]);
+    // Built-in endpoints have the same identifiers everywhere.
+    for (prefix, _) in writers.clone() {
+        for (writer, reader) in [([0, 0, 3, 0xc2], [0, 0, 3, 0xc7]), ([0, 0, 4, 0xc2], [0, 0, 4, 0xc7])] {
+            writers.push((prefix, writer));
+            readers.push((prefix, reader));
+        }
+        writers.push((prefix, [0, 1, 0, 0xc2]));
+    }
+    (readers, writers)
+}
+
+/// One forged datagram with true identities.
+fn forged(readers: &[Endpoint], writers: &[Endpoint], random: &mut Random) -> Vec<u8> {
+    let (prefix, writer) = random.of(writers);
+    let (reader_prefix, reader) = random.of(readers);
+    let claim = random.of(&CLAIMS);
+    let any = random.next() as i32;
+    let count = random.of(&[1, 7, i32::MAX, any]);
+    let datagram = Datagram::from(&prefix);
+    match random.below(8) {
+        0 => datagram.heartbeat(writer, 1, claim, count),
+        1 => datagram.heartbeat(writer, random.of(&CLAIMS), claim, count),
+        2 => datagram.gap(writer, random.of(&CLAIMS), claim, random.of(&[0, 256, 300])),
+        3 => datagram.data(writer, claim, &[0, 1, 0, 0, 1, 2, 3, 4]),
+        4 => {
+            datagram.data_frag(writer, claim, 1, 1024, random.of(&[1025, 16 << 20, 2_000_000_000, u32::MAX]))
+        }
+        5 => datagram.data_frag(writer, random.next() as i64 >> 40, 1, 1, random.of(&[2, 1 << 24])),
+        6 => Datagram::from(&reader_prefix).acknack(reader, writer, claim, random.of(&[0, 1, 256]), count),
+        _ => Datagram::from(&reader_prefix).nack_frag(
+            reader,
+            writer,
+            random.of(&[1, 2, 3]),
+            claim as u32,
+            count,
+        ),
+    }
+    .0
+}
+
+/// Ports that RTPS gives to a domain.
+fn ports(domain: u16) -> std::ops::Range<u16> {
+    let first = 7400 + 250 * domain;
+    first..first + 250
+}
+
+/// Datagrams that others sent in the domain and that wait in this socket; none without a right to hear them.
+pub(super) fn overheard(sniffer: Option<&OwnedFd>, domain: u16) -> Vec<Vec<u8>> {
+    std::iter::from_fn(|| sniffer.and_then(|s| heard(s, ports(domain)))).collect()
+}
+
+/// Sends so many datagrams, every other one a mutated original where there are any, to the ports in use, some 20,000 a
+/// second.
+///
+/// # Panics
+/// If no port of the domain is in use.
+pub(super) fn flood(
+    domain: u16,
+    datagrams: usize,
+    originals: &[Vec<u8>],
+    readers: &[Endpoint],
+    writers: &[Endpoint],
+) {
+    let targets = ports_in_use(ports(domain));
+    assert!(targets.len() >= 4, "{targets:?}");
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let random = &mut Random(0x9e37_79b9_7f4a_7c15);
+    for i in 0..datagrams {
+        let datagram = if i % 2 == 0 && !originals.is_empty() {
+            mutated(&originals[random.below(originals.len())], random)
+        } else {
+            forged(readers, writers, random)
+        };
+        send(&socket, &datagram, random.of(&targets));
+        if i % 100 == 99 {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
