@@ -218,7 +218,11 @@ impl Ledger {
                 first: s.first(),
                 last: (held > 0).then(|| s.highest()),
                 lost,
-                gaps: s.gaps().filter(|(_, last)| *last >= 0 && *last as u64 > before).take(LISTED_GAPS).collect(),
+                gaps: s
+                    .gaps()
+                    .filter(|(_, last)| *last >= 0 && *last as u64 > before)
+                    .take(LISTED_GAPS)
+                    .collect(),
                 repeated: s.repeated() + writer.same,
             });
         }

@@ -34,8 +34,14 @@ fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
     let scene = longer_scene(&deadly);
     let mut launcher = deadly.start(&["launch", "--scene", &scene.to_string_lossy()]);
     let pid = launcher.pid();
-    let mut victims =
-        vec!["servo_controller", "fabric_analyzer", "dem_simulator", "servo_controller", "emt_inversion", "servo_controller"];
+    let mut victims = vec![
+        "servo_controller",
+        "fabric_analyzer",
+        "dem_simulator",
+        "servo_controller",
+        "emt_inversion",
+        "servo_controller",
+    ];
     let begin = Instant::now();
     let mut last_kill = Instant::now();
     while let Some(node) = victims.first() {
@@ -59,7 +65,9 @@ fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
 fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
     let (quiet, broken) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&longer_scene(&quiet), &[]);
-    for (node, signal) in [("launch", libc::SIGKILL), ("run recorder", libc::SIGKILL), ("run dem_simulator", libc::SIGABRT)] {
+    for (node, signal) in
+        [("launch", libc::SIGKILL), ("run recorder", libc::SIGKILL), ("run dem_simulator", libc::SIGABRT)]
+    {
         let scene = longer_scene(&broken);
         let out = node.replace(' ', "_");
         let launcher = broken.start(&["launch", "--scene", &scene.to_string_lossy(), "--out", &out]);

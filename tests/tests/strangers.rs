@@ -19,7 +19,8 @@ fn strangers(run: &Path) -> Vec<Value> {
 
 /// Messages of strangers that the recorder left out.
 fn ignored(run: &Path) -> u64 {
-    let counts = |s: &Value| s["ignored"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum::<u64>();
+    let counts =
+        |s: &Value| s["ignored"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum::<u64>();
     strangers(run).iter().map(counts).sum()
 }
 
@@ -65,7 +66,15 @@ fn an_inversion_that_was_there_before_the_run_costs_nothing() {
     let scene = golden("scenes/tiny.toml");
     let (quiet, lab) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&scene, &[]);
-    let _idle = lab.start(&["run", "emt_inversion", "--ros-args", "-p", "models:=[ratio]", "-p", "gamma_over_delta:=zero"]);
+    let _idle = lab.start(&[
+        "run",
+        "emt_inversion",
+        "--ros-args",
+        "-p",
+        "models:=[ratio]",
+        "-p",
+        "gamma_over_delta:=zero",
+    ]);
     std::thread::sleep(Duration::from_secs(3));
     for _ in 0..2 {
         let run = lab.launch(&scene, &[]);
@@ -84,7 +93,9 @@ fn two_labs_in_one_domain_each_come_to_their_own_bytes() {
     let first = shared.start(&["launch", "--scene", &path, "--seed", "3", "--out", "a"]);
     std::thread::sleep(Duration::from_millis(300));
     let second = shared.start(&["launch", "--scene", &path, "--seed", "4", "--out", "b"]);
-    for (process, name, expected) in [(first, "a/tiny-3-1", &expected[0]), (second, "b/tiny-4-1", &expected[1])] {
+    for (process, name, expected) in
+        [(first, "a/tiny-3-1", &expected[0]), (second, "b/tiny-4-1", &expected[1])]
+    {
         let ended = process.ended(LIMIT);
         assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
         assert_same(expected, &shared.folder().join(name));
@@ -97,19 +108,38 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
     let path = scene.to_string_lossy();
     let quiet = Lab::new();
     let expected = quiet.launch(&scene, &[]);
-    for (forgery, second) in [(Some(Forgery::EarlyAnswer), false), (Some(Forgery::Packing), false), (None, true)] {
+    for (forgery, second) in
+        [(Some(Forgery::EarlyAnswer), false), (Some(Forgery::Packing), false), (None, true)]
+    {
         let lab = Lab::new();
         let output = format!("output:={}", lab.folder().join("run").display());
         let scene = format!("scene:={path}");
         let mut others = vec![lab.start(&["run", "emt_inversion"]), lab.start(&["run", "fabric_analyzer"])];
         if second {
-            others.push(lab.start(&["run", "emt_inversion", "--ros-args", "-r", "__node:=other", "-p", "models:=[ratio]"]));
+            others.push(lab.start(&[
+                "run",
+                "emt_inversion",
+                "--ros-args",
+                "-r",
+                "__node:=other",
+                "-p",
+                "models:=[ratio]",
+            ]));
         }
         others.push(lab.start(&["run", "servo_controller", "--ros-args", "-p", "min_readers:=2"]));
         let recorder = lab.start(&["run", "recorder", "--ros-args", "-p", &scene, "-p", &output]);
         let wait = "wait_for:=[stress,packing,clock]";
         let simulator = [
-            "run", "dem_simulator", "--ros-args", "-p", &scene, "-p", wait, "-p", "min_readers:=2", "-p",
+            "run",
+            "dem_simulator",
+            "--ros-args",
+            "-p",
+            &scene,
+            "-p",
+            wait,
+            "-p",
+            "min_readers:=2",
+            "-p",
             "exit_when_finished:=true",
         ];
         let simulator = lab.start(&simulator);
@@ -126,7 +156,11 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
         drop(forger);
         if second {
             assert_eq!(recorded.code, Some(1), "{}", recorded.stderr);
-            assert!(recorded.stderr.contains("microstructure") && recorded.stderr.contains("pid"), "{}", recorded.stderr);
+            assert!(
+                recorded.stderr.contains("microstructure") && recorded.stderr.contains("pid"),
+                "{}",
+                recorded.stderr
+            );
         } else if ended.code == Some(0) {
             assert_eq!(recorded.code, Some(0), "{forgery:?} {}", recorded.stderr);
             assert_same(&expected, &lab.folder().join("run"));

@@ -212,7 +212,8 @@ mod tests {
     #[test]
     fn an_answer_heard_before_the_first_request_is_no_answer_to_it() {
         let mut barrier = Barrier::new(&Settings::default());
-        let early = StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
+        let early =
+            StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
         assert_eq!(barrier.hear(&early), Ok(Heard::Stale));
         barrier.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
         assert_eq!(barrier.pass(MS), None);

@@ -35,7 +35,9 @@ impl DemSimulator {
                 Whose::Another { new } => {
                     if new {
                         let servo = bus.describe(info.writer);
-                        log::warn!("a second servo answers, {servo}: the run stays with the one that answered first");
+                        log::warn!(
+                            "a second servo answers, {servo}: the run stays with the one that answered first"
+                        );
                     }
                     continue;
                 }
@@ -53,7 +55,9 @@ impl DemSimulator {
                 Ok(Heard::Contradicts) => {
                     if self.barrier.counts.contradictions.is_power_of_two() {
                         let (sequence, servo) = (message.sequence, bus.describe(info.writer));
-                        log::error!("request {sequence} was answered twice, differently, by {servo}: the first counts");
+                        log::error!(
+                            "request {sequence} was answered twice, differently, by {servo}: the first counts"
+                        );
                     }
                 }
                 Err(error) => {

@@ -41,9 +41,8 @@ pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
     let mut found: Vec<WriterId> = Vec::new();
     for writer in writers {
         let participant = writer.participant();
-        let known = |w: &WriterId| {
-            w.participant() == participant || same_member(&w.participant(), &participant)
-        };
+        let known =
+            |w: &WriterId| w.participant() == participant || same_member(&w.participant(), &participant);
         if !found.iter().any(known) {
             found.push(*writer);
         }

@@ -163,7 +163,8 @@ impl Recorder {
             }
         }
         let begin = if before.is_some() { RunWriter::append } else { RunWriter::create };
-        let mut writer = begin(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        let mut writer =
+            begin(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
         if let Some(scene) = &settings.scene {
             writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
             writer.set_metadata("scene", &scene.scene.name);
@@ -297,12 +298,15 @@ fn author(writer: WriterId) -> u64 {
 
 /// Names a process whose message is left out, once for each kind of message.
 fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Binding) {
-    let first = binding.ignored().get(&who.participant).is_some_and(|topics| topics.get(topic.name) == Some(&1));
+    let first =
+        binding.ignored().get(&who.participant).is_some_and(|topics| topics.get(topic.name) == Some(&1));
     if !first {
         return;
     }
     match outside {
-        Outside::Stranger => log::warn!("{}: {who} is not of this run: what it publishes is left out", topic.name),
+        Outside::Stranger => {
+            log::warn!("{}: {who} is not of this run: what it publishes is left out", topic.name)
+        }
         Outside::Second => log::error!(
             "{}: {who} writes about this run beside the process that was heard first: what it publishes is left out",
             topic.name

@@ -14,7 +14,10 @@ fn two_hundred_runs_under_faults_come_to_the_same_bytes_or_to_an_error() {
     let count = |key: &str| report[key].as_u64().unwrap();
     assert_eq!((count("runs"), count("same") + count("errors")), (200, 200));
     // Faults that never strike would prove nothing, nor would runs that all fail.
-    assert!(count("same") > 100 && count("crashes") > 50 && count("stops") > 50 && count("forged") > 1000, "{text}");
+    assert!(
+        count("same") > 100 && count("crashes") > 50 && count("stops") > 50 && count("forged") > 1000,
+        "{text}"
+    );
 }
 
 #[test]

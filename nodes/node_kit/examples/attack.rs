@@ -1,7 +1,7 @@
 //! A flood of mutated and forged datagrams against whatever runs in a domain of this host's loopback.
 //!
 //! `cargo run --release -p node_kit --example attack -- DOMAIN [COUNT]`, beside `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The
-//! mutated half needs the right to hear packets (root). 
+//! mutated half needs the right to hear packets (root).
 
 #[path = "../tests/process/flood.rs"]
 mod flood;
@@ -13,7 +13,8 @@ use std::time::Duration;
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
-    let number = |text: Option<String>, otherwise: &str| text.unwrap_or(otherwise.to_owned()).parse::<usize>();
+    let number =
+        |text: Option<String>, otherwise: &str| text.unwrap_or(otherwise.to_owned()).parse::<usize>();
     let (Ok(domain), Ok(count)) = (number(arguments.next(), ""), number(arguments.next(), "100000")) else {
         eprintln!("usage: attack DOMAIN [COUNT]");
         std::process::exit(2);

@@ -152,7 +152,8 @@ mod tests {
 
     #[test]
     fn a_member_takes_its_own_run_and_what_the_launcher_started_and_nobody_else() {
-        let (run, other) = (Identity::member_of(RunId::named("a"), 1), Identity::member_of(RunId::named("b"), 1));
+        let (run, other) =
+            (Identity::member_of(RunId::named("a"), 1), Identity::member_of(RunId::named("b"), 1));
         let mut admission = Admission::new(run, run.guid_prefix());
         assert!(admission.admits(&run.guid_prefix()));
         assert!(!admission.admits(&other.guid_prefix()), "another run");

@@ -34,7 +34,9 @@ pub mod worker;
 pub use admission::Stranger;
 pub use args::RosArgs;
 pub use bulk::{BulkPublisher, BulkSubscription};
-pub use bus::{Bus, BusError, Demand, PublisherId, Sample, SampleId, SampleInfo, SubscriptionId, Wake, WriterId};
+pub use bus::{
+    Bus, BusError, Demand, PublisherId, Sample, SampleId, SampleInfo, SubscriptionId, Wake, WriterId,
+};
 pub use dds::{DdsBus, Network};
 pub use diagnostics::Report;
 pub use exit::Exit;

@@ -147,7 +147,10 @@ mod tests {
             received: Vec::new(),
         };
         let writer = WriterId([pid as u8; 16]);
-        (report.to_message(0), SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None })
+        (
+            report.to_message(0),
+            SampleInfo { writer, sequence: 1, source_time: None, received: 0, about: None },
+        )
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! `grainlab launch`: the main job.
 
 use crate::failure::{Failure, worse};
-use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use crate::launch::Run;
+use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use crate::launch::supervisor::{Heard, Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
@@ -66,7 +66,14 @@ pub(crate) struct Args {
 
 impl Default for Args {
     fn default() -> Self {
-        Self { words: Vec::new(), scene: None, seed: None, out: RUNS.into(), resume: None, format: Format::Table }
+        Self {
+            words: Vec::new(),
+            scene: None,
+            seed: None,
+            out: RUNS.into(),
+            resume: None,
+            format: Format::Table,
+        }
     }
 }
 
@@ -144,7 +151,9 @@ fn remove_if_unused(directory: &Path) -> bool {
     let logs = directory.join("logs");
     let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
     let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
-        entries.all(|e| e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs))
+        entries.all(|e| {
+            e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs)
+        })
     });
     let silent = match std::fs::read_dir(&logs) {
         Ok(mut entries) => entries.all(|e| e.as_ref().is_ok_and(empty)),
@@ -217,12 +226,7 @@ fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     Ok(directory)
 }
 
-fn supervise(
-    plans: Vec<NodePlan>,
-    run: Run,
-    directory: &Path,
-    phases: usize,
-) -> Result<Supervised, Failure> {
+fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Supervised, Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
     runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })

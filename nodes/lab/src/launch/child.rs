@@ -58,7 +58,8 @@ impl Child {
         let failed = |e: io::Error| Failure::failed(format!("{}: cannot be started: {e}", self.plan.name));
         let log = open_log(logs, &self.plan.name).map_err(failed)?;
         let ours = self.plan.node.is_some();
-        let program = if ours { std::env::current_exe().map_err(failed)? } else { self.plan.program.clone().into() };
+        let program =
+            if ours { std::env::current_exe().map_err(failed)? } else { self.plan.program.clone().into() };
         let mut command = Command::new(program);
         if ours {
             command.env(VARIABLE, "1");

@@ -100,7 +100,12 @@ pub(crate) struct Heard {
 
 impl Supervisor {
     /// To be made inside the runtime.
-    pub(crate) fn new(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        plans: Vec<NodePlan>,
+        run: Run,
+        directory: &Path,
+        phases: usize,
+    ) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         let debts = Debts::of(&plans);
@@ -267,7 +272,9 @@ impl Supervisor {
                 let data = source.replace('_', " ");
                 self.progress.say(&format!("packing of step {step} measured and inverted, by its {data}"));
             }
-            Event::Stranger(text) => crate::output::say!("grainlab: {text} and is not of this run: it is ignored"),
+            Event::Stranger(text) => {
+                crate::output::say!("grainlab: {text} and is not of this run: it is ignored")
+            }
             Event::Failed(message) => {
                 crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
                 self.blind = true;
@@ -286,7 +293,9 @@ impl Supervisor {
     pub(super) fn look_for_stopped(&mut self) -> bool {
         let changes = self.stopped.look(&self.children);
         for (name, pid) in changes.stopped {
-            self.progress.say(&format!("{name} (pid {pid}) is stopped by a signal: waiting for it (kill -CONT {pid})"));
+            self.progress.say(&format!(
+                "{name} (pid {pid}) is stopped by a signal: waiting for it (kill -CONT {pid})"
+            ));
         }
         for name in changes.resumed {
             self.progress.say(&format!("{name} goes on"));
@@ -356,7 +365,9 @@ impl Supervisor {
         self.deaths.push(packings);
         // It got no further in three attempts: the next one would not, either.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
-            crate::output::say!("grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up");
+            crate::output::say!(
+                "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"
+            );
             self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
@@ -411,7 +422,9 @@ impl Deadline {
                 (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
             }
             Standing::Measured(node) => {
-                let message = format!("what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log");
+                let message = format!(
+                    "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
+                );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
             Standing::Open(node) | Standing::Declined(node) => {

@@ -62,11 +62,7 @@ pub(crate) enum Event {
     /// An acoustic probe measures the packing of this step, which may take long.
     Probing(u64),
     /// The process in this place inferred the microstructure of the packing of this step from data of this topic.
-    Microstructure {
-        source: String,
-        step: u64,
-        member: u8,
-    },
+    Microstructure { source: String, step: u64, member: u8 },
     /// The process of this id sent its last report.
     Goodbye(u32),
     /// The bus is open: what the processes say is heard from now on.
@@ -218,7 +214,9 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
 
 /// Who publishes on the topics of the run and is not of it.
 fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
-    let of = |topic: &Topic| bus.strange_writers(topic).into_iter().map(|w| (topic.name, bus.describe(w))).collect();
+    let of = |topic: &Topic| {
+        bus.strange_writers(topic).into_iter().map(|w| (topic.name, bus.describe(w))).collect()
+    };
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 

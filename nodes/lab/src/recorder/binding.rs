@@ -147,7 +147,11 @@ mod tests {
         let mut takes = |topic, who, about| binding.takes(&topic, &info(who, about), alone);
         assert_eq!(takes(topics::STRESS, 1, None), Ok(()));
         assert_eq!(takes(topics::STRESS, 2, None), Ok(()), "the first one is gone");
-        assert_eq!(takes(topics::STRAIN_RATE, 3, Some(1)), Ok(()), "an answer to the first one is of this run, too");
+        assert_eq!(
+            takes(topics::STRAIN_RATE, 3, Some(1)),
+            Ok(()),
+            "an answer to the first one is of this run, too"
+        );
         assert_eq!(takes(topics::STRAIN_RATE, 4, Some(2)), Ok(()), "and so is its successor's");
     }
 }

@@ -128,9 +128,10 @@ mod tests {
     fn a_request_is_new_once_and_another_of_its_number_is_a_contradiction() {
         let mut repeats = Repeats::default();
         let mut enter = |sequence, step| repeats.enter(&topics::STRESS, 1, &stress(sequence, step));
-        assert_eq!([enter(0, 0), enter(1, 5), enter(0, 0), enter(1, 5)].map(|n| n == Novelty::New), [
-            true, true, false, false
-        ]);
+        assert_eq!(
+            [enter(0, 0), enter(1, 5), enter(0, 0), enter(1, 5)].map(|n| n == Novelty::New),
+            [true, true, false, false]
+        );
         assert_eq!(enter(1, 6), Novelty::Contradiction { sequence: 1 });
         assert_eq!(enter(2, 10), Novelty::New);
     }

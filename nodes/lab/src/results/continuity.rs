@@ -6,13 +6,16 @@ use recordings::{ReadError, Recording, Selection};
 
 /// What is missing of a finished run, a line for each topic.
 pub(crate) fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
-    let stress = numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;
-    let rates =
-        numbers(recording, topics::STRAIN_RATE.name, |body| from_cdr::<StrainRate>(body).ok().map(|m| m.sequence))?;
+    let stress =
+        numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;
+    let rates = numbers(recording, topics::STRAIN_RATE.name, |body| {
+        from_cdr::<StrainRate>(body).ok().map(|m| m.sequence)
+    })?;
     let exchanges = stress.iter().chain(&rates).max().map_or(0, |last| last + 1);
     let line = |(topic, known): (&str, &[u64])| {
         let lacking = exchanges - known.len() as u64;
-        (lacking > 0).then(|| format!("{lacking} of {exchanges} messages of {topic} are not in the recording"))
+        (lacking > 0)
+            .then(|| format!("{lacking} of {exchanges} messages of {topic} are not in the recording"))
     };
     let topics = [(topics::STRESS.name, stress.as_slice()), (topics::STRAIN_RATE.name, rates.as_slice())];
     Ok(topics.into_iter().filter_map(line).collect())
@@ -25,7 +28,8 @@ fn numbers(
     number: impl Fn(&[u8]) -> Option<u64>,
 ) -> Result<Vec<u64>, ReadError> {
     let channels = recording.channels();
-    let of_topic = channels.iter().filter(|c| c.topic.rsplit('/').next() == Some(name)).map(|c| c.topic.clone());
+    let of_topic =
+        channels.iter().filter(|c| c.topic.rsplit('/').next() == Some(name)).map(|c| c.topic.clone());
     let messages = recording.messages(&Selection::topics(of_topic))?;
     let mut numbers: Vec<u64> = messages.filter_map(|m| number(&m.payload)).collect();
     numbers.sort_unstable();

@@ -1,7 +1,7 @@
 //! Who was on the bus beside the run, and who wrote which result.
 
 use node_kit::Stranger;
-use recordings::{Guid, Recording, METADATA_RECORD};
+use recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -36,7 +36,6 @@ pub(crate) fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<Stranger
 }
 
 impl StrangerView {
-
     /// For people.
     pub(crate) fn line(&self) -> String {
         let counts: Vec<String> = self.ignored.iter().map(|(topic, n)| format!("{n} on {topic}")).collect();

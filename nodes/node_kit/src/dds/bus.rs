@@ -22,8 +22,9 @@ use rustdds::dds::WriteError;
 use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
 use rustdds::no_key::DataWriter;
 use rustdds::{
-    DomainParticipant, DomainParticipantStatusEvent, DomainParticipantStatusListener, GUID, GuidPrefix, QosPolicyBuilder, RTPSEntity,
-    SampleIdentity, SequenceNumber, StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
+    DomainParticipant, DomainParticipantStatusEvent, DomainParticipantStatusListener, GUID, GuidPrefix,
+    QosPolicyBuilder, RTPSEntity, SampleIdentity, SequenceNumber, StatusEvented, Timestamp, TopicKind,
+    WriteOptionsBuilder,
 };
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -410,7 +411,9 @@ impl Bus for DdsBus {
     }
 
     fn readers(&self, publisher: PublisherId) -> usize {
-        self.writers.get(publisher.0).map_or(0, |w| self.graph.matches_of(w.guid, |guid| self.gate.admits(guid)))
+        self.writers
+            .get(publisher.0)
+            .map_or(0, |w| self.graph.matches_of(w.guid, |guid| self.gate.admits(guid)))
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {

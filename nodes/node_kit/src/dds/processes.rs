@@ -41,7 +41,9 @@ fn owner_of(inode: u64) -> Option<u32> {
     let link = format!("socket:[{inode}]");
     let holds = |directory: &Path| {
         let descriptors = fs::read_dir(directory.join("fd")).into_iter().flatten().flatten();
-        descriptors.into_iter().any(|fd| fs::read_link(fd.path()).is_ok_and(|l| l.as_os_str() == link.as_str()))
+        descriptors
+            .into_iter()
+            .any(|fd| fs::read_link(fd.path()).is_ok_and(|l| l.as_os_str() == link.as_str()))
     };
     let processes = fs::read_dir("/proc").ok()?.flatten();
     processes

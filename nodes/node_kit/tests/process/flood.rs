@@ -14,10 +14,8 @@ pub(super) type Endpoint = ([u8; 12], [u8; 4]);
 
 /// Readers and writers of a domain of loopback, as discovery shows them to anyone.
 pub(super) fn learn(domain: u16) -> (Vec<Endpoint>, Vec<Endpoint>) {
-    let spy = DomainParticipantBuilder::new(domain)
-        .with_only_networks([Ipv4Addr::LOCALHOST])
-        .build()
-        .unwrap();
+    let spy =
+        DomainParticipantBuilder::new(domain).with_only_networks([Ipv4Addr::LOCALHOST]).build().unwrap();
     let status = spy.status_listener();
     let (mut readers, mut writers) = (Vec::new(), Vec::new());
     let split = |guid: rustdds::GUID| {

@@ -4,8 +4,8 @@ use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
 use node_kit::pingpong::{bus_listen, bus_pong};
 use node_kit::{
-    Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs, Scope,
-    Subscription, SubscriptionId, run_node,
+    Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs,
+    Scope, Subscription, SubscriptionId, run_node,
 };
 use std::time::Duration;
 
@@ -124,7 +124,8 @@ fn panicking_node() {
             Health::default()
         }
     }
-    let spec = NodeSpec { name: "panicking", summary: "panics", scope: Scope::Everyone, parameters: Vec::new() };
+    let spec =
+        NodeSpec { name: "panicking", summary: "panics", scope: Scope::Everyone, parameters: Vec::new() };
     let exit = run_node(&spec, &RosArgs::default(), |_, _| Ok(Box::new(Panics)));
     std::process::exit(i32::from(exit.code()))
 }
@@ -185,7 +186,8 @@ fn victim() {
     if !is_child() {
         return;
     }
-    let spec = NodeSpec { name: "victim", summary: "answers", scope: Scope::Everyone, parameters: Vec::new() };
+    let spec =
+        NodeSpec { name: "victim", summary: "answers", scope: Scope::Everyone, parameters: Vec::new() };
     let exit = run_node(&spec, &RosArgs::default(), |bus, _| {
         let rate = Publisher::advertise(bus, &topics::STRAIN_RATE)?;
         let stress = Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(64))?;

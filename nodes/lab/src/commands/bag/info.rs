@@ -2,11 +2,11 @@
 
 use crate::failure::Failure;
 use crate::output::{Format, Table, json, print};
-use node_kit::Exit;
 use crate::results::strangers::{self, StrangerView};
+use node_kit::Exit;
+use recordings::reader::Info;
 use recordings::{METADATA_RECORD, Recording};
 use serde::Serialize;
-use recordings::reader::Info;
 use std::path::PathBuf;
 
 /// Which recording.

@@ -33,7 +33,10 @@ impl Order {
     pub(super) fn read(directory: &Path) -> Result<Self, Failure> {
         let path = directory.join(FILE);
         let failed = |e: &dyn std::fmt::Display| {
-            Failure::failed(format!("{}: {e}: only a run that `grainlab launch` began can be resumed", path.display()))
+            Failure::failed(format!(
+                "{}: {e}: only a run that `grainlab launch` began can be resumed",
+                path.display()
+            ))
         };
         let text = input::text(&path, input::SETTINGS).map_err(|e| failed(&e))?;
         serde_json::from_str(&text).map_err(|e| failed(&e))
@@ -68,7 +71,10 @@ mod tests {
         assert_eq!(known, order);
         let plans = known.plans(directory.path()).unwrap();
         let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
-        assert!(simulator.arguments.contains(&"simd:=scalar".to_owned()) && simulator.arguments.contains(&"seed:=7".to_owned()));
+        assert!(
+            simulator.arguments.contains(&"simd:=scalar".to_owned())
+                && simulator.arguments.contains(&"seed:=7".to_owned())
+        );
         let elsewhere = tempfile::tempdir().unwrap();
         assert!(Order::read(elsewhere.path()).unwrap_err().to_string().contains("can be resumed"));
     }

@@ -51,7 +51,8 @@ fn is_finished(recording: &Recording) -> bool {
         messages.last().map(|m| m.payload.to_vec())
     };
     let state = last(topics::RUN_STATE.name).and_then(|body| from_cdr::<msg::RunState>(&body).ok());
-    let found = last(topics::MICROSTRUCTURE.name).and_then(|body| from_cdr::<msg::Microstructure>(&body).ok());
+    let found =
+        last(topics::MICROSTRUCTURE.name).and_then(|body| from_cdr::<msg::Microstructure>(&body).ok());
     let done = state.filter(|s| s.state == msg::RunState::FINISHED).map(|s| s.last_packing_step);
     done.is_some() && done == found.map(|m| m.source_step)
 }

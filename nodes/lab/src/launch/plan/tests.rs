@@ -26,7 +26,11 @@ fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
         assert_eq!(names, expected);
         let same = nodes(DEFAULT, &[("scene", scene)]).unwrap();
         assert_eq!(plans, same, "{scene}");
-        assert!(plans.iter().all(|p| p.respawn != ["recorder", "dem_simulator"].contains(&p.node.as_deref().unwrap())));
+        assert!(
+            plans
+                .iter()
+                .all(|p| p.respawn != ["recorder", "dem_simulator"].contains(&p.node.as_deref().unwrap()))
+        );
     }
 }
 
@@ -101,12 +105,19 @@ fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
 
 #[test]
 fn a_program_that_is_not_ours_is_started_with_its_arguments_and_named_after_itself() {
-    let more = DEFAULT.to_owned() + "- executable: {cmd: python3 tools/instrument.py --rate 2}\n- executable: {cmd: /opt/x/probe.sh, name: probe}\n";
+    let more = DEFAULT.to_owned()
+        + "- executable: {cmd: python3 tools/instrument.py --rate 2}\n- executable: {cmd: /opt/x/probe.sh, name: probe}\n";
     let plans = nodes(&more, &[]).unwrap();
     let [.., instrument, probe] = plans.as_slice() else { panic!("{} plans", plans.len()) };
     assert_eq!((instrument.node.as_deref(), instrument.name.as_str()), (None, "python3"));
-    assert_eq!((instrument.program.as_str(), instrument.arguments.join(" ").as_str()), ("python3", "tools/instrument.py --rate 2"));
-    assert_eq!((probe.node.as_deref(), probe.name.as_str(), probe.program.as_str()), (None, "probe", "/opt/x/probe.sh"));
+    assert_eq!(
+        (instrument.program.as_str(), instrument.arguments.join(" ").as_str()),
+        ("python3", "tools/instrument.py --rate 2")
+    );
+    assert_eq!(
+        (probe.node.as_deref(), probe.name.as_str(), probe.program.as_str()),
+        (None, "probe", "/opt/x/probe.sh")
+    );
 }
 
 #[test]

@@ -231,7 +231,10 @@ impl Laboratory<'_> {
             }
             Event::Stop(kind, time) => {
                 self.done.stops += 1;
-                self.processes.iter_mut().filter(|p| p.kind == kind).for_each(|p| p.stopped_until = now + time);
+                self.processes
+                    .iter_mut()
+                    .filter(|p| p.kind == kind)
+                    .for_each(|p| p.stopped_until = now + time);
                 Ok(())
             }
             Event::Suspend(time) => {

@@ -47,7 +47,9 @@ impl Record {
 
     /// Whether the path is done and its last packing is inverted.
     pub(super) fn is_complete(&self) -> bool {
-        let Some(state) = self.state.as_ref().filter(|s| s.status == RunStatus::Finished) else { return false };
+        let Some(state) = self.state.as_ref().filter(|s| s.status == RunStatus::Finished) else {
+            return false;
+        };
         let Some(step) = state.last_packing_step else { return true };
         let found = self.bodies.get(topics::MICROSTRUCTURE.name).into_iter().flatten();
         found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
@@ -65,8 +67,11 @@ impl Record {
         let found = steps(&topics::MICROSTRUCTURE, |b| {
             from_cdr::<msg::Microstructure>(b).ok().map(|m| m.source_step)
         });
-        let packing = packings.difference(&fabrics).next().map(|s| format!("the packing of step {s} was not analysed"));
-        packing.or_else(|| moduli.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted")))
+        let packing =
+            packings.difference(&fabrics).next().map(|s| format!("the packing of step {s} was not analysed"));
+        packing.or_else(|| {
+            moduli.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted"))
+        })
     }
 
     /// The first topic on which two records differ. Requests and answers have an order; results come when they come.

@@ -4,7 +4,9 @@ use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
 use node_kit::memory::Dice;
-use node_kit::{Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId};
+use node_kit::{
+    Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
+};
 use std::time::Duration;
 
 /// What is forged.
