@@ -91,9 +91,10 @@ impl Admission {
             return true;
         }
         match (self.identity.run, run_of(participant)) {
-            (own, Some(run)) => own == Some(run),
-            (None, None) => true,
-            (Some(_), None) => self.processes.get(participant).is_some_and(|p| p.below_root),
+            (Some(own), Some(run)) if run == own => true,
+            // What another launcher started is below a root of its own.
+            (Some(_), _) => self.processes.get(participant).is_some_and(|p| p.below_root),
+            (None, run) => run.is_none(),
         }
     }
 

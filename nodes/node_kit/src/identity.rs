@@ -127,18 +127,27 @@ impl Identity {
         Self { run: Some(run), member, root: None, scope: Scope::OwnRun }
     }
 
-    /// A GUID prefix for a participant of this process: vendor, run, member, and random bytes that differ at each start.
+    /// A GUID prefix for a participant of this process: vendor, run, member, two random bytes that differ at each start, and
+    /// a check byte. Without a run: vendor, zero, and nine random bytes.
     pub fn guid_prefix(&self) -> [u8; 12] {
+        let chance = [random(), random()].map(u64::to_le_bytes).concat();
+        let mut bytes = [0; 9];
+        bytes.copy_from_slice(&chance[..9]);
+        self.guid_prefix_with(bytes)
+    }
+
+    /// The same with these bytes in place of random ones; a member of a run takes two of them.
+    pub(crate) fn guid_prefix_with(&self, chance: [u8; 9]) -> [u8; 12] {
         let mut prefix = [0; 12];
         prefix[..2].copy_from_slice(&VENDOR);
-        let chance = [random(), random()].map(u64::to_le_bytes).concat();
         match self.run {
             Some(run) => {
                 prefix[2..8].copy_from_slice(&run.0);
                 prefix[8] = self.member;
-                prefix[9..].copy_from_slice(&chance[..3]);
+                prefix[9..11].copy_from_slice(&chance[7..]);
+                prefix[11] = check(&prefix);
             }
-            None => prefix[3..].copy_from_slice(&chance[..9]),
+            None => prefix[3..].copy_from_slice(&chance),
         }
         prefix
     }
@@ -146,11 +155,17 @@ impl Identity {
 
 /// The run that a participant of this laboratory says it belongs to; `None` if it says none, or is of other software.
 pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
-    (prefix[..2] == VENDOR && prefix[2] != 0).then(|| {
+    // Other programs with RustDDS have random bytes there.
+    (prefix[..2] == VENDOR && prefix[2] != 0 && prefix[11] == check(prefix)).then(|| {
         let mut bytes = [0; 6];
         bytes.copy_from_slice(&prefix[2..8]);
         RunId(bytes)
     })
+}
+
+/// A byte that follows from the eleven before it.
+fn check(prefix: &[u8; 12]) -> u8 {
+    fnv1a(&prefix[..11]) as u8
 }
 
 /// The place of a participant in its run.
@@ -188,6 +203,8 @@ mod tests {
         }
         assert_eq!(run_of(&Identity::default().guid_prefix()), None);
         assert_eq!(run_of(&[0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]), None, "another vendor's");
+        let random = (0..=255).map(|last| [0x01, 0x12, 9, 9, 9, 9, 9, 9, 1, 1, 1, last]);
+        assert_eq!(random.filter(|prefix| run_of(prefix).is_some()).count(), 1, "other software with RustDDS");
     }
 
     #[test]

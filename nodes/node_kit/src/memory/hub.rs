@@ -117,12 +117,9 @@ impl Hub {
 
 /// The GUID prefix of the participant that came as the `number`th: as on the real bus, but without chance.
 fn participant_of(identity: &Identity, number: u32) -> Participant {
-    let mut prefix = identity.guid_prefix();
-    if identity.run.is_none() {
-        prefix[3..9].fill(0);
-    }
-    prefix[9..].copy_from_slice(&number.to_be_bytes()[1..]);
-    prefix
+    let mut bytes = [0; 9];
+    bytes[5..].copy_from_slice(&number.to_be_bytes());
+    identity.guid_prefix_with(bytes)
 }
 
 /// The GUID of a participant's endpoint.
