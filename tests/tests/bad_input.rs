@@ -87,17 +87,19 @@ fn a_truncated_recording_is_read_as_far_as_it_goes_with_exit_code_3() {
 }
 
 #[test]
-fn a_second_simulator_on_the_same_topic_is_refused_and_harms_nothing() {
+fn by_hand_a_second_simulator_on_the_same_topic_is_refused_and_a_launched_one_does_not_count() {
     let lab = Lab::new();
     let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     lab.until_recorded(200);
-    let second = golden("scenes/tiny.toml");
-    let parameter = format!("scene:={}", second.display());
-    refused(&lab, &["run", "dem_simulator", "--ros-args", "-p", &parameter], 1, &["stress", "ROS_DOMAIN_ID"]);
-    // Nor does a second launcher in the same domain start anything, or take that run for its own.
-    refused(&lab, &["launch", "--scene", "demo"], 1, &["already under way", "ROS_DOMAIN_ID"]);
+    let parameter = format!("scene:={}", golden("scenes/tiny.toml").display());
+    let by_hand = ["run", "dem_simulator", "--ros-args", "-p", &parameter];
+    let first = lab.start(&by_hand);
+    std::thread::sleep(std::time::Duration::from_secs(3));
+    refused(&lab, &by_hand, 1, &["stress", "ROS_DOMAIN_ID"]);
+    first.signal(libc::SIGINT);
+    assert_eq!(first.ended(LIMIT).code, Some(130), "the first one was waiting for a servo");
     launcher.signal(libc::SIGINT);
-    assert_eq!(launcher.ended(LIMIT).code, Some(130), "the first run was still going");
+    assert_eq!(launcher.ended(LIMIT).code, Some(130), "the launched run was still going");
 }
 
 #[test]

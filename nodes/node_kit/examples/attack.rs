@@ -20,7 +20,7 @@ fn main() {
         std::process::exit(2);
     };
     let domain = domain as u16;
-    let sniffer = rtps::sniffer();
+    let sniffer = rtps::sniffer(flood::ports(domain));
     std::thread::sleep(Duration::from_secs(2));
     let originals = flood::overheard(sniffer.as_ref(), domain);
     let (readers, writers) = flood::learn(domain);

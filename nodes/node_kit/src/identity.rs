@@ -204,7 +204,11 @@ mod tests {
         assert_eq!(run_of(&Identity::default().guid_prefix()), None);
         assert_eq!(run_of(&[0x01, 0x10, 9, 9, 9, 9, 9, 9, 1, 1, 1, 1]), None, "another vendor's");
         let random = (0..=255).map(|last| [0x01, 0x12, 9, 9, 9, 9, 9, 9, 1, 1, 1, last]);
-        assert_eq!(random.filter(|prefix| run_of(prefix).is_some()).count(), 1, "other software with RustDDS");
+        assert_eq!(
+            random.filter(|prefix| run_of(prefix).is_some()).count(),
+            1,
+            "other software with RustDDS"
+        );
     }
 
     #[test]

@@ -93,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         seed: scene.scene.seed,
     };
     // All that can be refused is refused before the run has a directory.
-    refuse_unknown_nodes(&order(given.clone()).plans(Path::new("."))?)?;
+    refuse_unknown(&order(given.clone()).plans(Path::new("."))?)?;
     let (domain, lock) = domain()?;
     let directory = run_directory(&args.out, &scene)?;
     let order = order(given);
@@ -131,18 +131,39 @@ fn conduct(
     finish(format, directory, scene, run, supervised)
 }
 
-/// A launch file that names a node that does not exist would end in the midst of its start.
-fn refuse_unknown_nodes(plans: &[NodePlan]) -> Result<(), Failure> {
+/// A launch file that names a node or a program that does not exist would end in the midst of its start.
+fn refuse_unknown(plans: &[NodePlan]) -> Result<(), Failure> {
     let known: Vec<&str> = crate::commands::run::nodes().iter().map(|n| n.name).collect();
-    let unknown = |plan: &&NodePlan| plan.node.as_deref().is_some_and(|node| !known.contains(&node));
-    match plans.iter().find(unknown) {
-        Some(plan) => {
-            let (name, node) = (&plan.name, plan.node.as_deref().unwrap_or_default());
-            let known = known.join(", ");
-            Err(Failure::usage(format!("executable {name}: there is no node {node:?}; there are: {known}")))
+    for plan in plans {
+        let name = &plan.name;
+        match plan.node.as_deref() {
+            Some(node) if !known.contains(&node) => {
+                let known = known.join(", ");
+                let message = format!("executable {name}: there is no node {node:?}; there are: {known}");
+                return Err(Failure::usage(message));
+            }
+            None if !is_program(&plan.program) => {
+                let program = &plan.program;
+                let message =
+                    format!("executable {name}: there is no program {program:?}, here or on the PATH");
+                return Err(Failure::usage(message));
+            }
+            _ => {}
         }
-        None => Ok(()),
     }
+    Ok(())
+}
+
+/// Whether a command of this name could be started: a path to an executable file, or the name of one on the PATH.
+fn is_program(name: &str) -> bool {
+    use std::os::unix::fs::PermissionsExt;
+    let executable =
+        |path: &Path| path.metadata().is_ok_and(|m| m.is_file() && m.permissions().mode() & 0o111 != 0);
+    if name.contains('/') {
+        return executable(Path::new(name));
+    }
+    std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|d| executable(&d.join(name))))
 }
 
 /// Removes the directory of a run that did not start: nothing but the scene, and logs without a word, is in it. False if

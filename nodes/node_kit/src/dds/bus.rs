@@ -5,7 +5,8 @@ use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
 use super::presence::Presence;
-use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
+use super::raw::{RawAdapter, RawPayload};
+use super::writer::Writer;
 use super::{Network, create_error, qos};
 use crate::admission::Stranger;
 use crate::bus::{
@@ -17,14 +18,11 @@ use crate::names::Names;
 use crate::signals::Signals;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
-use rustdds::bytes::Bytes;
-use rustdds::dds::WriteError;
 use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
 use rustdds::no_key::DataWriter;
 use rustdds::{
     DomainParticipant, DomainParticipantStatusEvent, DomainParticipantStatusListener, GUID, GuidPrefix,
-    QosPolicyBuilder, RTPSEntity, SampleIdentity, SequenceNumber, StatusEvented, Timestamp, TopicKind,
-    WriteOptionsBuilder,
+    QosPolicyBuilder, RTPSEntity, StatusEvented, TopicKind,
 };
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,18 +33,6 @@ const SIGNALS: Token = Token(0);
 const STATUS: Token = Token(1);
 const WAKER: Token = Token(2);
 const FIRST_READER: usize = 3;
-
-/// One writer of ours.
-struct Writer {
-    data: DataWriter<RawPayload, RawAdapter>,
-    guid: GUID,
-    topic: String,
-    window: u32,
-    count: u64,
-    full: u64,
-    /// Messages of other topics that were sent in parts.
-    wholes: BTreeMap<String, u64>,
-}
 
 /// One reader of ours, as the waiting thread knows it.
 struct Reader {
@@ -294,17 +280,8 @@ impl Bus for DdsBus {
             .publisher
             .create_datawriter_no_key(&dds_topic, Some(qos::offered(topic)))
             .map_err(|e| create_error(&resolved, &e))?;
-        let guid = data.guid();
-        self.presence.add_writer(guid);
-        self.writers.push(Writer {
-            data,
-            guid,
-            topic: resolved,
-            window: qos::window(topic),
-            count: 0,
-            full: 0,
-            wholes: BTreeMap::new(),
-        });
+        self.presence.add_writer(data.guid());
+        self.writers.push(Writer::new(data, resolved, qos::window(topic)));
         Ok(PublisherId(self.writers.len() - 1))
     }
 
@@ -323,42 +300,10 @@ impl Bus for DdsBus {
         about: Option<SampleId>,
     ) -> Result<i64, BusError> {
         let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
-        if body.len() < HEADER || body[..2] != CDR_LE {
-            let found = body[..body.len().min(HEADER)].to_vec();
-            return Err(BusError::Encapsulation { topic: writer.topic.clone(), found });
-        }
-        let payload = RawPayload(Bytes::copy_from_slice(&body[HEADER..]));
-        let related = about.map(|sample| SampleIdentity {
-            writer_guid: GUID::from_bytes(sample.writer.0),
-            sequence_number: SequenceNumber::from(sample.sequence),
-        });
-        let options = WriteOptionsBuilder::new()
-            .source_timestamp(Timestamp::now())
-            .related_sample_identity_opt(related)
-            .build();
-        match writer.data.write_with_options(payload, options) {
-            Ok(identity) => {
-                writer.count += 1;
-                let sequence = i64::from(identity.sequence_number);
-                let (topic, writer) = (writer.topic.clone(), WriterId(writer.guid.to_bytes()));
-                self.echo(&topic, SampleId { writer, sequence }, about, body);
-                Ok(sequence)
-            }
-            Err(WriteError::WouldBlock { .. }) => {
-                writer.full += 1;
-                Err(BusError::Full { topic: writer.topic.clone(), window: writer.window })
-            }
-            Err(error) => Err(BusError::Network {
-                what: format!("publish {}", writer.topic),
-                reason: match error {
-                    WriteError::Serialization { reason, .. }
-                    | WriteError::Poisoned { reason, .. }
-                    | WriteError::Internal { reason, .. } => reason,
-                    WriteError::WouldBlock { .. } => "window full".into(),
-                    WriteError::Io(error) => error.to_string(),
-                },
-            }),
-        }
+        let sequence = writer.write(body, about)?;
+        let (topic, writer) = (writer.topic.clone(), writer.id());
+        self.echo(&topic, SampleId { writer, sequence }, about, body);
+        Ok(sequence)
     }
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
@@ -443,18 +388,7 @@ impl Bus for DdsBus {
     }
 
     fn published(&self) -> Vec<Published> {
-        let of = |w: &Writer| {
-            let writer = WriterId(w.guid.to_bytes());
-            let whole = move |(topic, count): (&String, &u64)| Published {
-                topic: topic.clone(),
-                writer,
-                count: *count,
-                full: 0,
-            };
-            let own = Published { topic: w.topic.clone(), writer, count: w.count, full: w.full };
-            w.wholes.iter().map(whole).chain([own]).collect::<Vec<_>>()
-        };
-        self.writers.iter().flat_map(of).collect()
+        self.writers.iter().flat_map(Writer::published).collect()
     }
 
     fn received(&self) -> Vec<Received> {

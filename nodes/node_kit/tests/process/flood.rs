@@ -75,7 +75,7 @@ fn forged(readers: &[Endpoint], writers: &[Endpoint], random: &mut Random) -> Ve
 }
 
 /// Ports that RTPS gives to a domain.
-fn ports(domain: u16) -> std::ops::Range<u16> {
+pub(super) fn ports(domain: u16) -> std::ops::Range<u16> {
     let first = 7400 + 250 * domain;
     first..first + 250
 }

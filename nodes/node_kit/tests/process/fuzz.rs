@@ -2,7 +2,7 @@
 //!
 //! `NODE_KIT_FUZZ=100000` sends so many instead of a few thousand.
 
-use super::flood::{flood, learn, overheard};
+use super::flood::{flood, learn, overheard, ports};
 use super::rtps::{Datagram, ports_in_use, send, sniffer};
 use super::{PATIENCE, Role, claim};
 use node_kit::pingpong::bus_ping;
@@ -75,7 +75,7 @@ fn mutated_and_forged_datagrams_take_no_memory_and_end_nothing() {
     let datagrams = std::env::var("NODE_KIT_FUZZ").map_or(FEW, |n| n.parse().unwrap());
     let claimed = claim();
     let network = claimed.network();
-    let sniffer = sniffer();
+    let sniffer = sniffer(ports(network.domain));
     if sniffer.is_none() {
         eprintln!("no right to hear packets: forged datagrams only, no mutated ones");
     }

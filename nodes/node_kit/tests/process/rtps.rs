@@ -135,13 +135,43 @@ pub(super) fn mutated(original: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// Hears what others send over loopback; `None` without the right to.
-pub(super) fn sniffer() -> Option<OwnedFd> {
+/// Hears the UDP datagrams that others send over loopback to these ports; `None` without the right to.
+pub(super) fn sniffer(ports: std::ops::Range<u16>) -> Option<OwnedFd> {
     const ALL: i32 = (libc::ETH_P_IP as u16).to_be() as i32;
     // SAFETY: a new socket or -1, nothing else.
     let socket = unsafe { libc::socket(libc::AF_PACKET, libc::SOCK_DGRAM | libc::SOCK_NONBLOCK, ALL) };
     // SAFETY: the descriptor is new and ours.
-    (socket >= 0).then(|| unsafe { OwnedFd::from_raw_fd(socket) })
+    let socket = (socket >= 0).then(|| unsafe { OwnedFd::from_raw_fd(socket) })?;
+    keep_ports(&socket, ports);
+    Some(socket)
+}
+
+/// Has the system drop everything but UDP to these ports: the traffic of other domains would fill the socket.
+fn keep_ports(socket: &OwnedFd, ports: std::ops::Range<u16>) {
+    let line = |code: u32, jt, jf, k| libc::sock_filter { code: code as u16, jt, jf, k };
+    let (load, indexed, jump) = (libc::BPF_LD, libc::BPF_IND, libc::BPF_JMP);
+    let mut program = [
+        line(load | libc::BPF_B | libc::BPF_ABS, 0, 0, 9),
+        line(jump | libc::BPF_JEQ, 0, 5, 17),
+        line(libc::BPF_LDX | libc::BPF_B | libc::BPF_MSH, 0, 0, 0),
+        line(load | libc::BPF_H | indexed, 0, 0, 2),
+        line(jump | libc::BPF_JGE, 0, 2, ports.start.into()),
+        line(jump | libc::BPF_JGE, 1, 0, ports.end.into()),
+        line(libc::BPF_RET, 0, 0, u32::MAX),
+        line(libc::BPF_RET, 0, 0, 0),
+    ];
+    let filter = libc::sock_fprog { len: program.len() as u16, filter: program.as_mut_ptr() };
+    // SAFETY: the program is ours, as long as said, and read before the call returns.
+    let done = unsafe {
+        libc::setsockopt(
+            socket.as_raw_fd(),
+            libc::SOL_SOCKET,
+            libc::SO_ATTACH_FILTER,
+            (&raw const filter).cast(),
+            size_of_val(&filter) as u32,
+        )
+    };
+    assert_eq!(done, 0, "{}", std::io::Error::last_os_error());
 }
 
 /// The payload of the next UDP datagram to one of `ports`, if one was heard.

@@ -103,7 +103,8 @@ impl Laboratory<'_> {
         let failed = |e: &dyn std::fmt::Display| Outcome::Failed(e.to_string());
         for (number, stranger) in plan.strangers.iter().enumerate() {
             let seed = plan.bus ^ (number as u64 + 1) << 32;
-            self.strangers.push(Stranger::join(&self.hub, *stranger, seed).map_err(|e| failed(&e))?);
+            self.strangers
+                .push(Stranger::join(&self.hub, self.run, *stranger, seed).map_err(|e| failed(&e))?);
         }
         for kind in Kind::ALL {
             let process = Process::start(kind, &self.start()).map_err(|e| failed(&e))?;

@@ -3,11 +3,11 @@
 use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
+use node_kit::identity::run_of;
 use node_kit::memory::Dice;
 use node_kit::{
     Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
 };
-use std::time::Duration;
 
 /// What is forged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,13 +53,15 @@ pub(super) struct Stranger {
     bus: MemoryBus,
     input: SubscriptionId,
     output: PublisherId,
+    /// The run whose messages it forges.
+    run: RunId,
     dice: Dice,
     pub(super) forged: u64,
 }
 
 impl Stranger {
     /// Says something before anybody asks: an answer of zeros, an old result.
-    pub(super) fn join(hub: &Hub, plan: plan::Stranger, seed: u64) -> Result<Self, BusError> {
+    pub(super) fn join(hub: &Hub, run: RunId, plan: plan::Stranger, seed: u64) -> Result<Self, BusError> {
         let identity = match plan.of_a_run {
             true => Identity::member_of(RunId::named("another"), 1),
             false => Identity::default(),
@@ -73,7 +75,7 @@ impl Stranger {
             Forgery::Finished => Some(to_cdr(&RunState { state: RunState::FINISHED, ..RunState::default() })),
             _ => None,
         };
-        let mut stranger = Self { plan, bus, input, output, dice: Dice::new(seed), forged: 0 };
+        let mut stranger = Self { plan, bus, input, output, run, dice: Dice::new(seed), forged: 0 };
         if let Some(body) = early {
             stranger.publish(&body, None)?;
         }
@@ -88,10 +90,11 @@ impl Stranger {
     /// Forges a share of what it heard; true if it heard anything.
     pub(super) fn step(&mut self) -> Result<bool, BusError> {
         let mut heard = false;
-        let own = self.bus.published().first().map(|p| p.writer.participant());
         while let Some(sample) = self.bus.take(self.input)? {
             heard = true;
-            if Some(sample.info.writer.participant()) == own || self.dice.unit() >= self.plan.share {
+            // Two strangers that forge what the other one forged would never come to an end.
+            let of_the_run = run_of(&sample.info.writer.participant()) == Some(self.run);
+            if !of_the_run || self.dice.unit() >= self.plan.share {
                 continue;
             }
             let by = 0.5 + self.dice.unit();
@@ -101,8 +104,6 @@ impl Stranger {
                 self.publish(&body, about)?;
             }
         }
-        // Time passes with the run, not with strangers.
-        let _ = self.bus.now() + Duration::ZERO;
         Ok(heard)
     }
 }
