@@ -92,18 +92,21 @@ impl DdsBus {
     pub fn join(network: Network, names: Names, identity: Identity) -> Result<Self, BusError> {
         let prefix = identity.guid_prefix();
         let gate = Arc::new(Gate::new(identity, prefix));
-        let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(&gate));
-        let participant = network
-            .participant()
-            .guid_prefix(GuidPrefix::new(&prefix))
-            .data_filter(move |writer, reader| filter.takes(writer, reader))
-            .participant_listener(move |peer| {
-                listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
-            })
-            // Who is not of the run gets what is there, and is not waited for.
-            .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
-            .build()
-            .map_err(|e| create_error("DDS participant", &e))?;
+        let create = || {
+            let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(&gate));
+            network
+                .participant()
+                .guid_prefix(GuidPrefix::new(&prefix))
+                .data_filter(move |writer, reader| filter.takes(writer, reader))
+                .participant_listener(move |peer| {
+                    listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
+                })
+                // Who is not of the run gets what is there, and is not waited for.
+                .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
+                .build()
+        };
+        // RustDDS gives its threads ten seconds to start; a process that is stopped meanwhile tries once more.
+        let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
         let open = OpenParticipant::new();
         let none = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
