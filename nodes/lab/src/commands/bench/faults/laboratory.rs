@@ -26,7 +26,7 @@ const DEATHS: usize = 3;
 #[derive(Debug)]
 pub(super) enum Outcome {
     /// The path is done, and its last packing is inverted.
-    Finished(Record),
+    Finished(Box<Record>),
     /// It ended with an error, which a user is told.
     Failed(String),
     /// Nothing moves any more, or for ever.
@@ -87,7 +87,7 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         Ok(()) => {
             let record = laboratory.record.take();
             match (record.contradictions, record.lacks()) {
-                (0, None) => Outcome::Finished(record),
+                (0, None) => Outcome::Finished(Box::new(record)),
                 (0, Some(lack)) => Outcome::Failed(format!("{lack}: exit 3")),
                 (n, _) => Outcome::Failed(format!("{n} messages contradict what was recorded: exit 1")),
             }
