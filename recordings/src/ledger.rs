@@ -101,6 +101,8 @@ struct Writer {
     reported: Option<u64>,
     /// Messages that came and say, byte for byte, what another one said that was recorded.
     same: u64,
+    /// Messages that came and are left out on purpose: they count neither as published nor as recorded.
+    left_out: u64,
 }
 
 impl Writer {
@@ -140,6 +142,15 @@ impl Ledger {
             && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
         {
             writer.same += 1;
+        }
+    }
+
+    /// Notes that message `sequence` of this writer came and is left out on purpose: it is of no interest to the recording.
+    pub fn leave_out(&mut self, topic: &str, guid: Guid, sequence: i64) {
+        if self.enter(topic, guid, sequence)
+            && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
+        {
+            writer.left_out += 1;
         }
     }
 
@@ -202,10 +213,11 @@ impl Ledger {
             let s = &writer.sequence;
             let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
             let held = s.held();
-            let recorded = held - writer.same;
+            let recorded = held - writer.same - writer.left_out;
             // A report that is lower than what was seen is out of date, not proof of a negative loss.
             let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
             let lost = published.saturating_sub(held);
+            let published = published - writer.left_out;
             topic.published += published;
             topic.recorded += recorded;
             topic.lost += lost;

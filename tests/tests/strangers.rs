@@ -71,7 +71,7 @@ fn an_inversion_that_was_there_before_the_run_costs_nothing() {
         "emt_inversion",
         "--ros-args",
         "-p",
-        "models:=[ratio]",
+        "models:=ratio",
         "-p",
         "gamma_over_delta:=zero",
     ]);
@@ -123,7 +123,7 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
                 "-r",
                 "__node:=other",
                 "-p",
-                "models:=[ratio]",
+                "models:=ratio",
             ]));
         }
         others.push(lab.start(&["run", "servo_controller", "--ros-args", "-p", "min_readers:=2"]));

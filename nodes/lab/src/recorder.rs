@@ -207,6 +207,7 @@ impl Recorder {
                     && let Err(outside) = binding.takes(topic, info, |t| bus.foreign_writers(t))
                 {
                     note_outside(outside, topic, bus.describe(info.writer), binding);
+                    writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
                     continue;
                 }
                 self.company.hear(sample.info.writer);

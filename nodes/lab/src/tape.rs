@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Message, Topic, to_cdr};
-use recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use recordings::{SESSION_KEY, Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 use std::path::Path;
 
 /// Writes messages. Their log times are their stamps, moved forward where that takes it: two recordings of the same
@@ -32,6 +32,8 @@ impl Tape {
         let mut writer =
             RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        // The same messages make the same file, whatever the time of the day.
+        writer.set_metadata(SESSION_KEY, command);
         let mut guid = Guid([b' '; 16]);
         let title = format!("grainlab {command}");
         guid.0.iter_mut().zip(title.bytes()).for_each(|(to, from)| *to = from);

@@ -50,7 +50,8 @@ const TILTED: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOU
 ITEM: ATOMS id diameter xs ys zs mass\n1 2e-3 0.1 0.1 0.1 1e-5\n2 2e-3 0.2 0.1 0.1 1e-5\n";
 
 const LOCAL: &str = "ITEM: TIMESTEP\n100\nITEM: NUMBER OF ENTRIES\n2\nITEM: BOX BOUNDS pp pp pp\n0 1e-2\n0 1e-2\n0 1e-2\n\
-ITEM: ENTRIES index c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4]\n1 1 2 1.999e-3 -1.0 0 0\n2 1 3 1.999e-3 0 -1.0 0\n";
+ITEM: ENTRIES index c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_pf[6] c_pf[7]\n\
+1 1 2 1.999e-3 -1.0 0 0 0 0.01 0\n2 1 3 1.999e-3 0 -1.0 0 0.01 0 0\n";
 
 const DATA: &str = "LAMMPS data file via write_data, version 2 Aug 2023, timestep = 100, units = si\n\n3 atoms\n1 atom types\n\n\
 0 1e-2 xlo xhi\n0 1e-2 ylo yhi\n0 1e-2 zlo zhi\n1e-3 0 0 xy xz yz\n\nAtoms # sphere\n\n1 1 2e-3 2500 1e-3 1e-3 1e-3 0 0 0\n\
