@@ -71,7 +71,8 @@ fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
         let scene = longer_scene(&broken);
         let out = node.replace(' ', "_");
         let launcher = broken.start(&["launch", "--scene", &scene.to_string_lossy(), "--out", &out]);
-        let run = broken.folder().join(&out).join("tiny-1-1");
+        // Named after scene, seed and number.
+        let run = broken.folder().join(&out).join("tiny-3-1");
         let begin = Instant::now();
         while recorded(&run) < 300 {
             assert!(begin.elapsed() < LIMIT, "{node}: nothing is recorded");
