@@ -2,11 +2,14 @@
 
 use super::child::Child;
 use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
 
 /// Which processes were stopped at the last look.
 #[derive(Debug, Default)]
 pub(super) struct Stopped {
     pids: BTreeSet<u32>,
+    /// When one of them was last seen to go on.
+    resumed: Option<Instant>,
 }
 
 /// What changed since the look before.
@@ -36,8 +39,16 @@ impl Stopped {
                 (false, false) => {}
             }
         }
+        if !changes.resumed.is_empty() {
+            self.resumed = Some(Instant::now());
+        }
         self.pids = now;
         changes
+    }
+
+    /// Whether any process was stopped at the last look, or within this time before it.
+    pub(super) fn any_within(&self, time: Duration) -> bool {
+        self.any() || self.resumed.is_some_and(|at| at.elapsed() < time)
     }
 
     /// Whether any process was stopped.

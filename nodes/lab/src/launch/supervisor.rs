@@ -33,6 +33,10 @@ const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(30);
 const MODULI_WITHIN: Duration = Duration::from_secs(5);
 
+/// How long a process that was stopped may take to catch up before the run ends, and how long the end waits for it.
+const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
+const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
+
 /// How long a run that has not begun is silent about it.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
@@ -218,9 +222,9 @@ impl Supervisor {
                 }
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
-            let Some(step) = last else { return Exit::Done };
+            let Some(step) = last else { return self.caught_up().await };
             match self.debts.standing(step) {
-                Standing::Complete => return Exit::Done,
+                Standing::Complete => return self.caught_up().await,
                 Standing::Declined(node) => {
                     crate::output::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
@@ -232,6 +236,28 @@ impl Supervisor {
                         deadline = Some(Deadline::of(standing));
                     }
                 }
+            }
+        }
+    }
+
+    /// The end of a complete run: not before who is stopped goes on, and has had time to catch up. The others keep for it
+    /// what it has missed, until they leave.
+    async fn caught_up(&mut self) -> Exit {
+        self.look_for_stopped();
+        let behind = self.stopped.any_within(CATCHES_UP_WITHIN);
+        let mut catching_up = Patience::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });
+        let mut waiting = Patience::new(STOPPED_AT_MOST);
+        loop {
+            let suspended = self.look_for_stopped();
+            if catching_up.is_over(suspended) || waiting.is_over(false) {
+                return Exit::Done;
+            }
+            tokio::select! {
+                biased;
+                _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
+                _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
+                _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
+                () = sleep(LOOK) => {}
             }
         }
     }
