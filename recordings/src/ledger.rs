@@ -185,12 +185,13 @@ impl Ledger {
     /// Messages that writers report as published and that have not come: what a recorder that is about to end
     /// may still wait for.
     pub fn outstanding(&self) -> u64 {
+        let of_interest = |w: &&Writer| w.left_out == 0 || w.left_out < w.sequence.held();
         let of_topic = |(name, writers): (&String, &BTreeMap<Guid, Writer>)| -> u64 {
             let missed = |w: &Writer| {
                 let before = if self.from_first.contains(name) { w.before_first() } else { 0 };
                 w.reported.unwrap_or(0).saturating_sub(w.sequence.held() + before)
             };
-            writers.values().map(missed).sum()
+            writers.values().filter(of_interest).map(missed).sum()
         };
         self.topics.iter().map(of_topic).sum()
     }
@@ -211,6 +212,10 @@ impl Ledger {
         };
         for (guid, writer) in writers {
             let s = &writer.sequence;
+            // Nothing of it is of interest: what it published before it was heard is not missed.
+            if writer.left_out > 0 && writer.left_out == s.held() {
+                continue;
+            }
             let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
             let held = s.held();
             let recorded = held - writer.same - writer.left_out;

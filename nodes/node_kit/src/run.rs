@@ -29,7 +29,7 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// How long a leaving process waits for its readers' acknowledgements: a recorder that was stopped for a while has some
 /// megabytes to ask for again. One that is gone for good costs this time.
-const LAST_WORDS: Duration = Duration::from_secs(3);
+const LAST_WORDS: Duration = Duration::from_secs(1);
 
 /// How long it stays after that: a reader loses what it received but did not take when the writer goes. A busy node's
 /// readers are emptied within 40 ms, on a busy host perhaps some ten milliseconds later.

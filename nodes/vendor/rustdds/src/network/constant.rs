@@ -31,18 +31,4 @@ pub const fn user_traffic_unicast_port(domain_id: u16, participant_id: u16) -> u
 /// host discover each other even when there is no external network and
 /// multicast on the loopback interface is unavailable (the Linux default for
 /// `lo`). See `src/rtps/loopback_same_host_design.md`.
-///
-/// These are the slots that every announcement goes to. See also
-/// [`SPDP_LOCALHOST_SLOTS`].
-pub const SPDP_LOCALHOST_PEER_COUNT: u16 = 12;
-
-/// Slots there are, RTPS spec 2.5 Section "9.6.2.3 Default Port Numbers".
-///
-/// The first announcements of a participant go to all of them, so that it is
-/// known to all who were there before. Later ones go to the slots below its own
-/// besides the first [`SPDP_LOCALHOST_PEER_COUNT`]: of any two participants one
-/// keeps announcing itself to the other, whatever was lost.
-pub const SPDP_LOCALHOST_SLOTS: u16 = 120;
-
-/// How many announcements go to all slots.
-pub const SPDP_LOCALHOST_FULL_ANNOUNCEMENTS: u32 = 3;
+pub const SPDP_LOCALHOST_PEER_COUNT: u16 = 24;

@@ -25,9 +25,7 @@ use crate::{
   },
   messages::submessages::submessages::AckSubmessage,
   network::{
-    constant::{
-      SPDP_LOCALHOST_FULL_ANNOUNCEMENTS, SPDP_LOCALHOST_PEER_COUNT, SPDP_LOCALHOST_SLOTS,
-    },
+    constant::SPDP_LOCALHOST_PEER_COUNT,
     udp_listener::UDPListener,
     udp_sender::UDPSender,
     util::{local_interface_table, localhost_spdp_peer_locators, IfAddr},
@@ -1180,13 +1178,11 @@ impl DPEventLoop {
     if self.same_host_loopback
       && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
     {
-      let own_slot = self.domain_info.participant_id;
-      let slots = |count| localhost_spdp_peer_locators(self.domain_info.domain_id, own_slot, count);
-      new_writer.set_extra_unicast_destinations(
-        slots(SPDP_LOCALHOST_PEER_COUNT.max(own_slot)),
-        slots(SPDP_LOCALHOST_SLOTS),
-        SPDP_LOCALHOST_FULL_ANNOUNCEMENTS,
-      );
+      new_writer.set_extra_unicast_destinations(localhost_spdp_peer_locators(
+        self.domain_info.domain_id,
+        self.domain_info.participant_id,
+        SPDP_LOCALHOST_PEER_COUNT,
+      ));
     }
 
     // The doorbell is a shared ready-queue plus the poll waker, not a

@@ -200,8 +200,6 @@ pub(crate) struct Writer {
   // bootstrap same-host discovery in the first place). See
   // `src/rtps/loopback_same_host_design.md`.
   extra_unicast_destinations: Vec<Locator>,
-  // Instead of the above for so many messages yet: the first ones go further.
-  first_unicast_destinations: RefCell<(u32, Vec<Locator>)>,
 
   // Whether route selection may prefer a same-host peer's loopback locator.
   // Mirrors the participant-builder `same_host_loopback` knob; `true` by
@@ -354,7 +352,6 @@ impl Writer {
       requested_incompatible_qos_count: 0,
       udp_sender,
       extra_unicast_destinations: Vec::new(),
-      first_unicast_destinations: RefCell::new((0, Vec::new())),
       prefer_loopback_same_host: true,
       reader_may_block: EventLoopOptions::default().reader_may_block,
       interface_observations,
@@ -1919,16 +1916,7 @@ impl Writer {
 
         // Fixed extra unicast destinations (SPDP localhost peers): send the same
         // datagram unconditionally, deduplicated against everything already sent.
-        let mut first = self.first_unicast_destinations.borrow_mut();
-        if first.0 > 0 {
-          send_legacy!(first.1);
-          first.0 -= 1;
-          if first.0 == 0 {
-            first.1 = Vec::new();
-          }
-        } else {
-          send_legacy!(self.extra_unicast_destinations);
-        }
+        send_legacy!(self.extra_unicast_destinations);
       }
       Err(e) => error!("Failed to send message to readers. Encoding failed: {e:?}"),
     }
@@ -1977,16 +1965,8 @@ impl Writer {
   /// (in addition to matched readers), bypassing route selection. Used only for
   /// the built-in SPDP writer's "localhost SPDP peers". See
   /// [`Self::extra_unicast_destinations`].
-  ///
-  /// The first `first_messages` go to `first_locators` instead.
-  pub fn set_extra_unicast_destinations(
-    &mut self,
-    locators: Vec<Locator>,
-    first_locators: Vec<Locator>,
-    first_messages: u32,
-  ) {
+  pub fn set_extra_unicast_destinations(&mut self, locators: Vec<Locator>) {
     self.extra_unicast_destinations = locators;
-    self.first_unicast_destinations = RefCell::new((first_messages, first_locators));
   }
 
   /// Enable/disable preferring a same-host peer's loopback locator during route
