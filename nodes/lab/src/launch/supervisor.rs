@@ -335,7 +335,7 @@ impl Supervisor {
         let waits = simulator.and_then(|c| c.last_line_with(&self.logs, "waiting for"));
         let what = waits.unwrap_or_else(|| "for its processes to find each other".to_owned());
         self.progress.say(&format!(
-            "the run has not begun: {what}. Without multicast on the loopback interface, DDS finds at most 24 processes in \
+            "the run has not begun: {what}. Without multicast on the loopback interface, DDS finds at most 12 processes in \
              a domain"
         ));
     }
