@@ -91,11 +91,19 @@ fn by_hand_a_second_simulator_on_the_same_topic_is_refused() {
     let lab = Lab::new();
     let parameter = format!("scene:={}", golden("scenes/tiny.toml").display());
     let by_hand = ["run", "dem_simulator", "--ros-args", "-p", &parameter];
-    let first = lab.start(&by_hand);
-    std::thread::sleep(std::time::Duration::from_secs(3));
-    refused(&lab, &by_hand, 1, &["stress", "ROS_DOMAIN_ID"]);
-    first.signal(libc::SIGINT);
-    assert_eq!(first.ended(LIMIT).code, Some(130), "the first one was waiting for a servo");
+    // Both wait for a servo: the one with the larger GUID gives way.
+    let (mut first, mut second) = (lab.start(&by_hand), lab.start(&by_hand));
+    let begin = std::time::Instant::now();
+    while first.runs() && second.runs() {
+        assert!(begin.elapsed() < LIMIT, "neither gave way");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    let (gone, stays) = if first.runs() { (second, first) } else { (first, second) };
+    let ended = gone.ended(LIMIT);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert!(ended.stderr.contains("stress") && ended.stderr.contains("ROS_DOMAIN_ID"), "{}", ended.stderr);
+    stays.signal(libc::SIGINT);
+    assert_eq!(stays.ended(LIMIT).code, Some(130), "the other one was waiting for a servo");
 }
 
 #[test]
