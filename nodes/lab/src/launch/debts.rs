@@ -67,7 +67,7 @@ impl Debts {
         Self { kinds, inversions, structures: BTreeSet::new() }
     }
 
-    /// The structure of the packing of `step` is there; its moduli follow at once, or there are none.
+    /// The structure of the packing of `step` was published. If the packing has moduli, they follow at once.
     pub(crate) fn structure(&mut self, step: u64) {
         self.structures.insert(step);
     }

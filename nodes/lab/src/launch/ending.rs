@@ -24,7 +24,7 @@ enum Ending {
     Farewell,
     /// The recorder ends.
     Record,
-    /// Nobody is asked any more; what still runs goes.
+    /// Processes that still run are ended by SIGTERM and SIGKILL.
     Exit,
 }
 

@@ -78,7 +78,7 @@ struct Executable {
     respawn: Option<String>,
 }
 
-/// Processes that a run has places for: a place is a byte, of which the launcher has one value and nobody another.
+/// Most processes of a run. The place of a process is one byte: 0 means no place, and 255 is the launcher.
 const PLACES: usize = 254;
 
 /// How many of each node a run may have: two of those that one run has one of would contradict each other.

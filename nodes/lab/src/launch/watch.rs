@@ -187,7 +187,7 @@ impl Ears {
 }
 
 fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -> Result<(), String> {
-    // Nobody listens any more only when the launcher ends.
+    // The receiver is closed only when the launcher ends.
     let send = |event| {
         let _ = events.send(event);
     };

@@ -19,7 +19,7 @@ const STEPS: u64 = 2_000_000;
 /// What still arrives belongs to the record.
 const LAST_CALL: Duration = Duration::from_secs(2);
 
-/// A simulator that dies so often behind one packing is given up, as the launcher does.
+/// Restarts of the simulator after one packing. One crash more ends the run, as in the launcher.
 const DEATHS: usize = 3;
 
 /// What a run came to.

@@ -55,8 +55,8 @@ impl Record {
         found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
     }
 
-    /// What a finished run lacks: a packing without a structure, moduli that nobody inverted. The launcher ends such a run
-    /// with exit 3.
+    /// The first result that a finished run lacks: the structure of a packing, or the microstructure from its moduli. The
+    /// launcher ends such a run with exit 3.
     pub(super) fn lacks(&self) -> Option<String> {
         let steps = |topic: &Topic, step: fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
             self.bodies.get(topic.name).into_iter().flatten().filter_map(|body| step(body)).collect()
