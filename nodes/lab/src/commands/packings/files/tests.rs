@@ -2,7 +2,7 @@ use super::*;
 use grainlab_msgs::{msg, to_cdr, topics};
 use recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 
-/// A recording of one packing, which is none: what is read of it, and with what exit code, shows how far reading came.
+/// A recording whose one packing message is not a valid packing: what is read of it, and with what exit code, shows how far reading came.
 fn recording(folder: &Path) -> PathBuf {
     let topic = TopicSpec::of_contract(&topics::PACKING, "/packing");
     let mut run = RunWriter::create(folder, "r", &[topic], WriterOptions::default()).unwrap();
