@@ -109,12 +109,6 @@ impl Settings {
     }
 }
 
-/// RustDDS reports an error when it leaves a multicast group that the loopback interface never let it join.
-fn harmless(record: &Record) -> bool {
-    record.target().starts_with("rustdds::network")
-        && record.args().to_string().contains("leave_multicast_group")
-}
-
 /// Name on stderr, number on the wire, colour as rcutils has it.
 fn severity(level: Level) -> (&'static str, u8, &'static str) {
     match level {
@@ -132,7 +126,7 @@ impl log::Log for Logger {
     }
 
     fn log(&self, record: &Record) {
-        if !self.enabled(record.metadata()) || harmless(record) {
+        if !self.enabled(record.metadata()) {
             return;
         }
         let nanos =

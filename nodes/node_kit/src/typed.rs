@@ -3,6 +3,7 @@
 use crate::bus::{Bus, BusError, Demand, PublisherId, SampleId, SampleInfo, SubscriptionId};
 use grainlab_msgs::{DecodeError, Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A topic offered with its type.
 #[derive(Debug)]
@@ -57,6 +58,8 @@ pub enum TakeError {
 #[derive(Debug)]
 pub struct Subscription<T> {
     id: SubscriptionId,
+    /// How many samples did not decode.
+    undecodable: AtomicU64,
     message: PhantomData<fn() -> T>,
 }
 
@@ -67,7 +70,8 @@ impl<T: Message> Subscription<T> {
     /// If the contract table gives the topic another type: a mistake in the node's code.
     pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
         assert_eq!(topic.info.type_name, T::TYPE, "type of topic {}", topic.name);
-        Ok(Self { id: bus.subscribe(topic, demand)?, message: PhantomData })
+        let id = bus.subscribe(topic, demand)?;
+        Ok(Self { id, undecodable: AtomicU64::new(0), message: PhantomData })
     }
 
     /// The next message, if there is one. A sample that is not a `T` is an error of that sample alone.
@@ -90,9 +94,9 @@ impl<T: Message> Subscription<T> {
                 Err(TakeError::Bus(error)) => return Err(error),
                 Err(refused @ TakeError::Decode { .. }) => {
                     // A flood of such samples must not fill the disk with lines.
-                    let count: u64 = bus.received().iter().map(|r| r.refused).sum();
+                    let count = self.undecodable.fetch_add(1, Ordering::Relaxed) + 1;
                     if count.is_power_of_two() {
-                        log::warn!("{refused} ({count} samples refused so far)");
+                        log::warn!("{refused} ({count} so far do not decode)");
                     }
                 }
             }

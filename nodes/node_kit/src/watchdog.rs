@@ -1,8 +1,8 @@
 //! Finds a dead DDS thread: a process that looks alive and hears nothing is worse than one that ended.
 //!
 //! Two ways: a panic in one of RustDDS's threads is caught by a hook, and once a second the process counts those threads
-//! in `/proc/self/task` and compares with the participants that it has open. Its own heartbeat would say more, but where loopback has no multicast (the default on Linux) a
-//! participant does not find itself, and nothing of its own comes back.
+//! in `/proc/self/task` and compares with the participants that it has open. Its own heartbeat would say more, but a
+//! participant finds itself only where multicast reaches it.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -334,10 +334,7 @@ impl Supervisor {
         let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
         let waits = simulator.and_then(|c| c.last_line_with(&self.logs, "waiting for"));
         let what = waits.unwrap_or_else(|| "for its processes to find each other".to_owned());
-        self.progress.say(&format!(
-            "the run has not begun: {what}. Without multicast on the loopback interface, DDS finds at most 12 processes in \
-             a domain"
-        ));
+        self.progress.say(&format!("the run has not begun: {what}"));
     }
 
     fn interrupted(&self, name: &str) -> Exit {

@@ -201,8 +201,8 @@ impl DdsBus {
         Ok(index)
     }
 
-    /// Hands what we published to our own subscriptions: where loopback has no multicast, a participant does not find
-    /// itself, and DDS would bring it nothing of its own.
+    /// Hands what we published to our own subscriptions: a participant without multicast does not find itself,
+    /// and DDS would bring it nothing of its own.
     fn echo(&self, topic: &str, id: SampleId, about: Option<SampleId>, body: &[u8]) {
         for reader in self.readers.iter().filter(|r| r.topic == topic) {
             let now = self.wall_nanos();
@@ -423,7 +423,7 @@ impl Bus for DdsBus {
 
     fn flush(&mut self, timeout: Duration) -> bool {
         let deadline = Instant::now() + timeout;
-        // DDS may match a reader of our own, too, which never acknowledges where loopback has no multicast.
+        // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
         let tells = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
         self.writers.iter().filter(tells).all(|writer| {

@@ -12,7 +12,7 @@ use crate::{
   network::util::{
     allowed_interface_indices, build_ifindex_to_interface_map,
     get_local_multicast_ip_addrs_filtered, get_local_multicast_locators,
-    get_local_unicast_locators_filtered,
+    get_local_unicast_locators_filtered, is_any_flagged_multicast,
   },
   rtps::transmit::InterfaceSelector,
   serialization::padding_needed_for_alignment_4,
@@ -186,7 +186,7 @@ impl UDPListener {
     let local_port = self.socket.local_addr()?.port();
 
     match self.multicast_group {
-      Some(_ipv4_addr) if !self.joined_multicast_interfaces.is_empty() => {
+      Some(_ipv4_addr) if is_any_flagged_multicast(&self.joined_multicast_interfaces) => {
         Ok(get_local_multicast_locators(local_port))
       }
       Some(_ipv4_addr) => Ok(vec![]),

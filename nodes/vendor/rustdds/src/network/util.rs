@@ -224,7 +224,8 @@ fn get_local_unicast_locators_inner(
 ///
 /// The result of this function is used to set up senders and listeners.
 /// When `only_networks` is `Some`, only interfaces with a matching IP are
-/// included.
+/// included, and of loopback no multicast flag is asked: Linux does not set it
+/// on `lo`, and multicasts there all the same.
 pub fn get_local_multicast_ip_addrs_filtered(
   only_networks: Option<&[IpAddr]>,
 ) -> io::Result<Vec<IpAddr>> {
@@ -241,11 +242,29 @@ fn get_local_multicast_ip_addrs_inner(
 ) -> Vec<IpAddr> {
   ifaces
     .iter()
-    .filter(|ifa| ifa.is_multicast)
-    .filter(|ifa| only_networks.is_none_or(|nets| nets.contains(&ifa.ip)))
+    .filter(|ifa| match only_networks {
+      Some(nets) => nets.contains(&ifa.ip) && (ifa.is_multicast || ifa.is_loopback),
+      None => ifa.is_multicast,
+    })
     .map(|ifa| ifa.ip)
     .filter(IpAddr::is_ipv4)
     .collect()
+}
+
+/// Whether one of these addresses belongs to an interface with the multicast
+/// flag. Only then peers are told to send by multicast.
+pub fn is_any_flagged_multicast(addresses: &[Ipv4Addr]) -> bool {
+  match enumerate_interfaces() {
+    Ok(ifaces) => is_any_flagged_multicast_inner(&ifaces, addresses),
+    Err(_) => false,
+  }
+}
+
+fn is_any_flagged_multicast_inner(ifaces: &[IfAddr], addresses: &[Ipv4Addr]) -> bool {
+  ifaces
+    .iter()
+    .filter(|ifa| ifa.is_multicast)
+    .any(|ifa| matches!(ifa.ip, IpAddr::V4(a) if addresses.contains(&a)))
 }
 
 /// OS indices of the interfaces on which a participant restricted to
@@ -325,8 +344,8 @@ mod tests {
 
   use super::{
     allowed_interface_indices_inner, build_ifindex_map_inner, get_local_multicast_ip_addrs_inner,
-    get_local_unicast_locators_inner, localhost_spdp_peer_locators, path_mtu_payload_for_peer,
-    unicast_bind_address, IfAddr, InterfaceSelector,
+    get_local_unicast_locators_inner, is_any_flagged_multicast_inner, localhost_spdp_peer_locators,
+    path_mtu_payload_for_peer, unicast_bind_address, IfAddr, InterfaceSelector,
   };
   use crate::{
     network::constant::spdp_well_known_unicast_port,
@@ -406,6 +425,24 @@ mod tests {
       ips.is_empty(),
       "we only want interfaces w/ multicast support"
     );
+  }
+
+  #[test]
+  fn loopback_multicasts_without_the_flag_if_it_is_asked_for_by_name() {
+    let lo = iface(v4(127, 0, 0, 1), 1, true, false);
+    let lan = iface(v4(192, 168, 0, 1), 2, false, false);
+    let ifaces = [lo.clone(), lan.clone()];
+    let named = [lo.ip, lan.ip];
+    assert_eq!(
+      get_local_multicast_ip_addrs_inner(&ifaces, Some(&named)),
+      vec![lo.ip]
+    );
+    assert!(get_local_multicast_ip_addrs_inner(&ifaces, Some(&named[1..])).is_empty());
+    assert!(get_local_multicast_ip_addrs_inner(&ifaces, None).is_empty());
+
+    let flagged = iface(v4(127, 0, 0, 1), 1, true, true);
+    assert!(!is_any_flagged_multicast_inner(&[lo], &[Ipv4Addr::LOCALHOST]));
+    assert!(is_any_flagged_multicast_inner(&[flagged], &[Ipv4Addr::LOCALHOST]));
   }
 
   #[test]

@@ -1,7 +1,7 @@
 use std::{
   cell::RefCell,
   collections::{BTreeMap, BTreeSet, HashMap, VecDeque},
-  net::IpAddr,
+  net::{IpAddr, Ipv4Addr},
   rc::Rc,
   sync::{Arc, RwLock},
   time::{Duration, Instant},
@@ -25,10 +25,13 @@ use crate::{
   },
   messages::submessages::submessages::AckSubmessage,
   network::{
-    constant::SPDP_LOCALHOST_PEER_COUNT,
+    constant::{spdp_well_known_multicast_port, SPDP_LOCALHOST_PEER_COUNT},
     udp_listener::UDPListener,
     udp_sender::UDPSender,
-    util::{local_interface_table, localhost_spdp_peer_locators, IfAddr},
+    util::{
+      get_local_multicast_locators, is_any_flagged_multicast, local_interface_table,
+      localhost_spdp_peer_locators, IfAddr,
+    },
   },
   polling::{
     new_shared_timer, timeout_until, wake_channel, LoopWaker, ReadyReceiver, SharedTimer,
@@ -44,7 +47,7 @@ use crate::{
     rtps_reader_proxy::RtpsReaderProxy,
     rtps_writer_proxy::RtpsWriterProxy,
     timed_event::DpTimerEvent,
-    transmit::InterfaceObservations,
+    transmit::{InterfaceObservations, InterfaceSelector},
     writer::{Writer, WriterIngredients},
   },
   structure::{
@@ -1178,11 +1181,22 @@ impl DPEventLoop {
     if self.same_host_loopback
       && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
     {
-      new_writer.set_extra_unicast_destinations(localhost_spdp_peer_locators(
+      let mut peers = localhost_spdp_peer_locators(
         self.domain_info.domain_id,
         self.domain_info.participant_id,
         SPDP_LOCALHOST_PEER_COUNT,
-      ));
+      );
+      // Loopback without the multicast flag is in nobody's advertised locators,
+      // but announcements to the group arrive there: more participants than there
+      // are fixed peers find each other, and peers with ports of their own choice.
+      let loopback = InterfaceSelector::Ip(IpAddr::V4(Ipv4Addr::LOCALHOST));
+      if self.udp_sender.multicast_interfaces().contains(&loopback)
+        && !is_any_flagged_multicast(&[Ipv4Addr::LOCALHOST])
+      {
+        let port = spdp_well_known_multicast_port(self.domain_info.domain_id);
+        peers.extend(get_local_multicast_locators(port));
+      }
+      new_writer.set_extra_unicast_destinations(peers);
     }
 
     // The doorbell is a shared ready-queue plus the poll waker, not a
