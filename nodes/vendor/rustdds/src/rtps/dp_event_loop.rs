@@ -1420,6 +1420,7 @@ mod tests {
         None,
         0,
         true,
+        PeerHooks::default(),
         EventLoopOptions::default(),
         reader_ready,
         writer_ready,

@@ -1674,10 +1674,11 @@ impl Writer {
       let acked_by_all_readers = self
         .readers
         .values()
-        .filter(|rp| rp.may_block)
+        // BestEffort readers never acknowledge.
+        .filter(|rp| rp.may_block && rp.qos().is_reliable())
         .map(RtpsReaderProxy::acked_up_to_before)
         .min()
-        .unwrap_or_else(SequenceNumber::zero);
+        .unwrap_or_else(|| self.send_buffer.last_change_sequence_number().plus_1());
       // If all readers have acked all up to before 5, and depth is 5, we need
       // to keep samples 0..4, i.e. from acked_up_to_before - depth .
       let depth_keeper = if let Some(depth) = depth {
@@ -3015,7 +3016,26 @@ mod tests {
         .all(|event| !matches!(event, TimedEvent::SendRepairFrags { .. })));
     }
 
-    // A repeated ACKNACK count is a copy and changes nothing; a new count does.
+    #[test]
+    fn samples_beyond_the_depth_are_kept_for_reliable_readers_only() {
+      let mut fixture = Fixture::user(10, 8, None);
+      let reliable = fixture.reader_proxy().remote_reader_guid;
+      let first_kept = |writer: &mut Writer| {
+        writer.remove_all_acked_changes_but_keep_depth(Some(2), 100);
+        writer.send_buffer.first_change_sequence_number()
+      };
+      assert_eq!(first_kept(&mut fixture.writer), SequenceNumber::new(1));
+
+      let best_effort = QosPolicyBuilder::new()
+        .reliability(policy::Reliability::BestEffort)
+        .build();
+      let guid = GUID::dummy_test_guid(EntityKind::READER_NO_KEY_USER_DEFINED);
+      let proxy = RtpsReaderProxy::new(guid, best_effort.clone(), false);
+      fixture.writer.update_reader_proxy(&proxy, &best_effort);
+      fixture.writer.reader_lost(reliable);
+      assert_eq!(first_kept(&mut fixture.writer), SequenceNumber::new(9));
+    }
+
     #[test]
     fn a_reader_that_may_not_block_is_not_waited_for_but_repaired() {
       let mut fixture = Fixture::user(10, 8, None);
@@ -3058,6 +3078,7 @@ mod tests {
       assert!(send_buffer.is_acked_through(all));
     }
 
+    // A repeated ACKNACK count is a copy and changes nothing; a new count does.
     #[test]
     fn duplicate_acknack_count_is_ignored() {
       let mut f = Fixture::user(5, 8, None);
