@@ -1080,6 +1080,7 @@ impl Writer {
     if self
       .readers
       .values()
+      .filter(|rp| rp.qos().is_reliable())
       .all(|rp| last_change < rp.all_acked_before)
     {
       trace!("heartbeat tick: all readers have all available data.");
