@@ -2,10 +2,12 @@
 
 use emt_inversion::{Settings, microstructure_of_speeds};
 use grainlab_msgs::msg::{Microstructure, WaveSpeeds};
+use grainlab_msgs::{Message, from_cdr};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use system_tests::lab::{LIMIT, Lab, grainlab};
+use system_tests::bodies::distinct;
+use system_tests::lab::{LIMIT, Lab, golden, grainlab};
 use system_tests::process::{Ended, Process};
 use system_tests::python;
 
@@ -62,6 +64,34 @@ fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_m
         assert!(!estimate.k_known || line.contains(&format!("{:.4} +- ", estimate.k)), "{line}");
         assert!(!estimate.z_known || line.contains(&format!("{:.4} +- ", estimate.z)), "{line}");
     }
+}
+
+#[test]
+fn an_instrument_of_another_vendor_that_a_launch_file_lists_is_of_the_run_and_recorded() {
+    let Some(python) = python::with("cyclonedds") else { return };
+    let lab = Lab::new();
+    let program = format!("{} {} --json", python.display(), here("../nodes/launch/instrument.py").display());
+    let listed = format!("- executable:\n    cmd: {program}\n    name: instrument\n    output: screen\n");
+    let file = lab.folder().join("plugged.launch.yaml");
+    std::fs::write(&file, include_str!("../../nodes/launch/demo.launch.yaml").to_owned() + &listed).unwrap();
+    let scene = golden("scenes/tiny.toml");
+    let run = lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy()]);
+    assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
+
+    let folder = lab.last_run();
+    let summary = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["strangers"], serde_json::json!([]), "{}", run.stdout);
+    let sent: Vec<WaveSpeeds> = decoded(&folder, "/wave_speeds");
+    let answers: Vec<Microstructure> = decoded(&folder, "/microstructure");
+    let answers: Vec<_> = answers.into_iter().filter(|m| m.source == "wave_speeds").collect();
+    assert_eq!((sent.len(), answers.len()), (1, 1));
+    assert_eq!(answers[0], microstructure_of_speeds(&sent[0], &Settings::default()).unwrap());
+}
+
+/// The distinct messages of a topic of a recording.
+fn decoded<T: Message>(run: &Path, topic: &str) -> Vec<T> {
+    distinct(run, topic).iter().map(|body| from_cdr(body).unwrap()).collect()
 }
 
 fn emt_models() -> usize {
