@@ -10,16 +10,19 @@ use serde::Serialize;
 
 const EXAMPLES: &str = "\
 One process asks with a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
-followed by one of the same two messages over bare ros2-client without a recorder, so that both see the same machine.
+followed by one without the recorder (`alone`), and by one of the same two messages over bare ros2-client, also without, so
+that all see the same machine. How long an exchange takes depends on where the processes run: waking a process on another
+processor takes longer than on the same one. `taskset -c 0` puts all on one.
 
-Example:
+Examples:
+  taskset -c 0 grainlab bench lockstep
   grainlab bench lockstep --rounds 5 --format json";
 
 /// How much to measure.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Rounds, each of both kinds
+    /// Rounds, each of the three kinds
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
     rounds: u32,
     /// Exchanges of a round
@@ -53,7 +56,7 @@ struct Microseconds {
     p99: f64,
 }
 
-/// One round of both kinds.
+/// One round of the three kinds.
 #[derive(Debug, Serialize)]
 struct Row {
     method: &'static str,
@@ -66,6 +69,8 @@ struct Row {
     error: NoError,
     exchanges: usize,
     microseconds: Microseconds,
+    /// Over our bus, without a recorder.
+    alone_microseconds: Microseconds,
     bare_microseconds: Microseconds,
     /// Messages of the row that the recorder lost.
     lost: u64,
@@ -84,18 +89,20 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(role) = args.role {
         return round::role(role, args.exchanges);
     }
-    let (mut ours, mut bare, mut lost) = (Vec::new(), Vec::new(), 0);
+    let (mut ours, mut alone, mut bare, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let mut rows = Vec::new();
     for number in 1..=args.rounds {
         crate::output::say!("grainlab: round {number} of {}", args.rounds);
         let recorded = round::recorded(args.exchanges)?;
+        let unrecorded = round::unrecorded(args.exchanges)?;
         let plain = round::bare(args.exchanges)?;
-        rows.push(row(Some(number), &recorded.micros, &plain, recorded.lost));
+        rows.push(row(Some(number), [&recorded.micros, &unrecorded, &plain], recorded.lost));
         ours.extend(recorded.micros);
+        alone.extend(unrecorded);
         bare.extend(plain);
         lost += recorded.lost;
     }
-    rows.push(row(None, &ours, &bare, lost));
+    rows.push(row(None, [&ours, &alone, &bare], lost));
     let report = Report { rows };
     print(&match args.format {
         Format::Json => json(&report)?,
@@ -105,15 +112,16 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
 }
 
-fn row(value: Option<u32>, micros: &[f64], bare: &[f64], lost: u64) -> Row {
+fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
     Row {
         method: "lockstep",
         value,
         grains: None,
-        seconds: micros.iter().sum::<f64>() * 1e-6,
+        seconds: ours.iter().sum::<f64>() * 1e-6,
         error: NoError {},
-        exchanges: micros.len(),
-        microseconds: percentiles(micros),
+        exchanges: ours.len(),
+        microseconds: percentiles(ours),
+        alone_microseconds: percentiles(alone),
         bare_microseconds: percentiles(bare),
         lost,
     }
@@ -131,12 +139,13 @@ fn percentiles(micros: &[f64]) -> Microseconds {
 }
 
 fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
-    let mut t = Table::new(["round", "exchanges", "p50_us", "p99_us", "bare_p50_us", "bare_p99_us", "lost"]);
+    let columns = ["round", "exchanges", "p50_us", "p99_us", "alone_p50_us", "alone_p99_us", "bare_p50_us"];
+    let mut t = Table::new(columns.into_iter().chain(["bare_p99_us", "lost"]));
     for r in rows {
-        let (ours, bare) = (r.microseconds, r.bare_microseconds);
+        let kinds = [r.microseconds, r.alone_microseconds, r.bare_microseconds];
         let mut cells =
             vec![r.value.map_or_else(|| "all".to_owned(), |n| n.to_string()), r.exchanges.to_string()];
-        cells.extend([ours.p50, ours.p99, bare.p50, bare.p99].map(|v| number(Some(v))));
+        cells.extend(kinds.iter().flat_map(|kind| [kind.p50, kind.p99]).map(|v| number(Some(v))));
         cells.push(r.lost.to_string());
         t.row(cells);
     }

@@ -220,8 +220,8 @@ fn read(
                 _ => Exit::Failure,
             };
             let mut complaints = Vec::new();
-            // A recording that is cut off before its first packing, or whose chunk with it is damaged, has lost data;
-            // that is why there is none.
+            // A recording without a packing may be one that is cut off before it, or whose chunk with it is damaged:
+            // then data were lost.
             if let Ok(recording) = Recording::open(path) {
                 complaints = lines(&recording.verify());
                 exit = if complaints.is_empty() { exit } else { Exit::DataLoss };

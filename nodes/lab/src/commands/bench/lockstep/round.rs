@@ -83,12 +83,21 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     Ok(Recorded { micros, lost })
 }
 
+/// Two processes without a recorder, in a domain of their own.
+pub(super) fn unrecorded(exchanges: u64) -> Result<Vec<f64>, Failure> {
+    pair(["pong", "ping"], exchanges)
+}
+
 /// Two processes over bare ros2-client, in a domain of their own.
 pub(super) fn bare(exchanges: u64) -> Result<Vec<f64>, Failure> {
+    pair(["bare-pong", "bare-ping"], exchanges)
+}
+
+fn pair([answers, asks]: [&str; 2], exchanges: u64) -> Result<Vec<f64>, Failure> {
     let domain = FreeDomain::take()?;
-    let _pong = Process::role(&domain, "bare-pong", exchanges)?;
+    let _answers = Process::role(&domain, answers, exchanges)?;
     std::thread::sleep(START);
-    parse(&Process::role(&domain, "bare-ping", exchanges)?.output()?)
+    parse(&Process::role(&domain, asks, exchanges)?.output()?)
 }
 
 fn parse(text: &str) -> Result<Vec<f64>, Failure> {
