@@ -36,6 +36,11 @@ pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
     run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
 }
 
+/// Whether `a` is what `b` takes the place of. In a run by hand nobody has a place, and two simulators are two.
+pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
+    same_member(a, b) && member_of(b) != 0
+}
+
 /// Writers that are different servos: a restarted one counts once.
 pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
     let mut found: Vec<WriterId> = Vec::new();

@@ -3,7 +3,7 @@
 use crate::DemSimulator;
 use crate::messages;
 use crate::node::Stage;
-use crate::partner::{different, same_member};
+use crate::partner::{different, predecessor};
 use crate::rivals::Verdict;
 use grainlab_msgs::{to_cdr, topics};
 use node_kit::{Bus, BusError, Exit, Next, NodeError};
@@ -18,7 +18,7 @@ const TWO_SERVOS: Duration = Duration::from_secs(75);
 impl DemSimulator {
     pub(crate) fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
-            if same_member(&info.writer.participant(), &self.participant) {
+            if predecessor(&info.writer.participant(), &self.participant) {
                 continue;
             }
             if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
@@ -38,7 +38,7 @@ impl DemSimulator {
         }
         let mut simulators = bus.foreign_writers(&topics::STRESS);
         // The process that this one takes the place of stays in the graph for a while.
-        simulators.retain(|writer| !same_member(&writer.participant(), &self.participant));
+        simulators.retain(|writer| !predecessor(&writer.participant(), &self.participant));
         match self.rivals.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {

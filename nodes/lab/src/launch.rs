@@ -9,6 +9,7 @@
 //! - [`supervisor`]: who is restarted, whose death ends the run; [`ending`]: in which order all end
 
 pub(crate) mod child;
+mod deadline;
 mod debts;
 mod ending;
 mod patience;

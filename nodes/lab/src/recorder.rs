@@ -47,6 +47,9 @@ const TICK: Duration = Duration::from_millis(100);
 /// Older than any message may become before it is handed to the system.
 const OLD_ENOUGH: Duration = Duration::from_secs(1);
 
+/// A recorder that took nothing in for this long was stopped, or the machine was.
+const STALLED: Duration = Duration::from_secs(2);
+
 /// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence, unless
 /// everyone has said goodbye.
 const LAST_CALL: Duration = Duration::from_secs(2);
@@ -100,6 +103,9 @@ pub(crate) struct Recorder {
     contradictions: u64,
     /// Who wrote each result.
     authors: Authors,
+    stepped: Option<Duration>,
+    /// It was stopped for a while: a process that left meanwhile had nobody to tell how much it published.
+    stalled: bool,
 }
 
 /// Who was heard, and who said goodbye: a last report counts everything that its process ever published.
@@ -113,6 +119,12 @@ struct Company {
 impl Company {
     fn hear(&mut self, writer: WriterId) {
         self.heard.insert(writer.participant());
+    }
+
+    /// How many have left without a word.
+    fn missing(&self, present: &[WriterId]) -> usize {
+        let there: BTreeSet<_> = present.iter().map(WriterId::participant).chain(self.own).collect();
+        self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
     }
 
     /// Whether everyone who was heard, or has a writer in `present`, has said goodbye.
@@ -192,6 +204,8 @@ impl Recorder {
             repeats,
             contradictions: 0,
             authors,
+            stepped: None,
+            stalled: false,
         })
     }
 
@@ -361,6 +375,15 @@ pub(crate) fn counts(tallies: &[TopicTally]) -> String {
 
 impl Node for Recorder {
     fn step(&mut self, bus: &mut dyn Bus) -> std::result::Result<Next, NodeError> {
+        let now = bus.now();
+        let last = self.stepped.replace(now).unwrap_or(now);
+        if now.saturating_sub(last) > STALLED {
+            self.stalled = true;
+            log::warn!(
+                "nothing was recorded for {:.1} s: the recorder was stopped",
+                (now - last).as_secs_f64()
+            );
+        }
         self.take_all(bus)?;
         Ok(Next::Wait(TICK))
     }
@@ -376,6 +399,7 @@ impl Node for Recorder {
     /// Finishes the file. What this process itself says after that, it cannot record.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> std::result::Result<Exit, NodeError> {
         self.last_call(bus)?;
+        let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
         let strangers = self.strangers(bus);
         let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
@@ -393,6 +417,13 @@ impl Node for Recorder {
         let lost = if self.whole_run { before + after } else { after };
         if lost > 0 {
             log::error!("{lost} messages were published and are not in the recording");
+            return Ok(Exit::DataLoss);
+        }
+        if self.stalled && missing > 0 && !self.whole_run {
+            log::error!(
+                "{missing} processes left while the recorder was stopped: what they published meanwhile is not in the \
+                 recording, and how much that is is not known"
+            );
             return Ok(Exit::DataLoss);
         }
         let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
@@ -418,6 +449,7 @@ mod tests {
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
         company.hear(writer(2));
         assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
+        assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
         company.left.insert([2; 12]);
         assert!(company.all_left(&[writer(1), writer(2)]));
         assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");

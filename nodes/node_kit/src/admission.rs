@@ -1,7 +1,7 @@
 //! Whose samples are taken, and whose are ignored, counted and named.
 
 use crate::bus::WriterId;
-use crate::identity::{Identity, RunId, Scope, run_of};
+use crate::identity::{Identity, RunId, Scope, member_of, run_of};
 use std::collections::BTreeMap;
 
 /// The GUID prefix of one participant.
@@ -36,7 +36,13 @@ impl std::fmt::Display for Stranger {
                 self.participant.iter().try_for_each(|byte| write!(f, "{byte:02x}"))?;
             }
         }
-        self.run.map_or(Ok(()), |run| write!(f, " of run {run}"))
+        match self.run {
+            Some(run) if member_of(&self.participant) == 0 => {
+                write!(f, " with the name of run {run}")
+            }
+            Some(run) => write!(f, " of run {run}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -91,7 +97,12 @@ impl Admission {
             return true;
         }
         match (self.identity.run, run_of(participant)) {
-            (Some(own), Some(run)) if run == own => true,
+            // A launched run has its members alone; a run by hand, whoever has its name.
+            (Some(own), Some(run))
+                if run == own && (self.identity.member == 0 || member_of(participant) != 0) =>
+            {
+                true
+            }
             // What another launcher started is below a root of its own.
             (Some(_), _) => self.processes.get(participant).is_some_and(|p| p.below_root),
             (None, run) => run.is_none(),
@@ -159,6 +170,12 @@ mod tests {
         assert!(admission.admits(&run.guid_prefix()));
         assert!(!admission.admits(&other.guid_prefix()), "another run");
         assert!(!admission.admits(&HAND.guid_prefix()), "a node started by hand");
+        let joined = Identity::member_of(RunId::named("a"), 0);
+        assert!(
+            !admission.admits(&joined.guid_prefix()),
+            "one that was given the run's name, and no place in it"
+        );
+        assert!(Admission::new(joined, joined.guid_prefix()).admits(&run.guid_prefix()), "it hears the run");
         let instrument = [0x01, 0x10, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5];
         assert!(!admission.admits(&instrument));
         admission.discovered(instrument, process(false));

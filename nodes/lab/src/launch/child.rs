@@ -97,10 +97,10 @@ impl Child {
         Ok(())
     }
 
-    /// The end, from `words` on, of the last line of its log that holds them.
-    pub(crate) fn last_line_with(&self, logs: &Path, words: &str) -> Option<String> {
+    /// The last line of its log from `words` on, if it holds them: what it does at this moment.
+    pub(crate) fn last_line_if(&self, logs: &Path, words: &str) -> Option<String> {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).ok()?;
-        let line = text.lines().rfind(|line| line.contains(words))?;
+        let line = text.lines().last()?;
         line.find(words).map(|at| line[at..].to_owned())
     }
 

@@ -4,6 +4,9 @@ use super::plan::NodePlan;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
+/// Stands for the programs of a launch file that are not ours.
+pub(crate) const INSTRUMENT: &str = "instrument";
+
 /// One kind of data, by the topic that carries it.
 #[derive(Debug)]
 struct Kind {
@@ -15,6 +18,13 @@ struct Kind {
     /// Step and place of the inversion.
     inverted: BTreeSet<(u64, u8)>,
     declined: BTreeSet<u64>,
+}
+
+impl Kind {
+    fn new(topic: &'static str, node: &'static str) -> Self {
+        let (measured, inverted, declined) = Default::default();
+        Self { topic, node, measured, inverted, declined }
+    }
 }
 
 /// Where the run stands with one packing.
@@ -38,6 +48,8 @@ pub(crate) struct Debts {
     kinds: Vec<Kind>,
     /// Inversions of the run: each of them infers from every kind of data. One, where the run has none: somebody has to.
     inversions: usize,
+    /// Programs that are not ours run, which may send wave speeds. Who measured one packing is waited for at the last.
+    instruments: bool,
     /// Packings whose structure was measured.
     structures: BTreeSet<u64>,
 }
@@ -46,13 +58,7 @@ impl Debts {
     /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
     /// without analyzer and probe gets to know that nothing is inferred.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
-        let kind = |topic: &grainlab_msgs::Topic| Kind {
-            topic: topic.name,
-            node: topic.writer,
-            measured: BTreeSet::new(),
-            inverted: BTreeSet::new(),
-            declined: BTreeSet::new(),
-        };
+        let kind = |topic: &grainlab_msgs::Topic| Kind::new(topic.name, topic.writer);
         let has = |node: &str| plans.iter().any(|p| p.is(node));
         let mut kinds = Vec::new();
         let (moduli, speeds) = (kind(&topics::MODULI), kind(&topics::WAVE_SPEEDS));
@@ -64,7 +70,8 @@ impl Debts {
             kinds.push(speeds);
         }
         let inversions = plans.iter().filter(|p| p.is(topics::MICROSTRUCTURE.writer)).count().max(1);
-        Self { kinds, inversions, structures: BTreeSet::new() }
+        let instruments = !probe && plans.iter().any(|p| p.node.is_none());
+        Self { kinds, inversions, instruments, structures: BTreeSet::new() }
     }
 
     /// The structure of the packing of `step` was published. If the packing has moduli, they follow at once.
@@ -74,9 +81,20 @@ impl Debts {
 
     /// The data of this topic about the packing of `step` are there.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
+        // Step 0 is of no packing.
+        if self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0 {
+            if self.of_topic(topic).next().is_none() {
+                self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
+            }
+        }
         self.of_topic(topic).for_each(|k| {
             k.measured.insert(step);
         });
+    }
+
+    /// No program that is not ours runs any more.
+    pub(crate) fn instruments_left(&mut self) {
+        self.instruments = false;
     }
 
     /// A microstructure from the data of this topic is there, by the inversion in this place.
@@ -100,7 +118,8 @@ impl Debts {
     /// Where the run stands with the packing of `step`: by what takes longest.
     pub(crate) fn standing(&self, step: u64) -> Standing {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
-        let owed = || self.kinds.iter().filter(|k| !inverted(k));
+        let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
+        let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
         let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
         if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
@@ -132,6 +151,36 @@ mod tests {
             respawn: false,
         };
         Debts::of(&nodes.iter().map(plan).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_unless_it_left() {
+        let foreign = NodePlan {
+            name: "instrument".to_owned(),
+            node: None,
+            program: "python3".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        let ours = NodePlan { node: Some(ANALYZER.to_owned()), ..foreign.clone() };
+        let mut d = Debts::of(&[ours, foreign]);
+        for step in [7, 9] {
+            d.measured("moduli", step);
+            d.inverted("moduli", step, 2);
+        }
+        d.measured("wave_speeds", 0);
+        assert_eq!(d.standing(9), Standing::Complete, "speeds of no packing");
+        d.measured("wave_speeds", 7);
+        assert_eq!(d.standing(9), Standing::Open(INSTRUMENT));
+        d.measured("wave_speeds", 9);
+        assert_eq!(d.standing(9), Standing::Measured(INSTRUMENT));
+        d.inverted("wave_speeds", 9, 2);
+        assert_eq!(d.standing(9), Standing::Complete);
+        assert_eq!(d.standing(11), Standing::Open(ANALYZER));
+        d.measured("moduli", 11);
+        d.inverted("moduli", 11, 2);
+        d.instruments_left();
+        assert_eq!(d.standing(11), Standing::Complete);
     }
 
     #[test]

@@ -186,12 +186,23 @@ impl LaunchFile {
 
 impl Executable {
     fn plan(&self, variables: &BTreeMap<&str, String>) -> Result<NodePlan, PlanError> {
-        let words = words(&self.cmd, variables)?;
+        let command = || PlanError::Command { cmd: self.cmd.clone() };
+        let words = words(&self.cmd).ok_or_else(command)?;
         let node = match words.as_slice() {
             [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.clone()),
-            [program, ..] if program != "grainlab" => None,
-            _ => return Err(PlanError::Command { cmd: self.cmd.clone() }),
+            [program, ..] if program != "grainlab" && !program.is_empty() => None,
+            _ => return Err(command()),
         };
+        let value = |name: &str| {
+            let value = variables.get(name)?;
+            // Parameters of nodes are YAML, in which a path is quoted; a program of anybody's gets the path.
+            let plain =
+                || serde_json::from_str(value).unwrap_or_else(|_| value.trim_matches('\'').to_owned());
+            Some(if node.is_some() { value.clone() } else { plain() })
+        };
+        let known = || variables.keys().copied().collect::<Vec<_>>().join(", ");
+        let words: Vec<String> =
+            words.iter().map(|word| substitute(word, value, known)).collect::<Result<_, _>>()?;
         let (program, arguments) = (words[0].clone(), words[1..].to_vec());
         let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
         let by_itself = || {
@@ -222,15 +233,16 @@ impl Executable {
     }
 }
 
-/// Words of a command line: split at blanks outside quotes, then variables put in. A value is never split.
-fn words(cmd: &str, variables: &BTreeMap<&str, String>) -> Result<Vec<String>, PlanError> {
+/// Words of a command line, split at blanks outside quotes; `None` where a quote is left open.
+fn words(cmd: &str) -> Option<Vec<String>> {
     let mut words = Vec::new();
-    let mut word = String::new();
+    // Two quotes with nothing between them are an empty word.
+    let (mut word, mut quoted) = (String::new(), false);
     let mut rest = cmd.chars().peekable();
     let (mut quote, mut depth) = (None, 0usize);
     while let Some(c) = rest.next() {
         match c {
-            '\'' | '"' if depth == 0 && quote.is_none() => quote = Some(c),
+            '\'' | '"' if depth == 0 && quote.is_none() => (quote, quoted) = (Some(c), true),
             c if quote == Some(c) => quote = None,
             '$' if rest.peek() == Some(&'(') => {
                 depth += 1;
@@ -241,20 +253,26 @@ fn words(cmd: &str, variables: &BTreeMap<&str, String>) -> Result<Vec<String>, P
                 word.push(c);
             }
             c if c.is_whitespace() && quote.is_none() && depth == 0 => {
-                if !word.is_empty() {
+                if !word.is_empty() || std::mem::take(&mut quoted) {
                     words.push(std::mem::take(&mut word));
                 }
+                quoted = false;
             }
             c => word.push(c),
         }
     }
-    if !word.is_empty() {
+    if !word.is_empty() || quoted {
         words.push(word);
     }
-    words.into_iter().map(|w| substitute(&w, variables)).collect()
+    quote.is_none().then_some(words)
 }
 
-fn substitute(word: &str, variables: &BTreeMap<&str, String>) -> Result<String, PlanError> {
+/// Puts the values of variables in. A value is never split.
+fn substitute(
+    word: &str,
+    value: impl Fn(&str) -> Option<String>,
+    known: impl Fn() -> String,
+) -> Result<String, PlanError> {
     let mut out = String::new();
     let mut rest = word;
     while let Some((before, after)) = rest.split_once("$(") {
@@ -263,13 +281,13 @@ fn substitute(word: &str, variables: &BTreeMap<&str, String>) -> Result<String, 
             after.split_once(')').ok_or_else(|| PlanError::Substitution { text: text() })?;
         let name =
             inside.strip_prefix("var ").ok_or_else(|| PlanError::Substitution { text: text() })?.trim();
-        let value = variables.get(name).ok_or_else(|| PlanError::Undeclared {
+        let value = value(name).ok_or_else(|| PlanError::Undeclared {
             text: text(),
             name: name.to_owned(),
-            known: variables.keys().copied().collect::<Vec<_>>().join(", "),
+            known: known(),
         })?;
         out += before;
-        out += value;
+        out += &value;
         rest = behind;
     }
     Ok(out + rest)

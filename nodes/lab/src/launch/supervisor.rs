@@ -2,6 +2,7 @@
 
 use super::Run;
 use super::child::{Child, Ended};
+use super::deadline::{Deadline, nothing};
 use super::debts::{Debts, Standing};
 use super::patience::Patience;
 use super::plan::NodePlan;
@@ -28,11 +29,6 @@ const RESTART_PAUSE: Duration = Duration::from_millis(100);
 /// How often the processes are looked at.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// How long the last packing may take to be measured, what was measured to be inverted, and moduli to follow a structure.
-const MEASURED_WITHIN: Duration = Duration::from_secs(600);
-const INVERTED_WITHIN: Duration = Duration::from_secs(30);
-const MODULI_WITHIN: Duration = Duration::from_secs(5);
-
 /// How long a process that was stopped may take to catch up before the run ends, and how long the end waits for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
@@ -40,14 +36,17 @@ const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 /// How long a run that has not begun is silent about it.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
+/// What a run waits for whose simulator was not heard yet.
+const SEARCHING: &str = "its processes have not found each other";
+
 /// The node whose end is the end of the record.
 pub(super) const RECORDER: &str = "recorder";
 /// The node that goes on from its last packing when it dies.
 const SIMULATOR: &str = "dem_simulator";
 /// The node that sends waves.
-const PROBE: &str = "acoustic_probe";
+pub(super) const PROBE: &str = "acoustic_probe";
 /// The node that infers.
-const INVERSION: &str = "emt_inversion";
+pub(super) const INVERSION: &str = "emt_inversion";
 
 /// A run from its first process to its last.
 pub(crate) struct Supervisor {
@@ -62,6 +61,8 @@ pub(crate) struct Supervisor {
     hangup: Signal,
     pub(super) progress: Progress,
     begun: bool,
+    /// The step that the run began or went on at.
+    first_step: Option<u64>,
     finished: Option<RunStateReading>,
     failed: Option<String>,
     /// The watch failed: nobody would notice the end of the run.
@@ -125,6 +126,7 @@ impl Supervisor {
             hangup: handler(SignalKind::hangup())?,
             progress: Progress::new(phases),
             begun: false,
+            first_step: None,
             finished: None,
             failed: None,
             blind: false,
@@ -159,6 +161,11 @@ impl Supervisor {
         }
         let code = |node: &str| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
         if code(RECORDER) != Some(0) {
+            // Data loss is in the table; anything else only the recorder can tell.
+            if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
+                crate::output::say!("grainlab: {RECORDER} ended with exit code 1:");
+                recorder.quote_log(&self.logs);
+            }
             exit = worse(exit, Exit::DataLoss);
         }
         // A simulator that ended with an error fails the run, whatever was heard before.
@@ -265,7 +272,8 @@ impl Supervisor {
     pub(super) fn take(&mut self, event: Event) {
         match event {
             Event::State(state) => {
-                self.begun = true;
+                let first = *self.first_step.get_or_insert(state.step);
+                self.begun |= state.step != first || state.status != RunStatus::Running;
                 self.progress.show(&state);
                 match state.status {
                     RunStatus::Running => {}
@@ -296,7 +304,11 @@ impl Supervisor {
                 self.heard(topics::MICROSTRUCTURE.name, step);
                 self.debts.inverted(&source, step, member);
                 let data = source.replace('_', " ");
-                self.progress.say(&format!("packing of step {step} measured and inverted, by its {data}"));
+                self.progress.say(&match step {
+                    // An instrument's data are of no packing of the run.
+                    0 => format!("the {data} of an instrument inverted"),
+                    _ => format!("packing of step {step} measured and inverted, by its {data}"),
+                });
             }
             Event::Stranger(text) => {
                 crate::output::say!("grainlab: {text} and is not of this run: it is ignored")
@@ -332,8 +344,11 @@ impl Supervisor {
     /// What the simulator says in its log that it waits for.
     fn say_what_is_waited_for(&self) {
         let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
-        let waits = simulator.and_then(|c| c.last_line_with(&self.logs, "waiting for"));
-        let what = waits.unwrap_or_else(|| "for its processes to find each other".to_owned());
+        let waits = simulator.and_then(|c| c.last_line_if(&self.logs, "waiting for"));
+        // A simulator that is heard and does not wait is at work on its first step.
+        let Some(what) = waits.or_else(|| self.first_step.is_none().then(|| SEARCHING.to_owned())) else {
+            return;
+        };
         self.progress.say(&format!("the run has not begun: {what}"));
     }
 
@@ -372,6 +387,9 @@ impl Supervisor {
         let child = &self.children[index];
         if child.plan.respawn {
             return self.restart(index, how).await;
+        }
+        if !self.children.iter().any(|c| c.plan.node.is_none() && c.pid.is_some()) {
+            self.debts.instruments_left();
         }
         if child.code == Some(0) {
             self.progress.say(&format!("{} {how}", child.plan.name));
@@ -428,40 +446,4 @@ impl Supervisor {
             failure.exit
         })
     }
-}
-
-/// What is waited for, and for how long.
-struct Deadline {
-    of: Standing,
-    patience: Patience,
-    exit: Exit,
-    message: String,
-}
-
-impl Deadline {
-    fn of(standing: Standing) -> Self {
-        let (time, exit, message) = match standing {
-            Standing::Bare(node) => {
-                (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
-            }
-            Standing::Measured(node) => {
-                let message = format!(
-                    "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
-                );
-                (INVERTED_WITHIN, Exit::Failure, message)
-            }
-            Standing::Open(node) | Standing::Declined(node) => {
-                let message = format!("the last packing was not measured: see logs/{node}.log");
-                (MEASURED_WITHIN, Exit::Failure, message)
-            }
-            Standing::Complete => (Duration::ZERO, Exit::Done, String::new()),
-        };
-        Self { of: standing, patience: Patience::new(time), exit, message }
-    }
-}
-
-/// What a node did not find of a packing, and where it says why.
-fn nothing(node: &str) -> String {
-    let data = if node == PROBE { "wave speeds" } else { "stiffness" };
-    format!("{data} to invert: see logs/{node}.log")
 }

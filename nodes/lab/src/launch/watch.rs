@@ -3,6 +3,7 @@
 use super::Run;
 use crate::failure::Failure;
 use crate::network::bus_as;
+use crate::results::strangers::name;
 use acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -88,7 +89,10 @@ impl Watch {
         let asked = Arc::clone(&stop);
         watchdog::watch_dds_threads();
         let thread = std::thread::Builder::new().name("watch".into()).spawn(move || {
-            let bus = bus_as(run.domain, "launcher", Identity::member_of(run.id, LAUNCHER));
+            // The programs that the launcher started are below it.
+            let root = Some(std::process::id());
+            let identity = Identity { root, ..Identity::member_of(run.id, LAUNCHER) };
+            let bus = bus_as(run.domain, "launcher", identity);
             let watched = bus.map_err(|e| e.to_string()).and_then(|mut bus| {
                 let watched = watch(&mut bus, &events, &asked);
                 if watched.is_err() {
@@ -201,7 +205,7 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
             next_look = bus.now() + LOOK_AROUND;
             watchdog::check().map_err(|e| e.to_string())?;
             for (topic, stranger) in strangers(bus) {
-                let name = stranger.run.map_or_else(|| stranger.to_string(), |run| format!("run {run}"));
+                let name = name(&stranger);
                 if named.len() < NAMED && named.insert(name.clone()) {
                     send(Event::Stranger(format!("{name} publishes {topic} in this domain")));
                 }

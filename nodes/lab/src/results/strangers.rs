@@ -1,6 +1,7 @@
 //! Who was on the bus beside the run, and who wrote which result.
 
 use node_kit::Stranger;
+use node_kit::identity::member_of;
 use recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -20,12 +21,21 @@ pub(crate) struct StrangerView {
     pub(crate) ignored: BTreeMap<String, u64>,
 }
 
+/// One name for all processes of another run; else that of the process, as for one that was given the name of a run and has
+/// no place in it.
+pub(crate) fn name(stranger: &Stranger) -> String {
+    match stranger.run {
+        Some(run) if member_of(&stranger.participant) != 0 => format!("run {run}"),
+        _ => stranger.to_string(),
+    }
+}
+
 /// For a recording, and for `summary.json`: one for each process, and one for each other run.
 pub(crate) fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
     let mut views: BTreeMap<String, StrangerView> = BTreeMap::new();
     for stranger in strangers {
         let run = stranger.run.map(|run| run.to_string());
-        let who = run.as_ref().map_or_else(|| stranger.to_string(), |run| format!("run {run}"));
+        let who = name(&stranger);
         let new = StrangerView { who: who.clone(), run, ignored: BTreeMap::new() };
         let view = views.entry(who).or_insert(new);
         for (topic, count) in stranger.ignored {

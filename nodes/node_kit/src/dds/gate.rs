@@ -4,7 +4,7 @@ use super::caretaker::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::bus::WriterId;
-use crate::identity::{Identity, Scope, run_of};
+use crate::identity::Identity;
 use rustdds::GUID;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -66,9 +66,8 @@ impl Gate {
     /// A participant was discovered, which listens there.
     pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
-        // Who says that it is of this run needs no other evidence, and nobody has to be named who is heard anyway.
-        let ours = self.identity.run.is_some() && run_of(&participant) == self.identity.run;
-        if self.identity.scope == Scope::Everyone || ours {
+        // Who is admitted by its name needs no other evidence, and nobody has to be named who is heard anyway.
+        if lock(&self.admission).admits(&participant) {
             return;
         }
         if let Some(process) = processes::listening_on(addresses, self.identity.root) {

@@ -28,6 +28,14 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
         if is_finished(&recording) {
             return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
         }
+        let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
+        if recorded.is_some_and(|file| file.bytes != scene.text.as_bytes()) {
+            return Err(Failure::failed(format!(
+                "{}: scene.toml is not the scene that the recording began with: the run cannot go on by another. Put the \
+                 recorded one back, or launch a new run",
+                directory.display()
+            )));
+        }
         let path = serde_json::Value::from(directory.to_string_lossy());
         for plan in &mut plans {
             let given = match plan.node.as_deref() {

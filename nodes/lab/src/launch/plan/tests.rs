@@ -61,6 +61,17 @@ fn a_value_with_blanks_stays_one_word() {
 }
 
 #[test]
+fn a_program_of_anybodys_gets_its_words_as_a_shell_would_split_them_and_values_without_quotes() {
+    let cmd = r#"python3 probe.py "two words" '' --scene $(var scene)"#;
+    let text = format!("{DEFAULT}- executable:\n    cmd: {cmd}\n    name: probe\n");
+    let plans = nodes(&text, &[("scene", r#""/a b/scene.toml""#)]).unwrap();
+    let probe = plans.last().unwrap();
+    assert_eq!(probe.arguments, ["probe.py", "two words", "", "--scene", "/a b/scene.toml"]);
+    let ours = plans[0].arguments.iter().any(|word| word == r#"scene:="/a b/scene.toml""#);
+    assert!(ours, "parameters of nodes are YAML: {:?}", plans[0]);
+}
+
+#[test]
 fn what_is_not_supported_is_refused_and_named() {
     let one = |entry: &str| format!("launch:\n- {entry}\n");
     for (text, needle) in [
@@ -68,6 +79,7 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: grainlab run recorder, shell: true}"), "shell"),
         (one("executable: {cmd: grainlab bag record}"), "grainlab bag record"),
         (one("executable: {cmd: ''}"), "a program with its arguments"),
+        (one("executable: {cmd: 'python3 \"probe.py'}"), "a program with its arguments"),
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(env HOME)'}"), "$(var NAME)"),
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
         (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
