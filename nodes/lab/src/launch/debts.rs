@@ -82,10 +82,9 @@ impl Debts {
     /// The data of this topic about the packing of `step` are there.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
         // Step 0 is of no packing.
-        if self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0 {
-            if self.of_topic(topic).next().is_none() {
-                self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
-            }
+        let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
+        if instrument && self.of_topic(topic).next().is_none() {
+            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
         }
         self.of_topic(topic).for_each(|k| {
             k.measured.insert(step);

@@ -4,7 +4,7 @@ use super::caretaker::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::bus::WriterId;
-use crate::identity::Identity;
+use crate::identity::{Identity, Scope};
 use rustdds::GUID;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -66,8 +66,9 @@ impl Gate {
     /// A participant was discovered, which listens there.
     pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
-        // Who is admitted by its name needs no other evidence, and nobody has to be named who is heard anyway.
-        if lock(&self.admission).admits(&participant) {
+        // Who is admitted by its run needs no other evidence, and nobody has to be named who is heard anyway.
+        let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
+        if self.identity.scope == Scope::Everyone || ours {
             return;
         }
         if let Some(process) = processes::listening_on(addresses, self.identity.root) {

@@ -418,6 +418,7 @@ impl DPEventLoop {
         &mut writers_to_remove,
         &mut preparing_to_stop,
       ) {
+        ev_wrapper.service_outbound();
         return;
       }
       // Removals wait until commands queued in this same wake have run.
@@ -457,6 +458,9 @@ impl DPEventLoop {
     preparing_to_stop: &mut bool,
   ) -> bool {
     use std::sync::mpsc::TryRecvError;
+    // What was written before the stop is still sent: the last of it tells the
+    // peers that the participant leaves.
+    let mut stop = false;
     loop {
       match self.stop_poll_receiver.try_recv() {
         Ok(EventLoopCommand::PrepareStop) => {
@@ -465,7 +469,7 @@ impl DPEventLoop {
         }
         Ok(EventLoopCommand::Stop) => {
           info!("Stopping dp_event_loop");
-          return true;
+          stop = true;
         }
         Err(TryRecvError::Empty) => break,
         Err(TryRecvError::Disconnected) => {
@@ -533,7 +537,7 @@ impl DPEventLoop {
       }
       self.message_receiver.notify_data_to_readers(local_readers);
     }
-    false
+    stop
   }
 
   fn drain_timers(&mut self, preparing_to_stop: bool) {
