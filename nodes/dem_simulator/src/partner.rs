@@ -36,7 +36,8 @@ pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
     run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
 }
 
-/// Whether `a` is what `b` takes the place of. In a run by hand nobody has a place, and two simulators are two.
+/// Whether `b` is the restarted process of `a`. Only a launcher gives a process a place in its run (member 1 to 254). Without
+/// one, two simulators are always taken for two processes.
 pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
     same_member(a, b) && member_of(b) != 0
 }

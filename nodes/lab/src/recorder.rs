@@ -47,7 +47,7 @@ const TICK: Duration = Duration::from_millis(100);
 /// Older than any message may become before it is handed to the system.
 const OLD_ENOUGH: Duration = Duration::from_secs(1);
 
-/// A recorder that took nothing in for this long was stopped, or the machine was.
+/// A recorder that took nothing in for this long was stopped by a signal, or its disk was slow.
 const STALLED: Duration = Duration::from_secs(2);
 
 /// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence, unless
@@ -103,8 +103,9 @@ pub(crate) struct Recorder {
     contradictions: u64,
     /// Who wrote each result.
     authors: Authors,
+    /// Time of the last step, since the bus was opened.
     stepped: Option<Duration>,
-    /// It was stopped for a while: a process that left meanwhile had nobody to tell how much it published.
+    /// The recorder took nothing in for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
     stalled: bool,
 }
 
@@ -121,7 +122,7 @@ impl Company {
         self.heard.insert(writer.participant());
     }
 
-    /// How many have left without a word.
+    /// How many processes are gone and sent no last report.
     fn missing(&self, present: &[WriterId]) -> usize {
         let there: BTreeSet<_> = present.iter().map(WriterId::participant).chain(self.own).collect();
         self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
@@ -380,7 +381,7 @@ impl Node for Recorder {
         if now.saturating_sub(last) > STALLED {
             self.stalled = true;
             log::warn!(
-                "nothing was recorded for {:.1} s: the recorder was stopped",
+                "nothing was recorded for {:.1} s: the recorder was stopped, or its disk was slow",
                 (now - last).as_secs_f64()
             );
         }
@@ -421,8 +422,8 @@ impl Node for Recorder {
         }
         if self.stalled && missing > 0 && !self.whole_run {
             log::error!(
-                "{missing} processes left while the recorder was stopped: what they published meanwhile is not in the \
-                 recording, and how much that is is not known"
+                "{missing} processes left without a last report, and the recorder was stopped for a while: how many of their \
+                 messages are missing is not known"
             );
             return Ok(Exit::DataLoss);
         }

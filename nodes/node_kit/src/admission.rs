@@ -97,7 +97,8 @@ impl Admission {
             return true;
         }
         match (self.identity.run, run_of(participant)) {
-            // A launched run has its members alone; a run by hand, whoever has its name.
+            // A process of a launched run takes samples of its members alone. In a run by hand no process has a place: there
+            // the name of the run is enough.
             (Some(own), Some(run))
                 if run == own && (self.identity.member == 0 || member_of(participant) != 0) =>
             {

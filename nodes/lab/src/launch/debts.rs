@@ -48,7 +48,8 @@ pub(crate) struct Debts {
     kinds: Vec<Kind>,
     /// Inversions of the run: each of them infers from every kind of data. One, where the run has none: somebody has to.
     inversions: usize,
-    /// Programs that are not ours run, which may send wave speeds. Who measured one packing is waited for at the last.
+    /// Whether programs that are not ours run, which may send wave speeds. If they sent those of one packing, the run waits
+    /// for those of its last packing.
     instruments: bool,
     /// Packings whose structure was measured.
     structures: BTreeSet<u64>,
@@ -117,6 +118,7 @@ impl Debts {
     /// Where the run stands with the packing of `step`: by what takes longest.
     pub(crate) fn standing(&self, step: u64) -> Standing {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
+        // A program that is gone sends nothing more.
         let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));

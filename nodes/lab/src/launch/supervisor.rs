@@ -247,8 +247,8 @@ impl Supervisor {
         }
     }
 
-    /// The end of a complete run: not before who is stopped goes on, and has had time to catch up. The others keep for it
-    /// what it has missed, until they leave.
+    /// Ends a complete run, but not before a stopped process goes on and has had time to catch up: its writers keep what it
+    /// missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);

@@ -21,8 +21,7 @@ pub(crate) struct StrangerView {
     pub(crate) ignored: BTreeMap<String, u64>,
 }
 
-/// One name for all processes of another run; else that of the process, as for one that was given the name of a run and has
-/// no place in it.
+/// The name under which a stranger is counted: `run ID` for every process of another launched run, else the process itself.
 pub(crate) fn name(stranger: &Stranger) -> String {
     match stranger.run {
         Some(run) if member_of(&stranger.participant) != 0 => format!("run {run}"),

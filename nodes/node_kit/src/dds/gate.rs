@@ -66,7 +66,7 @@ impl Gate {
     /// A participant was discovered, which listens there.
     pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
-        // Who is admitted by its run needs no other evidence, and nobody has to be named who is heard anyway.
+        // The process of a participant is looked up only where it decides on admission, or names a stranger.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
         if self.identity.scope == Scope::Everyone || ours {
             return;

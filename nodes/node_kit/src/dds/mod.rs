@@ -4,7 +4,8 @@
 //! - `inbox`: a reader and what was read but not taken; `caretaker`: empties readers while a node computes
 //! - `gate`: whose samples are taken; `processes`: which process runs a participant
 //! - `graph`: who else is there; `presence`: this node in the ROS graph
-//! - `network`: domain and reach; `claim`: domains for tests; `qos`: the contract as policies; `raw`: bytes in and out; `writer`: one writer
+//! - `network`: domain and reach; `claim`: domains for tests; `qos`: the contract as policies; `raw`: bytes in and out
+//! - `writer`: one writer
 
 mod bus;
 mod caretaker;

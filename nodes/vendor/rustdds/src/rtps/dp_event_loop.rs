@@ -1190,9 +1190,9 @@ impl DPEventLoop {
         self.domain_info.participant_id,
         SPDP_LOCALHOST_PEER_COUNT,
       );
-      // Loopback without the multicast flag is in nobody's advertised locators,
-      // but announcements to the group arrive there: more participants than there
-      // are fixed peers find each other, and peers with ports of their own choice.
+      // Peers do not advertise a multicast locator on a loopback interface without
+      // the multicast flag, but the kernel delivers multicast there. Announcing to
+      // the group reaches peers beyond the fixed ports above.
       let loopback = InterfaceSelector::Ip(IpAddr::V4(Ipv4Addr::LOCALHOST));
       if self.udp_sender.multicast_interfaces().contains(&loopback)
         && !is_any_flagged_multicast(&[Ipv4Addr::LOCALHOST])
