@@ -2,12 +2,12 @@
 //! recordings of ours.
 //!
 //! The parsers take text; [`load`] and [`each`] take a path, decompress `.gz` and pick the parser by content. Whatever the
-//! source, the result is a validated [`grains::Packing`] in its conventions: contacts `i < j` by index,
+//! source, the result is a validated [`grainlab_core::Packing`] in its conventions: contacts `i < j` by index,
 //! normal from `i` to the image of `j`, tangential force on `i`. Where a source does not list contacts they
 //! are found from positions, with Hertz normal forces and no tangential force.
 
+use grainlab_core::{Mat3, Packing};
 use grainlab_msgs::std_msgs::Header;
-use grains::{Mat3, Packing};
 
 mod assemble;
 pub mod contacts;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use grainlab_msgs::{TOPICS, Topic};
-use recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
+use grainlab_recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 
 struct Counting;
 

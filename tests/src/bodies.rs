@@ -1,6 +1,6 @@
 //! What a recording holds, topic by topic, repeats removed.
 
-use recordings::{Recording, Selection};
+use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
 /// The first six rows of the contract table that this version writes: what must not depend on timing.

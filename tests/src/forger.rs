@@ -3,7 +3,7 @@
 
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
-use node_kit::{Bus, DdsBus, Demand, Names, Network, Publisher, Sample, SubscriptionId};
+use grainlab_node_kit::{Bus, DdsBus, Demand, Names, Network, Publisher, Sample, SubscriptionId};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
@@ -134,12 +134,12 @@ fn subscribe(bus: &mut DdsBus, topic: &Topic) -> SubscriptionId {
 }
 
 /// Another message than this one, and what it is said to be about.
-fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<node_kit::SampleId>)> {
+fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<grainlab_node_kit::SampleId>)> {
     let info = &sample.info;
     let body = match forgery {
         Forgery::SecondServo => {
             let stress: Stress = decoded(sample);
-            let mut answer = servo_controller::answer(&stress).ok()?;
+            let mut answer = grainlab_servo_controller::answer(&stress).ok()?;
             answer.rate.iter_mut().for_each(|rate| *rate *= 0.5);
             return Some((grainlab_msgs::to_cdr(&answer), Some(info.id())));
         }

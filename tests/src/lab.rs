@@ -71,8 +71,8 @@ impl Lab {
         let recorded = || {
             let runs = std::fs::read_dir(self.folder().join("recordings/runs")).ok()?;
             let run = runs.flatten().next()?.path();
-            let recording = recordings::Recording::open(&run).ok()?;
-            Some(recording.messages(&recordings::Selection::topics(["/stress"])).ok()?.count())
+            let recording = grainlab_recordings::Recording::open(&run).ok()?;
+            Some(recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).ok()?.count())
         };
         let begin = Instant::now();
         while recorded().unwrap_or(0) < messages {

@@ -1,8 +1,8 @@
 //! Packings that need no simulation: grains on a simple cubic lattice, each touching its six neighbours.
 
+use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::Packing;
-use grains::{Cell, Contact, Mat3, Material, Vec3};
 
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 2e-8;
@@ -37,7 +37,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
     }
     contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let grains = positions.len();
-    let packing = grains::Packing {
+    let packing = grainlab_core::Packing {
         step,
         time: step as f64 * 1e-6,
         cell: Cell::cube(spacing * edge as f64).unwrap_or_else(|| panic!("a cell of {edge} grains")),

@@ -20,8 +20,8 @@ fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
 }
 
 fn messages(run: &Path) -> usize {
-    let recording = recordings::Recording::open(run).unwrap();
-    recording.messages(&recordings::Selection::topics(["/stress"])).unwrap().count()
+    let recording = grainlab_recordings::Recording::open(run).unwrap();
+    recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).unwrap().count()
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_fin
     let ended = launcher.ended(LIMIT);
     assert_eq!(ended.code, Some(1), "{}\n{}", ended.stdout, ended.stderr);
     assert!(ended.stderr.contains("dem_simulator"), "{}", ended.stderr);
-    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    let recording = grainlab_recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
     assert!(messages(&lab.last_run()) > 100);
 }
@@ -74,6 +74,6 @@ fn the_death_of_the_launcher_ends_every_process_and_finishes_the_recording() {
         assert!(begin.elapsed() < Duration::from_secs(20), "processes outlive their launcher");
         std::thread::sleep(Duration::from_millis(50));
     }
-    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    let recording = grainlab_recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
 }

@@ -1,6 +1,6 @@
 //! An instrument that shares no code with ours, but the message files: CycloneDDS, from Python.
 
-use emt_inversion::{Settings, microstructure_of_speeds};
+use grainlab_emt_inversion::{Settings, microstructure_of_speeds};
 use grainlab_msgs::msg::{Microstructure, WaveSpeeds};
 use grainlab_msgs::{Message, from_cdr};
 use serde_json::Value;

@@ -2,7 +2,7 @@
 
 use grainlab_msgs::msg::Fabric;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
-use recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
+use grainlab_recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::lab::{LIMIT, Lab};

@@ -140,7 +140,7 @@ fn an_interrupted_launch_ends_every_process_and_finishes_the_recording() {
     for pid in nodes {
         assert!(!std::path::Path::new(&format!("/proc/{pid}/exe")).exists(), "process {pid} is left behind");
     }
-    let recording = recordings::Recording::open(&lab.last_run()).unwrap();
+    let recording = grainlab_recordings::Recording::open(&lab.last_run()).unwrap();
     assert_eq!(recording.warnings().len(), 0, "{:?}", recording.warnings());
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use recordings::{Recording, Selection};
+use grainlab_recordings::{Recording, Selection};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{children, send};
 use system_tests::python;

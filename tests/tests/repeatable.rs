@@ -109,6 +109,6 @@ fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
 }
 
 fn recorded(run: &std::path::Path) -> usize {
-    let Ok(recording) = recordings::Recording::open(run) else { return 0 };
-    recording.messages(&recordings::Selection::topics(["/stress"])).map_or(0, Iterator::count)
+    let Ok(recording) = grainlab_recordings::Recording::open(run) else { return 0 };
+    recording.messages(&grainlab_recordings::Selection::topics(["/stress"])).map_or(0, Iterator::count)
 }

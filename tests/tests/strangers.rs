@@ -52,8 +52,9 @@ fn an_old_result_that_is_latched_does_not_end_a_run_early() {
     let scene = golden("scenes/tiny.toml");
     let quiet = Lab::new();
     let expected = quiet.launch(&scene, &[]);
-    let last = recordings::Recording::open(&expected).unwrap();
-    let last = last.messages(&recordings::Selection::topics(["/microstructure"])).unwrap().last().unwrap();
+    let last = grainlab_recordings::Recording::open(&expected).unwrap();
+    let last =
+        last.messages(&grainlab_recordings::Selection::topics(["/microstructure"])).unwrap().last().unwrap();
     let last: grainlab_msgs::msg::Microstructure = grainlab_msgs::from_cdr(&last.payload).unwrap();
     let lab = Lab::new();
     let _forger = Forger::start(lab.domain, Forgery::OldMicrostructure { step: last.source_step });

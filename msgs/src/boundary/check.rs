@@ -4,7 +4,7 @@ use super::BoundaryError;
 use crate::geometry_msgs::Vector3;
 use crate::msg::SymmetricTensor;
 use crate::std_msgs::Header;
-use grains::{Anisotropy, SymTensor, Vec3};
+use grainlab_core::{Anisotropy, SymTensor, Vec3};
 
 /// Names of the components in Voigt order.
 pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];

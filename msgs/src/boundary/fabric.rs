@@ -5,7 +5,7 @@ use super::check::{Check, ratios, tensor_message, vector_message};
 use super::structure::{structure, structure_message};
 use crate::msg;
 use crate::std_msgs::Header;
-use grains::{Anisotropy, Fabric, Vec3};
+use grainlab_core::{Anisotropy, Fabric, Vec3};
 
 pub(super) const CHECK: Check = Check("Fabric");
 

@@ -83,5 +83,5 @@ pub enum BoundaryError {
     },
     /// Numbers that make no packing.
     #[error("Packing is refused: {0}")]
-    Packing(#[from] grains::PackingError),
+    Packing(#[from] grainlab_core::PackingError),
 }

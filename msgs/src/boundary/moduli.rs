@@ -5,7 +5,7 @@ use super::check::{Check, ratios, vector_message};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
-use grains::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, Vec3};
+use grainlab_core::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, Vec3};
 
 const CHECK: Check = Check("Moduli");
 

@@ -4,7 +4,7 @@ use super::BoundaryError;
 use super::check::{Check, header};
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
-use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const CHECK: Check = Check("Packing");
 

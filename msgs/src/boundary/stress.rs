@@ -4,7 +4,7 @@ use super::BoundaryError;
 use super::check::{Check, component, header, tensor_message};
 use crate::builtin_interfaces::Time;
 use crate::msg::Stress;
-use grains::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 const CHECK: Check = Check("Stress");
 

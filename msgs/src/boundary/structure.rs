@@ -4,11 +4,11 @@ use super::BoundaryError;
 use super::check::{tensor_message, vector_message};
 use super::fabric::CHECK;
 use crate::msg;
-use grains::structure::{
+use grainlab_core::structure::{
     AxisFound, ContactFit, Forces, FourthOrderFabric, Mobilisation, NetworkPart, Orientation, OverlapFit,
     StressForceFabric, StressParts,
 };
-use grains::{Structure, Vec3};
+use grainlab_core::{Structure, Vec3};
 
 /// A message with the fields of the structure set.
 pub(super) fn structure_message(s: &Structure) -> msg::Fabric {

@@ -6,7 +6,7 @@ use crate::builtin_interfaces::Time;
 use crate::geometry_msgs::Vector3;
 use crate::msg;
 use crate::std_msgs::Header;
-use grains::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
+use grainlab_core::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
 

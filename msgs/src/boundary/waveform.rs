@@ -6,7 +6,7 @@ use super::wave_speeds::{code, method, unit};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
-use grains::{Vec3, WaveMethod};
+use grainlab_core::{Vec3, WaveMethod};
 
 const CHECK: Check = Check("Waveform");
 

@@ -1,8 +1,8 @@
 use super::refuses;
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_msgs::boundary::{StrainRateAnswer, StressRequest};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{from_cdr, stamp, to_cdr};
-use grains::{ComponentControl, ServoLaw, SymTensor};
 use proptest::array::uniform6;
 use proptest::prelude::*;
 

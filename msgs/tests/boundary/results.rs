@@ -1,12 +1,14 @@
 use super::refuses;
 use super::structure::structure;
+use grainlab_core::{
+    Anisotropy, Fabric, Material, Method, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3,
+};
 use grainlab_msgs::boundary::{
     ModuliMethod, ModuliReading, RunStateReading, RunStatus, fabric_message, moduli_message,
 };
 use grainlab_msgs::msg;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{from_cdr, stamp, to_cdr};
-use grains::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;

@@ -2,13 +2,13 @@
 
 use super::refuses;
 use super::results::{fabric, header};
-use grainlab_msgs::boundary::fabric_message;
-use grainlab_msgs::{from_cdr, msg, to_cdr};
-use grains::structure::{
+use grainlab_core::structure::{
     AxisFound, ContactFit, Forces, FourthOrderFabric, Mobilisation, NetworkPart, Orientation, OverlapFit,
     StressForceFabric, StressParts,
 };
-use grains::{Fabric, Structure, SymTensor, Vec3};
+use grainlab_core::{Fabric, Structure, SymTensor, Vec3};
+use grainlab_msgs::boundary::fabric_message;
+use grainlab_msgs::{from_cdr, msg, to_cdr};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;

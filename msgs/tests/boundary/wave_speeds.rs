@@ -1,9 +1,9 @@
 use super::refuses;
 use super::results::header;
+use grainlab_core::{Vec3, WaveMethod, WaveSpeed};
 use grainlab_msgs::boundary::{WaveSpeedsReading, wave_speeds_message};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::{from_cdr, msg, stamp, to_cdr};
-use grains::{Vec3, WaveMethod, WaveSpeed};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;

@@ -1,8 +1,8 @@
 use super::refuses;
 use super::results::header;
+use grainlab_core::{Vec3, WaveMethod};
 use grainlab_msgs::boundary::{TraceReading, WaveformReading, waveform_message};
 use grainlab_msgs::{from_cdr, msg, stamp, to_cdr};
-use grains::{Vec3, WaveMethod};
 
 fn heard() -> WaveformReading {
     let trace = |name: &str, distance, samples: [f32; 3]| TraceReading {

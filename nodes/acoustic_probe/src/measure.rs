@@ -1,14 +1,14 @@
 //! From one `Packing` to one `WaveSpeeds` and the `Waveform`s behind it.
 
 use crate::Settings;
-use acoustics::{AcousticsError, Measurement, Trace};
+use grainlab_acoustics::{AcousticsError, Measurement, Trace};
+use grainlab_core::{Packing, WaveMethod, stress};
+use grainlab_micromechanics::NoNetwork;
 use grainlab_msgs::boundary::{
     BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
 };
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
-use grains::{Packing, WaveMethod, stress};
-use micro::NoNetwork;
 
 /// What is published about one packing.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found = acoustics::measure(&packing, &settings.0).map_err(|e| match e {
+    let found = grainlab_acoustics::measure(&packing, &settings.0).map_err(|e| match e {
         AcousticsError::NoNetwork(reason) => MeasureError::NoNetwork { step, reason },
         reason => MeasureError::Acoustics { step, reason },
     })?;

@@ -1,7 +1,7 @@
 //! What can be set.
 
-use acoustics::{Instrument, dispersion, flight};
-use node_kit::{ParameterSpec, Range};
+use grainlab_acoustics::{Instrument, dispersion, flight};
+use grainlab_node_kit::{ParameterSpec, Range};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {

@@ -1,15 +1,15 @@
 //! The parameters, typed.
 
-use acoustics::flight::Pick;
-use acoustics::{Instrument, Modes, Survey, Way, dispersion, flight, standing};
-use grains::Vec3;
-use node_kit::Parameters;
+use grainlab_acoustics::flight::Pick;
+use grainlab_acoustics::{Instrument, Modes, Survey, Way, dispersion, flight, standing};
+use grainlab_core::Vec3;
+use grainlab_node_kit::Parameters;
 
 /// How a packing is measured.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Settings(pub acoustics::Settings);
+pub struct Settings(pub grainlab_acoustics::Settings);
 
-/// Parameters that each are in range and together make no sense. The process then ends with [`node_kit::Exit::Usage`].
+/// Parameters that each are in range and together make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// Not an axis.
@@ -34,7 +34,7 @@ impl TryFrom<&Parameters> for Settings {
 
     fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
         let text = |name| parameters.get::<String>(name);
-        Ok(Self(acoustics::Settings {
+        Ok(Self(grainlab_acoustics::Settings {
             way: way(parameters)?,
             axis: axis(&text("axis"))?,
             survey: match text("survey").as_str() {

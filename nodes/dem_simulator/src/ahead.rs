@@ -5,7 +5,7 @@
 //! the copy is dropped, and the run obeys. Nothing of the copy is published before that, so that requests, answers and
 //! every other message are what they are without it.
 
-use dem::{Advanced, DemError, Request, Simulation};
+use grainlab_dem::{Advanced, DemError, Request, Simulation};
 use std::time::Duration;
 
 /// Grains up to which a copy (some 25 ns a grain) costs less than the wait that it saves (0.1 ms and more).
@@ -28,7 +28,7 @@ impl Ahead {
     ///
     /// `None` where the law gives none.
     pub(crate) fn of(run: &Simulation, request: &Request, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = servo::answer(&request.question());
+        let answer = grainlab_servo::answer(&request.question());
         let rate = answer.ok()?.rate;
         let began = now();
         let mut run = run.clone();

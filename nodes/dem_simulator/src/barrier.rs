@@ -170,8 +170,8 @@ impl Barrier {
 mod tests {
     use super::*;
     use crate::Mode;
+    use grainlab_core::ComponentControl;
     use grainlab_msgs::builtin_interfaces::Time;
-    use grains::ComponentControl;
 
     const MS: Duration = Duration::from_millis(1);
 

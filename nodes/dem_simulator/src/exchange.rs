@@ -8,11 +8,11 @@ use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
 use crate::partner::Whose;
 use crate::question::Question;
 use crate::settings::Mode;
-use dem::{Advanced, DemError, Request};
+use grainlab_dem::{Advanced, DemError, Request};
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::{to_cdr, topics};
-use node_kit::{Bus, BusError, Exit, Next, NodeError};
+use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
 impl DemSimulator {
@@ -94,7 +94,8 @@ impl DemSimulator {
         };
         // The servo would refuse it, and every repetition, for ever.
         let (law, tangent) = (&request.law, &request.snapshot.tangent);
-        if let Err(error) = servo::check_stability(law, tangent, &request.controls, request.control_interval)
+        if let Err(error) =
+            grainlab_servo::check_stability(law, tangent, &request.controls, request.control_interval)
         {
             return self.fail(bus, &format!("the servo cannot be stable: {error}"));
         }

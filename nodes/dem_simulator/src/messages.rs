@@ -1,13 +1,13 @@
 //! From the run to messages. Only simulated time is in any of them.
 
-use dem::{Request, Simulation};
+use grainlab_core::PackingError;
+use grainlab_dem::{Request, Simulation};
 use grainlab_msgs::boundary::{BoundaryError, StressRequest, packing_message};
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{msg, stamp};
-use grains::PackingError;
 
 /// Frame of everything measured in the cell.
 const FRAME: &str = "cell";

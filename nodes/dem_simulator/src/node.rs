@@ -7,16 +7,16 @@ use crate::outbox::Outbox;
 use crate::partner::Partner;
 use crate::rivals::Rivals;
 use crate::settings::{Mode, Settings};
-use dem::{ComputeError, DemError, Simulation};
+use grainlab_dem::{ComputeError, DemError, Simulation};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
-use node_kit::admission::Participant;
-use node_kit::{
+use grainlab_node_kit::admission::Participant;
+use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
-use scene::Scene;
+use grainlab_scene::Scene;
 use std::time::Duration;
 
 /// Period of `run_state` where nothing happens, wall time.
@@ -96,7 +96,7 @@ impl DemSimulator {
     pub fn new(
         bus: &mut dyn Bus,
         scene: Scene,
-        resume: Option<(grains::Packing, Vec<u8>)>,
+        resume: Option<(grainlab_core::Packing, Vec<u8>)>,
         settings: Settings,
     ) -> Result<Self, SimulatorError> {
         let (mut run, packings) = match &resume {
@@ -157,7 +157,7 @@ impl DemSimulator {
     }
 
     /// The packing as it is now, once.
-    pub(crate) fn post_packing(&mut self) -> Result<(), grains::PackingError> {
+    pub(crate) fn post_packing(&mut self) -> Result<(), grainlab_core::PackingError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };
         self.outbox.post_packing(to_cdr(&message));

@@ -1,6 +1,6 @@
 //! Messages in their order, none lost where a reader is behind.
 
-use node_kit::{BulkPublisher, Bus, BusError, PublisherId};
+use grainlab_node_kit::{BulkPublisher, Bus, BusError, PublisherId};
 use std::collections::VecDeque;
 
 /// Packings that may wait behind the one that is under way before the run waits for the readers: megabytes each.
@@ -138,8 +138,8 @@ impl Outbox {
 mod tests {
     use super::*;
     use grainlab_msgs::topics;
-    use node_kit::bulk::LIMIT;
-    use node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
+    use grainlab_node_kit::bulk::LIMIT;
+    use grainlab_node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
     use std::time::Duration;
 
     /// A simulator's bus with its outbox, and a reader of everything.

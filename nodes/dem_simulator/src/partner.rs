@@ -1,8 +1,8 @@
 //! Which servo the run stays with.
 
-use node_kit::admission::Participant;
-use node_kit::identity::{member_of, run_of};
-use node_kit::{SampleInfo, WriterId};
+use grainlab_node_kit::admission::Participant;
+use grainlab_node_kit::identity::{member_of, run_of};
+use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::BTreeSet;
 
 /// Servos that are named one by one.
@@ -95,7 +95,7 @@ impl Partner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use node_kit::{Identity, RunId, SampleId};
+    use grainlab_node_kit::{Identity, RunId, SampleId};
 
     const STRESS: WriterId = WriterId([9; 16]);
 

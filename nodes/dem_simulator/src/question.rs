@@ -1,9 +1,9 @@
 //! What a request asks, and which answers it allows.
 
-use dem::Request;
+use grainlab_core::ComponentControl;
+use grainlab_dem::Request;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
-use grains::ComponentControl;
 
 /// Names of the components, in Voigt order.
 const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];

@@ -1,6 +1,6 @@
 //! Other simulators on the same topics.
 
-use node_kit::WriterId;
+use grainlab_node_kit::WriterId;
 use std::collections::BTreeMap;
 use std::time::Duration;
 

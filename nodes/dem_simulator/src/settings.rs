@@ -1,8 +1,8 @@
 //! What can be set.
 
-use dem::{Compute, ComputeError, Simd};
+use grainlab_dem::{Compute, ComputeError, Simd};
 use grainlab_msgs::{Topic, topics};
-use node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 use std::num::NonZeroUsize;
 use std::time::Duration;
 

@@ -6,7 +6,7 @@ use crate::node::Stage;
 use crate::partner::{different, predecessor};
 use crate::rivals::Verdict;
 use grainlab_msgs::{to_cdr, topics};
-use node_kit::{Bus, BusError, Exit, Next, NodeError};
+use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
 /// How often a start that waits looks again.

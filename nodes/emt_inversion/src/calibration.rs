@@ -1,7 +1,7 @@
 //! Which constants a model gets.
 
 use crate::settings::SettingsError;
-use emt::{Calibration, Model};
+use grainlab_emt::{Calibration, Model};
 
 /// Where the constants of the models come from.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! From what a model says to an `Estimate`.
 
 use crate::observed::{Observed, Unobservable};
-use emt::{
+use grainlab_emt::{
     CREDIBLE_LEVEL, EmtError, Estimate, Gamma, INPUTS, Misfit, Model, QUANTITIES, Quantity, Status,
     StructureCovariance,
 };

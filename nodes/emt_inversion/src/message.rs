@@ -9,7 +9,7 @@ use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
 
-/// What the models infer from one set of moduli: one estimate a model, in the order of [`emt::models`]. Header and step are
+/// What the models infer from one set of moduli: one estimate a model, in the order of [`grainlab_emt::models`]. Header and step are
 /// copied; nothing but the two arguments enters. Moduli that cannot be ones are refused.
 pub fn microstructure_message(
     moduli: &msg::Moduli,

@@ -1,16 +1,16 @@
 //! Which models are asked.
 
 use crate::settings::SettingsError;
-use emt::Model;
+use grainlab_emt::Model;
 
-/// Models, each once, in the order of [`emt::models`].
+/// Models, each once, in the order of [`grainlab_emt::models`].
 #[derive(Clone, Debug)]
 pub struct Models(Vec<&'static dyn Model>);
 
 impl Models {
     /// Every model there is.
     pub fn all() -> Self {
-        Self(emt::models().to_vec())
+        Self(grainlab_emt::models().to_vec())
     }
 
     /// `all`, or names with commas between them, in any order.
@@ -19,12 +19,12 @@ impl Models {
             return Ok(Self::all());
         }
         let names: Vec<&str> = text.split(',').map(str::trim).collect();
-        if let Some(stranger) = names.iter().find(|n| emt::model(n).is_none()) {
-            let known: Vec<&str> = emt::models().iter().map(|m| m.name()).collect();
+        if let Some(stranger) = names.iter().find(|n| grainlab_emt::model(n).is_none()) {
+            let known: Vec<&str> = grainlab_emt::models().iter().map(|m| m.name()).collect();
             let (name, known) = ((*stranger).to_owned(), known.join(", "));
             return Err(SettingsError::Model { name, known });
         }
-        Ok(Self(emt::models().iter().copied().filter(|m| names.contains(&m.name())).collect()))
+        Ok(Self(grainlab_emt::models().iter().copied().filter(|m| names.contains(&m.name())).collect()))
     }
 
     /// One after the other.

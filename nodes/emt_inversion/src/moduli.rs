@@ -2,9 +2,9 @@
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
-use emt::{Conditions, Gamma, Measured, Moduli, Modulus, Observation};
+use grainlab_core::{Mat3, Stiffness, Vec3};
+use grainlab_emt::{Conditions, Gamma, Measured, Moduli, Modulus, Observation};
 use grainlab_msgs::boundary::ModuliReading;
-use grains::{Mat3, Stiffness, Vec3};
 
 /// Sine of the angle between axes below which they are one: rounding.
 const ALONG: f64 = 1e-9;
@@ -84,7 +84,7 @@ fn with_covariance(observation: Observation, paper: &Mat3, error: f64) -> Observ
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::TransverseIsotropy;
+    use grainlab_core::TransverseIsotropy;
 
     const T: TransverseIsotropy = TransverseIsotropy {
         c11: 360.0,

@@ -4,7 +4,7 @@ use crate::{Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::boundary::BoundaryError;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli, WaveSpeeds};
 use grainlab_msgs::{Message, Topic, topics};
-use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
 /// There is nothing to do between two sets of data.

@@ -1,7 +1,7 @@
 //! What the models are asked with, wherever it is from.
 
-use emt::christoffel::AxisError;
-use emt::{ChristoffelError, Misfit, Modulus, Observation};
+use grainlab_emt::christoffel::AxisError;
+use grainlab_emt::{ChristoffelError, Misfit, Modulus, Observation};
 
 /// Moduli with their state, and what was seen on the way to them.
 #[derive(Clone, Debug, PartialEq)]

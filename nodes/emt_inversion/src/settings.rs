@@ -2,9 +2,9 @@
 
 use crate::calibration::CalibrationChoice;
 use crate::models::Models;
-use emt::{CalibrationError, GammaSource};
-use grains::Vec3;
-use node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_core::Vec3;
+use grainlab_emt::{CalibrationError, GammaSource};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
@@ -80,7 +80,7 @@ impl Default for Settings {
     }
 }
 
-/// Parameters that are of their type and make no sense. The process then ends with [`node_kit::Exit::Usage`].
+/// Parameters that are of their type and make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// A model that does not exist.

@@ -2,10 +2,10 @@
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
-use emt::christoffel::{self, AxisError, Fitted};
-use emt::{Conditions, Gamma, Measured, Misfit, Modulus};
+use grainlab_core::{Material, Vec3, WaveSpeed};
+use grainlab_emt::christoffel::{self, AxisError, Fitted};
+use grainlab_emt::{Conditions, Gamma, Measured, Misfit, Modulus};
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use grains::{Material, Vec3, WaveSpeed};
 
 /// Sine of the angle between the axis taken and the one named beyond which something is said: 6°.
 const APART: f64 = 0.1;

@@ -1,11 +1,11 @@
 //! From one `Packing` to one `Fabric` and one `Moduli`.
 
 use crate::Settings;
+use grainlab_core::Packing;
+use grainlab_micromechanics::{Analysis, MicroError, NoNetwork};
 use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
-use grains::Packing;
-use micro::{Analysis, MicroError, NoNetwork};
 
 /// What is published about one packing.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +47,8 @@ pub enum MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found =
-        micro::analyse(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    let found = grainlab_micromechanics::analyse(&packing, &settings.0)
+        .map_err(|reason| MeasureError::Analysis { step, reason })?;
     messages(&message.header, &packing, found)
 }
 

@@ -3,7 +3,7 @@
 use crate::{MeasureError, Measured, Settings, measure};
 use grainlab_msgs::msg::{Fabric, Moduli, Packing};
 use grainlab_msgs::{from_cdr, topics};
-use node_kit::{
+use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, SampleId, Worker,
 };
 use std::sync::Arc;

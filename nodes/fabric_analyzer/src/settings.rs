@@ -1,11 +1,11 @@
 //! What can be set.
 
-use grains::Vec3;
-use node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_core::Vec3;
+use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
-    let default = micro::Settings::default();
+    let default = grainlab_micromechanics::Settings::default();
     let axis: Vec<f64> = default.axis.iter().copied().collect();
     vec![
         ParameterSpec::new(
@@ -27,16 +27,16 @@ pub fn parameters() -> Vec<ParameterSpec> {
              term), probe (small strains of the packing itself, a hundred times slower)",
         )
         .within(Range::Choice(&["network", "prestressed", "probe"])),
-        ParameterSpec::new("amplitude", micro::Probe::default().amplitude, "strain of the probe, 1")
+        ParameterSpec::new("amplitude", grainlab_micromechanics::Probe::default().amplitude, "strain of the probe, 1")
             .within(Range::Double { min: 1e-12, max: 1e-2 }),
     ]
 }
 
 /// The parameters, typed: how a packing is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Settings(pub(crate) micro::Settings);
+pub struct Settings(pub(crate) grainlab_micromechanics::Settings);
 
-/// Parameters that each are in range and together make no sense. The process then ends with [`node_kit::Exit::Usage`].
+/// Parameters that each are in range and together make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]
 pub struct SettingsError(pub Vec<f64>);
@@ -50,8 +50,8 @@ impl TryFrom<&Parameters> for Settings {
         let axis = direction.ok_or(SettingsError(axis))?;
         let method: String = parameters.get("method");
         let amplitude = parameters.get("amplitude");
-        let probe = micro::Probe { amplitude, ..micro::Probe::default() };
-        Ok(Self(micro::Settings {
+        let probe = grainlab_micromechanics::Probe { amplitude, ..micro::Probe::default() };
+        Ok(Self(grainlab_micromechanics::Settings {
             tolerance: parameters.get("tolerance"),
             axis,
             tangential: method != "prestressed",

@@ -1,12 +1,12 @@
 //! The analyzer over DDS, while it analyses. One test: the watchdog counts the DDS threads of the whole process.
 
-use fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
+use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
+use grainlab_micromechanics::NoNetwork;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Packing};
 use grainlab_msgs::topics;
-use micro::NoNetwork;
-use node_kit::dds::ClaimedDomain;
-use node_kit::{
+use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, DdsBus, Demand, Exit, Names, NodeError, Report, Subscription, drive,
 };
 use std::sync::Arc;
@@ -35,7 +35,11 @@ struct Scene {
     _domain: ClaimedDomain,
 }
 
-fn node(network: node_kit::Network, gate: Receiver<()>, stop: &AtomicBool) -> Result<Exit, NodeError> {
+fn node(
+    network: grainlab_node_kit::Network,
+    gate: Receiver<()>,
+    stop: &AtomicBool,
+) -> Result<Exit, NodeError> {
     let mut bus = DdsBus::open(network, Names::new("fabric_analyzer").unwrap())?;
     let mut node = FabricAnalyzer::measuring(&mut bus, move |packing| {
         let _ = gate.recv();

@@ -1,17 +1,17 @@
 //! The analyzer node on the bus in memory, with a packing that can be reckoned by hand.
 
-use fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
+use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
+use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{Fabric, Moduli, Packing};
 use grainlab_msgs::{to_cdr, topics};
-use grains::{Cell, Contact, Mat3, Material, Vec3};
-use node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
+use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
 
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 2e-8;
 
 /// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
-fn lattice(overlap: f64) -> grains::Packing {
+fn lattice(overlap: f64) -> grainlab_core::Packing {
     let cell = Cell::cube(DIAMETER - overlap).unwrap();
     let contact = |axis: usize| {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());
@@ -19,7 +19,7 @@ fn lattice(overlap: f64) -> grains::Packing {
         let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
         Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
     };
-    grains::Packing {
+    grainlab_core::Packing {
         step: 12,
         time: 0.5,
         cell,

@@ -3,7 +3,7 @@
 use crate::commands::{analyze, bag, bench, calibrate, invert, launch, probe, run};
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::process::ExitCode;
 
 /// Exit codes, shown by every help.

@@ -1,6 +1,6 @@
 //! How a command that could not do what was asked ends.
 
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::fmt;
 
 /// A message for stderr and the exit code that goes with it.

@@ -19,7 +19,7 @@ mod stopped;
 pub(crate) mod supervisor;
 pub(crate) mod watch;
 
-use node_kit::RunId;
+use grainlab_node_kit::RunId;
 
 /// The run that a launcher starts.
 #[derive(Clone, Copy, Debug)]

@@ -24,7 +24,7 @@ pub(crate) fn watch() {
         // SAFETY: both take or return integers and touch no memory of ours.
         unsafe { libc::kill(libc::getpid(), libc::SIGTERM) };
         std::thread::sleep(PATIENCE);
-        std::process::exit(i32::from(node_kit::Exit::Interrupted.code()));
+        std::process::exit(i32::from(grainlab_node_kit::Exit::Interrupted.code()));
     };
     // Without the thread the node only loses this protection.
     if let Err(error) = std::thread::Builder::new().name("lifeline".into()).spawn(wait) {

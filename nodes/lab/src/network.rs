@@ -1,10 +1,10 @@
 //! Buses of tools, and free domains.
 
 use crate::failure::Failure;
-use node_kit::args::RosArgs;
-use node_kit::logging::Logger;
-use node_kit::signals::Signals;
-use node_kit::{DdsBus, Identity, Names, Network, Scope};
+use grainlab_node_kit::args::RosArgs;
+use grainlab_node_kit::logging::Logger;
+use grainlab_node_kit::signals::Signals;
+use grainlab_node_kit::{DdsBus, Identity, Names, Network, Scope};
 use std::net::{Ipv4Addr, UdpSocket};
 
 /// Joins the domain that the environment names as `name`; SIGINT and SIGTERM wake its waits.

@@ -16,15 +16,15 @@ use crate::output::Table;
 use crate::results::strangers::{self, Authors, StrangerView};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Topic, from_cdr, topics};
-use node_kit::bus::Published;
-use node_kit::identity::{member_of, run_of};
-use node_kit::{
+use grainlab_node_kit::bus::Published;
+use grainlab_node_kit::identity::{member_of, run_of};
+use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,
 };
-use recordings::ledger::Guid;
-use recordings::writer::Finished;
-use recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, TopicTally, WriterOptions};
+use grainlab_recordings::ledger::Guid;
+use grainlab_recordings::writer::Finished;
+use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;

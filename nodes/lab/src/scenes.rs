@@ -1,9 +1,9 @@
 //! Scenes by name or path.
 
 use crate::failure::Failure;
-use node_kit::Exit;
-use recordings::input;
-use scene::Scene;
+use grainlab_node_kit::Exit;
+use grainlab_recordings::input;
+use grainlab_scene::Scene;
 use std::path::Path;
 
 /// The scenes built in.

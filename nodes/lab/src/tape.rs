@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Message, Topic, to_cdr};
-use recordings::{Guid, Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
+use grainlab_recordings::{Guid, Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
 use std::path::Path;
 
 /// Writes messages. Their log times are their stamps, moved forward where that takes it: two recordings of the same

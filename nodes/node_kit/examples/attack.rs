@@ -1,6 +1,6 @@
 //! A flood of mutated and forged datagrams against whatever runs in a domain of this host's loopback.
 //!
-//! `cargo run --release -p node_kit --example attack -- DOMAIN [COUNT]`, beside `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The
+//! `cargo run --release -p grainlab_node_kit --example attack -- DOMAIN [COUNT]`, beside `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The
 //! mutated half needs the right to hear packets (root).
 
 #[path = "../tests/process/flood.rs"]

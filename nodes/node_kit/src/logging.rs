@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn libraries_speak_only_of_errors_unless_asked() {
         let quiet = settings(LevelFilter::Debug, &[]);
-        assert_eq!(quiet.level_of("dem_simulator::run"), LevelFilter::Debug);
+        assert_eq!(quiet.level_of("grainlab_dem_simulator::run"), LevelFilter::Debug);
         assert_eq!(quiet.level_of("rustdds::rtps::reader"), LevelFilter::Error);
         assert_eq!(quiet.level_of("rustdds_like"), LevelFilter::Debug);
         let asked = settings(LevelFilter::Info, &[("rustdds", LevelFilter::Trace)]);

@@ -1,8 +1,8 @@
 //! Messages of any length on the bus in memory.
 
 use grainlab_msgs::topics;
-use node_kit::bulk::LIMIT;
-use node_kit::{
+use grainlab_node_kit::bulk::LIMIT;
+use grainlab_node_kit::{
     BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names, Sample,
 };
 use std::time::Duration;
@@ -210,7 +210,7 @@ fn parts_of_a_remapped_topic_are_beside_it() {
     let hub = Hub::new(6);
     let mut readers = [reader(&hub, "a")];
     let arguments = ["--ros-args", "-r", "packing:=other"].map(String::from);
-    let (ros, _) = node_kit::RosArgs::parse(&arguments).unwrap();
+    let (ros, _) = grainlab_node_kit::RosArgs::parse(&arguments).unwrap();
     let mut bus = hub.bus(Names::from_args("writer", &ros).unwrap());
     let publisher = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();
     let mut writer = Writer { bus, publisher };

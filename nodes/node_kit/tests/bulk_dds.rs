@@ -2,9 +2,9 @@
 
 use grainlab_msgs::msg::Packing;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
-use node_kit::bulk::LIMIT;
-use node_kit::dds::ClaimedDomain;
-use node_kit::{BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, Names, Network};
+use grainlab_node_kit::bulk::LIMIT;
+use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::{BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, Names, Network};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -143,7 +143,7 @@ fn another_thread_ends_a_wait_and_only_one() {
     caller.call();
     let mut wakes = Vec::new();
     let begun = Instant::now();
-    while !wakes.contains(&node_kit::Wake::Called) {
+    while !wakes.contains(&grainlab_node_kit::Wake::Called) {
         assert!(begun.elapsed() < PATIENCE, "the call before the wait");
         wakes.push(bus.wait(Duration::from_secs(3600)));
     }
@@ -152,10 +152,10 @@ fn another_thread_ends_a_wait_and_only_one() {
         its.fetch_add(1, Ordering::SeqCst);
         caller.call();
     });
-    while bus.wait(Duration::from_secs(3600)) != node_kit::Wake::Called {
+    while bus.wait(Duration::from_secs(3600)) != grainlab_node_kit::Wake::Called {
         assert!(begun.elapsed() < PATIENCE, "the call");
     }
     thread.join().unwrap();
     assert_eq!(calls.load(Ordering::SeqCst), 1);
-    assert_ne!(bus.wait(Duration::ZERO), node_kit::Wake::Called);
+    assert_ne!(bus.wait(Duration::ZERO), grainlab_node_kit::Wake::Called);
 }

@@ -2,8 +2,8 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::{Topic, topics};
-use node_kit::dds::ClaimedDomain;
-use node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
+use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
 use std::time::{Duration, Instant};
 
 /// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.

@@ -3,7 +3,7 @@
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::topics;
-use node_kit::{
+use grainlab_node_kit::{
     Bus, Demand, Exit, Health, Hub, Level, MemoryBus, Names, Next, Node, NodeError, NodeSpec, ParameterSpec,
     Peers, Publisher, Range, Report, RosArgs, Scope, Subscription, drive, run_node,
 };

@@ -2,8 +2,10 @@
 
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
-use node_kit::logging::Logger;
-use node_kit::{Bus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, RosArgs, Subscription, drive};
+use grainlab_node_kit::logging::Logger;
+use grainlab_node_kit::{
+    Bus, Demand, Exit, Health, Hub, Names, Next, Node, NodeError, RosArgs, Subscription, drive,
+};
 
 struct Idle;
 

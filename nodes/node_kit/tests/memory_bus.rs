@@ -2,8 +2,8 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use node_kit::memory::{Actor, run_until};
-use node_kit::{
+use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{
     Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher, Subscription,
     Wake,
 };

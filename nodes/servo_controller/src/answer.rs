@@ -15,14 +15,14 @@ pub enum Refusal {
         /// Its sequence.
         sequence: u64,
         /// What the law objects to.
-        reason: servo::ServoError,
+        reason: grainlab_servo::ServoError,
     },
 }
 
 /// The answer to one stress, with its header and sequence copied.
 pub fn answer(stress: &msg::Stress) -> Result<msg::StrainRate, Refusal> {
     let request = StressRequest::try_from(stress)?;
-    let answered = servo::answer(&servo::Request {
+    let answered = grainlab_servo::answer(&grainlab_servo::Request {
         stress: request.stress,
         controls: request.controls,
         rate: request.rate,

@@ -3,7 +3,9 @@
 use crate::{Refusal, Settings, answer};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
-use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleId, Subscription};
+use grainlab_node_kit::{
+    Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, SampleId, Subscription,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 

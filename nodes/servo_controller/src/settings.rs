@@ -1,6 +1,6 @@
 //! What can be set.
 
-use node_kit::{ParameterSpec, Parameters, Range};
+use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {

@@ -1,12 +1,12 @@
 //! The servo node on the bus in memory.
 
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{stamp, to_cdr, topics};
-use grains::{ComponentControl, ServoLaw, SymTensor};
-use node_kit::memory::{Actor, run_until};
-use node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
-use servo_controller::{Refusal, ServoController, Settings, answer};
+use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_servo_controller::{Refusal, ServoController, Settings, answer};
 use std::time::Duration;
 
 /// 10 kPa too little compression on zz, 200 MPa of tangent stiffness and 0.1 ms of response time: −0.5 per second.

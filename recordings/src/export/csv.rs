@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use grains::{Mat3, Packing};
+use grainlab_core::{Mat3, Packing};
 use serde_json::{Value, json};
 
 /// Grains and contacts of a packing as CSV; [`sidecar`] gives the rest. Reading both back gives the same

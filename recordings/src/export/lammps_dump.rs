@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use grains::{Packing, Vec3};
+use grainlab_core::{Packing, Vec3};
 
 /// Why a packing cannot be written as a LAMMPS dump.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

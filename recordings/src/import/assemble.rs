@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
-use grains::{Cell, Contact, Mat3, Packing, Vec3};
 
 use super::Imported;
 use super::contacts::{self, SearchError};

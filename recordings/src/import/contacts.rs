@@ -1,8 +1,8 @@
 //! Contacts found from positions, in a time and a memory proportional to the number of grains, whatever the
 //! shape of the cell.
 
-use grains::material::effective_radius;
-use grains::{Cell, Contact, Material, Vec3};
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Cell, Contact, Material, Vec3};
 
 mod grid;
 
@@ -51,9 +51,9 @@ pub enum SearchError {
 /// in a tiny part of it.
 ///
 /// ```
-/// use grains::{Cell, Material, Vec3};
+/// use grainlab_core::{Cell, Material, Vec3};
 /// let (cell, r) = (Cell::cube(1.0).unwrap(), [0.11, 0.11]);
-/// let found = recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, &Material::GLASS);
+/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, &Material::GLASS);
 /// let found = found.unwrap();
 /// assert_eq!((found.len(), found[0].image), (1, [0, 0, -1]));
 /// assert!((found[0].overlap - 0.02).abs() < 1e-15);

@@ -12,7 +12,7 @@
 //! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
 //! `time_step` (s), `deformation` (three rows of three). Other keys are left alone.
 
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 use super::Imported;
 use super::assemble::{self, GrainTable, ListedContact, ListedForce};

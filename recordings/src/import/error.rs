@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use grains::PackingError;
+use grainlab_core::PackingError;
 
 use super::settings::Setting;
 use crate::reader::ReadError;

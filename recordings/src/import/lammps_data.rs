@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use grains::{Mat3, Vec3};
+use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::iter::Peekable;
 use std::ops::ControlFlow;
 
-use grains::{Mat3, Vec3};
+use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;

@@ -18,7 +18,7 @@
 use super::assemble::{ListedContact, ListedForce};
 use super::error::ImportError;
 use super::text::lines;
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 /// Ids of the two grains, normal force, tangential force.
 const BY_NUMBER: [&str; 8] =
@@ -103,8 +103,9 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
 impl Local {
     /// Refuses normal forces taken for all of the force: without columns of the tangential ones, where there is friction,
     /// some force must point across its contact.
-    pub(super) fn whole(&self, packing: &grains::Packing) -> Result<(), ImportError> {
-        let central = |c: &grains::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
+    pub(super) fn whole(&self, packing: &grainlab_core::Packing) -> Result<(), ImportError> {
+        let central =
+            |c: &grainlab_core::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
         let lacking = !self.tangential && packing.friction > 0.0 && packing.contacts.iter().all(central);
         if lacking && !packing.contacts.is_empty() {
             return Err(ImportError::NoTangentialForces { friction: packing.friction });

@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use grainlab_core::Packing;
 use grainlab_msgs::{Message as _, from_cdr, msg, topics};
-use grains::Packing;
 
 use super::error::ImportError;
 use super::{ImportOptions, Imported};

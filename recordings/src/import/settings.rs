@@ -1,6 +1,6 @@
 //! What a file does not say about a packing.
 
-use grains::{Cell, Mat3, Material};
+use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
 

@@ -1,6 +1,6 @@
 //! Lines with their numbers, fields as numbers, and errors that name both.
 
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 use super::error::ImportError;
 

@@ -12,7 +12,7 @@
 //! [`EXPORTER`] is a script for YADE that writes everything, contact forces included, as
 //! [our CSV](crate::import::csv).
 
-use grains::{Mat3, Vec3};
+use grainlab_core::{Mat3, Vec3};
 
 use super::Imported;
 use super::assemble::{self, GrainTable, State};

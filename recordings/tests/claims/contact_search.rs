@@ -1,8 +1,8 @@
 //! The search finds every contact, in every cell.
 
-use grains::{Cell, Contact, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
+use grainlab_recordings::import::contacts::{SearchError, find};
 use proptest::prelude::*;
-use recordings::import::contacts::{SearchError, find};
 
 /// Every pair, every image within four cells: slow and plain.
 fn all_pairs(cell: &Cell, x: &[Vec3], r: &[f64]) -> Vec<(u32, u32, [i8; 3])> {

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::support::run_in;
-use recordings::reader::WarningKind;
-use recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::reader::WarningKind;
+use grainlab_recordings::{ReadError, Recording, Selection};
 
 fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {
     let recording = Recording::from_bytes("damaged.mcap", bytes.to_vec()).unwrap();

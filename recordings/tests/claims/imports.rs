@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use grains::Vec3;
-use recordings::import::{ImportError, ImportOptions, Setting, csv, lammps_data, lammps_dump, load};
+use grainlab_core::Vec3;
+use grainlab_recordings::import::{ImportError, ImportOptions, Setting, csv, lammps_data, lammps_dump, load};
 
 use crate::reference_packing::{golden, reference};
 
@@ -18,13 +18,13 @@ fn glass() -> ImportOptions {
 }
 
 fn in_cube(edge: f64) -> ImportOptions {
-    ImportOptions { cell: Some(grains::Mat3::identity() * edge), ..glass() }
+    ImportOptions { cell: Some(grainlab_core::Mat3::identity() * edge), ..glass() }
 }
 
 const PAIR: &str =
     "p,1,0.1,0,0,0.1,10.471975511965978,0,0,0,0,0,0\np,2,0.95,0,0,0.1,10.471975511965978,0,0,0,0,0,0\n";
 
-fn pair(contact: &str) -> Result<recordings::import::Imported, ImportError> {
+fn pair(contact: &str) -> Result<grainlab_recordings::import::Imported, ImportError> {
     csv::packing(&format!("{PAIR}{contact}"), None, &in_cube(1.0))
 }
 
@@ -209,7 +209,7 @@ fn a_dump_is_read_frame_by_frame() {
     assert_eq!((first.contacts.len(), first.contacts[0].image), (1, [-1, 0, 0]));
     let second = &frames[1].packing;
     // The bounds are those of the tilted cell: 2 wide, not 2.5.
-    assert_eq!(second.cell.matrix(), &grains::Mat3::new(2.0, 0.5, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0));
+    assert_eq!(second.cell.matrix(), &grainlab_core::Mat3::new(2.0, 0.5, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0));
     assert_eq!(second.contacts.len(), 1);
     assert!(frames[1].source.contains("frame 2 of 2"));
 }

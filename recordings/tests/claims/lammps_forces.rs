@@ -1,8 +1,8 @@
 //! Contact forces as LAMMPS dumps them, of a packing that LAMMPS made (`tests/golden/lammps/make.in`).
 
-use grains::stress::stress;
-use grains::{Packing, Vec3};
-use recordings::import::{self, ImportError, ImportOptions, load};
+use grainlab_core::stress::stress;
+use grainlab_core::{Packing, Vec3};
+use grainlab_recordings::import::{self, ImportError, ImportOptions, load};
 use std::path::{Path, PathBuf};
 
 fn golden(name: &str) -> PathBuf {

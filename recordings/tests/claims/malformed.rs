@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use recordings::import::{ImportError, ImportOptions, load};
+use grainlab_recordings::import::{ImportError, ImportOptions, load};
 use std::io::Write;
 
 const CSV: &str = "# particles: id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz\np,1,0.1,0,0,0.1,1,0,0,0,0,0,0\np,2,0.25,0,0,0.1,1,0,0,0,0,0,0\n";
@@ -39,7 +39,7 @@ impl Folder {
 
 fn in_cube(edge: f64) -> ImportOptions {
     ImportOptions {
-        cell: Some(grains::Mat3::identity() * edge),
+        cell: Some(grainlab_core::Mat3::identity() * edge),
         shear_modulus: Some(29e9),
         poisson_ratio: Some(0.2),
         density: Some(2500.0),

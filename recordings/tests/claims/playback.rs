@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use recordings::{Play, PlayError, PlayOptions, Player, Recording};
+use grainlab_recordings::{Play, PlayError, PlayOptions, Player, Recording};
 
 use crate::support::run_in;
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use grains::stress::stress;
-use recordings::import::{Imported, contacts, load};
+use grainlab_core::stress::stress;
+use grainlab_recordings::import::{Imported, contacts, load};
 
 pub(crate) fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/reference").join(name)
@@ -74,7 +74,7 @@ fn normal_forces_are_hertz_of_the_positions() {
 fn forces_balance_on_every_grain() {
     // Signs of normals and tangential forces, and images, are all right or this fails by orders of magnitude.
     let p = reference().packing;
-    let mut net = vec![grains::Vec3::zeros(); p.grains()];
+    let mut net = vec![grainlab_core::Vec3::zeros(); p.grains()];
     let mut mean = 0.0;
     for c in &p.contacts {
         let on_i = c.tangential_force - c.normal * c.normal_force;

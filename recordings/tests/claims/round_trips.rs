@@ -1,10 +1,10 @@
 //! What is exported comes back.
 
+use grainlab_core::{Cell, Mat3, Packing};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Topic, to_cdr, topics};
-use grains::{Cell, Mat3, Packing};
-use recordings::import::{ImportOptions, csv, lammps_dump, load};
-use recordings::{RunWriter, TopicSpec, export};
+use grainlab_recordings::import::{ImportOptions, csv, lammps_dump, load};
+use grainlab_recordings::{RunWriter, TopicSpec, export};
 
 use crate::reference_packing::reference;
 use crate::support::{SIMULATOR, START, options, sample};
@@ -59,9 +59,13 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
     let shear = Mat3::new(1.0, 0.02, -0.01, 0.0, 1.0, 0.03, 0.0, 0.0, 1.0);
     tilted.cell = Cell::new(shear * straight.cell.matrix()).unwrap();
     tilted.positions.iter_mut().for_each(|x| *x = shear * *x);
-    tilted.contacts =
-        recordings::import::contacts::find(&tilted.cell, &tilted.positions, &tilted.radii, &tilted.material)
-            .unwrap();
+    tilted.contacts = grainlab_recordings::import::contacts::find(
+        &tilted.cell,
+        &tilted.positions,
+        &tilted.radii,
+        &tilted.material,
+    )
+    .unwrap();
     assert!(tilted.contacts.len() > 100);
     for p in [straight, tilted] {
         let material = p.material;

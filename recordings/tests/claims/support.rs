@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{TOPICS, Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
-use recordings::writer::Finished;
-use recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_recordings::writer::Finished;
+use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 
 pub(crate) const START: u64 = 1_700_000_000_000_000_000;
 pub(crate) const SIMULATOR: Guid = Guid([7; 16]);

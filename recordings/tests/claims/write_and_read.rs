@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 use crate::support::{ROBOT, SIMULATOR, START, clock, contract, options, run_in, sample, stress, write_run};
 use grainlab_msgs::{from_cdr, msg};
-use recordings::{METADATA_RECORD, Outcome, Recording, RunWriter, Selection, WriteError, WriterOptions};
+use grainlab_recordings::{
+    METADATA_RECORD, Outcome, Recording, RunWriter, Selection, WriteError, WriterOptions,
+};
 
 #[test]
 fn every_message_comes_back_with_its_bytes_times_and_sequence() {

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use grains::stress::stress;
-use recordings::import::{ImportError, ImportOptions, Imported, load, yade};
+use grainlab_core::stress::stress;
+use grainlab_recordings::import::{ImportError, ImportOptions, Imported, load, yade};
 
 fn golden(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/yade").join(name)
@@ -75,10 +75,10 @@ const EXPORT: &str = "#format x_y_z_r_matId\n# cell Matrix3(1,0.1,0, 0,1,0, 0,0,
 fn a_comment_gives_the_cell_and_the_flag_goes_before_it() {
     let imported = yade::packing(EXPORT, &glass()).unwrap();
     let p = &imported.packing;
-    assert_eq!(p.cell.matrix(), &grains::Mat3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5));
+    assert_eq!(p.cell.matrix(), &grainlab_core::Mat3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5));
     assert_eq!((p.ids.as_slice(), p.contacts.len()), (&[0, 1][..], 1));
     assert!(imported.notes.iter().any(|n| n.contains("2 materials")), "{:?}", imported.notes);
-    let cube = ImportOptions { cell: Some(grains::Mat3::identity() * 2.0), ..glass() };
+    let cube = ImportOptions { cell: Some(grainlab_core::Mat3::identity() * 2.0), ..glass() };
     assert_eq!(yade::packing(EXPORT, &cube).unwrap().packing.cell.volume(), 8.0);
     let three = EXPORT.replace("Matrix3(1,0.1,0, 0,1,0, 0,0,1.5)", "1 2 3");
     assert!((yade::packing(&three, &glass()).unwrap().packing.cell.volume() - 6.0).abs() < 1e-12);
@@ -105,7 +105,7 @@ fn what_an_export_must_not_be_is_refused_by_line() {
 }
 
 fn in_cube() -> ImportOptions {
-    ImportOptions { cell: Some(grains::Mat3::identity()), ..glass() }
+    ImportOptions { cell: Some(grainlab_core::Mat3::identity()), ..glass() }
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! CDR of every message, and the boundary to the kernels' types.
 
 use fuzzing::{Counting, Target};
+use grainlab_core::{Cell, Contact, Fabric, Mat3, Material, Moduli, Packing, Vec3};
 use grainlab_msgs::boundary::{
     EstimateReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer, StressRequest,
     WaveSpeedsReading, WaveformReading, packing_message,
 };
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
-use grains::{Cell, Contact, Fabric, Mat3, Material, Moduli, Packing, Vec3};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -89,6 +89,6 @@ fn every_message_gives_a_value_or_an_error() {
     let values = vec![KeyValue { key: "published /stress".into(), value: "7 00".into() }; 3];
     let status = vec![DiagnosticStatus { name: "grainlab: x".into(), values, ..Default::default() }; 2];
     decode("cdr-diagnostics", DiagnosticArray { status, ..Default::default() }, |m| {
-        drop(node_kit::Report::from_message(m));
+        drop(grainlab_node_kit::Report::from_message(m));
     });
 }

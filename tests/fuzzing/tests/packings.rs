@@ -1,8 +1,8 @@
 //! Packings as text: LAMMPS, YADE, CSV.
 
 use fuzzing::{Counting, Target};
-use grains::{Mat3, Vec3};
-use recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, yade};
+use grainlab_core::{Mat3, Vec3};
+use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, yade};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;

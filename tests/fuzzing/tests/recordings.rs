@@ -2,8 +2,10 @@
 
 use fuzzing::{Counting, Target};
 use grainlab_msgs::{msg, to_cdr, topics};
-use recordings::import::ImportOptions;
-use recordings::{Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover};
+use grainlab_recordings::import::ImportOptions;
+use grainlab_recordings::{
+    Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover,
+};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -33,7 +35,7 @@ fn seeds(folder: &Path) -> Vec<Vec<u8>> {
     vec![whole, cut]
 }
 
-/// What the module text of `recordings::reader` promises, and what the index of the file takes.
+/// What the module text of `grainlab_recordings::reader` promises, and what the index of the file takes.
 const MEMORY: (usize, usize) = (384 << 20, 64 + 64);
 
 #[test]
@@ -52,7 +54,11 @@ fn a_recording_gives_messages_or_warnings() {
             let _ = (recording.info().to_string(), recording.stored_files(), recording.ledger());
             let _ = recording.check();
             let mut take = |_| ControlFlow::Continue(());
-            let _ = recordings::import::recording::each(&recording, &ImportOptions::default(), &mut take);
+            let _ = grainlab_recordings::import::recording::each(
+                &recording,
+                &ImportOptions::default(),
+                &mut take,
+            );
         },
     }
     .run();

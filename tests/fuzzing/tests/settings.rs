@@ -1,7 +1,7 @@
 //! Scenes, calibrations and parameter files.
 
 use fuzzing::{Counting, Target};
-use node_kit::{Names, ParameterSpec, Parameters, RosArgs};
+use grainlab_node_kit::{Names, ParameterSpec, Parameters, RosArgs};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -28,7 +28,7 @@ fn a_scene_gives_a_scene_or_faults() {
         include_str!("../../golden/scenes/tiny.toml"),
     ];
     run("scene", &seeds, &["[[phase]]", "grains", "count", "friction", "=", "'"], |text| {
-        if let Err(error) = scene::Scene::parse(text) {
+        if let Err(error) = grainlab_scene::Scene::parse(text) {
             assert!(!error.to_string().is_empty());
         }
     });
@@ -36,12 +36,14 @@ fn a_scene_gives_a_scene_or_faults() {
 
 #[test]
 fn a_calibration_gives_constants_or_an_error() {
-    let seeds: Vec<String> = emt::Calibration::BUILTIN
+    let seeds: Vec<String> = grainlab_emt::Calibration::BUILTIN
         .iter()
-        .map(|name| emt::Calibration::builtin(name).unwrap().to_toml().unwrap())
+        .map(|name| grainlab_emt::Calibration::builtin(name).unwrap().to_toml().unwrap())
         .collect();
     let seeds: Vec<&str> = seeds.iter().map(String::as_str).collect();
-    run("calibration", &seeds, &["name", "=", "[", "]", "[["], |text| drop(emt::Calibration::parse(text)));
+    run("calibration", &seeds, &["name", "=", "[", "]", "[["], |text| {
+        drop(grainlab_emt::Calibration::parse(text))
+    });
 }
 
 #[test]

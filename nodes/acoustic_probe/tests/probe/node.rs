@@ -1,11 +1,11 @@
 use crate::sample::{DIAMETER, OVERLAP, lattice, measurement, message};
-use acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
+use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
+use grainlab_core::Material;
+use grainlab_micromechanics::NoNetwork;
 use grainlab_msgs::boundary::{WaveSpeedsReading, WaveformReading};
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
-use grains::Material;
-use micro::NoNetwork;
-use node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
+use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
 
 /// Who publishes packings, and hears what becomes of them.
 struct Source {
@@ -35,7 +35,7 @@ impl Source {
 /// A probe that finds what [`measurement`] says, whatever the packing, if that has contacts.
 fn probe(bus: &mut MemoryBus) -> AcousticProbe {
     let work = |message: &Packing| {
-        let packing = grains::Packing::try_from(message).map_err(MeasureError::Refused)?;
+        let packing = grainlab_core::Packing::try_from(message).map_err(MeasureError::Refused)?;
         let step = packing.step;
         if packing.contacts.is_empty() {
             return Err(MeasureError::NoNetwork { step, reason: NoNetwork::NoContacts { grains: 1 } });

@@ -1,23 +1,23 @@
 //! A packing that can be reckoned by hand, and what might be measured of it.
 
-use acoustics::trace::Channel;
-use acoustics::{AcousticsError, Measurement, Participation, Trace};
+use grainlab_acoustics::trace::Channel;
+use grainlab_acoustics::{AcousticsError, Measurement, Participation, Trace};
+use grainlab_core::{Cell, Contact, Mat3, Material, MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg;
-use grains::{Cell, Contact, Mat3, Material, MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 pub(crate) const DIAMETER: f64 = 2e-4;
 pub(crate) const OVERLAP: f64 = 2e-8;
 
 /// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
-pub(crate) fn lattice(overlap: f64) -> grains::Packing {
+pub(crate) fn lattice(overlap: f64) -> grainlab_core::Packing {
     let contact = |axis: usize| {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());
         (image[axis], normal[axis]) = (1, 1.0);
         let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
         Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
     };
-    grains::Packing {
+    grainlab_core::Packing {
         step: 12,
         time: 0.5,
         cell: Cell::cube(DIAMETER - overlap).unwrap(),
@@ -70,7 +70,7 @@ pub(crate) fn measurement() -> Measurement {
             start: 0.0,
             channels: vec![channel(4e-3), channel(8e-3)],
         }],
-        warnings: vec![acoustics::measure::Warning::LeftOut(AcousticsError::NoLatticePlane {
+        warnings: vec![grainlab_acoustics::measure::Warning::LeftOut(AcousticsError::NoLatticePlane {
             direction: [0.0, 0.6, 0.8],
         })],
     }

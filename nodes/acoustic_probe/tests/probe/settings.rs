@@ -1,7 +1,7 @@
-use acoustic_probe::{Settings, SettingsError, parameters};
-use acoustics::{Modes, Survey, Way, flight::Pick};
-use grains::Vec3;
-use node_kit::{Names, Parameters, RosArgs};
+use grainlab_acoustic_probe::{Settings, SettingsError, parameters};
+use grainlab_acoustics::{Modes, Survey, Way, flight::Pick};
+use grainlab_core::Vec3;
+use grainlab_node_kit::{Names, Parameters, RosArgs};
 
 fn set(values: &[&str]) -> Result<Result<Settings, SettingsError>, String> {
     let mut args = vec!["--ros-args".to_owned()];
@@ -12,13 +12,13 @@ fn set(values: &[&str]) -> Result<Result<Settings, SettingsError>, String> {
     Ok(Settings::try_from(&parameters.map_err(|e| e.to_string())?))
 }
 
-fn settings(values: &[&str]) -> acoustics::Settings {
+fn settings(values: &[&str]) -> grainlab_acoustics::Settings {
     set(values).unwrap().unwrap().0
 }
 
 #[test]
 fn the_declared_defaults_are_the_typed_ones() {
-    assert_eq!(settings(&[]), acoustics::Settings::default());
+    assert_eq!(settings(&[]), grainlab_acoustics::Settings::default());
 }
 
 #[test]

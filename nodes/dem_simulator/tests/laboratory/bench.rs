@@ -1,16 +1,16 @@
 //! The laboratory in one thread: all nodes and a recorder on the bus in memory.
 
-use dem_simulator::{DemSimulator, Settings};
-use emt_inversion::EmtInversion;
-use fabric_analyzer::FabricAnalyzer;
+use grainlab_dem_simulator::{DemSimulator, Settings};
+use grainlab_emt_inversion::EmtInversion;
+use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::msg::{Microstructure, RunState};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
-use node_kit::memory::{Actor, run_until};
-use node_kit::{
+use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{
     Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, SubscriptionId,
 };
-use scene::Scene;
-use servo_controller::ServoController;
+use grainlab_scene::Scene;
+use grainlab_servo_controller::ServoController;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -130,7 +130,7 @@ impl Bench {
     pub(crate) fn simulator(
         &self,
         settings: &Settings,
-        resume: Option<(grains::Packing, Vec<u8>)>,
+        resume: Option<(grainlab_core::Packing, Vec<u8>)>,
     ) -> (DemSimulator, MemoryBus) {
         let mut bus = self.bus("dem_simulator");
         (DemSimulator::new(&mut bus, scene(), resume, settings.clone()).expect("a simulator"), bus)
@@ -143,12 +143,16 @@ impl Bench {
 
     pub(crate) fn analyzer(&self) -> (FabricAnalyzer, MemoryBus) {
         let mut bus = self.bus("fabric_analyzer");
-        (FabricAnalyzer::new(&mut bus, fabric_analyzer::Settings::default()).expect("an analyzer"), bus)
+        (
+            FabricAnalyzer::new(&mut bus, grainlab_fabric_analyzer::Settings::default())
+                .expect("an analyzer"),
+            bus,
+        )
     }
 
     pub(crate) fn inversion(&self) -> (EmtInversion, MemoryBus) {
         let mut bus = self.bus("emt_inversion");
-        (EmtInversion::new(&mut bus, emt_inversion::Settings::default()).expect("an inversion"), bus)
+        (EmtInversion::new(&mut bus, grainlab_emt_inversion::Settings::default()).expect("an inversion"), bus)
     }
 
     pub(crate) fn recorder(&self) -> (Recorder, MemoryBus) {
@@ -157,7 +161,11 @@ impl Bench {
     }
 
     /// The whole laboratory from beginning to end.
-    pub(crate) fn whole_run(self, settings: &Settings, resume: Option<(grains::Packing, Vec<u8>)>) -> Record {
+    pub(crate) fn whole_run(
+        self,
+        settings: &Settings,
+        resume: Option<(grainlab_core::Packing, Vec<u8>)>,
+    ) -> Record {
         let (mut recorder, recorder_bus) = self.recorder();
         let (mut analyzer, analyzer_bus) = self.analyzer();
         let (mut inversion, inversion_bus) = self.inversion();

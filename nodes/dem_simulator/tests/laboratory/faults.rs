@@ -1,13 +1,13 @@
 //! Messages that must not be believed, and runs that cannot go on.
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
-use dem_simulator::Settings;
+use grainlab_core::{ComponentControl, Packing};
+use grainlab_dem_simulator::Settings;
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grains::{ComponentControl, Packing};
-use node_kit::memory::{Actor, run_until};
-use node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
+use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
 /// A servo that answers `honest` requests as it should and then something else.
@@ -33,7 +33,7 @@ impl BadServo {
 impl Node for BadServo {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         while let Some((stress, _)) = self.stress.take_valid(bus)? {
-            let mut answer = servo_controller::answer(&stress).expect("an answer");
+            let mut answer = grainlab_servo_controller::answer(&stress).expect("an answer");
             let chosen = StressRequest::try_from(&stress).unwrap().controls[2];
             let may = self.anywhere || matches!(chosen, ComponentControl::Stress(_));
             if stress.sequence >= self.honest && self.lies > 0 && may {

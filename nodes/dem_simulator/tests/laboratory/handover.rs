@@ -1,13 +1,13 @@
 //! Nodes that come, go, and come again in the middle of a run.
 
 use crate::bench::{Bench, FOREVER, Record, exit_of, scene};
-use dem_simulator::{DemSimulator, Settings};
+use grainlab_core::Packing;
+use grainlab_dem_simulator::{DemSimulator, Settings};
 use grainlab_msgs::boundary::BoundaryError;
 use grainlab_msgs::msg::{self, RunState};
 use grainlab_msgs::topics;
-use grains::Packing;
-use node_kit::memory::{Actor, run_until};
-use node_kit::{Bus, Exit, Faults, Health, Next, Node, NodeError};
+use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Bus, Exit, Faults, Health, Next, Node, NodeError};
 use std::time::Duration;
 
 fn state_in(message: &msg::Packing) -> Result<(Packing, Vec<u8>), BoundaryError> {

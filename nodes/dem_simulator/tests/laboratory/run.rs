@@ -1,8 +1,8 @@
 //! A run from beginning to end.
 
 use crate::bench::{Bench, Record};
-use dem_simulator::{Mode, Settings};
-use emt_inversion::Models;
+use grainlab_dem_simulator::{Mode, Settings};
+use grainlab_emt_inversion::Models;
 use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{stamp, topics};
 use std::time::Duration;

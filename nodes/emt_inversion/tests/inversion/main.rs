@@ -6,7 +6,7 @@ mod sets;
 mod settings;
 mod speeds;
 
-use emt_inversion::{Settings, microstructure_message};
+use grainlab_emt_inversion::{Settings, microstructure_message};
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::{Estimate, Microstructure, Moduli};
 use grainlab_msgs::stamp;

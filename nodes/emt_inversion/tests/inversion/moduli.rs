@@ -1,10 +1,10 @@
 use crate::{corrected, of_ratio, s1};
-use emt::{Calibration, Conditions, Gamma, Measured, Modulus, Quantity, Structure};
-use emt_inversion::{Axis, Settings, microstructure_message};
+use grainlab_core::{Stiffness, TransverseIsotropy, Vec3};
+use grainlab_emt::{Calibration, Conditions, Gamma, Measured, Modulus, Quantity, Structure};
+use grainlab_emt_inversion::{Axis, Settings, microstructure_message};
 use grainlab_msgs::boundary::{DATA, MicrostructureReading, QUANTITIES};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, Moduli};
-use grains::{Stiffness, TransverseIsotropy, Vec3};
 use nalgebra::Rotation3;
 
 /// A medium with the three moduli of S1.
@@ -27,8 +27,8 @@ fn with_error(modulus_error: f64) -> Settings {
 
 #[test]
 fn the_words_of_the_wire_are_those_of_the_kernel() {
-    assert_eq!(emt::Quantity::ALL.map(emt::Quantity::name), QUANTITIES);
-    assert_eq!(emt::INPUT_NAMES, DATA);
+    assert_eq!(grainlab_emt::Quantity::ALL.map(grainlab_emt::Quantity::name), QUANTITIES);
+    assert_eq!(grainlab_emt::INPUT_NAMES, DATA);
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
     assert_eq!((&message.header, message.source_step), (&s1().header, 42));
     assert_eq!(message.source, "moduli");
     let names: Vec<&str> = message.estimates.iter().map(|e| e.model.as_str()).collect();
-    assert_eq!(names, emt::models().iter().map(|m| m.name()).collect::<Vec<_>>());
+    assert_eq!(names, grainlab_emt::models().iter().map(|m| m.name()).collect::<Vec<_>>());
     let e = of_ratio(message);
     // The table prints three digits; ε is printed to .001.
     assert!(
@@ -53,15 +53,15 @@ fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
 fn every_model_finds_the_structure_it_was_given_through_the_message() {
     let assumed = [5.2, 5.25, 5.4, 0.05, 0.04];
     let m = s1();
-    let material = grains::Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 };
+    let material = grainlab_core::Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 };
     let conditions = Conditions {
-        gamma: Gamma { source: emt::GammaSource::Total, ..Gamma::given(m.gamma_over_delta_total) },
+        gamma: Gamma { source: grainlab_emt::GammaSource::Total, ..Gamma::given(m.gamma_over_delta_total) },
         solid_fraction: Some(Measured::exact(m.solid_fraction)),
         material: Some(material),
         ..Conditions::at(m.pressure)
     };
     let mut whole = 0;
-    for (i, model) in emt::models().iter().enumerate() {
+    for (i, model) in grainlab_emt::models().iter().enumerate() {
         let answer = |moduli: &Moduli| {
             microstructure_message(moduli, &Settings::default()).unwrap().estimates.remove(i)
         };

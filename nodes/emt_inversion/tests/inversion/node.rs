@@ -1,9 +1,9 @@
 use crate::s1;
 use crate::speeds::upright;
-use emt_inversion::{EmtInversion, Settings, microstructure_message, microstructure_of_speeds};
+use grainlab_emt_inversion::{EmtInversion, Settings, microstructure_message, microstructure_of_speeds};
 use grainlab_msgs::msg::{Microstructure, Moduli, WaveSpeeds};
 use grainlab_msgs::topics;
-use node_kit::{Bus, Demand, Hub, Level, Names, Node, Publisher, RosArgs, Subscription};
+use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Publisher, RosArgs, Subscription};
 
 #[test]
 fn a_latched_set_of_moduli_is_inverted_by_a_node_that_comes_late_and_a_broken_one_is_refused() {

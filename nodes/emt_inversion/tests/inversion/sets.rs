@@ -2,10 +2,10 @@
 
 use crate::moduli::s1_medium;
 use crate::speeds::{DENSITY, answer, upright, wire};
-use emt_inversion::{Axis, Settings, microstructure_of_speeds};
+use grainlab_core::{Stiffness, TransverseIsotropy, Vec3};
+use grainlab_emt_inversion::{Axis, Settings, microstructure_of_speeds};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, WaveSpeed, WaveSpeeds};
-use grains::{Stiffness, TransverseIsotropy, Vec3};
 use nalgebra::Rotation3;
 
 const FOUND: Axis = Axis::Found;

@@ -1,8 +1,8 @@
 use crate::{corrected, s1};
-use emt::{Calibration, GammaSource};
-use emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
-use grains::Vec3;
-use node_kit::{Names, Parameters, RosArgs};
+use grainlab_core::Vec3;
+use grainlab_emt::{Calibration, GammaSource};
+use grainlab_emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
+use grainlab_node_kit::{Names, Parameters, RosArgs};
 
 /// A calibration as text: ours, by another name.
 fn mine() -> String {
@@ -40,7 +40,7 @@ fn the_declared_defaults_are_the_typed_ones() {
 
 #[test]
 fn the_models_named_answer_each_once_and_in_the_order_of_the_list() {
-    let all: Vec<&str> = emt::models().iter().map(|m| m.name()).collect();
+    let all: Vec<&str> = grainlab_emt::models().iter().map(|m| m.name()).collect();
     assert_eq!(models_of(&[]), all);
     assert_eq!(models_of(&["-p", "models:=ratio"]), ["ratio"]);
     let two = ["-p", "models:=ratio-as-printed, ratio,ratio-as-printed"];

@@ -2,10 +2,10 @@
 
 use crate::moduli::{s1_medium, s1_stiffness};
 use crate::{corrected, of_ratio, s1};
-use emt_inversion::{Axis, Settings, microstructure_of_speeds};
+use grainlab_core::{Stiffness, Vec3};
+use grainlab_emt_inversion::{Axis, Settings, microstructure_of_speeds};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, WaveSpeed, WaveSpeeds};
-use grains::{Stiffness, Vec3};
 use nalgebra::Rotation3;
 
 pub(crate) const DENSITY: f64 = 1590.0;

@@ -3,7 +3,7 @@
 //! Grains of size D carry waves of wave number q at v² = v₀² (1 − b q² + O(q⁴)) with b of the order of D²/10: a chain has
 //! b = D²/12, packings .1 D² (S) to .2 D² (P).
 
-use grains::Vec3;
+use grainlab_core::Vec3;
 use nalgebra::{DMatrix, DVector};
 
 /// A speed at one wavelength.

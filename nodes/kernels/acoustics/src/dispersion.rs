@@ -19,7 +19,7 @@ use crate::error::AcousticsError;
 use crate::measure::Warning;
 use crate::participation::Carrier;
 use crate::ray::Ray;
-use grains::{Mat3, Packing, Vec3};
+use grainlab_core::{Mat3, Packing, Vec3};
 use nalgebra::SymmetricEigen;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -224,7 +224,7 @@ fn resistances(
         let modes = modes(&bloch, motions, &near, tolerance, max_iterations).map_err(|stopped| {
             let contacts = carrier.network.contacts();
             match stopped {
-                Stopped::NoResistance => micro::NoNetwork::Floppy { contacts }.into(),
+                Stopped::NoResistance => grainlab_micromechanics::NoNetwork::Floppy { contacts }.into(),
                 stopped => AcousticsError::NotConverged {
                     direction: ray.direction.into(),
                     wavelength: wavelength * diameter,

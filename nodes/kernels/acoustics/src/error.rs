@@ -1,6 +1,6 @@
 //! What can go wrong, typed.
 
-use micro::NoNetwork;
+use grainlab_micromechanics::NoNetwork;
 
 /// Why a packing's wave speeds could not be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -85,10 +85,10 @@ pub enum AcousticsError {
     },
     /// The network could not be built.
     #[error(transparent)]
-    Network(#[from] micro::MicroError),
+    Network(#[from] grainlab_micromechanics::MicroError),
     /// The engine failed.
     #[error(transparent)]
-    Engine(#[from] dem::DemError),
+    Engine(#[from] grainlab_dem::DemError),
 }
 
 /// A direction as people write it.

@@ -29,9 +29,9 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::planes;
 use crate::trace::Trace;
-use grains::{Packing, WaveMethod};
+use grainlab_core::{Packing, WaveMethod};
+use grainlab_scene::Tangential;
 use rayon::prelude::*;
-use scene::Tangential;
 
 /// What is taken as the arrival.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use crate::participation::{Carrier, Participation};
 use crate::survey::{Modes, Survey};
 use crate::trace::Trace;
 use crate::{dispersion, flight, standing};
-use grains::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
+use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// A speed that is less certain than this share of itself says little about a medium.
 const NOISY: f64 = 0.1;

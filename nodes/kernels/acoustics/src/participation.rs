@@ -10,9 +10,9 @@ mod cluster;
 
 use crate::error::AcousticsError;
 use crate::participation::cluster::{Cluster, clusters};
-use grains::{Mat3, Packing, Vec3};
-use micro::rattlers::{contacts_needed, participating};
-use micro::{Network, NoNetwork};
+use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_micromechanics::rattlers::{contacts_needed, participating};
+use grainlab_micromechanics::{Network, NoNetwork};
 
 /// Mass of a packing that moves with long waves.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Where a wave goes, and how the grains move in it.
 
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 
 /// Sine of the angle between ray and axis below which they count as parallel: the edges of a cell that was servoed are a little
 /// off, and which way tells nothing.

@@ -7,8 +7,8 @@ mod lattice;
 
 use crate::error::AcousticsError;
 use crate::repeat::lattice::Layers;
-use dem::DemError;
-use grains::{Contact, Packing, Vec3};
+use grainlab_core::{Contact, Packing, Vec3};
+use grainlab_dem::DemError;
 
 /// Most grains that a repeated packing may have.
 const MOST_GRAINS: usize = 20_000_000;

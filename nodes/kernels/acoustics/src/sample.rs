@@ -1,13 +1,13 @@
 //! A packing made ready for waves: at rest, with its time step and a first idea of their speed.
 
 use crate::error::AcousticsError;
-use dem::{Engine, Setting, TimeStep};
-use grains::{Mat3, Packing, Vec3};
-use micro::NoNetwork;
-use micro::balance::unbalanced;
-use micro::rattlers::{contacts_needed, participating};
-use micro::relax::Relaxation;
-use scene::Tangential;
+use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_micromechanics::NoNetwork;
+use grainlab_micromechanics::balance::unbalanced;
+use grainlab_micromechanics::rattlers::{contacts_needed, participating};
+use grainlab_micromechanics::relax::Relaxation;
+use grainlab_scene::Tangential;
 
 /// Share of the stability bound that the time step takes: contacts hardly stiffen.
 const SAFETY: f64 = 0.8;
@@ -129,7 +129,7 @@ impl Sample {
 
     /// Mean stress, Pa, positive in compression.
     pub(crate) fn pressure(&self) -> f64 {
-        grains::stress::stress(&self.packing).tensor.mean()
+        grainlab_core::stress::stress(&self.packing).tensor.mean()
     }
 
     /// Mass of the grains that carry force, kg.

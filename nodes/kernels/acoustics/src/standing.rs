@@ -22,9 +22,9 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::resonance::{Found, Resonance};
 use crate::trace::Trace;
-use grains::{Packing, Vec3};
+use grainlab_core::{Packing, Vec3};
+use grainlab_scene::Tangential;
 use rayon::prelude::*;
-use scene::Tangential;
 
 /// Repetitions of a packing that have room for two wavelengths, to extrapolate from.
 pub const FEWEST_COPIES: u32 = 5;

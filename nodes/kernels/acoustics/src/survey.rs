@@ -7,7 +7,7 @@
 //! them have four azimuths across the axis, and twice four between, whose fourth harmonics have opposite signs.
 
 use crate::ray::Ray;
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Which rays are sent.

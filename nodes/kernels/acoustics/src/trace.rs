@@ -1,6 +1,6 @@
 //! What a receiver hears.
 
-use grains::{Vec3, WaveMethod};
+use grainlab_core::{Vec3, WaveMethod};
 
 /// Traces of one wave: particle velocity at several receivers, or the amplitude of a standing wave.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 //! How well a packing knows its own noise: many seeds of a scene, the scatter among them beside what each one claims.
 //!
-//! `cargo run --release -p dem --example fabric_noise SCENE.toml FIRST-LAST [PHASES [FRICTION]]` keeps the phases named
+//! `cargo run --release -p grainlab_dem --example fabric_noise SCENE.toml FIRST-LAST [PHASES [FRICTION]]` keeps the phases named
 //! (comma-separated; all without) and, where a friction is given, has it in all of them. So
 //! `nodes/scenes/demo.toml 1-60 gas,rest,load,settle` makes packings that are isotropic, `… gas,rest,load 0` frictionless
 //! ones.
 
-use grains::symmetry::symmetry;
-use grains::{Packing, Vec3};
-use micro::{Analysis, Settings, analyse, deviator};
+use grainlab_core::symmetry::symmetry;
+use grainlab_core::{Packing, Vec3};
+use grainlab_micromechanics::{Analysis, Settings, analyse, deviator};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let usage = "usage: fabric_noise SCENE.toml FIRST-LAST [PHASES [FRICTION]]";
     let [file, seeds, ..] = &arguments[..] else { return Err(usage.into()) };
     let (first, last) = seeds.split_once('-').ok_or(usage)?;
-    let mut model = scene::Scene::parse(&std::fs::read_to_string(file)?)?;
+    let mut model = grainlab_scene::Scene::parse(&std::fs::read_to_string(file)?)?;
     if let Some(names) = arguments.get(2) {
         let kept: Vec<&str> = names.split(',').collect();
         model.phases.retain(|p| kept.contains(&p.name.as_str()));
@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     model.phases.last_mut().ok_or("no phase is left")?.publish = true;
     let (mut found, mut spent) = (Vec::new(), [f64::INFINITY; 2]);
     for seed in first.parse::<u64>()?..=last.parse()? {
-        let packing = made(scene::Scene { seed, ..model.clone() })?;
+        let packing = made(grainlab_scene::Scene { seed, ..model.clone() })?;
         let analysis = analyse(&packing, &Settings::default())?;
-        spent[0] = spent[0].min(seconds(|| micro::fabric::fabric(&packing, &Vec3::z())));
+        spent[0] = spent[0].min(seconds(|| grainlab_micromechanics::fabric::fabric(&packing, &Vec3::z())));
         if let Ok(moduli) = &analysis.moduli {
             spent[1] = spent[1].min(seconds(|| symmetry(&moduli.stiffness, 0.0)));
         }
@@ -48,10 +48,10 @@ fn seconds<T>(work: impl FnOnce() -> T) -> f64 {
 }
 
 /// The last packing of a scene.
-fn made(scene: scene::Scene) -> Result<Packing, Box<dyn std::error::Error>> {
-    let mut run = dem::Simulation::new(scene)?;
+fn made(scene: grainlab_scene::Scene) -> Result<Packing, Box<dyn std::error::Error>> {
+    let mut run = grainlab_dem::Simulation::new(scene)?;
     while let Some(r) = run.request() {
-        run.answer(&servo::answer(&r.question())?.rate)?;
+        run.answer(&grainlab_servo::answer(&r.question())?.rate)?;
     }
     Ok(run.packing())
 }
@@ -103,11 +103,11 @@ fn report(found: &[Analysis]) {
         mean(&|a| overlaps(a).g_stddev.unwrap_or(f64::NAN)),
     );
     let root = |a: &Analysis| f64::from(a.fabric.grains).sqrt();
-    let stiffness: Vec<(&Analysis, grains::Symmetry)> =
+    let stiffness: Vec<(&Analysis, grainlab_core::Symmetry)> =
         found.iter().filter_map(|a| Some((a, symmetry(&a.moduli.as_ref().ok()?.stiffness, 0.0)?))).collect();
     println!("residuals of the stiffness times the root of the grains, quartiles and largest");
     for (name, of) in [
-        ("isotropic", (|s| s.isotropic) as fn(&grains::Symmetry) -> f64),
+        ("isotropic", (|s| s.isotropic) as fn(&grainlab_core::Symmetry) -> f64),
         ("cubic", |s| s.cubic),
         ("transversely isotropic", |s| s.transversely_isotropic),
         ("orthotropic", |s| s.orthotropic),

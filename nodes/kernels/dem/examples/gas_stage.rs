@@ -1,5 +1,5 @@
 //! What the gas stage costs and what packing it leads to: `gas_stage GRAINS FIRST-LAST METHOD:RATE…`, seeds from first to
-//! last, for example `cargo run --release -p dem --example gas_stage 500 1-6 soft:12 event_driven:12`.
+//! last, for example `cargo run --release -p grainlab_dem --example gas_stage 500 1-6 soft:12 event_driven:12`.
 //!
 //! Each gas is compressed to φ = 0.607 at that rate (1/s), comes to rest, is pressed without friction to 1 kPa (its φ
 //! there stands for jamming), then with μ = 0.1 to 50 kPa.
@@ -43,16 +43,20 @@ fn scene(grains: u32, seed: u64, method: &str, rate: f64) -> String {
 
 fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
     let begin = Instant::now();
-    let mut run = dem::Simulation::new(scene::Scene::parse(text)?)?;
+    let mut run = grainlab_dem::Simulation::new(grainlab_scene::Scene::parse(text)?)?;
     let mut out = Outcome { seconds: 0.0, jammed: 0.0, loaded: [0.0; 3] };
     while let Some(r) = run.request() {
-        let answer = servo::answer(&r.question())?;
+        let answer = grainlab_servo::answer(&r.question())?;
         match run.answer(&answer.rate)?.ended.as_deref() {
             Some("gas") => out.seconds = begin.elapsed().as_secs_f64(),
             Some("jam") => out.jammed = run.packing().solid_fraction(),
             Some("load") => {
                 let packing = run.packing();
-                let fabric = micro::analyse(&packing, &micro::Settings::default())?.fabric;
+                let fabric = grainlab_micromechanics::analyse(
+                    &packing,
+                    &grainlab_micromechanics::Settings::default(),
+                )?
+                .fabric;
                 out.loaded = [packing.solid_fraction(), fabric.k, fabric.z];
             }
             _ => {}

@@ -1,15 +1,15 @@
-//! Runs a scene in this process alone, the servo as a function call: `cargo run --release -p dem --example prepare FILE`.
+//! Runs a scene in this process alone, the servo as a function call: `cargo run --release -p grainlab_dem --example prepare FILE`.
 
-use grains::ComponentControl;
+use grainlab_core::ComponentControl;
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).ok_or("usage: prepare SCENE.toml")?;
-    let scene = scene::Scene::parse(&std::fs::read_to_string(path)?)?;
-    let mut run = dem::Simulation::new(scene)?;
+    let scene = grainlab_scene::Scene::parse(&std::fs::read_to_string(path)?)?;
+    let mut run = grainlab_dem::Simulation::new(scene)?;
     let (begin, mut mark, mut steps) = (Instant::now(), Instant::now(), 0);
     while let Some(r) = run.request() {
-        let answer = servo::answer(&r.question())?;
+        let answer = grainlab_servo::answer(&r.question())?;
         let advanced = run.answer(&answer.rate)?;
         if let Some(name) = advanced.ended {
             let (e, done) = (run.engine(), run.engine().steps() - steps);
@@ -46,8 +46,8 @@ fn off_target(stress: &[f64; 6], controls: &[ComponentControl; 6]) -> f64 {
     errors.fold(f64::NAN, f64::max) * normal.len() as f64 / normal.iter().sum::<f64>()
 }
 
-fn report(packing: &grains::Packing) -> Result<(), Box<dyn std::error::Error>> {
-    let a = micro::analyse(packing, &micro::Settings::default())?;
+fn report(packing: &grainlab_core::Packing) -> Result<(), Box<dyn std::error::Error>> {
+    let a = grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default())?;
     let f = &a.fabric;
     let l = f.contact_fabric;
     println!(

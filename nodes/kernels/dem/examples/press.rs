@@ -1,8 +1,8 @@
-//! Presses a gas of grains to rest and prints the packing: `cargo run --release -p dem --example press -- COUNT SEED
+//! Presses a gas of grains to rest and prints the packing: `cargo run --release -p grainlab_dem --example press -- COUNT SEED
 //! PRESSURE FRICTION`. The packings of the tests come from here.
 
-use dem::Simulation;
-use scene::Scene;
+use grainlab_dem::Simulation;
+use grainlab_scene::Scene;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -47,7 +47,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
     );
     let mut run = Simulation::new(Scene::parse(&text)?)?;
     while let Some(r) = run.request() {
-        let answer = servo::answer(&r.question())?;
+        let answer = grainlab_servo::answer(&r.question())?;
         run.answer(&answer.rate)?;
     }
     print(&run.packing());
@@ -55,7 +55,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
 }
 
 /// One line a thing: the cell's columns, friction and time step, grains, contacts with their tangential force.
-fn print(p: &grains::Packing) {
+fn print(p: &grainlab_core::Packing) {
     let three = |v: &[f64]| format!("{:e} {:e} {:e}", v[0], v[1], v[2]);
     for column in p.cell.matrix().column_iter() {
         println!("cell {}", three(&[column[0], column[1], column[2]]));

@@ -3,7 +3,7 @@
 use crate::contacts::{Contacts, Kept};
 use crate::lanes::{Octad, Quad};
 use crate::state::State;
-use grains::{Cell, Mat3};
+use grainlab_core::{Cell, Mat3};
 
 /// A state to go back to: no lists, no forces, nothing that never changes.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use crate::lanes::{BLOCK, V3};
 use crate::own::Own;
 use crate::share::{Block, Builder, Pair, Share};
 use crate::state::{State, vector};
-use grains::material::effective_radius;
-use grains::{Contact, Packing, Vec3};
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Contact, Packing, Vec3};
 
 /// All pairs, shared out.
 ///

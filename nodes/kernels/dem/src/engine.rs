@@ -15,8 +15,8 @@ use crate::state::{State, twist, vector};
 use crate::stress::Seen;
 use crate::sweep::{self, Job, Sweep};
 use crate::time_step;
-use grains::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
-use scene::Tangential;
+use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
+use grainlab_scene::Tangential;
 use std::borrow::Cow;
 
 /// Solver steps between two looks at the stiffness of the contacts for the time step.
@@ -485,7 +485,8 @@ impl Engine {
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
         let cause = at_grain.max_by(|a, b| a.root.total_cmp(&b.root)).map_or(String::new(), |p| {
             let (i, j) = (p.i as usize, p.j as usize);
-            let overlap = p.root * p.root / grains::material::effective_radius(s.radius[i], s.radius[j]);
+            let overlap =
+                p.root * p.root / grainlab_core::material::effective_radius(s.radius[i], s.radius[j]);
             format!(", pushed hardest at its contact of grains {} and {}", s.ids[i], s.ids[j])
                 + &format!(" with an overlap of {overlap:e} m")
         });

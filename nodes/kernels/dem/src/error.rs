@@ -86,7 +86,7 @@ pub enum DemError {
     },
     /// The path failed.
     #[error(transparent)]
-    Path(#[from] scene::PathError),
+    Path(#[from] grainlab_scene::PathError),
     /// A saved state does not belong to this scene or version.
     #[error("cannot resume: {0}")]
     Resume(String),

@@ -1,7 +1,7 @@
 //! Placing grains at random and agitating them.
 
 use crate::error::DemError;
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 

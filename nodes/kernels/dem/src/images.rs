@@ -2,7 +2,7 @@
 
 use crate::lanes::Quad;
 use crate::state::{State, row};
-use grains::Cell;
+use grainlab_core::Cell;
 use std::collections::HashMap;
 
 /// The distinct periodic images in use, with their shifts in the present cell.

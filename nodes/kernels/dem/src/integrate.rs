@@ -5,7 +5,7 @@ use crate::lanes::{Lanes, Octad, Quad, Row};
 use crate::simd::{Kernel, Simd};
 use crate::state::State;
 use crate::sums::Act;
-use grains::Mat3;
+use grainlab_core::Mat3;
 
 /// What one step did, for the checks that follow.
 #[derive(Clone, Copy, Debug, Default)]

@@ -4,7 +4,7 @@
 //! set it is what the engine runs.
 
 use crate::lanes::{Lanes, V3, inverse_root};
-use grains::Material;
+use grainlab_core::Material;
 
 /// Coefficients of the contact law for one phase.
 #[derive(Clone, Copy, Debug, PartialEq)]

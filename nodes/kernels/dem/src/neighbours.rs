@@ -12,7 +12,7 @@ use crate::lanes::{BLOCK, Quad};
 use crate::own::Own;
 use crate::share::{Block, Builder, Pair, Share};
 use crate::state::{State, vector};
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 use std::ops::Range;
 
 /// Largest image number that a contact may carry.

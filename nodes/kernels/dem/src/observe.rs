@@ -8,9 +8,9 @@ use crate::lanes::{BLOCK, Lanes, V3};
 use crate::share::{Block, Pair, Share, Sizes};
 use crate::simd::Kernel;
 use crate::state::State;
-use grains::Mat3;
-use grains::material::effective_radius;
-use grains::stress::Stress;
+use grainlab_core::Mat3;
+use grainlab_core::material::effective_radius;
+use grainlab_core::stress::Stress;
 
 /// What one look at the contacts gives. Nothing in the state changes by looking.
 #[derive(Clone, Copy, Debug, PartialEq)]

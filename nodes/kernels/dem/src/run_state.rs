@@ -2,8 +2,8 @@
 //! version, so that a recording is also a checkpoint.
 
 use crate::error::DemError;
-use grains::Mat3;
-use scene::PathState;
+use grainlab_core::Mat3;
+use grainlab_scene::PathState;
 
 const VERSION: u64 = 2;
 

@@ -6,8 +6,8 @@ use crate::own::Own;
 use crate::pass::Chunk;
 use crate::state::State;
 use crate::sums::{Layout, PartSums, Put, Sums};
-use grains::Vec3;
-use grains::material::effective_radius;
+use grainlab_core::Vec3;
+use grainlab_core::material::effective_radius;
 
 /// Eight pairs.
 #[derive(Clone, Copy, Debug)]

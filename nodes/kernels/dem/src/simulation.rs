@@ -8,8 +8,10 @@ use crate::event_driven::{HardSpheres, mean_free_time};
 use crate::gas;
 use crate::observe::Snapshot;
 use crate::run_state::RunState;
-use grains::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
-use scene::{Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene};
+use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
+use grainlab_scene::{
+    Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene,
+};
 
 /// Solver steps between two copies of the state that a failing run is taken back to.
 const KEEP_INTERVAL: u64 = 100;
@@ -73,8 +75,8 @@ pub struct Request {
 
 impl Request {
     /// What a servo is asked.
-    pub fn question(&self) -> servo::Request {
-        servo::Request {
+    pub fn question(&self) -> grainlab_servo::Request {
+        grainlab_servo::Request {
             stress: self.snapshot.stress.tensor,
             controls: self.controls,
             rate: self.rate,

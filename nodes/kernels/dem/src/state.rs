@@ -1,7 +1,7 @@
 //! Grains and cell.
 
 use crate::lanes::{Octad, Quad};
-use grains::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Vec3};
 
 /// A row of a table of vectors.
 #[inline(always)]

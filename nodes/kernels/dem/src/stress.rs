@@ -8,7 +8,7 @@ use crate::lanes::{BLOCK, Lanes, Quad, Row};
 use crate::share::Crossing;
 use crate::simd::{Kernel, Simd};
 use crate::sums::Act;
-use grains::{Mat3, SymTensor};
+use grainlab_core::{Mat3, SymTensor};
 
 /// Σ f ⊗ l so far, J: three rows, one for each component of the force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

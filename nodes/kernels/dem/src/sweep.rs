@@ -19,8 +19,8 @@ use crate::simd::Simd;
 use crate::state::State;
 use crate::stress::{self, Seen};
 use crate::sums::Act;
-use grains::material::effective_radius;
-use scene::Tangential;
+use grainlab_core::material::effective_radius;
+use grainlab_scene::Tangential;
 
 /// What a sweep does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

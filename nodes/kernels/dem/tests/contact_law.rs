@@ -1,9 +1,9 @@
 //! One contact against closed form: loading, sliding, closed cycles, rotation.
 
-use dem::lanes::V3;
-use dem::law::{Law, Touch};
-use grains::material::effective_radius;
-use grains::{Material, Vec3};
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Material, Vec3};
+use grainlab_dem::lanes::V3;
+use grainlab_dem::law::{Law, Touch};
 use nalgebra::{Rotation3, Unit};
 
 const RADIUS: f64 = 1e-4;

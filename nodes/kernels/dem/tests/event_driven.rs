@@ -1,10 +1,10 @@
 //! Hard spheres from collision to collision: against exact mechanics, a brute-force simulation and the fluid's known
 //! pressure.
 
-use dem::DemError;
-use dem::event_driven::{HardSpheres, mean_free_time};
-use dem::gas;
-use grains::{Cell, Mat3, Vec3};
+use grainlab_core::{Cell, Mat3, Vec3};
+use grainlab_dem::DemError;
+use grainlab_dem::event_driven::{HardSpheres, mean_free_time};
+use grainlab_dem::gas;
 
 const DIAMETER: f64 = 2e-4;
 

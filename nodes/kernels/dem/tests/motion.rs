@@ -1,9 +1,9 @@
 //! Grains in motion: collisions, the deforming cell, its periodic images, and what is refused.
 
-use dem::{DemError, Engine, Setting, TimeStep};
-use grains::{Cell, Mat3, Material, Vec3};
+use grainlab_core::{Cell, Mat3, Material, Vec3};
+use grainlab_dem::{DemError, Engine, Setting, TimeStep};
+use grainlab_scene::Tangential;
 use nalgebra::Rotation3;
-use scene::Tangential;
 
 const RADIUS: f64 = 1e-4;
 
@@ -64,7 +64,7 @@ fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
 
 #[test]
 fn an_undamped_gas_keeps_its_energy() {
-    let gas = dem::gas::place(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
+    let gas = grainlab_dem::gas::place(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
     let mut e = Engine::new(gas.cell, Material::GLASS, vec![RADIUS; 60], &gas.positions, setting(0.0, 5e-9));
     e.set_velocities(&gas.velocities);
     e.prepare().unwrap();
@@ -190,7 +190,7 @@ fn two_grains_that_touch_only_through_an_image_feel_the_affine_velocity() {
 
 /// A gas of 40 grains being pressed together, in a turned cell.
 fn pressed(turn: &Rotation3<f64>, time_step: f64) -> Engine {
-    let gas = dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, 11).unwrap();
+    let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, 11).unwrap();
     let cell = Cell::new(turn.matrix() * gas.cell.matrix());
     let rotate = |v: &[Vec3]| v.iter().map(|x| turn * x).collect::<Vec<_>>();
     let mut s = setting(0.3, time_step);
@@ -200,7 +200,7 @@ fn pressed(turn: &Rotation3<f64>, time_step: f64) -> Engine {
     e.set_velocities(&rotate(&gas.velocities));
     e.prepare().unwrap();
     let rate = Mat3::new(-900.0, 100.0, 0.0, 100.0, -700.0, -200.0, 0.0, -200.0, -800.0);
-    let rate = grains::SymTensor::symmetric_part(&(turn.matrix() * rate * turn.matrix().transpose()));
+    let rate = grainlab_core::SymTensor::symmetric_part(&(turn.matrix() * rate * turn.matrix().transpose()));
     e.set_rate(&rate.voigt()).unwrap();
     e
 }
@@ -291,14 +291,14 @@ fn too_long_a_time_step_is_refused_with_grain_and_contact_named() {
 
 #[test]
 fn grains_that_do_not_fit_are_refused() {
-    let error = dem::gas::place(3000, 2.0 * RADIUS, 0.60, 1.0, 1).unwrap_err();
+    let error = grainlab_dem::gas::place(3000, 2.0 * RADIUS, 0.60, 1.0, 1).unwrap_err();
     assert!(matches!(error, DemError::Placement { grains: 3000, .. }), "{error}");
 }
 
 #[test]
 fn grains_placed_at_random_do_not_overlap() {
     for seed in [0, 1, 2, 3, 11] {
-        let gas = dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, seed).unwrap();
+        let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, seed).unwrap();
         assert_eq!(brute_force(&gas.cell, &gas.positions), []);
     }
 }

@@ -1,7 +1,7 @@
 //! A packing and its run state are a checkpoint: a run taken up from them goes on bit for bit.
 
-use dem::Simulation;
-use scene::Scene;
+use grainlab_dem::Simulation;
+use grainlab_scene::Scene;
 
 const SCENE: &str = r#"
 name = "tiny"
@@ -47,7 +47,7 @@ publish = true
 
 fn advance(run: &mut Simulation) -> bool {
     let Some(r) = run.request() else { return false };
-    run.answer(&servo::answer(&r.question()).unwrap().rate).unwrap();
+    run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate).unwrap();
     true
 }
 
@@ -155,14 +155,14 @@ fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
     let mut run = begin(&event_driven().replace("solid_fraction = 0.55", "solid_fraction = 0.76"));
     let error = loop {
         let rate = run.request().unwrap().controls.map(|c| match c {
-            grains::ComponentControl::StrainRate(rate) => rate,
+            grainlab_core::ComponentControl::StrainRate(rate) => rate,
             _ => 0.0,
         });
         if let Err(error) = run.answer(&rate) {
             break error;
         }
     };
-    assert!(matches!(error, dem::DemError::Jammed { .. }), "{error}");
+    assert!(matches!(error, grainlab_dem::DemError::Jammed { .. }), "{error}");
     assert!(run.packing().validated().is_ok());
 }
 

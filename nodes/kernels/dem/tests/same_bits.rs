@@ -1,8 +1,8 @@
 //! Results do not depend on instruction set, threads, or how steps are grouped.
 
-use dem::{Compute, Engine, Setting, Simd, TimeStep, gas};
-use grains::{Mat3, Material, Packing, Vec3};
-use scene::Tangential;
+use grainlab_core::{Mat3, Material, Packing, Vec3};
+use grainlab_dem::{Compute, Engine, Setting, Simd, TimeStep, gas};
+use grainlab_scene::Tangential;
 
 const RADIUS: f64 = 1e-4;
 

@@ -1,8 +1,8 @@
 //! Stress control of a real packing: the default law from 1 kPa to 5 MPa, and Eq. 1 at its stability limit.
 
-use dem::{Engine, Setting, Simulation, TimeStep};
-use grains::{ComponentControl, ServoLaw};
-use scene::Scene;
+use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_dem::{Engine, Setting, Simulation, TimeStep};
+use grainlab_scene::Scene;
 use std::sync::OnceLock;
 
 /// Targets, Pa, met one after the other.
@@ -45,7 +45,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
         let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
         let mut out = Vec::new();
         while let Some(r) = run.request() {
-            let advanced = run.answer(&servo::answer(&r.question()).unwrap().rate).unwrap();
+            let advanced = run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate).unwrap();
             if advanced.packing_due {
                 let target = PRESSURES[out.len()];
                 let stress = run.engine().snapshot().unwrap().stress.tensor.voigt();
@@ -96,7 +96,7 @@ impl Loop {
 
     fn predicted(&self, leak: f64) -> f64 {
         let tangent = self.engine.snapshot().unwrap().tangent;
-        servo::critical_gain(&tangent, &self.controls, self.interval(), leak)
+        grainlab_servo::critical_gain(&tangent, &self.controls, self.interval(), leak)
     }
 
     /// The largest error of a servoed component, in shades, before each of `intervals` control intervals.
@@ -113,7 +113,7 @@ impl Loop {
             if errors[errors.len() - 1] > 100.0 && rate_limit.is_infinite() {
                 break;
             }
-            let request = servo::Request {
+            let request = grainlab_servo::Request {
                 stress,
                 controls: self.controls,
                 rate: self.engine.rate(),
@@ -123,7 +123,7 @@ impl Loop {
                 tangent: [0.0; 6],
                 control_interval: self.interval(),
             };
-            self.engine.set_rate(&servo::answer(&request).unwrap().rate).unwrap();
+            self.engine.set_rate(&grainlab_servo::answer(&request).unwrap().rate).unwrap();
             for _ in 0..self.period {
                 self.engine.step().unwrap();
             }
@@ -178,10 +178,13 @@ fn eq_1_goes_unstable_at_the_gain_predicted_from_the_tangent_stiffness() {
 #[test]
 fn over_long_intervals_the_limit_rises_as_far_as_the_grains_give_way() {
     let packing = &settled()[2].0;
-    let moduli = micro::analyse(&packing.packing(grains::Mat3::identity()), &micro::Settings::default())
-        .unwrap()
-        .moduli
-        .unwrap();
+    let moduli = grainlab_micromechanics::analyse(
+        &packing.packing(grainlab_core::Mat3::identity()),
+        &grainlab_micromechanics::Settings::default(),
+    )
+    .unwrap()
+    .moduli
+    .unwrap();
     let relaxation = moduli.affine.0[(5, 5)] / moduli.stiffness.0[(5, 5)];
     assert!(relaxation > 1.5, "a packing of this coordination relaxes much: {relaxation}");
     let (shear, isotropic) = (

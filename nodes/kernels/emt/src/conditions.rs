@@ -1,7 +1,7 @@
 //! The state that the moduli belong to.
 
 use crate::error::EmtError;
-use grains::{Anisotropy, Material};
+use grainlab_core::{Anisotropy, Material};
 use std::fmt;
 
 /// Where a γ/Δ comes from.

@@ -125,7 +125,7 @@ const fn parts() -> [[f64; INVARIANTS]; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::TransverseIsotropy;
+    use grainlab_core::TransverseIsotropy;
 
     const MEDIUM: TransverseIsotropy = TransverseIsotropy {
         c11: 271.0,

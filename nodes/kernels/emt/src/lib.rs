@@ -20,10 +20,10 @@
 //! - [`sampling`]: the distribution of what is inferred, where errors are too large for slopes
 //!
 //! ```
-//! use emt::{Calibration, Gamma, Observation, Quantity};
+//! use grainlab_emt::{Calibration, Gamma, Observation, Quantity};
 //! // The first row of the paper's Table III: k = 5.73, k_hat = 5.63, eps = 0.016.
 //! let s1 = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50.0e3, Gamma::given(-0.0623)).with_relative_error(0.01);
-//! let estimate = emt::model("ratio").unwrap().infer(&s1, &Calibration::PAPER).unwrap();
+//! let estimate = grainlab_emt::model("ratio").unwrap().infer(&s1, &Calibration::PAPER).unwrap();
 //! let near = |found: Option<f64>, value: f64| (found.unwrap() - value).abs() < 1e-3;
 //! assert!(near(estimate.structure.k, 5.73) && near(estimate.structure.k_hat, 5.63));
 //! assert!(near(estimate.structure.eps, 0.016));

@@ -5,7 +5,7 @@
 
 use crate::form::Form;
 use crate::moments::Moments;
-use grains::{Material, Stiffness, TransverseIsotropy};
+use grainlab_core::{Material, Stiffness, TransverseIsotropy};
 use std::f64::consts::PI;
 
 /// A random aggregate of equal spheres, axis e3, strained from its first touch by Δ and γ (plain effective medium

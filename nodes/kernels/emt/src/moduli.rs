@@ -1,6 +1,6 @@
 //! The moduli of a transversely isotropic medium, as far as they are known.
 
-use grains::TransverseIsotropy;
+use grainlab_core::TransverseIsotropy;
 use nalgebra::{RowSVector, SMatrix};
 use std::fmt;
 

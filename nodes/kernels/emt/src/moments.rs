@@ -6,7 +6,7 @@
 ///
 /// ```
 /// // Isotropic: a third of the unit tensor.
-/// assert_eq!(emt::Moments::new(0.0, 0.0), emt::Moments { m1: 1.0 / 3.0, m2: 0.0 });
+/// assert_eq!(grainlab_emt::Moments::new(0.0, 0.0), grainlab_emt::Moments { m1: 1.0 / 3.0, m2: 0.0 });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {

@@ -3,7 +3,7 @@
 use crate::conditions::{Conditions, Gamma};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
-use grains::{Mat3, Stiffness};
+use grainlab_core::{Mat3, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
 /// Number of things an inversion may depend on: the moduli, the pressure, γ/Δ and the solid fraction.

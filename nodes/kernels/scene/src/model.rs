@@ -1,6 +1,6 @@
 //! The scene as a value.
 
-use grains::{ComponentControl, Material, ServoLaw};
+use grainlab_core::{ComponentControl, Material, ServoLaw};
 
 /// A whole experiment: what is simulated and along which loading path.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,13 +4,13 @@ use crate::fault::{Fault, SceneError};
 use crate::model::{Numerics, Scene, Tangential};
 use crate::phases;
 use crate::table::Reader;
-use grains::Material;
+use grainlab_core::Material;
 
 impl Scene {
     /// Parses a scene; every fault of the text is in the error.
     ///
     /// ```
-    /// let faults = scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
+    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
     /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
     /// ```
     pub fn parse(text: &str) -> Result<Scene, SceneError> {

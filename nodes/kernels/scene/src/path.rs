@@ -1,7 +1,7 @@
 //! The loading path as a state machine.
 
 use crate::model::{Condition, Measure, Phase, PhaseKind, Scene};
-use grains::{ComponentControl, SymTensor};
+use grainlab_core::{ComponentControl, SymTensor};
 
 /// What the path sees of the packing at each exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::model::{Condition, Conditions, GasMethod, Measure, Phase, PhaseKind};
 use crate::table::{Reader, as_number};
-use grains::{ComponentControl, Material, ServoLaw};
+use grainlab_core::{ComponentControl, Material, ServoLaw};
 use toml::{Table, Value};
 
 /// Unrolled phases a path may have; more is a mistake in a cycle count.

@@ -1,7 +1,9 @@
 //! Scenes as their authors write them, right and wrong.
 
-use grains::{ComponentControl, ServoLaw, SymTensor};
-use scene::{Condition, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_scene::{
+    Condition, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene,
+};
 
 const GOOD: &str = r#"
 name = "tiny"
@@ -81,7 +83,7 @@ fn a_servo_phase_is_normalised_unless_it_says_otherwise() {
         ("law = 'integral'\ngain = 1e-3\nresponse_time = 1e-5", "response_time"),
         ("law = 'scaled'", "response_time"),
     ] {
-        let error: scene::SceneError = law(wrong).unwrap_err();
+        let error: grainlab_scene::SceneError = law(wrong).unwrap_err();
         assert!(error.faults.iter().any(|f| f.place.ends_with(place)), "{wrong}: {error}");
     }
 }

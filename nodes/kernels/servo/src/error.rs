@@ -1,7 +1,7 @@
 //! What makes a request unanswerable.
 
 use crate::{Request, critical_gain};
-use grains::{ComponentControl, ServoLaw};
+use grainlab_core::{ComponentControl, ServoLaw};
 
 /// Why a request has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

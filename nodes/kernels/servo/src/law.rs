@@ -1,6 +1,6 @@
 //! The two laws, for one component.
 
-use grains::ServoLaw;
+use grainlab_core::ServoLaw;
 
 /// What one component's law works on.
 #[derive(Clone, Copy, Debug)]

@@ -12,7 +12,7 @@ mod stability;
 pub use error::{ServoError, check_stability};
 pub use stability::critical_gain;
 
-use grains::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 /// Everything a servo needs to answer, and nothing it must remember.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,8 +60,8 @@ pub struct Answer {
 /// saturates, and the rate turns with the first error of the other sign.
 ///
 /// ```
-/// use grains::{ComponentControl, ServoLaw, SymTensor};
-/// let request = servo::Request {
+/// use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+/// let request = grainlab_servo::Request {
 ///     stress: SymTensor::isotropic(40.0e3),
 ///     controls: std::array::from_fn(|i| if i < 3 { ComponentControl::Stress(50.0e3) } else { ComponentControl::Held }),
 ///     rate: [0.0; 6],
@@ -70,7 +70,7 @@ pub struct Answer {
 ///     tangent: [200.0e6, 200.0e6, 200.0e6, 70.0e6, 70.0e6, 70.0e6],
 ///     control_interval: 2.0e-8,
 /// };
-/// let answer = servo::answer(&request).unwrap();
+/// let answer = grainlab_servo::answer(&request).unwrap();
 /// // 10 kPa too little compression, over 200 MPa and 0.1 ms: compress at 0.5 per second.
 /// assert!((answer.rate[0] + 0.5).abs() < 1e-15 && !answer.saturated[0]);
 /// ```

@@ -28,7 +28,7 @@
 //! with the wrong sign. Seen at 0.9 of the limit with a damping of 0.05, a friction of 10 and 50 steps an interval;
 //! never with the damping of 0.3 that the scenes use.
 
-use grains::ComponentControl;
+use grainlab_core::ComponentControl;
 
 /// Stress that each servoed component gains when all servoed strains of its kind grow by one, Pa; 0 where not servoed.
 ///
@@ -57,13 +57,13 @@ pub(crate) fn loop_stiffness(tangent: &[f64; 6], controls: &[ComponentControl; 6
 /// times for 100 steps and a lone component, since the grains then have time to give way.
 ///
 /// The limit scales as 1/h: it follows the time step, and a gain tuned at one pressure or control period is wrong at
-/// another. [`grains::ServoLaw::Normalised`] takes it as a share of this gain instead.
+/// another. [`grainlab_core::ServoLaw::Normalised`] takes it as a share of this gain instead.
 ///
 /// ```
-/// use grains::ComponentControl;
+/// use grainlab_core::ComponentControl;
 /// let tangent = [400.0e6, 400.0e6, 400.0e6, 200.0e6, 200.0e6, 200.0e6];
 /// let controls = [ComponentControl::Stress(50.0e3); 6];
-/// let gain = servo::critical_gain(&tangent, &controls, 1.0e-6, 0.0);
+/// let gain = grainlab_servo::critical_gain(&tangent, &controls, 1.0e-6, 0.0);
 /// assert!((gain - 4.0 / (1.0e-6 * 400.0e6)).abs() < 1e-15);
 /// ```
 pub fn critical_gain(

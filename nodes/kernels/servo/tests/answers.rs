@@ -1,8 +1,8 @@
 //! One request, one answer.
 
-use grains::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_servo::{Request, ServoError, answer, critical_gain};
 use proptest::prelude::*;
-use servo::{Request, ServoError, answer, critical_gain};
 
 const SCALED: ServoLaw = ServoLaw::Scaled { response_time: 1.0e-4 };
 const EQ_1: ServoLaw = ServoLaw::Integral { gain: 1.0e-6, leak: 0.0 };

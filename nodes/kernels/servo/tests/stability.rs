@@ -1,7 +1,7 @@
 //! The laws closed around one elastic component without inertia: dσ = −K rate dt.
 
-use grains::{ComponentControl, ServoLaw, SymTensor};
-use servo::{Request, answer};
+use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_servo::{Request, answer};
 
 const K: f64 = 200.0e6;
 const TARGET: f64 = 50.0e3;
@@ -92,7 +92,7 @@ fn eq_1_on_a_spring_is_stable_up_to_the_critical_gain_and_no_further() {
             if i == 2 { ComponentControl::Stress(TARGET) } else { ComponentControl::Held }
         });
         let tangent = [0.0, 0.0, K, 0.0, 0.0, 0.0];
-        let critical = servo::critical_gain(&tangent, &controls, DT, leak);
+        let critical = grainlab_servo::critical_gain(&tangent, &controls, DT, leak);
         let largest = |gain: f64| {
             let e = errors(ServoLaw::Integral { gain, leak }, K, DT, 400);
             e.iter().fold(0.0f64, |m, e| m.max(e.abs()))

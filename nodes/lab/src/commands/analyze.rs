@@ -13,12 +13,12 @@ use super::packings::{files, printer::Printer};
 use crate::failure::Failure;
 use crate::output::{Format, print};
 use crate::tape::Tape;
+use grainlab_core::Vec3;
 use grainlab_msgs::topics;
-use grains::Vec3;
+use grainlab_node_kit::Exit;
+use grainlab_recordings::import::yade;
 use measure::Analysis;
-use node_kit::Exit;
 use outlet::Outlet;
-use recordings::import::yade;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -63,7 +63,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', num_args = 1, default_value = "0,0,1")]
     axis: Vec<f64>,
     /// Relative residual at which the stiffness solve stops
-    #[arg(long, value_name = "REL", default_value_t = micro::Settings::default().tolerance)]
+    #[arg(long, value_name = "REL", default_value_t = grainlab_micromechanics::Settings::default().tolerance)]
     tolerance: f64,
     /// How the stiffness is found
     #[arg(long, value_enum, default_value_t)]
@@ -75,7 +75,7 @@ pub(crate) struct Args {
     #[arg(long)]
     smooth: bool,
     /// Strain of the probe, forward and backward; far below overlap/diameter
-    #[arg(long, value_name = "STRAIN", default_value_t = micro::Probe::default().amplitude)]
+    #[arg(long, value_name = "STRAIN", default_value_t = grainlab_micromechanics::Probe::default().amplitude)]
     amplitude: f64,
     /// Probe with each of these strains, too, and find over which the response is linear
     #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
-fn settings(args: &Args) -> Result<micro::Settings, Failure> {
+fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     let axis = <[f64; 3]>::try_from(args.axis.as_slice()).ok().map(Vec3::from);
     let axis = axis.filter(|v| v.norm() > 0.0 && v.norm().is_finite());
     let axis = axis.ok_or_else(|| Failure::usage("--axis takes three numbers that are not all zero"))?;
@@ -140,19 +140,28 @@ fn settings(args: &Args) -> Result<micro::Settings, Failure> {
     })?;
     let prestress = args.method == Method::Prestressed;
     let tangential = !(args.smooth || prestress);
-    let probe = (args.method == Method::Probe).then(|| micro::Probe { amplitude, ..explicit(tangential) });
+    let probe = (args.method == Method::Probe)
+        .then(|| grainlab_micromechanics::Probe { amplitude, ..explicit(tangential) });
     let solver = match args.solver {
-        Solver::Iterative => micro::Solver::Iterative,
-        Solver::Direct => micro::Solver::Direct,
+        Solver::Iterative => grainlab_micromechanics::Solver::Iterative,
+        Solver::Direct => grainlab_micromechanics::Solver::Direct,
     };
-    let settings = micro::Settings::default();
-    Ok(micro::Settings { axis, tolerance: args.tolerance, solver, tangential, prestress, probe, ..settings })
+    let settings = grainlab_micromechanics::Settings::default();
+    Ok(grainlab_micromechanics::Settings {
+        axis,
+        tolerance: args.tolerance,
+        solver,
+        tangential,
+        prestress,
+        probe,
+        ..settings
+    })
 }
 
 /// A probe in which contacts stick, or slide freely.
-fn explicit(tangential: bool) -> micro::Probe {
-    let probe = micro::Probe::default();
-    micro::Probe { friction: if tangential { probe.friction } else { 0.0 }, ..probe }
+fn explicit(tangential: bool) -> grainlab_micromechanics::Probe {
+    let probe = grainlab_micromechanics::Probe::default();
+    grainlab_micromechanics::Probe { friction: if tangential { probe.friction } else { 0.0 }, ..probe }
 }
 
 fn scan(args: &Args) -> Result<Vec<f64>, Failure> {

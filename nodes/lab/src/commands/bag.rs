@@ -8,7 +8,7 @@ mod recover;
 
 use crate::failure::Failure;
 use clap::Subcommand;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 
 /// What to do with a recording.
 #[derive(Debug, Subcommand)]

@@ -14,7 +14,7 @@ mod stiffness;
 
 use crate::failure::Failure;
 use clap::Subcommand;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 
 /// What to measure.
 #[derive(Debug, Subcommand)]

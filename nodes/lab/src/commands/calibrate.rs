@@ -8,8 +8,8 @@ mod report;
 
 use crate::failure::Failure;
 use crate::output::{print, say};
-use emt::learn;
-use node_kit::Exit;
+use grainlab_emt::learn;
+use grainlab_node_kit::Exit;
 use packings::Naming;
 use std::path::PathBuf;
 

@@ -13,10 +13,10 @@ use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
 use grainlab_msgs::topics;
-use node_kit::{Exit, Network, RunId};
-use recordings::Recording;
-use recordings::input;
-use recordings::runs::{RUNS, create_run_directory};
+use grainlab_node_kit::{Exit, Network, RunId};
+use grainlab_recordings::Recording;
+use grainlab_recordings::input;
+use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -13,8 +13,8 @@ pub(crate) mod sink;
 
 use crate::failure::Failure;
 use bar::Bar;
-use node_kit::Exit;
-use recordings::import::Imported;
+use grainlab_node_kit::Exit;
+use grainlab_recordings::import::Imported;
 
 /// What is done with one packing.
 pub(crate) trait Measure: Sync {

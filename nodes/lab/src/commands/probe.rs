@@ -13,8 +13,8 @@ use crate::output::Format;
 use crate::tape::Tape;
 use flags::Flags;
 use grainlab_msgs::topics;
+use grainlab_node_kit::Exit;
 use measure::Probe;
-use node_kit::Exit;
 use outlet::Outlet;
 use std::path::PathBuf;
 

@@ -6,14 +6,14 @@ use crate::output::print;
 use crate::recorder::{self, Recorder};
 use crate::results::last_packing;
 use crate::scenes;
-use acoustic_probe::AcousticProbe;
-use dem_simulator::DemSimulator;
-use emt_inversion::EmtInversion;
-use fabric_analyzer::FabricAnalyzer;
-use node_kit::run::NodeSpec;
-use node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
-use recordings::input;
-use servo_controller::ServoController;
+use grainlab_acoustic_probe::AcousticProbe;
+use grainlab_dem_simulator::DemSimulator;
+use grainlab_emt_inversion::EmtInversion;
+use grainlab_fabric_analyzer::FabricAnalyzer;
+use grainlab_node_kit::run::NodeSpec;
+use grainlab_node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
+use grainlab_recordings::input;
+use grainlab_servo_controller::ServoController;
 use std::path::Path;
 
 /// Every node: its name, what it does, its parameters.
@@ -33,20 +33,28 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
             "recording to go on from: the run continues from its last packing, to the same bytes; empty: from the beginning",
         ),
     ];
-    simulator.extend(dem_simulator::parameters());
+    simulator.extend(grainlab_dem_simulator::parameters());
     vec![
         node("dem_simulator", "owns the run: publishes stress and packings, obeys strain rates", simulator),
-        node("servo_controller", "answers every stress with a strain rate", servo_controller::parameters()),
-        node("fabric_analyzer", "turns packings into fabric and moduli", fabric_analyzer::parameters()),
+        node(
+            "servo_controller",
+            "answers every stress with a strain rate",
+            grainlab_servo_controller::parameters(),
+        ),
+        node(
+            "fabric_analyzer",
+            "turns packings into fabric and moduli",
+            grainlab_fabric_analyzer::parameters(),
+        ),
         node(
             "acoustic_probe",
             "sends waves through packings: turns them into wave speeds",
-            acoustic_probe::parameters(),
+            grainlab_acoustic_probe::parameters(),
         ),
         node(
             "emt_inversion",
             "turns moduli and wave speeds into microstructure",
-            emt_inversion::parameters(),
+            grainlab_emt_inversion::parameters(),
         ),
         node("recorder", "records every topic to MCAP", recorder::parameters()),
     ]
@@ -70,7 +78,7 @@ fn help() -> String {
         text += &format!("\n  {}: {}\n", node.name, node.summary);
         node.parameters.iter().for_each(|p| text += &format!("    {p}\n"));
     }
-    text + "\nExamples:\n  grainlab run dem_simulator --ros-args -p scene:=s2 -p seed:=3 -r __ns:=/left\n  \
+    text + "\nExamples:\n  grainlab run dem_simulator --ros-args -p grainlab_scene:=s2 -p seed:=3 -r __ns:=/left\n  \
             grainlab run fabric_analyzer --ros-args -p tolerance:=1e-10 --log-level debug"
 }
 
@@ -105,19 +113,19 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             }
             "servo_controller" => Box::new(ServoController::new(bus, parameters.into())?),
             "fabric_analyzer" => {
-                let settings = fabric_analyzer::Settings::try_from(parameters);
+                let settings = grainlab_fabric_analyzer::Settings::try_from(parameters);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(FabricAnalyzer::new(bus, settings)?)
             }
             "acoustic_probe" => {
-                let settings = acoustic_probe::Settings::try_from(parameters);
+                let settings = grainlab_acoustic_probe::Settings::try_from(parameters);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(AcousticProbe::new(bus, settings)?)
             }
             _ => {
                 let read =
                     |path: &str| input::text(Path::new(path), input::SETTINGS).map_err(|e| e.to_string());
-                let settings = emt_inversion::Settings::new(parameters, read);
+                let settings = grainlab_emt_inversion::Settings::new(parameters, read);
                 let settings = settings.map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
                 Box::new(EmtInversion::new(bus, settings)?)
             }
@@ -130,7 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 pub(crate) fn record(
     spec: &NodeSpec,
     ros: &RosArgs,
-    settings: impl FnOnce(&node_kit::Parameters) -> Result<recorder::Settings, Failure>,
+    settings: impl FnOnce(&grainlab_node_kit::Parameters) -> Result<recorder::Settings, Failure>,
 ) -> Result<Exit, Failure> {
     let result = recorder::Result::default();
     let exit = run_node(spec, ros, |bus, parameters| {

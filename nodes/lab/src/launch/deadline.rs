@@ -3,7 +3,7 @@
 use super::debts::{INSTRUMENT, Standing};
 use super::patience::Patience;
 use super::supervisor::{INVERSION, PROBE};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::time::Duration;
 
 /// How long the last packing may take to be measured, what was measured to be inverted, and moduli to follow a structure.

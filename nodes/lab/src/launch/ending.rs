@@ -3,7 +3,7 @@
 use super::child::{Child, Ended};
 use super::supervisor::{RECORDER, Supervisor};
 use super::watch::{Event, Watch};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::time::{sleep_until, timeout};

@@ -12,7 +12,7 @@ use super::watch::{Event, Watch};
 use crate::failure::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

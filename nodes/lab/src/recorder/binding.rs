@@ -4,8 +4,8 @@
 //! say which of its samples they are about (see `SampleInfo::about`).
 
 use grainlab_msgs::{Topic, topics};
-use node_kit::admission::Participant;
-use node_kit::{SampleInfo, WriterId};
+use grainlab_node_kit::admission::Participant;
+use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Participants that are counted one by one.
@@ -116,7 +116,7 @@ impl Binding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use node_kit::SampleId;
+    use grainlab_node_kit::SampleId;
 
     fn info(who: u8, about: Option<u8>) -> SampleInfo {
         let about = about.map(|writer| SampleId { writer: WriterId([writer; 16]), sequence: 1 });

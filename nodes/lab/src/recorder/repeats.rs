@@ -5,7 +5,7 @@
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, from_cdr, topics};
-use recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::{ReadError, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 

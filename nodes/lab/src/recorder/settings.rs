@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::scenes::{self, SceneText};
 use grainlab_msgs::{TOPICS, Topic};
-use node_kit::{ParameterSpec, Parameters};
-use recordings::runs::{RUNS, create_run_directory};
+use grainlab_node_kit::{ParameterSpec, Parameters};
+use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! What wave speeds say of one packing, with the stable keys of `acoustic`.
 
-use emt::{Conditions, Measured, Modulus, christoffel};
+use grainlab_core::{MeasuredWave, Packing, Vec3};
+use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use grains::{MeasuredWave, Packing, Vec3};
 use serde::Serialize;
 
 pub(crate) use super::acoustic_text::{heading, text};
@@ -156,7 +156,7 @@ impl AcousticView {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::{TransverseIsotropy, WaveMethod, WaveSpeed};
+    use grainlab_core::{TransverseIsotropy, WaveMethod, WaveSpeed};
 
     pub(crate) const MEDIUM: TransverseIsotropy = TransverseIsotropy {
         c11: 360e6,
@@ -170,7 +170,7 @@ mod tests {
 
     /// A gas of one grain: nothing but its density is asked for.
     pub(crate) fn packing() -> Packing {
-        use grains::{Cell, Mat3, Material};
+        use grainlab_core::{Cell, Mat3, Material};
         Packing {
             step: 12,
             time: 0.0,

@@ -2,7 +2,7 @@
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{from_cdr, topics};
-use recordings::{ReadError, Recording, Selection};
+use grainlab_recordings::{ReadError, Recording, Selection};
 
 /// What is missing of a finished run, a line for each topic.
 pub(crate) fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {

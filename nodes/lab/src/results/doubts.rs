@@ -1,8 +1,8 @@
 //! What makes a measured state doubtful, said beside it.
 
 use super::state::State;
-use grains::Packing;
-use recordings::import::contacts;
+use grainlab_core::Packing;
+use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
 
 /// Unbalanced force ratio from which the stiffness of the network is not that of a packing at rest. Packings that have
@@ -58,7 +58,7 @@ fn missing(packing: &Packing, state: &State) -> Option<String> {
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material).ok()?;
     let listed: BTreeSet<_> = packing.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
     // Of a contact with an own image, either of the two names may be listed.
-    let has = |c: &grains::Contact| {
+    let has = |c: &grainlab_core::Contact| {
         listed.contains(&(c.i, c.j, c.image))
             || (c.i == c.j && listed.contains(&(c.i, c.j, c.image.map(|k| k.saturating_neg()))))
     };
@@ -76,7 +76,7 @@ fn missing(packing: &Packing, state: &State) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::{Cell, Contact, Mat3, Material, Vec3};
+    use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 
     /// A simple cubic lattice of one grain, at rest.
     fn lattice() -> Packing {
@@ -107,7 +107,8 @@ mod tests {
     fn said(change: impl FnOnce(&mut Packing)) -> String {
         let mut packing = lattice();
         change(&mut packing);
-        let a = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        let a = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
+            .unwrap();
         let state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
         doubts(&packing, &state).join("; ")
     }
@@ -129,7 +130,8 @@ mod tests {
     #[test]
     fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_said() {
         let packing = lattice();
-        let a = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        let a = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
+            .unwrap();
         let mut state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
         assert_eq!(state.unbalanced, Some(0.0));
         state.theta_bound_pa = state.theta_pa.map(|t| 1.1 * t);

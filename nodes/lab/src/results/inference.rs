@@ -1,6 +1,6 @@
 //! What the models infer, with the stable keys of `results[]`.
 
-use emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use serde::Serialize;
 
@@ -67,7 +67,7 @@ impl<T> Quantities<T> {
 
 impl<T: Copy> Quantities<T> {
     /// In the order of [`Quantity::ALL`].
-    pub(super) fn all(&self) -> [T; emt::QUANTITIES] {
+    pub(super) fn all(&self) -> [T; grainlab_emt::QUANTITIES] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }
@@ -169,8 +169,8 @@ impl Inference {
             degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
             condition_number: estimate.condition_number(),
             status: match estimate.status {
-                emt::Status::Ok => "ok",
-                emt::Status::Extrapolated => "extrapolated",
+                grainlab_emt::Status::Ok => "ok",
+                grainlab_emt::Status::Extrapolated => "extrapolated",
             },
             gamma_over_delta: estimate.gamma.map(|g| g.value),
             gamma_over_delta_source: estimate.gamma.map(|g| g.source.name().to_owned()),
@@ -182,10 +182,10 @@ impl Inference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use emt::{Calibration, Gamma, Measured, Observation};
+    use grainlab_core::Material;
+    use grainlab_emt::{Calibration, Gamma, Measured, Observation};
     use grainlab_msgs::boundary::MicrostructureReading;
     use grainlab_msgs::msg::Moduli;
-    use grains::Material;
 
     #[test]
     fn a_result_read_back_from_a_message_is_the_one_that_the_kernel_gave() {
@@ -200,8 +200,11 @@ mod tests {
             grain_density: Material::GLASS.density,
             ..Moduli::default()
         };
-        let sent =
-            emt_inversion::microstructure_message(&message, &emt_inversion::Settings::default()).unwrap();
+        let sent = grainlab_emt_inversion::microstructure_message(
+            &message,
+            &grainlab_emt_inversion::Settings::default(),
+        )
+        .unwrap();
         let reading = MicrostructureReading::try_from(&sent).unwrap();
         let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
         let read = Inference::of_reading("moduli", &reading.estimates[at]);
@@ -209,7 +212,7 @@ mod tests {
         observation.conditions.solid_fraction = Some(Measured::exact(0.636));
         observation.conditions.material = Some(Material::GLASS);
         let observation = observation.with_relative_error(0.01);
-        let outcome = emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
+        let outcome = grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER);
         let direct = Inference::of("ratio", "paper", &outcome);
         assert!(direct.sigma.k.is_some() && direct.interval.level.is_some(), "{direct:?}");
         assert_eq!(read, Inference { source: Some("moduli".to_owned()), ..direct });

@@ -95,7 +95,7 @@ pub(crate) fn table(results: &[Inference]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use emt::{Calibration, Gamma, Observation};
+    use grainlab_emt::{Calibration, Gamma, Observation};
 
     fn s1(modulus_error: f64) -> Inference {
         let observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::given(-0.0623))
@@ -103,7 +103,7 @@ mod tests {
         Inference::of(
             "ratio",
             "paper",
-            &emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER),
+            &grainlab_emt::model("ratio").unwrap().infer(&observation, &Calibration::PAPER),
         )
     }
 

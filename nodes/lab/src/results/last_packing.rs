@@ -1,9 +1,9 @@
 //! The last packing of a recording: what a run goes on from.
 
 use crate::failure::Failure;
+use grainlab_core::Packing;
 use grainlab_msgs::{from_cdr, msg, topics};
-use grains::Packing;
-use recordings::{Recording, Selection};
+use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
 /// Packings that a recording holds, also while it is being written; 0 if it cannot be read.

@@ -1,8 +1,8 @@
 //! How an explicit probe went, for the results of `grainlab analyze`.
 
 use crate::output::Table;
-use micro::ProbeResult;
-use micro::scan::Scan;
+use grainlab_micromechanics::ProbeResult;
+use grainlab_micromechanics::scan::Scan;
 use serde::Serialize;
 
 /// One probe: all six columns.
@@ -25,7 +25,9 @@ pub(crate) struct ProbeView {
 
 impl ProbeView {
     pub(crate) fn new(amplitude: f64, probe: &ProbeResult) -> Self {
-        let sum = |part: fn(&micro::column::Column) -> u32| probe.columns.iter().map(part).sum::<u32>();
+        let sum = |part: fn(&grainlab_micromechanics::column::Column) -> u32| {
+            probe.columns.iter().map(part).sum::<u32>()
+        };
         Self {
             amplitude,
             asymmetry: probe.asymmetry,
@@ -60,7 +62,7 @@ pub(crate) struct ScannedView {
 
 impl ScanView {
     /// With the stiffness of the frozen network, where there is one.
-    pub(crate) fn new(scan: &Scan, network: Option<&grains::Stiffness>) -> Self {
+    pub(crate) fn new(scan: &Scan, network: Option<&grainlab_core::Stiffness>) -> Self {
         let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
             amplitude: *amplitude,
             probe: found.as_ref().ok().map(|p| ProbeView::new(*amplitude, p)),

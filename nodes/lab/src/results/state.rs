@@ -5,8 +5,8 @@ use super::structure::StructureView;
 use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
 use super::symmetry::SymmetryView;
 use crate::output::{Table, exact};
+use grainlab_core::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor, Vec3};
 use grainlab_msgs::boundary::ModuliMethod;
-use grains::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor, Vec3};
 use serde::Serialize;
 
 /// What was measured on one packing. Undefined values are null, and `warnings` says why.
@@ -93,13 +93,14 @@ pub(crate) fn three_moduli(c: &Stiffness, axis: &Vec3) -> [f64; 3] {
 /// without contacts.
 pub(crate) fn eps_stiffness(fabric: &Fabric) -> Option<f64> {
     let weighted = &fabric.stiffness_fabric;
-    (fabric.contacts > 0).then(|| micro::fabric::eps(weighted, &fabric.structure.reference_axis))
+    (fabric.contacts > 0)
+        .then(|| grainlab_micromechanics::fabric::eps(weighted, &fabric.structure.reference_axis))
 }
 
 impl State {
     /// Puts together what was measured.
     pub(crate) fn new(source: String, packing: &Packing, fabric: &Fabric, moduli: Option<&Moduli>) -> Self {
-        let stress = grains::stress::stress(packing).tensor;
+        let stress = grainlab_core::stress::stress(packing).tensor;
         let axis = fabric.structure.reference_axis;
         let three = moduli.map(|m| three_moduli(&m.stiffness, &axis));
         let projected = moduli.map(|m| m.stiffness.transverse_isotropy_about(&axis));
@@ -120,7 +121,10 @@ impl State {
             eps_stiffness: eps_stiffness(fabric),
             axis: fabric.axis.into(),
             reference_axis: axis.into(),
-            unbalanced: micro::balance::unbalanced(packing, &micro::rattlers::participating(packing)),
+            unbalanced: grainlab_micromechanics::balance::unbalanced(
+                packing,
+                &grainlab_micromechanics::rattlers::participating(packing),
+            ),
             g: Ratios::from(&fabric.anisotropy),
             method: moduli.map(|m| ModuliMethod::from(m.method).word()),
             stiffness_pa: moduli.map(|m| rows(&m.stiffness)),
@@ -238,7 +242,7 @@ pub(crate) fn table(states: &[State]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::{Cell, Contact, Mat3, Material};
+    use grainlab_core::{Cell, Contact, Mat3, Material};
 
     /// One grain touching its own images along the three edges, or none.
     fn lattice(touching: bool) -> Packing {
@@ -266,7 +270,8 @@ mod tests {
     }
 
     fn state(packing: &Packing) -> State {
-        let a = micro::analyse(packing, &micro::Settings::default()).unwrap();
+        let a =
+            grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default()).unwrap();
         State::new("lattice".into(), packing, &a.fabric, a.moduli.as_ref().ok())
     }
 

@@ -1,8 +1,8 @@
 //! Who was on the bus beside the run, and who wrote which result.
 
-use node_kit::Stranger;
-use node_kit::identity::member_of;
-use recordings::{Guid, METADATA_RECORD, Recording};
+use grainlab_node_kit::Stranger;
+use grainlab_node_kit::identity::member_of;
+use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! The structure of a packing, with the stable keys of `grainlab analyze`. Tensors are in Voigt order, tensor components.
 
-use grains::structure::{
+use grainlab_core::structure::{
     FORCE_BIN_WIDTH, Forces, Mobilisation, NetworkPart, ORIENTATION_BINS, StressForceFabric,
 };
-use grains::{Fabric, SymTensor, Vec3};
+use grainlab_core::{Fabric, SymTensor, Vec3};
 use serde::Serialize;
 
 /// q/p below which a share of the deviatoric stress is a share of nothing.
@@ -167,8 +167,8 @@ impl From<&Fabric> for StructureView {
     }
 }
 
-impl From<&grains::structure::Orientation> for OrientationView {
-    fn from(o: &grains::structure::Orientation) -> Self {
+impl From<&grainlab_core::structure::Orientation> for OrientationView {
+    fn from(o: &grainlab_core::structure::Orientation) -> Self {
         let known = |means: &[f64; ORIENTATION_BINS]| {
             std::array::from_fn(|b| (o.contacts[b] > 0).then_some(means[b]))
         };

@@ -2,8 +2,8 @@
 
 use super::read_back::{InvertedState, ReadBack};
 use super::strangers::StrangerView;
-use node_kit::{Exit, Report};
-use recordings::TopicTally;
+use grainlab_node_kit::{Exit, Report};
+use grainlab_recordings::TopicTally;
 use serde::Serialize;
 
 /// A run.

@@ -1,6 +1,6 @@
 //! The symmetry of a stiffness, with the stable keys of `grainlab analyze`.
 
-use grains::{Stiffness, SymmetryClass, Vec3, symmetry};
+use grainlab_core::{Stiffness, SymmetryClass, Vec3, symmetry};
 use serde::Serialize;
 
 /// The class, the axis of the nearest transversely isotropic stiffness, and how near each class comes.
@@ -43,7 +43,7 @@ pub(crate) struct AboutAxis {
 impl SymmetryView {
     /// Of a packing of `grains` whose fabric has the axis `fabric_axis`, if that is determined; `None` for a stiffness of zero.
     pub(crate) fn new(c: &Stiffness, grains: u32, fabric_axis: Option<&Vec3>) -> Option<Self> {
-        let s = symmetry(c, micro::symmetry::sampling_tolerance(grains))?;
+        let s = symmetry(c, grainlab_micromechanics::symmetry::sampling_tolerance(grains))?;
         let with_axis = s.class != SymmetryClass::Isotropic && s.class != SymmetryClass::Cubic;
         let angle = |a: &Vec3| s.axis.cross(a).norm().atan2(s.axis.dot(a).abs());
         Some(Self {

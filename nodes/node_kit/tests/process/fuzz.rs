@@ -5,8 +5,8 @@
 use super::flood::{flood, learn, overheard, ports};
 use super::rtps::{Datagram, ports_in_use, send, sniffer};
 use super::{PATIENCE, Role, claim};
-use node_kit::pingpong::bus_ping;
-use node_kit::{DdsBus, Names, Network};
+use grainlab_node_kit::pingpong::bus_ping;
+use grainlab_node_kit::{DdsBus, Names, Network};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 

@@ -3,7 +3,9 @@
 use super::{PATIENCE, Role, claim};
 use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::topics;
-use node_kit::{Bus, BusError, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId};
+use grainlab_node_kit::{
+    Bus, BusError, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId,
+};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
@@ -11,7 +13,7 @@ use std::time::{Duration, Instant};
 struct Observer {
     bus: DdsBus,
     watch: PeerWatch,
-    subscriptions: Vec<node_kit::SubscriptionId>,
+    subscriptions: Vec<grainlab_node_kit::SubscriptionId>,
     /// Highest sequence number and count of samples of each writer.
     seen: BTreeMap<WriterId, (i64, u64)>,
     last: Option<Report>,

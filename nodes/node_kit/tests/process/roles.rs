@@ -2,8 +2,8 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use node_kit::pingpong::{bus_listen, bus_pong};
-use node_kit::{
+use grainlab_node_kit::pingpong::{bus_listen, bus_pong};
+use grainlab_node_kit::{
     Bus, DdsBus, Demand, Exit, Health, Names, Network, Next, Node, NodeError, NodeSpec, Publisher, RosArgs,
     Scope, Subscription, SubscriptionId, run_node,
 };

@@ -1,8 +1,8 @@
 //! A process that was stopped and continued (Ctrl-Z and fg, a debugger, job control) goes on where it was.
 
 use super::{Role, claim};
-use node_kit::pingpong::bus_ping;
-use node_kit::{DdsBus, Names};
+use grainlab_node_kit::pingpong::bus_ping;
+use grainlab_node_kit::{DdsBus, Names};
 use std::time::Duration;
 
 const EXCHANGES: u64 = 20;

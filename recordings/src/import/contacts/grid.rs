@@ -1,6 +1,6 @@
 //! Grains sorted into boxes, so that only those nearby are compared.
 
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 
 use super::SearchError;
 

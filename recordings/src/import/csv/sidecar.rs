@@ -1,6 +1,6 @@
 //! The JSON beside a CSV.
 
-use grains::Mat3;
+use grainlab_core::Mat3;
 use serde::Deserialize;
 
 use crate::import::assemble::State;

@@ -7,9 +7,9 @@
 
 use crate::dispersion::row::{Amplitude, Row};
 use crate::participation::Carrier;
-use grains::Vec3;
-use micro::Link;
-use micro::preconditioner::{Block, generalised_inverse};
+use grainlab_core::Vec3;
+use grainlab_micromechanics::Link;
+use grainlab_micromechanics::preconditioner::{Block, generalised_inverse};
 
 /// One contact.
 #[derive(Clone, Copy, Debug)]

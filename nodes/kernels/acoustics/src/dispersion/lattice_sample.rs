@@ -1,6 +1,6 @@
 //! A small packing without any symmetry.
 
-use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 /// 3 × 3 × 3 grains, nearly simple cubic, with unequal overlaps.
 pub(crate) fn lattice() -> Packing {

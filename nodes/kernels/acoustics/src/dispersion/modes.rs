@@ -8,7 +8,7 @@ use crate::dispersion::bloch::Bloch;
 use crate::dispersion::row::{Amplitude, Block, Row, WAVES};
 use crate::dispersion::solve::Solve;
 use crate::dispersion::subspace::{Complex3, Subspace};
-use grains::{Mat3, Vec3};
+use grainlab_core::{Mat3, Vec3};
 
 /// Rounds of inverse iteration at most.
 const ROUNDS: u32 = 30;

@@ -5,8 +5,8 @@ use crate::flight::burst::Burst;
 use crate::flight::slab::Slab;
 use crate::instrument::Heard;
 use crate::repeat::Repeated;
-use dem::{Engine, Setting};
-use grains::{Contact, Mat3, Vec3};
+use grainlab_core::{Contact, Mat3, Vec3};
+use grainlab_dem::{Engine, Setting};
 use std::collections::BTreeSet;
 
 /// Looks at the contacts on the way.

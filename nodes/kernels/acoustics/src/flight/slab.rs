@@ -1,7 +1,7 @@
 //! Slabs of grains across a path: sources and receivers.
 
 use crate::repeat::Repeated;
-use grains::Vec3;
+use grainlab_core::Vec3;
 use std::f64::consts::FRAC_PI_2;
 
 /// Grains of a slab with smooth weights: cos² across it, so that it does not jump when a grain is moved in or out.

@@ -14,7 +14,7 @@ use crate::noise::seed_at;
 use crate::repeat::repeated;
 use crate::sample::Sample;
 use crate::trace::{Channel, Trace};
-use grains::Vec3;
+use grainlab_core::Vec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

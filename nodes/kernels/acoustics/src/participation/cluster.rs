@@ -1,7 +1,7 @@
 //! Grains that are held by few contacts, and their softest motions.
 
-use grains::{Mat3, Vec3};
-use micro::{Link, Network};
+use grainlab_core::{Mat3, Vec3};
+use grainlab_micromechanics::{Link, Network};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Contacts that are few: one more lets a grain move only by straining its contacts.

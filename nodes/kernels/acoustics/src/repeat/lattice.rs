@@ -1,6 +1,6 @@
 //! Cells of a lattice along its planes.
 
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// Integer coordinates in the edge vectors of a cell.
@@ -125,7 +125,7 @@ fn inverse(m: &Matrix3<i64>) -> Matrix3<i64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grains::Mat3;
+    use grainlab_core::Mat3;
 
     #[test]
     fn a_basis_spans_the_planes_and_crosses_one_of_them() {

@@ -11,7 +11,7 @@ use crate::standing::Settings;
 use crate::standing::ringing::{Ringing, Strike};
 use crate::standing::tone::Tone;
 use crate::trace::{Channel, Trace};
-use grains::{Vec3, WaveMethod};
+use grainlab_core::{Vec3, WaveMethod};
 use std::f64::consts::TAU;
 
 /// Fewest copies a period: nearer to two the packing scatters a wave back.

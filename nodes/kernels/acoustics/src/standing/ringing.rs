@@ -6,8 +6,8 @@
 
 use crate::error::AcousticsError;
 use crate::repeat::Repeated;
-use dem::{Engine, Setting};
-use grains::{Contact, Mat3, Vec3};
+use grainlab_core::{Contact, Mat3, Vec3};
+use grainlab_dem::{Engine, Setting};
 use std::collections::BTreeSet;
 
 /// What is struck.

@@ -1,8 +1,8 @@
 //! A straight chain of grains, whose waves are known in closed form.
 
-use acoustics::standing::{Settings, curves};
-use acoustics::{AcousticsError, Instrument, Ray, measure::Warning};
-use grains::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_acoustics::standing::{Settings, curves};
+use grainlab_acoustics::{AcousticsError, Instrument, Ray, measure::Warning};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 4e-4 * DIAMETER;

@@ -3,10 +3,10 @@
 //! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of inertia I.
 //! Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
 
-use acoustics::dispersion::{Settings, curves};
-use acoustics::{Curve, Ray};
-use grains::packing::Contact;
-use grains::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_acoustics::dispersion::{Settings, curves};
+use grainlab_acoustics::{Curve, Ray};
+use grainlab_core::packing::Contact;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
 const RADIUS: f64 = 1e-4;
 const OVERLAP: f64 = 1e-8;
@@ -119,7 +119,8 @@ fn all_of_a_crystal_moves_however_few_grains_its_cell_has() {
     let branch = 2.0 * RADIUS - OVERLAP;
     for n in [1, 2, 3] {
         let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n), branch);
-        let measured = acoustics::measure(&packing, &acoustics::Settings::default()).unwrap();
+        let measured =
+            grainlab_acoustics::measure(&packing, &grainlab_acoustics::Settings::default()).unwrap();
         assert!((measured.density / measured.participation.bulk - 1.0).abs() < 1e-12, "{measured:?}");
     }
 }
@@ -162,5 +163,5 @@ fn a_chain_has_its_dispersion_relation_and_resists_nothing_across() {
     assert_closed_form(&along, "P", |q| 4.0 * k.normal / k.mass * (0.5 * q * branch).sin().powi(2));
     let ray = Ray { direction: Vec3::z(), indices: None, motions: vec![Vec3::x()] };
     let error = curves(&packing, &[ray], &Settings::default()).unwrap_err();
-    assert!(matches!(error, acoustics::AcousticsError::NoNetwork(_)), "{error}");
+    assert!(matches!(error, grainlab_acoustics::AcousticsError::NoNetwork(_)), "{error}");
 }

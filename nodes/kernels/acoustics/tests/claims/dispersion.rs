@@ -1,14 +1,18 @@
 //! Dispersion of real packings goes to the static stiffness at long waves.
 
 use crate::sample;
-use acoustics::dispersion::{self, curves};
-use acoustics::{AcousticsError, Curve, Measurement, Modes, Ray, Settings, Survey, Way, measure};
-use emt::{Conditions, Measured, Modulus, christoffel};
-use grains::{Packing, Stiffness, Vec3};
+use grainlab_acoustics::dispersion::{self, curves};
+use grainlab_acoustics::{AcousticsError, Curve, Measurement, Modes, Ray, Settings, Survey, Way, measure};
+use grainlab_core::{Packing, Stiffness, Vec3};
+use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use std::sync::LazyLock;
 
 fn stiffness(packing: &Packing) -> Stiffness {
-    micro::analyse(packing, &micro::Settings::default()).unwrap().moduli.unwrap().stiffness
+    grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default())
+        .unwrap()
+        .moduli
+        .unwrap()
+        .stiffness
 }
 
 /// The whole survey of both packings, by default settings, beside their static stiffness.

@@ -1,14 +1,14 @@
 //! Claims about time of flight through the particle engine.
 
 use crate::sample;
-use acoustics::error::AcousticsError;
-use acoustics::flight::arrival::Arrivals;
-use acoustics::flight::{Pick, Settings, curve, curves};
-use acoustics::measure::Warning;
-use acoustics::{Instrument, Ray};
-use grains::packing::Contact;
-use grains::{Cell, Mat3, Material, Packing, Vec3};
-use micro::NoNetwork;
+use grainlab_acoustics::error::AcousticsError;
+use grainlab_acoustics::flight::arrival::Arrivals;
+use grainlab_acoustics::flight::{Pick, Settings, curve, curves};
+use grainlab_acoustics::measure::Warning;
+use grainlab_acoustics::{Instrument, Ray};
+use grainlab_core::packing::Contact;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_micromechanics::NoNetwork;
 use std::f64::consts::{PI, TAU};
 
 const DIAMETER: f64 = 2e-4;
@@ -268,9 +268,10 @@ fn a_wave_that_noise_hides_is_no_speed() {
 
 /// pᵀΓp/ρ of the frozen network, m²/s².
 fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
-    let analysis = micro::analyse(packing, &micro::Settings::default()).unwrap();
+    let analysis =
+        grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default()).unwrap();
     let stiffness = analysis.moduli.unwrap().stiffness;
-    let present = micro::rattlers::participating(packing);
+    let present = grainlab_micromechanics::rattlers::participating(packing);
     let masses = packing.radii.iter().zip(&present).filter(|(_, p)| **p);
     let mass: f64 = masses.map(|(r, _)| packing.material.sphere_mass(*r)).sum();
     let motion = ray.motions[0];

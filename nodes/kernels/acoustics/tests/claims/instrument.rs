@@ -1,8 +1,8 @@
 //! Claims about the instrument.
 
-use acoustics::Instrument;
-use acoustics::error::AcousticsError;
-use acoustics::instrument::{Clock, Heard};
+use grainlab_acoustics::Instrument;
+use grainlab_acoustics::error::AcousticsError;
+use grainlab_acoustics::instrument::{Clock, Heard};
 use std::f64::consts::TAU;
 
 const FREQUENCY: f64 = 1e5;

@@ -1,12 +1,12 @@
 //! Claims about arrivals, on traces made on paper.
 
-use acoustics::error::AcousticsError;
-use acoustics::flight::arrival::Arrivals;
-use acoustics::flight::{Pick, curve};
-use acoustics::instrument::{Clock, Heard};
-use acoustics::trace::Channel;
-use acoustics::{Instrument, Trace};
-use grains::{Vec3, WaveMethod};
+use grainlab_acoustics::error::AcousticsError;
+use grainlab_acoustics::flight::arrival::Arrivals;
+use grainlab_acoustics::flight::{Pick, curve};
+use grainlab_acoustics::instrument::{Clock, Heard};
+use grainlab_acoustics::trace::Channel;
+use grainlab_acoustics::{Instrument, Trace};
+use grainlab_core::{Vec3, WaveMethod};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 

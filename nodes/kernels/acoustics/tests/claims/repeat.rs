@@ -1,10 +1,10 @@
 //! Packings repeated along a path are the same packings.
 
 use crate::sample;
-use acoustics::{AcousticsError, Ray, repeated};
-use dem::{Engine, Setting, TimeStep};
-use grains::{Cell, Mat3, Packing, Vec3, stress::stress};
-use scene::Tangential;
+use grainlab_acoustics::{AcousticsError, Ray, repeated};
+use grainlab_core::{Cell, Mat3, Packing, Vec3, stress::stress};
+use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_scene::Tangential;
 
 const PLANES: [[i32; 3]; 6] = [[0, 0, 1], [1, 0, 0], [1, 0, 1], [1, -1, 0], [1, 1, 1], [2, -1, 3]];
 
@@ -57,8 +57,8 @@ fn a_repeated_packing_is_a_packing_with_the_same_contacts() {
 #[test]
 fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
     let packing = sample::anisotropic();
-    let settings = micro::analyse::Settings { tolerance: 1e-8, ..Default::default() };
-    let one = micro::analyse(&packing, &settings).unwrap().moduli.unwrap();
+    let settings = grainlab_micromechanics::analyse::Settings { tolerance: 1e-8, ..Default::default() };
+    let one = grainlab_micromechanics::analyse(&packing, &settings).unwrap().moduli.unwrap();
     let expected = stress(&packing).tensor.matrix();
     for indices in PLANES {
         let many = repeated(&packing, indices, 2).unwrap().packing;
@@ -66,7 +66,7 @@ fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
         assert!((found - expected).amax() < 1e-12 * expected.amax(), "{indices:?}");
         // One solve is enough for the slow part.
         if indices == [1, 0, 1] || indices == [1, 1, 1] {
-            let moduli = micro::analyse(&many, &settings).unwrap().moduli.unwrap();
+            let moduli = grainlab_micromechanics::analyse(&many, &settings).unwrap().moduli.unwrap();
             let difference = (moduli.stiffness.0 - one.stiffness.0).amax();
             assert!(difference < 1e-8 * one.stiffness.0.amax(), "{indices:?} {difference:e}");
             let affine = (moduli.affine.0 - one.affine.0).amax();

@@ -1,8 +1,8 @@
 //! Packings to send waves through.
 
 use flate2::read::GzDecoder;
-use grains::packing::Contact;
-use grains::{Cell, Mat3, Material, Packing, Vec3};
+use grainlab_core::packing::Contact;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use serde_json::Value;
 use std::io::Read;
 

@@ -1,9 +1,9 @@
 //! Standing waves tell the stiffness.
 
 use crate::sample;
-use acoustics::standing::{Settings, curves};
-use acoustics::{AcousticsError, Curve, Instrument, Ray, measure::Warning};
-use grains::{Packing, Vec3, WaveMethod};
+use grainlab_acoustics::standing::{Settings, curves};
+use grainlab_acoustics::{AcousticsError, Curve, Instrument, Ray, measure::Warning};
+use grainlab_core::{Packing, Vec3, WaveMethod};
 use std::f64::consts::TAU;
 
 /// `motions` (0: P, 1 and 2: S) along the normal of lattice planes.
@@ -19,7 +19,7 @@ const QUICK: Settings = Settings {
     periods: 2.0,
     amplitude: 1e-9,
     friction: None,
-    tangential: scene::Tangential::Incremental,
+    tangential: grainlab_scene::Tangential::Incremental,
 };
 
 fn quick(packing: &Packing, motion: usize, settings: &Settings) -> (Curve, Vec<Warning>) {
@@ -30,9 +30,9 @@ fn quick(packing: &Packing, motion: usize, settings: &Settings) -> (Curve, Vec<W
 
 /// ρ v² over that of the frozen network, less 1, and its standard deviation.
 fn compared(packing: &Packing, curves: &[Curve]) -> Vec<[f64; 2]> {
-    let settings = micro::analyse::Settings::default();
-    let stiffness = micro::analyse(packing, &settings).unwrap().moduli.unwrap().stiffness;
-    let carried = packing.radii.iter().zip(micro::rattlers::participating(packing));
+    let settings = grainlab_micromechanics::analyse::Settings::default();
+    let stiffness = grainlab_micromechanics::analyse(packing, &settings).unwrap().moduli.unwrap().stiffness;
+    let carried = packing.radii.iter().zip(grainlab_micromechanics::rattlers::participating(packing));
     let mass: f64 = carried.filter(|(_, p)| *p).map(|(r, _)| packing.material.sphere_mass(*r)).sum();
     let density = mass / packing.cell.volume();
     let one = |c: &Curve| {

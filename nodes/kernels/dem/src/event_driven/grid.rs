@@ -1,6 +1,6 @@
 //! Which grains are near: a periodic grid of cells, each with a row of the grains anchored in it.
 
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 /// No grain.
 pub(super) const NONE: u32 = u32::MAX;

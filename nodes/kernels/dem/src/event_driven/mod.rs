@@ -16,7 +16,7 @@ mod queue;
 mod slice;
 
 use crate::error::DemError;
-use grains::{Cell, Mat3, Vec3};
+use grainlab_core::{Cell, Mat3, Vec3};
 use slice::Slice;
 
 /// Events per grain, over the number of collisions that [`mean_free_time`] leads to expect (to which ten are added, for

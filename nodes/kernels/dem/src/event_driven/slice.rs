@@ -10,7 +10,7 @@ use super::grid::{Grid, Image, NONE, Near, cell_vectors};
 use super::pair::{Approach, Grain, collide, dot};
 use super::queue::Queue;
 use crate::error::DemError;
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 /// A grain's next collision.
 #[derive(Clone, Copy, Debug)]

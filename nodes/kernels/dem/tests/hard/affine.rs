@@ -3,10 +3,10 @@
 //! measures a shear modulus 43 % too low), and affine estimates must not be taken for moduli.
 
 use crate::support::*;
-use dem::Engine;
-use grains::Packing;
-use micro::{Settings, analyse};
-use scene::Tangential;
+use grainlab_core::Packing;
+use grainlab_dem::Engine;
+use grainlab_micromechanics::{Settings, analyse};
+use grainlab_scene::Tangential;
 
 /// A packing at rest, to the last digits.
 fn sample() -> Packing {
@@ -68,6 +68,6 @@ fn the_tangent_of_a_snapshot_is_the_affine_stiffness() {
         );
     }
     // One definition of stress, whoever asks.
-    let difference = seen.stress.tensor.matrix() - grains::stress::stress(&p).tensor.matrix();
+    let difference = seen.stress.tensor.matrix() - grainlab_core::stress::stress(&p).tensor.matrix();
     assert!(difference.norm() < 1e-9 * seen.stress.tensor.mean());
 }

@@ -1,9 +1,9 @@
 //! Run 2N is run N, save, load, run N, bit for bit; and looking changes nothing.
 
 use crate::support::*;
-use dem::{Engine, Features, Setting, TimeStep};
-use grains::{Packing, ServoLaw};
-use scene::Tangential;
+use grainlab_core::{Packing, ServoLaw};
+use grainlab_dem::{Engine, Features, Setting, TimeStep};
+use grainlab_scene::Tangential;
 
 const PERIOD: usize = 7;
 const RATE: [f64; 6] = [-30.0, -20.0, -25.0, 4.0, -6.0, 5.0];
@@ -89,7 +89,7 @@ fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
             let p = packing(&e);
             contacts += p.contacts.len();
             if s.features() == Features::Coulomb {
-                let slides = |c: &&grains::Contact| c.tangential_force.norm() > 0.299 * c.normal_force;
+                let slides = |c: &&grainlab_core::Contact| c.tangential_force.norm() > 0.299 * c.normal_force;
                 sliding += p.contacts.iter().filter(slides).count();
             }
         }
@@ -115,7 +115,7 @@ fn looking_at_every_step_changes_nothing() {
 /// Expected: in a gas the thermostat and the time step that goes with it are part of the state, too.
 #[test]
 fn an_agitated_gas_saved_and_loaded_goes_on_bit_for_bit() {
-    let gas = dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.5, 9).unwrap();
+    let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.5, 9).unwrap();
     let mut s = setting(0.0, 0.0);
     (s.time_step, s.speed_cap, s.damping) = (TimeStep::Safety(0.8), Some(0.5), 0.002);
     let begin = || {

@@ -1,9 +1,9 @@
 //! A drag on motion holds stress that the packing does not bear.
 
 use crate::support::*;
-use dem::{Engine, Simulation, TimeStep};
-use grains::ServoLaw;
-use scene::Scene;
+use grainlab_core::ServoLaw;
+use grainlab_dem::{Engine, Simulation, TimeStep};
+use grainlab_scene::Scene;
 
 const DRAG: f64 = 4e5;
 
@@ -22,7 +22,7 @@ fn left(e: &mut Engine) -> f64 {
 #[test]
 fn a_pressure_propped_up_by_drag_is_gone_at_rest_and_shows_in_the_unbalanced_force() {
     for seed in 1..4 {
-        let gas = dem::gas::place(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
+        let gas = grainlab_dem::gas::place(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
         let mut s = setting(0.1, 0.0);
         (s.time_step, s.drag, s.spin_drag) = (TimeStep::Safety(0.8), DRAG, DRAG);
         let mut e = engine(gas.cell, GLASS, &[RADIUS; 60], &gas.positions, s);
@@ -77,6 +77,6 @@ until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
     e.prepare().unwrap();
     let kept = left(&mut e);
     assert!((kept / target - 1.0).abs() < 0.06, "on target to 5 %: {kept}");
-    let met = grains::stress::stress(&p).tensor.mean();
+    let met = grainlab_core::stress::stress(&p).tensor.mean();
     assert!((kept / met - 1.0).abs() < 0.01, "{met} to {kept}");
 }

@@ -1,9 +1,9 @@
 //! One grain, two grains, and a box barely above two diameters.
 
 use crate::support::*;
-use dem::TimeStep;
-use grains::{Cell, Vec3};
-use scene::Tangential;
+use grainlab_core::{Cell, Vec3};
+use grainlab_dem::TimeStep;
+use grainlab_scene::Tangential;
 
 /// Expected: alone, it keeps its velocity relative to a resting cell; in a straining one v = exp(−L t) v0.
 #[test]
@@ -60,7 +60,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
             let mut e = engine(Cell::cube(30.0 * RADIUS).unwrap(), GLASS, &[RADIUS; 2], &x, s);
             e.set_velocities(&[Vec3::x(), Vec3::zeros()]);
             e.set_spins(&[Vec3::new(900.0, -2000.0, 500.0), Vec3::new(0.0, 3000.0, 800.0)]);
-            let angular = |e: &dem::Engine| {
+            let angular = |e: &grainlab_dem::Engine| {
                 let p = packing(e);
                 let (m, r) = (GLASS.sphere_mass(RADIUS), RADIUS);
                 let each =
@@ -97,7 +97,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
 /// several images at once.
 #[test]
 fn a_box_barely_above_two_diameters_is_a_box_like_any_other() {
-    let gas = dem::gas::place(5, 2.0 * RADIUS, 0.33, 5.0, 2).unwrap();
+    let gas = grainlab_dem::gas::place(5, 2.0 * RADIUS, 0.33, 5.0, 2).unwrap();
     let edge = 4.02 * RADIUS;
     let scale = edge / gas.cell.matrix()[(0, 0)];
     assert!(scale > 1.0, "placed a little closer than they are used");

@@ -1,9 +1,9 @@
 //! The tangential history inside the engine: what changes it and what must not, and the work of closed cycles.
 
 use crate::support::*;
-use dem::Engine;
-use grains::{Cell, SymTensor, Vec3};
-use scene::Tangential;
+use grainlab_core::{Cell, SymTensor, Vec3};
+use grainlab_dem::Engine;
+use grainlab_scene::Tangential;
 
 const OVERLAP: f64 = 4e-8;
 const DT: f64 = 1e-9;
@@ -72,7 +72,7 @@ fn work(e: &mut Engine, legs: &[(f64, f64)]) -> f64 {
         let pieces = 50;
         for _ in 0..pieces {
             let p = packing(e);
-            let (before, volume) = (grains::stress::stress(&p).tensor.matrix(), p.cell.volume());
+            let (before, volume) = (grainlab_core::stress::stress(&p).tensor.matrix(), p.cell.volume());
             let a =
                 approach(e, depth / f64::from(pieces)).matrix() + shear(slip / f64::from(pieces)).matrix();
             let step = SymTensor::symmetric_part(&a);

@@ -1,9 +1,9 @@
 //! Millions of steps of a packing at rest.
 
 use crate::support::*;
-use dem::Engine;
-use grains::Packing;
-use scene::Tangential;
+use grainlab_core::Packing;
+use grainlab_dem::Engine;
+use grainlab_scene::Tangential;
 
 /// A packing at the bottom: what is left of its preparation would else be taken for drift.
 fn at_rest(tangential: Tangential) -> Engine {
@@ -19,7 +19,7 @@ fn at_rest(tangential: Tangential) -> Engine {
 /// Largest displacement over a diameter, and the changes of stress and energy over what they are.
 fn drift(start: &Packing, end: &Packing) -> (f64, f64, f64) {
     let moved = |i: usize| (end.positions[i] - start.positions[i]).norm() / (2.0 * RADIUS);
-    let stress = |p: &Packing| grains::stress::stress(p).tensor.matrix();
+    let stress = |p: &Packing| grainlab_core::stress::stress(p).tensor.matrix();
     (
         (0..start.grains()).map(moved).fold(0.0, f64::max),
         (stress(end) - stress(start)).norm() / stress(start).norm(),

@@ -1,9 +1,9 @@
 //! A packing near isostaticity.
 
 use crate::support::*;
-use dem::{Engine, TimeStep};
-use grains::ServoLaw;
-use micro::rattlers::participating;
+use grainlab_core::ServoLaw;
+use grainlab_dem::{Engine, TimeStep};
+use grainlab_micromechanics::rattlers::participating;
 
 /// Expected: under p → 0 a frictionless packing keeps just the contacts that balance needs, 3 (N − 1) forces and 6
 /// stresses, and the servo still settles it.

@@ -1,12 +1,12 @@
 //! Parameters at their ends: no pressure, no friction, friction without limit, a strain step beyond the overlap.
 
 use crate::support::*;
-use dem::Engine;
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
+use grainlab_dem::Engine;
 
 fn cubic(overlap: f64) -> Engine {
     let mut s = setting(0.3, 0.0);
-    s.time_step = dem::TimeStep::Safety(0.8);
+    s.time_step = grainlab_dem::TimeStep::Safety(0.8);
     engine(
         Cell::cube(2.0 * RADIUS - overlap).unwrap(),
         GLASS,
@@ -71,8 +71,8 @@ fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() 
     e.prepare().unwrap();
     let mut bare = p.clone();
     bare.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
-    let expected = grains::stress::stress(&bare).tensor.matrix();
-    assert!((expected - grains::stress::stress(&p).tensor.matrix()).norm() > 1e-3 * expected.norm());
+    let expected = grainlab_core::stress::stress(&bare).tensor.matrix();
+    assert!((expected - grainlab_core::stress::stress(&p).tensor.matrix()).norm() > 1e-3 * expected.norm());
     let seen = e.snapshot().unwrap().stress.tensor.matrix();
     assert!((seen - expected).norm() < 1e-12 * expected.norm(), "{seen} {expected}");
     assert!(packing(&e).contacts.iter().all(|c| c.tangential_force == Vec3::zeros()));

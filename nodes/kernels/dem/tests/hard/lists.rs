@@ -1,8 +1,8 @@
 //! Neighbour lists never miss a contact: after every step against brute force over all images.
 
 use crate::support::*;
-use dem::{Engine, Setting};
-use grains::{Cell, Mat3, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_dem::{Engine, Setting};
 
 /// Grains at random that pass through each other, so that lists alone decide: `count` of radii from `smallest` to 1.
 fn ghosts(cell: Cell, count: usize, smallest: f64, seed: u64, s: Setting) -> Engine {

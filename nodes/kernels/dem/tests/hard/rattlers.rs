@@ -1,9 +1,9 @@
 //! A grain held by two contacts, which nothing in the contact law keeps from turning.
 
 use crate::support::*;
-use dem::{Engine, Setting, Simulation};
-use grains::{Mat3, Packing, Vec3};
-use scene::Scene;
+use grainlab_core::{Mat3, Packing, Vec3};
+use grainlab_dem::{Engine, Setting, Simulation};
+use grainlab_scene::Scene;
 
 /// A zigzag column of two grains and their images, each held by two contacts that lean by `lean` (rad) to either side:
 /// at rest under friction, its force along the line through the contact points.
@@ -89,7 +89,7 @@ fn a_turning_column_of_unequal_grains_carries_its_tangential_forces_along() {
             assert!(t.dot(&c.normal).abs() < 1e-6 * t.norm());
         }
         let stress = e.snapshot().unwrap().stress.tensor.matrix();
-        let was = grains::stress::stress(&before).tensor.matrix();
+        let was = grainlab_core::stress::stress(&before).tensor.matrix();
         let expected: Mat3 = turned.matrix() * was * turned.matrix().transpose();
         assert!((stress - expected).norm() < 1e-2 * was.norm(), "{stress} {expected}");
     }

@@ -1,8 +1,8 @@
 //! What no law covers is refused with grains and numbers named, never answered with numbers that are not.
 
 use crate::support::*;
-use dem::{DemError, Engine};
-use grains::{Cell, Vec3};
+use grainlab_core::{Cell, Vec3};
+use grainlab_dem::{DemError, Engine};
 
 /// Expected: two grains at one point overlap by a diameter, without a normal: the look at the stress refuses them by
 /// their ids, and so does the first step.

@@ -1,9 +1,9 @@
 //! The scenes of the laboratory under the servo they come with, their stress targets moved to the ends of its range.
 
-use dem::Simulation;
-use grains::ComponentControl;
-use grains::stress::stress;
-use scene::{Condition, Measure, PhaseKind, Scene};
+use grainlab_core::ComponentControl;
+use grainlab_core::stress::stress;
+use grainlab_dem::Simulation;
+use grainlab_scene::{Condition, Measure, PhaseKind, Scene};
 
 const GRAINS: u32 = 200;
 
@@ -61,7 +61,7 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
     let mut run = Simulation::new(scene).unwrap();
     let mut errors = Vec::new();
     while let Some(r) = run.request() {
-        let advanced = run.answer(&servo::answer(&r.question()).unwrap().rate);
+        let advanced = run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate);
         let advanced = advanced.unwrap_or_else(|e| panic!("{label}{e}"));
         let targets = r.controls.map(|c| match c {
             ComponentControl::Stress(target) => target,

@@ -3,8 +3,8 @@
 //! H and H U with an integer U of determinant 1 span the same lattice, so that every answer must be the same.
 
 use crate::support::*;
-use dem::{DemError, Engine};
-use grains::{Cell, Mat3, Packing, Vec3};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_dem::{DemError, Engine};
 
 /// The packing with its cell vectors recombined by `u`, without history.
 fn recombined(p: &Packing, u: &Mat3) -> Engine {

@@ -1,10 +1,10 @@
 //! Grains of size ratio 1 to 5.
 
 use crate::support::*;
-use dem::Engine;
-use grains::material::effective_radius;
-use grains::{Cell, Vec3};
-use scene::Tangential;
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Cell, Vec3};
+use grainlab_dem::Engine;
+use grainlab_scene::Tangential;
 
 const SMALL: f64 = 0.2 * RADIUS;
 

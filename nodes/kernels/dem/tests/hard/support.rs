@@ -1,9 +1,9 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
-use dem::{Engine, Setting, TimeStep};
-use grains::material::effective_radius;
-use grains::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
-use scene::Tangential;
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
+use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_scene::Tangential;
 
 pub(crate) const RADIUS: f64 = 1e-4;
 pub(crate) const GLASS: Material = Material::GLASS;
@@ -144,9 +144,9 @@ pub(crate) fn servo(
     law: ServoLaw,
     rate_limit: f64,
     period: u32,
-) -> servo::Answer {
+) -> grainlab_servo::Answer {
     let seen = e.snapshot().unwrap();
-    servo::answer(&servo::Request {
+    grainlab_servo::answer(&grainlab_servo::Request {
         stress: seen.stress.tensor,
         controls,
         rate: e.rate(),

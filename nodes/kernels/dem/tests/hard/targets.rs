@@ -1,8 +1,8 @@
 //! Stress targets that reverse, vanish, or cannot be reached, through the servo as a laboratory runs it.
 
 use crate::support::*;
-use dem::{DemError, Engine, TimeStep};
-use grains::{ComponentControl, ServoLaw};
+use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_dem::{DemError, Engine, TimeStep};
 
 const PERIOD: u32 = 10;
 const LIMIT: f64 = 30.0;
@@ -19,8 +19,13 @@ fn start() -> Engine {
 }
 
 /// Runs `periods` control periods; returns the last answer.
-fn servoed(e: &mut Engine, controls: [ComponentControl; 6], law: ServoLaw, periods: usize) -> servo::Answer {
-    let mut last = servo::Answer { rate: [0.0; 6], saturated: [false; 6] };
+fn servoed(
+    e: &mut Engine,
+    controls: [ComponentControl; 6],
+    law: ServoLaw,
+    periods: usize,
+) -> grainlab_servo::Answer {
+    let mut last = grainlab_servo::Answer { rate: [0.0; 6], saturated: [false; 6] };
     for _ in 0..periods {
         last = servo(e, controls, law, LIMIT, PERIOD);
         e.set_rate(&last.rate).unwrap();
@@ -64,7 +69,7 @@ fn a_tension_cannot_be_reached_and_winds_nothing_up() {
         let open = servoed(&mut e, isotropic(-PRESSURE), law, 3000);
         assert_eq!((&open.rate[..3], &open.saturated[..3]), (&[LIMIT; 3][..], &[true; 3][..]));
         assert!(stress(&e)[..3].iter().all(|s| (0.0..1e-3 * PRESSURE).contains(s)), "{:?}", stress(&e));
-        let opened = e.packing(grains::Mat3::identity()).cell.volume();
+        let opened = e.packing(grainlab_core::Mat3::identity()).cell.volume();
         let back = servoed(&mut e, isotropic(PRESSURE), law, 6);
         assert_eq!(&back.rate[..3], &[-LIMIT; 3], "{law:?}");
         assert!(packing(&e).cell.volume() < opened);

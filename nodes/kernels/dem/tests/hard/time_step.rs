@@ -4,10 +4,10 @@
 //! damping feeds a limit cycle) stays finite; never a number that is not one.
 
 use crate::support::*;
-use dem::{DemError, Engine, TimeStep};
-use grains::material::effective_radius;
-use grains::{Cell, Contact, Mat3, Packing, Vec3};
-use scene::Tangential;
+use grainlab_core::material::effective_radius;
+use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
+use grainlab_dem::{DemError, Engine, TimeStep};
+use grainlab_scene::Tangential;
 
 /// Two unequal grains in a row, touching directly and across the boundary, and their critical time step, s.
 ///
@@ -277,7 +277,7 @@ fn damping_of_any_strength_stops_a_packing_at_the_bound() {
 fn a_scene_that_asks_for_105_hundredths_of_the_bound_is_refused() {
     let text = "name = 'x'\n[grains]\ncount = 2\ndiameter = 2e-4\n[numerics]\ntime_step_safety = 1.05\n\
                 [[phase]]\nkind = 'gas'\nrate = -1.0\nuntil = { elapsed = 1e-6 }\n";
-    let faults = scene::Scene::parse(text).unwrap_err().faults;
+    let faults = grainlab_scene::Scene::parse(text).unwrap_err().faults;
     assert!(faults.len() == 1 && faults[0].place.contains("time_step_safety"), "{faults:?}");
-    assert!(scene::Scene::parse(&text.replace("1.05", "0.95")).is_ok());
+    assert!(grainlab_scene::Scene::parse(&text.replace("1.05", "0.95")).is_ok());
 }

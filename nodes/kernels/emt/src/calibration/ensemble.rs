@@ -3,7 +3,7 @@
 use crate::conditions::{Conditions, Gamma, GammaSource, Measured};
 use crate::moduli::Moduli;
 use crate::observation::Observation;
-use grains::{Anisotropy, Material};
+use grainlab_core::{Anisotropy, Material};
 
 /// One packing: its moduli, and its structure as counted.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use super::network::{Amplitude, ISOSTATIC, Law, Network, SCATTERED};
 use super::{Calibration, CalibrationError, Discrepancy};
 use crate::conditions::GammaSource;
 use crate::structure::Quantity;
-use grains::Material;
+use grainlab_core::Material;
 use serde::{Deserialize, Serialize};
 
 /// The whole file. Units: Pa; α and ρ in MPa^⅔.

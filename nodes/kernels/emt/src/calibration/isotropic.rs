@@ -84,7 +84,7 @@ impl Isotropic {
     ///
     /// ```
     /// // 170 (5.63 − 3.66) 0.05^⅓ MPa
-    /// let g = emt::Isotropic::PAPER.shear_modulus(5.63, 50.0e3);
+    /// let g = grainlab_emt::Isotropic::PAPER.shear_modulus(5.63, 50.0e3);
     /// assert!((g / 1.0e6 - 123.378).abs() < 1e-3);
     /// ```
     pub fn shear_modulus(&self, k_hat: f64, pressure: f64) -> f64 {

@@ -10,7 +10,7 @@ use crate::error::EmtError;
 use crate::invariants::Invariants;
 use crate::model::{Model, models};
 use crate::structure::Quantity;
-use grains::Material;
+use grainlab_core::Material;
 use std::collections::BTreeSet;
 
 /// Pressure that the laws refer to, Pa.

@@ -16,7 +16,7 @@ pub use network::{Amplitude, Law, Network};
 use crate::conditions::GammaSource;
 use crate::model::Model;
 use crate::structure::{Quantity, StructureCovariance};
-use grains::Material;
+use grainlab_core::Material;
 use std::borrow::Cow;
 use std::sync::LazyLock;
 

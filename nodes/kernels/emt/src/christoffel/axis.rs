@@ -12,7 +12,7 @@ use super::profile::{Speeds, Stand};
 use super::ray::{Ray, paired};
 use super::search::seen;
 use super::{ChristoffelError, errors, weights};
-use grains::{Mat3, Vec3, WaveSpeed};
+use grainlab_core::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 
 /// Axes of the grid: 10° apart; and directions to measure next, 5° apart.
@@ -65,8 +65,8 @@ impl AxisFound {
 /// If no speed has an uncertainty, equal relative ones are taken and found from their scatter.
 ///
 /// ```
-/// use emt::christoffel;
-/// use grains::{TransverseIsotropy, Vec3, WaveSpeed};
+/// use grainlab_emt::christoffel;
+/// use grainlab_core::{TransverseIsotropy, Vec3, WaveSpeed};
 /// let medium = TransverseIsotropy { c11: 270.0, c12: 60.0, c13: 65.0, c33: 320.0, g13: 110.0, g12: 105.0, residual: 0.0 };
 /// let about_x = nalgebra::Rotation3::from_axis_angle(&Vec3::y_axis(), std::f64::consts::FRAC_PI_2);
 /// let stiffness = medium.stiffness().rotated(about_x.matrix());

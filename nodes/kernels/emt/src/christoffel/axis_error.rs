@@ -1,7 +1,7 @@
 //! Why no axis is found.
 
 use super::ChristoffelError;
-use grains::Vec3;
+use grainlab_core::Vec3;
 
 /// Why wave speeds tell no axis of symmetry.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! Directions that differ from their opposites in name only.
 
-use grains::{Vec3, WaveSpeed};
+use grainlab_core::{Vec3, WaveSpeed};
 
 /// The direction furthest from all measured, of `count`.
 pub(super) fn widest_gap(speeds: &[WaveSpeed], count: usize) -> Vec3 {

@@ -1,6 +1,6 @@
 //! From wave speeds to moduli.
 //!
-//! A plane wave along the unit vector n obeys Γ p = ρ v² p with Γ_ik = C_ijkl n_j n_l (see [`grains::waves`]). In a medium
+//! A plane wave along the unit vector n obeys Γ p = ρ v² p with Γ_ik = C_ijkl n_j n_l (see [`grainlab_core::waves`]). In a medium
 //! that is isotropic about an axis, with θ between n and the axis, one mode moves across the plane of n and axis,
 //! ρ v² = C66 sin²θ + C44 cos²θ, and two in that plane: ρ v² are the eigenvalues of
 //!
@@ -40,7 +40,7 @@ use crate::conditions::{Conditions, Measured};
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use agreement::Agreement;
-use grains::{Vec3, WaveSpeed};
+use grainlab_core::{Vec3, WaveSpeed};
 use ray::Ray;
 
 /// Relative precision of the error that a sample's own scatter adds.
@@ -93,8 +93,8 @@ impl Fitted {
 /// isotropic about the axis turns them, for their speeds are nearly the same.
 ///
 /// ```
-/// use emt::{Conditions, Measured, Modulus, christoffel};
-/// use grains::{Vec3, WaveSpeed};
+/// use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
+/// use grainlab_core::{Vec3, WaveSpeed};
 /// let wave = |direction, polarization, speed| WaveSpeed { direction, polarization, speed, stddev: Some(0.003 * speed) };
 /// let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
 /// let speeds = [wave(z, z, 500.0), wave(x, x, 480.0), wave(z, x, 300.0), wave(x, z, 301.0), wave(x, y, 290.0)];

@@ -3,7 +3,7 @@
 use super::ChristoffelError;
 use super::ray::{Column, Ray};
 use super::search::{Point, Problem};
-use grains::{Mat3, Vec3, WaveSpeed};
+use grainlab_core::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, Vector2};
 
 /// Angle over which slopes by the axis are taken, rad.

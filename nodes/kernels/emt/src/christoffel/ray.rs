@@ -1,7 +1,7 @@
 //! One speed seen from the axis: which way the wave runs, how the grains move, and what a medium says to that.
 
 use super::ChristoffelError;
-use grains::{Vec3, WaveSpeed};
+use grainlab_core::{Vec3, WaveSpeed};
 use nalgebra::SVector;
 
 /// Number of moduli that fix a transversely isotropic medium.

@@ -1,9 +1,9 @@
 //! The axis, from the speeds.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, every_mode, thirteen};
-use emt::christoffel::{self, AxisError, AxisFound, ChristoffelError};
-use emt::{Conditions, Measured, Modulus};
-use grains::{TransverseIsotropy, Vec3, WaveSpeed};
+use grainlab_core::{TransverseIsotropy, Vec3, WaveSpeed};
+use grainlab_emt::christoffel::{self, AxisError, AxisFound, ChristoffelError};
+use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector, SymmetricEigen};
 
 const ISOTROPIC: TransverseIsotropy = TransverseIsotropy {

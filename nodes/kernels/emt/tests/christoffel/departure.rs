@@ -1,9 +1,9 @@
 //! Packings, which are not quite isotropic about any axis.
 
 use super::laboratory::{DENSITY, Numbers, every_mode, thirteen};
-use emt::christoffel::{self, Fitted};
-use emt::{Conditions, Measured, Modulus};
-use grains::{Stiffness, Vec3, WaveSpeed};
+use grainlab_core::{Stiffness, Vec3, WaveSpeed};
+use grainlab_emt::christoffel::{self, Fitted};
+use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::Matrix6;
 
 /// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures it.
@@ -41,7 +41,7 @@ fn sharp(packing: &Stiffness, directions: &[Vec3]) -> Vec<WaveSpeed> {
 }
 
 fn deviations(fitted: &Fitted, packing: &Stiffness) -> Vec<(Modulus, f64)> {
-    let truth = emt::Moduli::of_medium(&packing.transverse_isotropy());
+    let truth = grainlab_emt::Moduli::of_medium(&packing.transverse_isotropy());
     let covariance = fitted.observation.covariance.unwrap();
     let sigma = |m: Modulus| covariance[(m as usize, m as usize)].sqrt();
     let known = fitted.observation.moduli.known();
@@ -93,8 +93,9 @@ fn a_departure_is_an_error_of_every_speed_but_not_of_the_density() {
 fn what_a_packing_is_inferred_to_be_holds_although_it_departs() {
     let packing = packing(&ANISOTROPIC);
     let fitted = fit(&sharp(&packing, &thirteen()));
-    let relaxed = emt::model("relaxed").unwrap();
-    let estimate = relaxed.infer(&fitted.observation, emt::Calibration::default_for(relaxed)).unwrap();
+    let relaxed = grainlab_emt::model("relaxed").unwrap();
+    let estimate =
+        relaxed.infer(&fitted.observation, grainlab_emt::Calibration::default_for(relaxed)).unwrap();
     // Counted: z 5.266, eps 0.0464.
     let covariance = estimate.covariance().unwrap();
     let (z, eps) = (estimate.structure.z.unwrap(), estimate.structure.eps.unwrap());

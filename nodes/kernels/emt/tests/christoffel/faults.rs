@@ -1,9 +1,9 @@
 //! What is refused.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
-use emt::christoffel::{self, ChristoffelError, Fitted};
-use emt::{Conditions, Measured};
-use grains::{Vec3, WaveSpeed};
+use grainlab_core::{Vec3, WaveSpeed};
+use grainlab_emt::christoffel::{self, ChristoffelError, Fitted};
+use grainlab_emt::{Conditions, Measured};
 use nalgebra::{Rotation3, Unit};
 
 const WAVES: [Wave; 6] =
@@ -99,7 +99,7 @@ fn along_the_axis_every_shear_motion_is_a_modes() {
     for (angle, tilt) in [(0.0f64, 0.0f64), (0.8, 0.0), (2.5, 0.01), (-1.2, 0.02)] {
         speeds[3].polarization = Vec3::new(angle.cos(), angle.sin(), 0.0);
         speeds[3].direction = Vec3::new(tilt.sin(), 0.0, tilt.cos());
-        let g13 = sample().fit(&speeds).unwrap().observation.moduli.get(emt::Modulus::G13).unwrap();
+        let g13 = sample().fit(&speeds).unwrap().observation.moduli.get(grainlab_emt::Modulus::G13).unwrap();
         assert!((g13 / PACKING.g13 - 1.0).abs() < 1e-3, "{g13}");
     }
 }

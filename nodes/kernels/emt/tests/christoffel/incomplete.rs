@@ -1,9 +1,9 @@
 //! Fewer speeds than moduli.
 
 use super::laboratory::{PACKING, Sample, Wave};
-use emt::Modulus;
-use emt::christoffel::Fitted;
-use grains::WaveSpeed;
+use grainlab_core::WaveSpeed;
+use grainlab_emt::Modulus;
+use grainlab_emt::christoffel::Fitted;
 use nalgebra::Rotation3;
 
 fn sample() -> Sample {
@@ -68,8 +68,8 @@ fn one_quasi_compressional_speed_completes_the_speeds_along_the_axes() {
 #[test]
 fn two_shear_speeds_are_enough_for_eps_and_not_for_k() {
     let fitted = fit(&[Wave::Sv(0.0), Wave::Sh(90.0)]);
-    let model = emt::model("ratio").unwrap();
-    let estimate = model.infer(&fitted.observation, &emt::Calibration::PAPER).unwrap();
+    let model = grainlab_emt::model("ratio").unwrap();
+    let estimate = model.infer(&fitted.observation, &grainlab_emt::Calibration::PAPER).unwrap();
     assert!(estimate.structure.eps.is_some() && estimate.structure.k.is_none());
 }
 

@@ -1,8 +1,8 @@
 //! Waves in media that are known, by a dense eigenvalue solve of the full Christoffel tensor.
 
-use emt::christoffel::{self, ChristoffelError, Fitted};
-use emt::{Conditions, Measured, Modulus};
-use grains::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
+use grainlab_core::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
+use grainlab_emt::christoffel::{self, ChristoffelError, Fitted};
+use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::{Rotation3, Unit};
 
 /// Density of the mass that moves, kg/m³.
@@ -80,7 +80,7 @@ impl Sample {
     }
 
     pub(crate) fn truth(&self, modulus: Modulus) -> f64 {
-        emt::Moduli::of_medium(&self.moduli).get(modulus).expect("a medium has all of them")
+        grainlab_emt::Moduli::of_medium(&self.moduli).get(modulus).expect("a medium has all of them")
     }
 
     pub(crate) fn fit(&self, speeds: &[WaveSpeed]) -> Result<Fitted, ChristoffelError> {

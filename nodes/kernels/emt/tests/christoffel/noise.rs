@@ -1,9 +1,9 @@
 //! Speeds with errors.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
-use emt::christoffel::{self, Fitted};
-use emt::{Conditions, MODULI, Measured, ModuliCovariance, Modulus};
-use grains::WaveSpeed;
+use grainlab_core::WaveSpeed;
+use grainlab_emt::christoffel::{self, Fitted};
+use grainlab_emt::{Conditions, MODULI, Measured, ModuliCovariance, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector};
 
 /// The least that determines everything once more than needed: speeds along the axes, and a pair between them.

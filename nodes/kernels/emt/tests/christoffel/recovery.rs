@@ -1,8 +1,8 @@
 //! Exact speeds give exact moduli.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
-use emt::{Conditions, Measured, Modulus, christoffel};
-use grains::{TransverseIsotropy, WaveSpeed};
+use grainlab_core::{TransverseIsotropy, WaveSpeed};
+use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use nalgebra::{DMatrix, Dyn, Rotation3, SVD};
 
 const WAVES: [Wave; 10] = [
@@ -217,7 +217,7 @@ fn equivalent_directions_average_to_the_projection_on_an_isotropic_plane() {
         for (i, sign) in [(0, 1.0), (1, -1.0), (3, 1.0), (4, -1.0), (5, -1.0)] {
             stiffness.0[(i, i)] *= 1.0 + sign * asymmetry;
         }
-        let projected = emt::Moduli::of_medium(&stiffness.transverse_isotropy());
+        let projected = grainlab_emt::Moduli::of_medium(&stiffness.transverse_isotropy());
         let sample = Sample { moduli: PACKING, stiffness, frame: Rotation3::identity() };
         let waves =
             [Wave::P(0.0), Wave::Sv(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(90.0), Wave::P(45.0)];
@@ -250,11 +250,15 @@ fn a_fit_is_an_observation_that_every_model_takes() {
     let fitted = sample.fit(&speeds).unwrap();
     let checked = fitted.observation.checked().unwrap();
     assert!(checked.moduli.imbalance().unwrap().abs() < 1e-12);
-    let estimate = emt::model("ratio").unwrap().infer(&fitted.observation, &emt::Calibration::PAPER).unwrap();
-    let direct = emt::Observation::of_stiffness(&sample.stiffness, Conditions::at(50e3));
-    let direct = emt::model("ratio").unwrap().infer(&direct, &emt::Calibration::PAPER).unwrap();
+    let estimate = grainlab_emt::model("ratio")
+        .unwrap()
+        .infer(&fitted.observation, &grainlab_emt::Calibration::PAPER)
+        .unwrap();
+    let direct = grainlab_emt::Observation::of_stiffness(&sample.stiffness, Conditions::at(50e3));
+    let direct =
+        grainlab_emt::model("ratio").unwrap().infer(&direct, &grainlab_emt::Calibration::PAPER).unwrap();
     let [found, expected] = [&estimate, &direct].map(|e| e.structure.k.unwrap());
-    assert!((found - expected).abs() < 1e-9 && estimate.stddev(emt::Quantity::K).unwrap() > 0.0);
+    assert!((found - expected).abs() < 1e-9 && estimate.stddev(grainlab_emt::Quantity::K).unwrap() > 0.0);
 }
 
 /// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one number is left

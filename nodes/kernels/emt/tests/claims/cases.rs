@@ -1,7 +1,7 @@
 //! Random structures and states, the same in every run.
 
-use emt::{Calibration, Conditions, Domain, Gamma, Isotropic, Measured, Quantity, Structure};
-use grains::Material;
+use grainlab_core::Material;
+use grainlab_emt::{Calibration, Conditions, Domain, Gamma, Isotropic, Measured, Quantity, Structure};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 

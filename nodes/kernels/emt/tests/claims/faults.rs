@@ -1,11 +1,11 @@
 //! Every error and every warning.
 
 use crate::{PAPER_MODELS, model};
-use emt::{
+use grainlab_core::{Anisotropy, Mat3, Material, Stiffness, TransverseIsotropy};
+use grainlab_emt::{
     Calibration, CalibrationError, Conditions, EmtError, Estimate, Gamma, GammaSource, Isotropic, Measured,
     Moduli, ModuliCovariance, Modulus, Observation, Quantity, Status, Structure, Warning,
 };
-use grains::{Anisotropy, Mat3, Material, Stiffness, TransverseIsotropy};
 
 fn sound() -> Observation {
     let mut o = Observation::paper(121.7e6, 127.4e6, 144.4e6, 50.0e3, Gamma::given(-0.0623));

@@ -3,8 +3,8 @@
 use crate::cases::calibrations;
 use crate::sphere::{contact_density, directions, stiffness};
 use crate::{PAPER_MODELS, model};
-use emt::{Conditions, Gamma, Measured, Moduli, Modulus, Structure};
-use grains::{Material, Stiffness, Vec3};
+use grainlab_core::{Material, Stiffness, Vec3};
+use grainlab_emt::{Conditions, Gamma, Measured, Moduli, Modulus, Structure};
 use std::f64::consts::PI;
 
 /// ε and g with both ends and what is next to them, and where the overlap is all but linear.
@@ -162,7 +162,8 @@ fn g13_over_g12_rises_with_eps_at_every_g_and_nu() {
                 };
                 let ratio = |i: i32| {
                     let eps = -0.5 + 0.015 * f64::from(i);
-                    let structure = Structure::paper(5.0, 5.0, eps.min(1.0)).with(emt::Quantity::Z, 5.0);
+                    let structure =
+                        Structure::paper(5.0, 5.0, eps.min(1.0)).with(grainlab_emt::Quantity::Z, 5.0);
                     let m = model(name).predict(&structure, &conditions, &calibration).unwrap();
                     m.get(Modulus::G13).unwrap() / m.get(Modulus::G12).unwrap()
                 };

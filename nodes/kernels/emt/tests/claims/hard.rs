@@ -2,11 +2,11 @@
 
 use crate::cases::Random;
 use crate::{PAPER_MODELS, model};
-use emt::{
+use grainlab_core::Material;
+use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Gamma, Measured, Modulus, Observation, Quantity, Status,
     Structure, Warning,
 };
-use grains::Material;
 
 /// G12, G13 = `ratio` G12 and Θ of a packing of some k̂ near 5.
 fn with_ratio(ratio: f64) -> Observation {

@@ -1,8 +1,8 @@
 //! The inversion of the paper's models against the paper's table.
 
 use crate::{PAPER_MODELS, model, table3};
-use emt::{Calibration, Conditions, Form, Gamma, Measured, Medium, Observation, Structure, models};
-use grains::Material;
+use grainlab_core::Material;
+use grainlab_emt::{Calibration, Conditions, Form, Gamma, Measured, Medium, Observation, Structure, models};
 
 /// 1e-6 is what is promised; the moduli are kept to 1 mPa, which costs 1e-9 at most.
 #[test]
@@ -159,7 +159,7 @@ fn models_are_listed_in_a_fixed_order_and_found_by_name() {
     let names: Vec<_> = models().iter().map(|m| m.name()).collect();
     assert_eq!(names[..6], PAPER_MODELS);
     for name in names {
-        assert_eq!(emt::model(name).unwrap().name(), name);
+        assert_eq!(grainlab_emt::model(name).unwrap().name(), name);
     }
-    assert!(emt::model("none such").is_none());
+    assert!(grainlab_emt::model("none such").is_none());
 }

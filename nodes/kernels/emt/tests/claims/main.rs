@@ -17,6 +17,6 @@ mod table3;
 const PAPER_MODELS: [&str; 6] = ["emt", "ratio", "ratio-as-printed", "ratio-volume", "full", "sqrt"];
 
 /// The model of this name.
-fn model(name: &str) -> &'static dyn emt::Model {
-    emt::model(name).unwrap_or_else(|| panic!("no model {name}"))
+fn model(name: &str) -> &'static dyn grainlab_emt::Model {
+    grainlab_emt::model(name).unwrap_or_else(|| panic!("no model {name}"))
 }

@@ -2,11 +2,11 @@
 
 use crate::cases::{Random, calibrations};
 use crate::{model, table3};
-use emt::{
+use grainlab_core::Mat3;
+use grainlab_emt::{
     Calibration, Conditions, EmtError, Gamma, GammaSource, INPUTS, Measured, Modulus, Observation,
     QUANTITIES, Quantity, Slopes, models,
 };
-use grains::Mat3;
 use nalgebra::SVector;
 use proptest::prelude::*;
 
@@ -64,7 +64,7 @@ proptest! {
                 gamma: Gamma { value: g, stddev: g_error, source: GammaSource::Given },
                 ..Conditions::at(80.0e3)
             };
-            let truth = emt::Structure::paper(k, k_hat, eps);
+            let truth = grainlab_emt::Structure::paper(k, k_hat, eps);
             let moduli = model(name).predict(&truth, &conditions, &Calibration::PAPER).unwrap();
             let o = Observation::new(moduli, conditions);
             let [g12, g13, theta, ..] = moduli.values().map(|m| m.unwrap_or(0.0));
@@ -100,21 +100,23 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
             let inner = |[low, high]: [f64; 2]| [0.9 * low + 0.1 * high, 0.1 * low + 0.9 * high];
             let mut random = Random::new(7);
             for _ in 0..200 {
-                let structure =
-                    emt::Structure::of_values(domain.structure.map(|r| r.map(|r| random.within(inner(r)))));
+                let structure = grainlab_emt::Structure::of_values(
+                    domain.structure.map(|r| r.map(|r| random.within(inner(r)))),
+                );
                 let conditions = Conditions {
                     gamma: Gamma::given(random.within(inner(domain.gamma))),
                     solid_fraction: Some(Measured::exact(random.within([0.5, 0.7]))),
                     ..Conditions::at(10f64.powf(random.within([2.0, 8.0])))
                 };
-                let predict = |s: &emt::Structure, c: &Conditions| model.predict(s, c, &calibration);
+                let predict = |s: &grainlab_emt::Structure, c: &Conditions| model.predict(s, c, &calibration);
                 let moduli = match predict(&structure, &conditions) {
                     Err(EmtError::NotCalibrated { .. }) => continue,
                     moduli => moduli.unwrap(),
                 };
                 let slopes = model.infer(&Observation::new(moduli, conditions), &calibration).unwrap().slopes;
                 // Relative change of the moduli along one variable, five points, and of what else it is.
-                let along = |moved: &dyn Fn(f64) -> (emt::Structure, Conditions), own: Option<usize>| {
+                let along = |moved: &dyn Fn(f64) -> (grainlab_emt::Structure, Conditions),
+                             own: Option<usize>| {
                     let at = |by: f64| {
                         let (s, c) = moved(by);
                         predict(&s, &c).unwrap().values().map(|m| m.unwrap_or(0.0))
@@ -201,7 +203,7 @@ fn unknown_uncertainty_stays_unknown_and_a_known_one_gives_the_95_percent_interv
     assert!(unknown.covariance().is_none());
     assert!(unknown.stddev(Quantity::K).is_none() && unknown.interval(Quantity::K).is_none());
     let known = model("ratio").infer(&o.with_relative_error(0.01), &Calibration::PAPER).unwrap();
-    assert_eq!(emt::CREDIBLE_LEVEL, 0.95);
+    assert_eq!(grainlab_emt::CREDIBLE_LEVEL, 0.95);
     for quantity in [Quantity::K, Quantity::KHat, Quantity::Eps] {
         let (middle, sigma) = (known.structure.get(quantity).unwrap(), known.stddev(quantity).unwrap());
         let [low, high] = known.interval(quantity).unwrap();

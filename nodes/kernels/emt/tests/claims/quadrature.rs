@@ -1,8 +1,8 @@
 //! The closed forms against brute integration over the sphere.
 
 use crate::sphere::{contact_density, directions, stiffness};
-use emt::{Form, Medium, Moments};
-use grains::{Mat3, Material, Stiffness};
+use grainlab_core::{Mat3, Material, Stiffness};
+use grainlab_emt::{Form, Medium, Moments};
 use std::f64::consts::PI;
 
 fn grid() -> impl Iterator<Item = (f64, f64)> {

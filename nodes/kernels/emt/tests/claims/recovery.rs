@@ -1,11 +1,11 @@
 //! Every model of the list against its own forward map. A new model is tested by being listed.
 
 use crate::cases::{Random, calibrations};
-use emt::{
+use grainlab_core::Material;
+use grainlab_emt::{
     Calibration, Conditions, Domain, EmtError, Gamma, Measured, Model, Observation, Quantity, Structure,
     models,
 };
-use grains::Material;
 use proptest::prelude::*;
 
 const CASES: usize = 100_000;

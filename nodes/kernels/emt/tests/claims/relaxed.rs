@@ -1,12 +1,12 @@
 //! The relaxed network: what any set of moduli tells, and how sure it is.
 
 use crate::cases::Random;
-use emt::relaxed::Relaxed;
-use emt::{
+use grainlab_core::{Material, Stiffness, TransverseIsotropy};
+use grainlab_emt::relaxed::Relaxed;
+use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Quantity,
     Structure, Warning,
 };
-use grains::{Material, Stiffness, TransverseIsotropy};
 use nalgebra::Matrix6;
 
 fn ours() -> &'static Calibration {
@@ -117,7 +117,7 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
 /// The five independent moduli of a sample of this mean, in the order of [`Modulus::ALL`] and without Θ.
 fn scattered(
     mean: &Moduli,
-    network: &emt::calibration::Network,
+    network: &grainlab_emt::calibration::Network,
     z: f64,
     random: &mut Random,
 ) -> [Option<f64>; 6] {
@@ -125,10 +125,10 @@ fn scattered(
     let excess = (z - 4.0) / z;
     let root = covariance.cholesky().unwrap().l() / excess;
     let off = root * nalgebra::Vector5::from_fn(|_, _| random.normal());
-    let at = emt::Invariants::of(mean).unwrap();
+    let at = grainlab_emt::Invariants::of(mean).unwrap();
     let [ln_theta, ln_shear, dilatation, voigt, harmonic]: [f64; 5] =
         std::array::from_fn(|i| at.values()[i] + off[i]);
-    let moved = emt::Invariants { ln_theta, ln_shear, dilatation, voigt, harmonic };
+    let moved = grainlab_emt::Invariants { ln_theta, ln_shear, dilatation, voigt, harmonic };
     let mut values = moved.as_moduli().values();
     values[Modulus::Theta as usize] = None;
     values
@@ -232,7 +232,7 @@ fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
     let there = Relaxed.predict(&structure(5.3, 0.05), &loose, ours()).unwrap();
     let found = Relaxed.infer(&Observation::new(there, loose), ours()).unwrap();
     let told = |w: &Warning| matches!(w, Warning::SolidFractionOutsideFit { .. });
-    assert!(found.warnings.iter().any(told) && found.status == emt::Status::Extrapolated);
+    assert!(found.warnings.iter().any(told) && found.status == grainlab_emt::Status::Extrapolated);
 }
 
 /// Hertz contacts know no length and no pressure but in units of E*.

@@ -2,8 +2,8 @@
 
 use crate::cases::calibrations;
 use crate::{PAPER_MODELS, model, table3};
-use emt::sampling::Settings;
-use emt::{
+use grainlab_emt::sampling::Settings;
+use grainlab_emt::{
     Calibration, Conditions, Domain, EmtError, Gamma, GammaSource, Measured, Model, Moduli, ModuliCovariance,
     Modulus, Observation, QUANTITIES, Quantity, Slopes, Solution, Structure, StructureCovariance, models,
     sample,

@@ -1,6 +1,6 @@
 //! Integration over the sphere and media of springs, apart from the code they test.
 
-use grains::{Mat3, Vec3};
+use grainlab_core::{Mat3, Vec3};
 use nalgebra::Matrix6;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

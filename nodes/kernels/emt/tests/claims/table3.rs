@@ -1,6 +1,6 @@
 //! The sixteen states of the paper's Table III, with the moduli that its k, k̂ and ε imply.
 
-use emt::{Gamma, Observation, Structure};
+use grainlab_emt::{Gamma, Observation, Structure};
 
 /// One state.
 pub(crate) struct Row {

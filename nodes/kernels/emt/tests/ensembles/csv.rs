@@ -1,7 +1,7 @@
 //! Kept measurements, as `grainlab analyze` and the ensemble script wrote them.
 
-use emt::{Gamma, Moduli, Observation, Sample};
-use grains::{Anisotropy, Material};
+use grainlab_core::{Anisotropy, Material};
+use grainlab_emt::{Gamma, Moduli, Observation, Sample};
 use std::path::Path;
 
 /// Header and rows of a file in `tests/golden`.

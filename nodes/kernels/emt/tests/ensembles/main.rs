@@ -2,7 +2,7 @@
 
 mod csv;
 
-use emt::{Calibration, GammaSource, Moduli, Modulus, Observation, Quantity, Sample, learn};
+use grainlab_emt::{Calibration, GammaSource, Moduli, Modulus, Observation, Quantity, Sample, learn};
 
 /// Packings that no calibration has seen: 24 seeds, 4 frictions, 4 pressures.
 fn held_out() -> Vec<Sample> {
@@ -40,7 +40,7 @@ struct Errors {
 }
 
 fn errors(model: &str, gamma: GammaSource, quantity: Quantity, keep: fn(Moduli) -> Moduli) -> Errors {
-    let model = emt::model(model).unwrap();
+    let model = grainlab_emt::model(model).unwrap();
     let samples = held_out();
     let (mut squares, mut covered) = (0.0, 0.0);
     for s in &samples {
@@ -104,7 +104,7 @@ fn directional_coordination_halves_the_paper_s_own_error_on_its_own_rows() {
     let rows = csv::paper_rows();
     assert_eq!(rows.len(), 16);
     let mean_error = |model: &str| {
-        let model = emt::model(model).unwrap();
+        let model = grainlab_emt::model(model).unwrap();
         let off = rows.iter().map(|(o, eps)| {
             (model.infer(o, &Calibration::PAPER).unwrap().structure.eps.unwrap() - eps).abs()
         });

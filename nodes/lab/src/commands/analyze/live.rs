@@ -6,10 +6,10 @@ use crate::commands::packings::Measure;
 use crate::commands::packings::sink::{Ending, Sink};
 use crate::failure::{Failure, worse};
 use crate::network::tool_bus;
+use grainlab_core::Packing;
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
-use grains::Packing;
-use node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
-use recordings::import::Imported;
+use grainlab_node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
+use grainlab_recordings::import::Imported;
 use std::time::Duration;
 
 /// Packings that may wait while one is measured; megabytes each.
@@ -59,7 +59,7 @@ enum Next {
 
 /// The subscription: all that knows how a packing comes over the bus.
 struct Source {
-    bus: node_kit::DdsBus,
+    bus: grainlab_node_kit::DdsBus,
     packings: BulkSubscription,
     name: String,
 }

@@ -4,12 +4,12 @@ use crate::commands::packings::Measure;
 use crate::results::doubts::doubts;
 use crate::results::probe::{ProbeView, ScanView};
 use crate::results::state::State;
-use fabric_analyzer::{Measured, messages};
-use grains::Packing;
-use micro::scan::scan;
-use micro::stiffness::moduli;
-use micro::{MicroError, Network};
-use recordings::import::Imported;
+use grainlab_core::Packing;
+use grainlab_fabric_analyzer::{Measured, messages};
+use grainlab_micromechanics::scan::scan;
+use grainlab_micromechanics::stiffness::moduli;
+use grainlab_micromechanics::{MicroError, Network};
+use grainlab_recordings::import::Imported;
 use std::time::Instant;
 
 /// Forward and backward stiffness of a probe may differ by this share without a warning: half of it is the error of either,
@@ -19,7 +19,7 @@ const ONE_SIDED: f64 = 0.01;
 /// How packings are measured.
 #[derive(Clone, Debug)]
 pub(super) struct Analysis {
-    pub(super) settings: micro::Settings,
+    pub(super) settings: grainlab_micromechanics::Settings,
     /// Amplitudes to probe with, beside the measurement proper.
     pub(super) scan: Vec<f64>,
 }
@@ -43,7 +43,7 @@ impl Measure for Analysis {
         let began = Instant::now();
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
-        let found = micro::analyse(packing, &self.settings).map_err(|e| named(&e))?;
+        let found = grainlab_micromechanics::analyse(packing, &self.settings).map_err(|e| named(&e))?;
         let moduli = found.moduli.as_ref();
         let mut state = State::new(source.to_owned(), packing, &found.fabric, moduli.ok());
         state.step = imported.step;
@@ -78,7 +78,7 @@ impl Analysis {
 }
 
 /// What a probe says about a response that depends on the direction of the strain.
-fn one_sided(probe: &micro::ProbeResult) -> Option<String> {
+fn one_sided(probe: &grainlab_micromechanics::ProbeResult) -> Option<String> {
     let changed: u32 = probe.columns.iter().map(|c| c.opened + c.closed).sum();
     let worst = probe.columns.iter().filter_map(|c| c.forward_backward).fold(0.0, f64::max);
     (worst > ONE_SIDED).then(|| {

@@ -10,7 +10,7 @@ use crate::results::state::{self, State};
 use crate::results::state_text;
 use crate::tape::Tape;
 use grainlab_msgs::topics;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 
 /// Prints and records results.
 pub(super) struct Outlet {

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::output::{Format, Table, json, print, say};
-use node_kit::Exit;
-use recordings::Recording;
-use recordings::reader::Check;
+use grainlab_node_kit::Exit;
+use grainlab_recordings::Recording;
+use grainlab_recordings::reader::Check;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::network::tool_bus;
 use grainlab_msgs::{Topic, topics};
-use node_kit::{BulkPublisher, Bus, BusError, DdsBus, Exit, PublisherId, Wake};
-use recordings::{Play, PlayOptions, Player, Recording};
+use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, Exit, PublisherId, Wake};
+use grainlab_recordings::{Play, PlayOptions, Player, Recording};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -149,9 +149,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
-fn play_failure(error: recordings::PlayError) -> Failure {
+fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
     match &error {
-        recordings::PlayError::Read(e) if !matches!(e, recordings::ReadError::NoSuchTopic { .. }) => {
+        grainlab_recordings::PlayError::Read(e)
+            if !matches!(e, grainlab_recordings::ReadError::NoSuchTopic { .. }) =>
+        {
             Failure::failed(error)
         }
         _ => Failure::usage(error),

@@ -3,8 +3,8 @@
 use crate::commands::run::record;
 use crate::failure::Failure;
 use crate::recorder::{self, Settings};
-use node_kit::run::NodeSpec;
-use node_kit::{Exit, RosArgs, Scope};
+use grainlab_node_kit::run::NodeSpec;
+use grainlab_node_kit::{Exit, RosArgs, Scope};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

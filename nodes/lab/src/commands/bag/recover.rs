@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{print, say};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -24,9 +24,9 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
-    let done = recordings::recover(&args.path).map_err(|e| {
+    let done = grainlab_recordings::recover(&args.path).map_err(|e| {
         let exit = match e {
-            recordings::RecoverError::Damaged { .. } => Exit::DataLoss,
+            grainlab_recordings::RecoverError::Damaged { .. } => Exit::DataLoss,
             _ => Exit::Failure,
         };
         Failure::new(exit, e)

@@ -14,11 +14,11 @@ use super::folder;
 use crate::failure::Failure;
 use crate::output::{Format, json, print, say};
 use clap::ValueEnum;
+use grainlab_node_kit::Exit;
+use grainlab_scene::Scene;
 use knobs::{Knob, Servoed, Setting, converged};
-use node_kit::Exit;
 use report::Sample;
 use runs::Job;
-use scene::Scene;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -10,9 +10,9 @@ use super::folder;
 use super::packing::load;
 use crate::failure::Failure;
 use crate::output::{Format, json, print};
-use acoustics::Survey;
 use clap::ValueEnum;
-use node_kit::Exit;
+use grainlab_acoustics::Survey;
+use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -15,10 +15,10 @@ mod stranger;
 
 use crate::failure::Failure;
 use crate::output::{Format, Table, json, print};
+use grainlab_node_kit::Exit;
+use grainlab_scene::Scene;
 use laboratory::{Outcome, run_with};
-use node_kit::Exit;
 use plan::Plan;
-use scene::Scene;
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -5,7 +5,7 @@ mod round;
 use crate::failure::Failure;
 use crate::output::{Format, Table, exact, fixed, json, print};
 use clap::ValueEnum;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\

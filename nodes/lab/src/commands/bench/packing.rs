@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use flate2::read::GzDecoder;
-use grains::{Cell, Material, Packing, Vec3};
-use recordings::import::{ImportOptions, lammps_data, load as load_file};
+use grainlab_core::{Cell, Material, Packing, Vec3};
+use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 

@@ -9,9 +9,9 @@ use super::packing::{copies, load, repeated};
 use crate::failure::Failure;
 use crate::output::{Format, json, print};
 use clap::ValueEnum;
-use dem::{Engine, Setting, TimeStep};
-use grains::{Mat3, Packing};
-use node_kit::Exit;
+use grainlab_core::{Mat3, Packing};
+use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -166,7 +166,7 @@ fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: scene::Tangential::Rescaled,
+        tangential: grainlab_scene::Tangential::Rescaled,
         time_step: TimeStep::Fixed(1e-9),
         skin: 0.01 * largest,
         speed_cap: None,

@@ -3,8 +3,8 @@
 use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
 use crate::failure::Failure;
 use crate::output::say;
-use emt::{Modulus, Sample};
-use grains::Material;
+use grainlab_core::Material;
+use grainlab_emt::{Modulus, Sample};
 use std::path::Path;
 
 /// Which columns tell packings apart.

@@ -1,8 +1,8 @@
 //! A calibration for people.
 
 use crate::output::Table;
-use emt::calibration::{Amplitude, Law, Network};
-use emt::{Calibration, Isotropic, Quantity, Sample};
+use grainlab_emt::calibration::{Amplitude, Law, Network};
+use grainlab_emt::{Calibration, Isotropic, Quantity, Sample};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.

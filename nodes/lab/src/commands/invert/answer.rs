@@ -7,8 +7,8 @@ use super::state::State;
 use super::way::Way;
 use crate::failure::worse;
 use crate::results::inference::Inference;
-use emt::{EmtError, Estimate, Quantity};
-use node_kit::Exit;
+use grainlab_emt::{EmtError, Estimate, Quantity};
+use grainlab_node_kit::Exit;
 use serde::Serialize;
 
 /// One state and one outcome for each way.

@@ -1,8 +1,8 @@
 //! Calibrations by name.
 
 use crate::failure::Failure;
-use emt::{Calibration, Model};
-use recordings::input;
+use grainlab_emt::{Calibration, Model};
+use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
 

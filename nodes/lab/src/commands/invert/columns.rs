@@ -6,7 +6,7 @@ mod row;
 
 use super::cells::cells;
 use super::state::{MODULUS_KEYS, SIGMA_KEYS};
-use emt::{Modulus, Quantity};
+use grainlab_emt::{Modulus, Quantity};
 pub(crate) use row::{BadRow, Row};
 use std::borrow::Cow;
 
@@ -25,8 +25,8 @@ pub(crate) struct Columns {
     /// Column of the pressure, and its unit in Pa.
     pressure: (usize, f64),
     pressure_sigma: Option<usize>,
-    moduli: [Option<usize>; emt::MODULI],
-    sigma: [Option<usize>; emt::MODULI],
+    moduli: [Option<usize>; grainlab_emt::MODULI],
+    sigma: [Option<usize>; grainlab_emt::MODULI],
     /// All 36 entries of a stiffness, row by row. With them C11, C33 and C13 are entries of a matrix and no moduli of a
     /// medium: those are then its projection.
     stiffness: Option<[usize; 36]>,
@@ -42,7 +42,7 @@ pub(crate) struct Columns {
     phi_sigma: Option<usize>,
     grain_shear_modulus: Option<usize>,
     poisson: Option<usize>,
-    truth: [Option<usize>; emt::QUANTITIES],
+    truth: [Option<usize>; grainlab_emt::QUANTITIES],
     sample: Option<usize>,
     source: Option<usize>,
     step: Option<usize>,

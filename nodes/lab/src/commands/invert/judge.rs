@@ -12,8 +12,8 @@ use super::table::Tally;
 use super::way::Way;
 use crate::failure::Failure;
 use crate::output::{Format, Table, exact, fixed, json, print};
-use emt::Quantity;
-use node_kit::Exit;
+use grainlab_emt::Quantity;
+use grainlab_node_kit::Exit;
 use score::Score;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -37,7 +37,7 @@ struct Judged {
 /// What one row says of one way: the γ/Δ it was fed with, and the error of each quantity whose truth is known.
 struct Verdict {
     gamma: &'static str,
-    errors: [Option<score::Error>; emt::QUANTITIES],
+    errors: [Option<score::Error>; grainlab_emt::QUANTITIES],
 }
 
 /// Inverts every row, and prints how far from the truth it is.
@@ -105,7 +105,7 @@ type Place = (usize, usize, &'static str);
 struct Board {
     groups: Vec<Vec<String>>,
     index: HashMap<Vec<String>, usize>,
-    scores: Vec<(Place, [Score; emt::QUANTITIES])>,
+    scores: Vec<(Place, [Score; grainlab_emt::QUANTITIES])>,
     places: HashMap<Place, usize>,
 }
 
@@ -137,7 +137,7 @@ impl Board {
     fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
         self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
         let groups = self.groups;
-        let of = |((group, way, gamma), scores): (Place, [Score; emt::QUANTITIES])| {
+        let of = |((group, way, gamma), scores): (Place, [Score; grainlab_emt::QUANTITIES])| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
             let speaks = move |(q, score): &(Quantity, Score)| {

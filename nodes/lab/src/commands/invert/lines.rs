@@ -1,7 +1,7 @@
 //! The lines of a text as they come, in pieces of bounded size.
 
 use crate::failure::Failure;
-use recordings::input;
+use grainlab_recordings::input;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::os::unix::fs::FileTypeExt;

@@ -4,8 +4,8 @@ use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
 use crate::output::{Table, fixed};
-use emt::sampling::Settings;
-use emt::{CREDIBLE_LEVEL, EmtError, Quantity, Samples, sample};
+use grainlab_emt::sampling::Settings;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Quantity, Samples, sample};
 use rayon::prelude::*;
 use serde::Serialize;
 

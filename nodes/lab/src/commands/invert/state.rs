@@ -1,19 +1,19 @@
 //! What is known of one state.
 
 use super::way::Way;
-use emt::{
+use grainlab_core::{Anisotropy, Material};
+use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Gamma, GammaSource, Measured, Moduli, ModuliCovariance,
     Modulus, Observation, Structure,
 };
-use grains::{Anisotropy, Material};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// Keys of the moduli, in the order of [`Modulus::ALL`].
-pub(super) const MODULUS_KEYS: [&str; emt::MODULI] =
+pub(super) const MODULUS_KEYS: [&str; grainlab_emt::MODULI] =
     ["g12_pa", "g13_pa", "theta_pa", "c11_pa", "c33_pa", "c13_pa"];
 
 /// Keys of their standard deviations.
-pub(super) const SIGMA_KEYS: [&str; emt::MODULI] =
+pub(super) const SIGMA_KEYS: [&str; grainlab_emt::MODULI] =
     ["g12_sigma_pa", "g13_sigma_pa", "theta_sigma_pa", "c11_sigma_pa", "c33_sigma_pa", "c13_sigma_pa"];
 
 /// One state, as given.
@@ -26,7 +26,7 @@ pub(crate) struct State {
     /// Whether the moduli are the projection of one stiffness, so that five of them were measured and Θ follows.
     pub(crate) projected: bool,
     /// Standard deviations of the moduli, Pa.
-    pub(crate) sigma: [Option<f64>; emt::MODULI],
+    pub(crate) sigma: [Option<f64>; grainlab_emt::MODULI],
     /// Relative standard deviation of the moduli that have none of their own.
     pub(crate) relative_error: Option<f64>,
     /// What the model `ratio-as-printed` takes for Θ, if that is something else, Pa.
@@ -56,7 +56,7 @@ impl State {
             asymmetry: None,
             projected: false,
             grains: None,
-            sigma: [None; emt::MODULI],
+            sigma: [None; grainlab_emt::MODULI],
             relative_error: None,
             theta_printed: None,
             pressure,
@@ -123,7 +123,7 @@ impl State {
             return None;
         }
         let values = moduli.values();
-        let variance = std::array::from_fn::<f64, { emt::MODULI }, _>(|i| {
+        let variance = std::array::from_fn::<f64, { grainlab_emt::MODULI }, _>(|i| {
             let Some(value) = values[i] else { return 0.0 };
             self.sigma[i].unwrap_or_else(|| self.relative_error.unwrap_or(0.0) * value).powi(2)
         });

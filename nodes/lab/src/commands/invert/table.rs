@@ -6,7 +6,7 @@ use super::print::Printer;
 use super::rows::Rows;
 use crate::failure::{Failure, worse};
 use crate::output::{Format, say};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::io::{ErrorKind, Write};
 use std::time::Instant;
 

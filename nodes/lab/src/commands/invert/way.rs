@@ -2,7 +2,7 @@
 
 use super::calibrations::Choice;
 use crate::failure::Failure;
-use emt::{Calibration, GammaSource, Model};
+use grainlab_emt::{Calibration, GammaSource, Model};
 use std::sync::Arc;
 
 /// Which γ/Δ feeds the models that use one.
@@ -37,9 +37,9 @@ pub(super) fn ways(
     calibrations: &[String],
     gamma: Option<GammaChoice>,
 ) -> Result<Vec<Way>, Failure> {
-    let named = models.iter().map(|name| emt::model(name).ok_or_else(|| no_model(name)));
+    let named = models.iter().map(|name| grainlab_emt::model(name).ok_or_else(|| no_model(name)));
     let named = named.collect::<Result<Vec<_>, _>>()?;
-    let models = if named.is_empty() { emt::models().to_vec() } else { named };
+    let models = if named.is_empty() { grainlab_emt::models().to_vec() } else { named };
     let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
     let gammas: &[Option<GammaSource>] = match gamma {
         None => &[None],
@@ -68,6 +68,6 @@ pub(super) fn ways(
 }
 
 fn no_model(name: &str) -> Failure {
-    let known: Vec<&str> = emt::models().iter().map(|m| m.name()).collect();
+    let known: Vec<&str> = grainlab_emt::models().iter().map(|m| m.name()).collect();
     Failure::usage(format!("no model {name:?}; there are: {}", known.join(", ")))
 }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::launch::plan::{LaunchFile, NodePlan};
 use crate::output::json;
-use recordings::input;
+use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

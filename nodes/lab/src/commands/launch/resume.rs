@@ -10,8 +10,8 @@ use crate::output::Format;
 use crate::results::last_packing;
 use crate::scenes;
 use grainlab_msgs::{from_cdr, msg, topics};
-use node_kit::Exit;
-use recordings::{Recording, Selection};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
 pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
@@ -23,7 +23,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     // Without a recording the run begins anew, in its own directory.
     if Recording::open(&directory).is_ok() {
         // The file of a recorder that was killed is finished first, so that other tools read the whole run.
-        recordings::recover(&directory).map_err(|e| failed(&e))?;
+        grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
         let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         if is_finished(&recording) {
             return Err(Failure::usage(format!("{}: the run is finished", directory.display())));

@@ -4,10 +4,10 @@ use super::bar::Bar;
 use super::sink::{Ending, Place, Sink};
 use super::{Measure, Outlet};
 use crate::failure::{Failure, worse};
-use node_kit::Exit;
-use node_kit::signals::Signals;
-use recordings::Recording;
-use recordings::import::{ImportError, ImportOptions, Imported, each};
+use grainlab_node_kit::Exit;
+use grainlab_node_kit::signals::Signals;
+use grainlab_recordings::Recording;
+use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -208,7 +208,8 @@ fn read(
     options: &ImportOptions,
     take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
 ) -> (Vec<String>, Exit) {
-    let lines = |warnings: &[recordings::Warning]| warnings.iter().map(ToString::to_string).collect();
+    let lines =
+        |warnings: &[grainlab_recordings::Warning]| warnings.iter().map(ToString::to_string).collect();
     match each(path, options, take) {
         Ok(warnings) => {
             let exit = if warnings.is_empty() { Exit::Done } else { Exit::DataLoss };

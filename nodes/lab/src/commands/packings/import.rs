@@ -1,8 +1,8 @@
 //! What files do not say, as flags.
 
 use crate::failure::Failure;
-use grains::{Mat3, Vec3};
-use recordings::import::ImportOptions;
+use grainlab_core::{Mat3, Vec3};
+use grainlab_recordings::import::ImportOptions;
 use std::path::PathBuf;
 
 /// Formats, for the help of a command.
@@ -72,7 +72,7 @@ impl Args {
         };
         let contact_forces = match &self.contact_forces {
             Some(path) => {
-                let text = recordings::import::text(path);
+                let text = grainlab_recordings::import::text(path);
                 Some(text.map_err(|e| Failure::failed(e.to_string()))?)
             }
             None => None,

@@ -93,7 +93,7 @@ impl<R: Printed> Printer<R> {
 mod tests {
     use super::*;
     use crate::results::state::{self, State};
-    use grains::{Cell, Mat3, Material, Packing, Vec3};
+    use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
     fn state(step: u64) -> State {
         let packing = Packing {
@@ -111,7 +111,8 @@ mod tests {
             friction: 0.1,
             time_step: 0.0,
         };
-        let found = micro::analyse(&packing, &micro::Settings::default()).unwrap();
+        let found = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
+            .unwrap();
         State::new("a, \"b\"".into(), &packing, &found.fabric, None)
     }
 

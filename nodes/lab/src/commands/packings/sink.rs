@@ -3,7 +3,7 @@
 use super::Outlet;
 use super::bar::Bar;
 use crate::failure::{Failure, worse};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
 
 /// Which packing of which file.

@@ -1,9 +1,9 @@
 //! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
 
 use crate::failure::Failure;
-use acoustic_probe::{Settings, parameters};
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
-use node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
+use grainlab_acoustic_probe::{Settings, parameters};
+use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
 
 const NODE: &str = "acoustic_probe";
 
@@ -86,8 +86,8 @@ impl FromArgMatches for Flags {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use acoustics::Way;
     use clap::Args as _;
+    use grainlab_acoustics::Way;
 
     fn settings(words: &[&str]) -> Result<Settings, String> {
         let command = Flags::augment_args(Command::new("probe").allow_negative_numbers(true));
@@ -115,7 +115,7 @@ mod tests {
     fn lists_and_axes_are_typed_as_elsewhere() {
         let s = settings(&["--wavelengths", "30,40,60", "--axis", "0,0,2", "--seed", "7"]).unwrap().0;
         let Way::Dispersion(d) = s.way else { panic!("the default") };
-        assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grains::Vec3::z())));
+        assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grainlab_core::Vec3::z())));
         assert_eq!(s.instrument.seed, 7);
     }
 

@@ -4,10 +4,10 @@ use crate::commands::packings::Measure;
 use crate::results::acoustic::AcousticView;
 use crate::results::probed::Probed;
 use crate::results::state::State;
-use acoustic_probe::{Measured, Settings, messages};
-use acoustics::AcousticsError;
+use grainlab_acoustic_probe::{Measured, Settings, messages};
+use grainlab_acoustics::AcousticsError;
 use grainlab_msgs::boundary::WaveSpeedsReading;
-use recordings::import::Imported;
+use grainlab_recordings::import::Imported;
 
 /// How packings are measured.
 #[derive(Clone, Debug)]
@@ -29,16 +29,16 @@ impl Measure for Probe {
     fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
-        let network = micro::analyse(
+        let network = grainlab_micromechanics::analyse(
             packing,
-            &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+            &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
         )
         .map_err(|e| named(&e))?;
         let moduli = network.moduli.as_ref().ok();
         let mut state = State::new(source.to_owned(), packing, &network.fabric, moduli);
         state.step = imported.step;
         state.warnings.clone_from(&imported.notes);
-        let found = match acoustics::measure(packing, &self.settings.0) {
+        let found = match grainlab_acoustics::measure(packing, &self.settings.0) {
             Ok(found) => found,
             Err(AcousticsError::NoNetwork(none)) => {
                 state.warnings.push(none.to_string());

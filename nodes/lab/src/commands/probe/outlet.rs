@@ -9,7 +9,7 @@ use crate::output::print;
 use crate::results::probed::Probed;
 use crate::tape::Tape;
 use grainlab_msgs::topics;
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 
 /// Prints and records results.
 pub(super) struct Outlet {

@@ -102,7 +102,7 @@ fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
     let mut plans = nodes(DEFAULT, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     for plan in plans {
-        let (ros, plain) = node_kit::RosArgs::parse(&plan.arguments).unwrap();
+        let (ros, plain) = grainlab_node_kit::RosArgs::parse(&plan.arguments).unwrap();
         let given = ros.parameters.iter().find(|p| p.name == "look_around").map(|p| p.yaml.as_str());
         assert_eq!(given, plan.is("dem_simulator").then_some("0.0"));
         assert_eq!(plain, ["run", plan.node.as_deref().unwrap()]);
@@ -111,7 +111,7 @@ fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
     let mut plans = nodes(&told, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
-    let (ros, _) = node_kit::RosArgs::parse(&simulator.arguments).unwrap();
+    let (ros, _) = grainlab_node_kit::RosArgs::parse(&simulator.arguments).unwrap();
     assert_eq!(ros.parameters.iter().rfind(|p| p.name == "look_around").unwrap().yaml, "2.0");
 }
 

@@ -1,8 +1,8 @@
 //! The knobs: what of a scene is turned, how far, and what its most careful value is.
 
 use clap::ValueEnum;
-use grains::{ComponentControl, ServoLaw};
-use scene::{GasMethod, Phase, PhaseKind, Scene};
+use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_scene::{GasMethod, Phase, PhaseKind, Scene};
 use serde::Serialize;
 use std::fmt;
 

@@ -3,9 +3,9 @@
 use super::knobs::Servoed;
 use super::statistics::Observables;
 use crate::commands::bench::cpu_time::thread_seconds;
-use dem::Simulation;
-use grains::{ComponentControl, ServoLaw};
-use scene::Scene;
+use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_dem::Simulation;
+use grainlab_scene::Scene;
 
 /// What a run cost and where it ended.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
             let tangent = r.snapshot.tangent[..3].iter().copied().fold(0.0, f64::max);
             servoed = Some(Servoed { tangent, interval: r.control_interval });
         }
-        let answer = servo::answer(&r.question()).map_err(|e| e.to_string())?;
+        let answer = grainlab_servo::answer(&r.question()).map_err(|e| e.to_string())?;
         run.answer(&answer.rate).map_err(|e| e.to_string())?;
     }
     let seconds = clock()? - begin;
@@ -53,7 +53,8 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
 }
 
 fn observe(run: &Simulation) -> Result<Observables<f64>, String> {
-    let a = micro::analyse(&run.packing(), &micro::Settings::default()).map_err(|e| e.to_string())?;
+    let a = grainlab_micromechanics::analyse(&run.packing(), &grainlab_micromechanics::Settings::default())
+        .map_err(|e| e.to_string())?;
     let c = a.moduli.map_err(|e| e.to_string())?.stiffness;
     Ok(Observables {
         k: a.fabric.k,

@@ -4,7 +4,7 @@ use super::front::front;
 use super::knobs::{Knob, Setting, Value, inertial_number};
 use super::measure::Outcome;
 use super::statistics::{Estimate, Observables, combined, deviation, paired};
-use scene::Scene;
+use grainlab_scene::Scene;
 use serde::Serialize;
 
 /// What one setting led to at each seed.

@@ -1,7 +1,7 @@
 //! Many runs on a few threads.
 
 use super::measure::{Outcome, measure};
-use scene::Scene;
+use grainlab_scene::Scene;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 

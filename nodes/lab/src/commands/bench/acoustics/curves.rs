@@ -2,10 +2,10 @@
 
 use crate::commands::bench::plot::{AXES, Axis, COLOURS, axes, begin, circle, line, text};
 use crate::failure::Failure;
-use acoustics::curve::Point;
-use acoustics::{Curve, Modes, Ray, Survey, dispersion, standing};
-use grains::{Packing, Vec3};
-use node_kit::Exit;
+use grainlab_acoustics::curve::Point;
+use grainlab_acoustics::{Curve, Modes, Ray, Survey, dispersion, standing};
+use grainlab_core::{Packing, Vec3};
+use grainlab_node_kit::Exit;
 use std::f64::consts::TAU;
 
 /// Wavelengths shown, mean diameters: down to where packings hardly have waves any more.
@@ -20,7 +20,7 @@ const NAMES: [&str; 9] =
 
 /// The picture of one packing.
 pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
-    let invalid = |e: acoustics::AcousticsError| Failure::new(Exit::PhysicsInvalid, e.to_string());
+    let invalid = |e: grainlab_acoustics::AcousticsError| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let axis = Vec3::z();
     let rays = Survey::Three.rays(&axis, Modes::All);
     let laws = dispersion::curves(packing, &rays, &dispersion::Settings::default()).map_err(invalid)?;

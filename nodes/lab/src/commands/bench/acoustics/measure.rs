@@ -4,19 +4,19 @@ use super::report::{Error, Row};
 use super::{Args, Method};
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
-use acoustics::flight::{self, Pick};
-use acoustics::{AcousticsError, Measurement, Settings, Way, dispersion, measure, standing};
-use emt::{Conditions, Measured, Modulus, christoffel};
-use grains::{Packing, Stiffness};
-use node_kit::Exit;
+use grainlab_acoustics::flight::{self, Pick};
+use grainlab_acoustics::{AcousticsError, Measurement, Settings, Way, dispersion, measure, standing};
+use grainlab_core::{Packing, Stiffness};
+use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
+use grainlab_node_kit::Exit;
 use std::time::Instant;
 
 /// One row a way and value.
 pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let analysis = micro::analyse(
+    let analysis = grainlab_micromechanics::analyse(
         packing,
-        &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
     )
     .map_err(|e| invalid(&e))?;
     let stiffness = analysis.moduli.map_err(|e| invalid(&e))?.stiffness;
@@ -117,7 +117,7 @@ fn error(measurement: &Measurement, stiffness: &Stiffness, packing: &Packing) ->
 fn moduli(measurement: &Measurement, stiffness: &Stiffness, packing: &Packing) -> Option<f64> {
     let speeds: Vec<_> = measurement.waves.iter().map(|w| w.wave).collect();
     let density = Measured { value: measurement.density, stddev: measurement.density_stddev };
-    let conditions = Conditions::at(grains::stress::stress(packing).tensor.mean().max(0.0));
+    let conditions = Conditions::at(grainlab_core::stress::stress(packing).tensor.mean().max(0.0));
     let fitted = christoffel::observation(&speeds, density, measurement.axis, conditions).ok()?;
     let t = stiffness.transverse_isotropy();
     [

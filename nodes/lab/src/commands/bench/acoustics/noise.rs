@@ -5,12 +5,12 @@ use crate::commands::bench::packing::load_all;
 use crate::failure::Failure;
 use crate::output::{Format, Table, exact, fixed, json, print};
 use crate::results::state::eps_stiffness;
-use acoustics::{Measurement, with_speed_noise};
-use emt::Quantity;
+use grainlab_acoustics::{Measurement, with_speed_noise};
+use grainlab_core::{Fabric, Packing};
+use grainlab_emt::Quantity;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
-use grains::{Fabric, Packing};
-use node_kit::Exit;
+use grainlab_node_kit::Exit;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -68,20 +68,21 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Of one packing: the errors by the analyzer's moduli, then those of every draw of every level.
 fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let settings = acoustics::Settings { survey: args.survey.into(), ..Default::default() };
-    let measurement = acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
-    let analysis = micro::analyse(
+    let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
+    let measurement = grainlab_acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
+    let analysis = grainlab_micromechanics::analyse(
         packing,
-        &micro::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
     )
     .map_err(|e| invalid(&e))?;
     let (fabric, by_stiffness) = (analysis.fabric.clone(), eps_stiffness(&analysis.fabric));
     let truth = Counted { fabric, eps_stiffness: by_stiffness };
     let header = Default::default();
-    let analysed = fabric_analyzer::messages(&header, packing, analysis).map_err(|e| invalid(&e))?;
+    let analysed = grainlab_fabric_analyzer::messages(&header, packing, analysis).map_err(|e| invalid(&e))?;
     let moduli = analysed.moduli.map_err(|e| invalid(&e))?;
     let inversion = inversion()?;
-    let by_moduli = emt_inversion::microstructure_message(&moduli, &inversion).map_err(|e| invalid(&e))?;
+    let by_moduli =
+        grainlab_emt_inversion::microstructure_message(&moduli, &inversion).map_err(|e| invalid(&e))?;
     let mut errors = vec![vec![compared(&by_moduli, &truth)]];
     for noise in &args.noise {
         let draws = if *noise > 0.0 { args.draws } else { 1 };
@@ -90,8 +91,9 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
             let seed = packing.step.wrapping_mul(u64::from(args.draws) + 1).wrapping_add(seed.into());
             let waves = with_speed_noise(&measurement.waves, *noise, seed);
             let noisy = Measurement { waves, ..measurement.clone() };
-            let sent = acoustic_probe::messages(&header, packing, &noisy).map_err(|e| invalid(&e))?;
-            let found = emt_inversion::microstructure_of_speeds(&sent.wave_speeds, &inversion);
+            let sent =
+                grainlab_acoustic_probe::messages(&header, packing, &noisy).map_err(|e| invalid(&e))?;
+            let found = grainlab_emt_inversion::microstructure_of_speeds(&sent.wave_speeds, &inversion);
             Ok(compared(&found.map_err(|e| invalid(&e))?, &truth))
         };
         errors.push((1..=draws).into_par_iter().map(draw).collect::<Result<_, Failure>>()?);
@@ -99,9 +101,9 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     Ok(errors)
 }
 
-fn inversion() -> Result<emt_inversion::Settings, Failure> {
-    let models = emt_inversion::Models::named(MODEL).map_err(Failure::failed)?;
-    Ok(emt_inversion::Settings { models, ..Default::default() })
+fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
+    let models = grainlab_emt_inversion::Models::named(MODEL).map_err(Failure::failed)?;
+    Ok(grainlab_emt_inversion::Settings { models, ..Default::default() })
 }
 
 /// What is counted in a packing.

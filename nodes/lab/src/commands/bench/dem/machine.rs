@@ -2,7 +2,7 @@
 
 use super::peak::peak;
 use crate::failure::Failure;
-use dem::Simd;
+use grainlab_dem::Simd;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

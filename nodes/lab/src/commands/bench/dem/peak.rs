@@ -2,7 +2,7 @@
 
 use crate::commands::bench::cpu_time::thread_seconds;
 use crate::failure::Failure;
-use dem::{Simd, roofline};
+use grainlab_dem::{Simd, roofline};
 use std::hint::black_box;
 
 /// Rounds of one measurement, some milliseconds.

@@ -4,10 +4,10 @@ use super::super::packing::repeated;
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
 use clap::ValueEnum;
-use dem::{Compute, Engine, Setting, Simd, TimeStep, roofline};
-use grains::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
-use node_kit::Exit;
-use scene::Tangential;
+use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
+use grainlab_dem::{Compute, Engine, Setting, Simd, TimeStep, roofline};
+use grainlab_node_kit::Exit;
+use grainlab_scene::Tangential;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -94,7 +94,7 @@ pub(crate) struct Packings {
 impl Packings {
     /// Presses the packing anew where `features` ask for it.
     pub(crate) fn new(given: Packing, features: &[Features]) -> Result<Self, Failure> {
-        let pressure = grains::stress::stress(&given).tensor.mean();
+        let pressure = grainlab_core::stress::stress(&given).tensor.mean();
         if pressure <= 0.0 {
             let message = format!("the packing carries no pressure ({pressure} Pa); press it first");
             return Err(Failure::new(Exit::PhysicsInvalid, message));
@@ -129,7 +129,7 @@ pub(crate) fn operations_per_contact(packing: &Packing, case: &Case) -> f64 {
     roofline::operations_per_contact(&setting(case.features, packing))
 }
 
-fn invalid(error: dem::DemError) -> Failure {
+fn invalid(error: grainlab_dem::DemError) -> Failure {
     Failure::new(Exit::PhysicsInvalid, error)
 }
 
@@ -163,7 +163,7 @@ fn answered(
     control_interval: f64,
 ) -> Result<[f64; 6], Failure> {
     let target = |c| ComponentControl::Stress(if c < 3 { pressure } else { 0.0 });
-    let request = servo::Request {
+    let request = grainlab_servo::Request {
         stress,
         controls: std::array::from_fn(target),
         rate,
@@ -172,7 +172,7 @@ fn answered(
         tangent,
         control_interval,
     };
-    servo::answer(&request).map(|a| a.rate).map_err(Failure::failed)
+    grainlab_servo::answer(&request).map(|a| a.rate).map_err(Failure::failed)
 }
 
 /// Builds an engine, warms it up for a tenth of the steps, and times it.

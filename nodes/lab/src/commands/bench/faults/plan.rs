@@ -2,8 +2,8 @@
 
 use super::process::Kind;
 use super::stranger::Forgery;
-use node_kit::Faults;
-use node_kit::memory::Dice;
+use grainlab_node_kit::Faults;
+use grainlab_node_kit::memory::Dice;
 use std::time::Duration;
 
 /// Something that happens at a moment of a run.

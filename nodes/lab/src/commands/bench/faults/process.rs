@@ -1,13 +1,13 @@
 //! One process of the run, which may die and be there again.
 
 use super::recorder::{MemoryRecorder, Record};
-use dem_simulator::DemSimulator;
-use emt_inversion::EmtInversion;
-use fabric_analyzer::FabricAnalyzer;
-use node_kit::memory::Hub;
-use node_kit::{Exit, Identity, MemoryBus, Names, Node, NodeError, RunId};
-use scene::Scene;
-use servo_controller::ServoController;
+use grainlab_dem_simulator::DemSimulator;
+use grainlab_emt_inversion::EmtInversion;
+use grainlab_fabric_analyzer::FabricAnalyzer;
+use grainlab_node_kit::memory::Hub;
+use grainlab_node_kit::{Exit, Identity, MemoryBus, Names, Node, NodeError, RunId};
+use grainlab_scene::Scene;
+use grainlab_servo_controller::ServoController;
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
@@ -85,11 +85,17 @@ impl Process {
         let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
         let node: Box<dyn Node> = match self.kind {
             Kind::Recorder => Box::new(MemoryRecorder::new(&mut bus, with.record)?),
-            Kind::Inversion => Box::new(EmtInversion::new(&mut bus, emt_inversion::Settings::default())?),
-            Kind::Analyzer => Box::new(FabricAnalyzer::new(&mut bus, fabric_analyzer::Settings::default())?),
-            Kind::Servo => Box::new(ServoController::new(&mut bus, servo_controller::Settings::default())?),
+            Kind::Inversion => {
+                Box::new(EmtInversion::new(&mut bus, grainlab_emt_inversion::Settings::default())?)
+            }
+            Kind::Analyzer => {
+                Box::new(FabricAnalyzer::new(&mut bus, grainlab_fabric_analyzer::Settings::default())?)
+            }
+            Kind::Servo => {
+                Box::new(ServoController::new(&mut bus, grainlab_servo_controller::Settings::default())?)
+            }
             Kind::Simulator => {
-                let settings = dem_simulator::Settings {
+                let settings = grainlab_dem_simulator::Settings {
                     look_around: Duration::ZERO,
                     threads: std::num::NonZeroUsize::new(1),
                     ..dem_simulator::Settings::default()

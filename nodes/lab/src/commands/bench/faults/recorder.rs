@@ -1,11 +1,11 @@
 //! What is recorded of a run in memory: by the rules of the recorder, without a file.
 
 use crate::recorder::repeats::{Novelty, Repeats};
+use grainlab_core::Packing;
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
-use grains::Packing;
-use node_kit::identity::member_of;
-use node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId};
+use grainlab_node_kit::identity::member_of;
+use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;

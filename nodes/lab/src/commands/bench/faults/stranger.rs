@@ -3,9 +3,9 @@
 use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
-use node_kit::identity::run_of;
-use node_kit::memory::Dice;
-use node_kit::{
+use grainlab_node_kit::identity::run_of;
+use grainlab_node_kit::memory::Dice;
+use grainlab_node_kit::{
     Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
 };
 
@@ -82,7 +82,7 @@ impl Stranger {
         Ok(stranger)
     }
 
-    fn publish(&mut self, body: &[u8], about: Option<node_kit::SampleId>) -> Result<(), BusError> {
+    fn publish(&mut self, body: &[u8], about: Option<grainlab_node_kit::SampleId>) -> Result<(), BusError> {
         self.forged += 1;
         self.bus.publish_about(self.output, body, about).map(drop)
     }
@@ -117,7 +117,7 @@ fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
     let scale = |values: &mut [f64]| values.iter_mut().for_each(|v| *v *= by);
     Some(match forgery {
         Forgery::StrainRate => {
-            let mut answer = servo_controller::answer(&decoded::<Stress>(sample)?).ok()?;
+            let mut answer = grainlab_servo_controller::answer(&decoded::<Stress>(sample)?).ok()?;
             scale(&mut answer.rate);
             to_cdr(&answer)
         }

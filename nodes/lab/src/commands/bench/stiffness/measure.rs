@@ -6,9 +6,9 @@ use crate::commands::bench::cpu_time::thread_seconds;
 use crate::commands::bench::numbers::median;
 use crate::failure::Failure;
 use crate::output::say;
-use grains::{Packing, Stiffness};
-use micro::{Network, Probe, Solver, stiffness};
-use node_kit::Exit;
+use grainlab_core::{Packing, Stiffness};
+use grainlab_micromechanics::{Network, Probe, Solver, stiffness};
+use grainlab_node_kit::Exit;
 
 /// Residual of the direct solve: the factorisation alone comes close to it.
 const DIRECT: f64 = 1e-12;
@@ -72,11 +72,11 @@ impl Bench<'_> {
     }
 
     fn mean_spin(&self) -> Found {
-        Ok((micro::bounds::mean_spin(&self.network()?), None))
+        Ok((grainlab_micromechanics::bounds::mean_spin(&self.network()?), None))
     }
 
     fn solved(&self, solver: Solver, tolerance: f64) -> Found {
-        let most = micro::Settings::default().max_iterations;
+        let most = grainlab_micromechanics::Settings::default().max_iterations;
         let found = stiffness::moduli(&self.network()?, solver, tolerance, most);
         let moduli = found.map_err(|e| e.to_string())?.map_err(|none| none.to_string())?;
         Ok((moduli.stiffness, Some(moduli.iterations)))
@@ -96,7 +96,8 @@ impl Bench<'_> {
 
     fn probed(&self, amplitude: f64) -> Found {
         let friction = if self.tangential { f64::INFINITY } else { 0.0 };
-        let found = micro::probe(self.packing, &Probe { amplitude, friction, ..Probe::default() });
+        let found =
+            grainlab_micromechanics::probe(self.packing, &Probe { amplitude, friction, ..Probe::default() });
         let found = found.map_err(|e| e.to_string())?;
         let steps = found.rest_steps + found.columns.iter().map(|c| c.steps).sum::<u32>();
         Ok((found.stiffness, Some(steps)))

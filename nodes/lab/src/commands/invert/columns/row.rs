@@ -4,8 +4,8 @@ use super::Columns;
 use crate::commands::invert::cells::cells;
 use crate::commands::invert::lines::LONGEST;
 use crate::commands::invert::state::State;
-use emt::{Measured, Moduli, Structure};
-use grains::{Anisotropy, Stiffness, Vec3};
+use grainlab_core::{Anisotropy, Stiffness, Vec3};
+use grainlab_emt::{Measured, Moduli, Structure};
 use std::borrow::Cow;
 
 /// A row that is a state.
@@ -187,7 +187,7 @@ impl Cells<'_> {
 mod tests {
     use super::super::Defaults;
     use super::*;
-    use emt::Modulus;
+    use grainlab_emt::Modulus;
 
     fn columns(header: &str) -> Columns {
         Columns::of_header(header.as_bytes(), &[], Defaults::default()).unwrap()

@@ -1,6 +1,6 @@
 //! How far estimates of one quantity are from its truth.
 
-use emt::{Estimate, Quantity, Status};
+use grainlab_emt::{Estimate, Quantity, Status};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 

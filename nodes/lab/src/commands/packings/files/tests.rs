@@ -1,6 +1,6 @@
 use super::*;
 use grainlab_msgs::{msg, to_cdr, topics};
-use recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 
 /// A recording whose one packing message is not a valid packing: what is read of it, and with what exit code, shows how far reading came.
 fn recording(folder: &Path) -> PathBuf {

@@ -1,0 +1,161 @@
+//! What can go wrong, typed.
+
+/// Why a packing has no stiffness to speak of. Not a fault: a gas has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoNetwork {
+    /// No two grains touch.
+    #[error("no contact network: none of the {grains} grains touches another; compress the packing first")]
+    NoContacts {
+        /// Number of grains.
+        grains: usize,
+    },
+    /// Every grain was removed as a rattler.
+    #[error(
+        "no contact network: all {grains} grains are rattlers (fewer than {needed} contacts each, found recursively); \
+         compress the packing first"
+    )]
+    OnlyRattlers {
+        /// Number of grains.
+        grains: usize,
+        /// Contacts that a grain needs in order to carry force.
+        needed: u32,
+    },
+    /// Contacts exist but resist no deformation of the cell.
+    #[error(
+        "no contact network: the {contacts} contacts do not span the cell, every strain relaxes to zero stress; \
+         compress the packing first"
+    )]
+    Floppy {
+        /// Number of contacts.
+        contacts: usize,
+    },
+}
+
+/// Why a packing could not be analysed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MicroError {
+    /// A setting is out of its range.
+    #[error("setting {name} = {value:e} is out of range: {requirement}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// The normal of a contact does not point along its branch vector.
+    #[error(
+        "contact {contact} (grains {i} and {j}): the normal is not the direction of the branch vector (cosine \
+         {cosine}); check positions, cell and image, and that normals point from i to j"
+    )]
+    Normal {
+        /// Index of the contact.
+        contact: usize,
+        /// First grain.
+        i: u32,
+        /// Second grain.
+        j: u32,
+        /// Cosine of the angle between them; not a number if the centres coincide.
+        cosine: f64,
+    },
+    /// The linear solve stopped short of its tolerance.
+    #[error(
+        "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
+         asked for; raise max_iterations or tolerance (a network near isostaticity converges slowly)"
+    )]
+    NotConverged {
+        /// The worst relative residual of the columns.
+        residual: f64,
+        /// The tolerance asked for.
+        tolerance: f64,
+        /// Iterations done.
+        iterations: u32,
+    },
+    /// Prestress makes the network a mechanism that gives way.
+    #[error(
+        "the prestressed network has a direction of negative stiffness: the packing is not at rest in a stable state \
+         (relative residual {residual:e}); relax it further, or leave the prestress term out"
+    )]
+    Unstable {
+        /// The worst relative residual of the columns.
+        residual: f64,
+    },
+    /// Two evaluations of the same stiffness, by energy and by stress, differ.
+    #[error(
+        "stiffness by energy and by stress differ by {relative:e} of the largest entry of the affine stiffness (at most \
+         {limit:e}); lower the tolerance of the solve"
+    )]
+    Inconsistent {
+        /// Largest difference over the largest entry of the affine stiffness.
+        relative: f64,
+        /// What is allowed.
+        limit: f64,
+    },
+    /// The stiffness is not between zero and the affine stiffness.
+    #[error(
+        "stiffness is out of bounds: smallest eigenvalue of {what} is {eigenvalue:e} Pa; the result is wrong and was \
+         withheld"
+    )]
+    OutOfBounds {
+        /// Which bound was broken: "C" or "A - C".
+        what: &'static str,
+        /// The offending eigenvalue, Pa.
+        eigenvalue: f64,
+    },
+    /// The explicit probe failed.
+    #[error(transparent)]
+    Probe(#[from] ProbeError),
+}
+
+/// Why a packing could not be probed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ProbeError {
+    /// A setting is out of its range.
+    #[error("probe setting {name} = {value:e} is out of range: {requirement}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// There is nothing to probe.
+    #[error(transparent)]
+    NoNetwork(#[from] NoNetwork),
+    /// The packing did not come to rest before it was strained.
+    #[error(
+        "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
+         for this amplitude; relax the packing further, raise max_steps, or raise the amplitude"
+    )]
+    NoRest {
+        /// Mean net force of non-rattlers over mean contact force.
+        unbalanced: f64,
+        /// What is needed.
+        target: f64,
+        /// Steps done.
+        steps: u32,
+    },
+    /// The stress under strain did not settle.
+    #[error(
+        "column {component} did not settle in {steps} steps: residual force {residual:e}, drift of the stress {drift:e}, \
+         tolerance {tolerance:e}; raise max_steps or tolerance (a network near isostaticity converges slowly), or \
+         lower the amplitude if contacts open"
+    )]
+    NotConverged {
+        /// Voigt component of the strain.
+        component: &'static str,
+        /// See [`crate::column::Column::residual`].
+        residual: f64,
+        /// See [`crate::column::Column::drift`].
+        drift: f64,
+        /// The tolerance asked for.
+        tolerance: f64,
+        /// Steps done.
+        steps: u32,
+    },
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] grainlab_dem::DemError),
+}

@@ -1,0 +1,157 @@
+//! Stiffnesses in closed form beside the relaxed one: a mean spin, the Reuss bound; and the prestress term.
+
+use crate::golden::reference;
+use crate::samples::{packing, random};
+use grainlab_core::packing::Contact;
+use grainlab_core::{Cell, Mat3, Moduli, Packing, Vec3};
+use grainlab_micromechanics::{MicroError, Network, NoNetwork, Settings, Solver, analyse};
+
+const D: f64 = 2.0e-4;
+
+fn moduli(p: &Packing, settings: &Settings) -> Moduli {
+    analyse(p, settings).unwrap().moduli.unwrap()
+}
+
+/// One grain in a cell of three different edges, so that the springs along x and z differ.
+fn orthorhombic() -> Packing {
+    let edges = Vec3::new(1.0 - 1e-4, 1.0 - 3e-4, 1.0 - 9e-4) * D;
+    packing(Cell::new(Mat3::from_diagonal(&edges)).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None)
+}
+
+/// In shear xz the springs a = k_t,x l_x² and b = k_t,z l_z² share the rotation: C55 = a b/((a + b) V), (a + b)/(4 V) when
+/// nothing spins.
+#[test]
+fn a_mean_spin_is_exact_where_two_directions_differ() {
+    let p = orthorhombic();
+    let m = moduli(&p, &Settings::default());
+    let weight = |k: usize| {
+        let c = p.contacts.iter().find(|c| c.normal[k].abs() > 0.5).unwrap();
+        p.contact_stiffness(c).1 * p.branch(c).norm_squared()
+    };
+    let (a, b, v) = (weight(0), weight(2), p.cell.volume());
+    let expected = a * b / ((a + b) * v);
+    assert!((m.mean_spin.0[(4, 4)] / expected - 1.0).abs() < 1e-12);
+    assert!((m.affine.0[(4, 4)] / ((a + b) / (4.0 * v)) - 1.0).abs() < 1e-12);
+    // A grain alone has nothing but its spin to relax.
+    assert!((m.mean_spin.0 - m.stiffness.0).amax() < 1e-12 * m.affine.0.amax());
+    assert!(m.mean_spin.0[(4, 4)] < 0.95 * m.affine.0[(4, 4)], "nothing spins: the test shows nothing");
+}
+
+#[test]
+fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_springs() {
+    for seed in 41..45 {
+        let p = random(50, 1.2, seed);
+        let m = moduli(&p, &Settings::default());
+        for (above, below) in [(&m.affine, &m.mean_spin), (&m.mean_spin, &m.stiffness)] {
+            assert!((above.0 - below.0).symmetric_eigenvalues().min() > -1e-12 * m.affine.0.amax());
+        }
+        assert!((m.affine.0 - m.mean_spin.0).amax() > 1e-6 * m.affine.0.amax());
+        let smooth = Network::new(&p, false).unwrap();
+        let affine = smooth.stiffness(None).0;
+        assert_eq!(grainlab_micromechanics::bounds::mean_spin(&smooth).0, affine);
+    }
+}
+
+/// Simple cubic under pressure: B = k_n/(3 D) both ways.
+#[test]
+fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() {
+    let edge = D * (1.0 - 2e-4);
+    let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
+    let m = moduli(&p, &Settings::default());
+    let expected = p.contact_stiffness(&p.contacts[0]).0 / (3.0 * edge);
+    assert!((m.reuss_bound.unwrap() / expected - 1.0).abs() < 1e-12);
+    assert!((m.stiffness.bulk_reuss().unwrap() / expected - 1.0).abs() < 1e-12);
+
+    let m = moduli(&reference(), &Settings::default());
+    let share = m.reuss_bound.unwrap() / m.stiffness.bulk_reuss().unwrap();
+    // .879 by Z̃(5/3) of such packings and their relaxed over affine modulus.
+    assert!((0.8..1.0).contains(&share), "{share}");
+}
+
+/// Simple cubic: the normal forces turn with the branches, C44 = (k_t − F/D)/(2 D), and C11 stays.
+#[test]
+fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
+    let edge = D * (1.0 - 1e-2);
+    let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
+    let (k_n, k_t) = p.contact_stiffness(&p.contacts[0]);
+    let network = Network::new(&p, true).unwrap().with_prestress(&p);
+    let m =
+        grainlab_micromechanics::stiffness::moduli(&network, Solver::Iterative, 1e-9, 100).unwrap().unwrap();
+    assert_eq!(m.method, grainlab_core::Method::PrestressedNetwork);
+    let expected = (k_t - p.contacts[0].normal_force / edge) / (2.0 * edge);
+    assert!((m.stiffness.0[(3, 3)] / expected - 1.0).abs() < 1e-12);
+    assert!((m.stiffness.0[(0, 0)] * edge / k_n - 1.0).abs() < 1e-12);
+}
+
+/// Face-centred cubic without tangential springs: prestress acts as springs of −F/D across the contacts, so that
+/// C11 = √2 (k_n − F/D)/D, C12 = (k_n + F/D)/(√2 D) and C44 = (k_n − F/D)/(√2 D), V = D³/√2.
+#[test]
+fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
+    let d = D * (1.0 - 2e-2);
+    let edge = d * 2f64.sqrt();
+    let sites = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
+    let positions = sites.iter().map(|s| Vec3::from(*s) * edge).collect();
+    let p = packing(Cell::cube(edge).unwrap(), positions, 0.5 * D, 0.0, None);
+    assert_eq!(p.contacts.len(), 24);
+    let (k, f) = (p.contact_stiffness(&p.contacts[0]).0, p.contacts[0].normal_force / d);
+    let settings = Settings { tangential: false, prestress: true, ..Settings::default() };
+    let c = moduli(&p, &settings).stiffness.0;
+    let root = 2f64.sqrt();
+    for (entry, expected) in [
+        (c[(0, 0)], root * (k - f) / d),
+        (c[(0, 1)], (k + f) / (root * d)),
+        (c[(3, 3)], (k - f) / (root * d)),
+        (c[(0, 3)], 0.0),
+    ] {
+        assert!((entry - expected).abs() < 1e-10 * c[(0, 0)], "{entry:e} for {expected:e}");
+    }
+    assert!(f > 5e-3 * k, "no prestress to speak of: the test shows nothing");
+}
+
+/// Loose networks under thrust: the solve with prestress against the operator itself, column by column.
+#[test]
+fn a_prestressed_network_balances_its_loads() {
+    for seed in 48..51 {
+        let p = random(50, 1.2, seed);
+        let network = Network::new(&p, true).unwrap().with_prestress(&p);
+        let (loads, norms) = network.strain_loads();
+        match grainlab_micromechanics::solve::solve(&network, &loads, &norms, 1e-10, 20_000) {
+            Ok(solution) => {
+                let mut forces = vec![[[0.0; 6]; 6]; p.grains()];
+                network.apply(&solution.motion, &mut forces);
+                for l in 0..6 {
+                    let left =
+                        forces.iter().zip(&loads).flat_map(|(f, b)| (0..6).map(move |k| f[k][l] - b[k][l]));
+                    assert!(left.map(|r| r * r).sum::<f64>().sqrt() <= 1e-10 * norms[l]);
+                }
+            }
+            Err(error) => assert!(matches!(error, MicroError::Unstable { .. }), "{error}"),
+        }
+    }
+}
+
+/// Expected: a zigzag chain of smooth spheres under thrust buckles; that is said, and no number given.
+#[test]
+fn a_chain_that_buckles_is_an_error_by_name() {
+    let mut dice = crate::samples::Dice(47);
+    let (grains, edge) = (8, 0.98 * D);
+    let cell = Cell::new(Mat3::from_diagonal(&Vec3::new(edge * grains as f64, 5.0 * D, 5.0 * D))).unwrap();
+    let place = |g: usize, dice: &mut crate::samples::Dice| {
+        Vec3::new(edge * g as f64, 1e-2 * D * dice.next(), 1e-2 * D * dice.next())
+    };
+    let positions = (0..grains).map(|g| place(g, &mut dice)).collect();
+    // With friction a grain on two contacts is none of the rattlers, which prestress leaves out.
+    let p = packing(cell, positions, 0.5 * D, 0.1, None);
+    assert!(p.contacts.len() == grains && p.contacts.iter().all(|c: &Contact| c.normal_force > 0.0));
+    let network = Network::new(&p, false).unwrap().with_prestress(&p);
+    let refused = grainlab_micromechanics::stiffness::moduli(&network, Solver::Iterative, 1e-9, 20_000);
+    assert!(matches!(refused, Err(MicroError::Unstable { .. })), "{refused:?}");
+    // Springs alone let it straighten at no cost.
+    let alone = grainlab_micromechanics::stiffness::moduli(
+        &Network::new(&p, false).unwrap(),
+        Solver::Iterative,
+        1e-9,
+        20_000,
+    );
+    assert_eq!(alone, Ok(Err(NoNetwork::Floppy { contacts: grains })));
+}

@@ -1,0 +1,105 @@
+//! The factorisation beside the iterations: one operator, two paths to C = A − ΞᵀK⁺Ξ/V.
+
+use crate::samples::{Dice, packing, random};
+use grainlab_core::{Cell, Mat3, Moduli, Packing, Vec3};
+use grainlab_micromechanics::{MicroError, Settings, Solver, analyse};
+
+fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> Moduli {
+    let settings = Settings { solver, tangential, tolerance: 1e-10, ..Settings::default() };
+    analyse(packing, &settings).unwrap().moduli.unwrap()
+}
+
+/// Both stiffnesses are above the truth by the square of a residual of 1e-10 times the inverse of the softest stiffness.
+/// Returns the iterations of each.
+fn agree(packing: &Packing, tangential: bool) -> [u32; 2] {
+    let [iterative, direct] =
+        [Solver::Iterative, Solver::Direct].map(|solver| moduli(packing, solver, tangential));
+    let error = (iterative.stiffness.0 - direct.stiffness.0).amax() / iterative.affine.0.amax();
+    assert!(error < 1e-9, "{error:e}");
+    assert!(direct.residual <= 1e-10);
+    [iterative.iterations, direct.iterations]
+}
+
+/// Without every contact that `lost` names.
+fn thinned(mut packing: Packing, mut lost: impl FnMut() -> bool) -> Packing {
+    packing.contacts.retain(|_| !lost());
+    packing.validated().unwrap()
+}
+
+#[test]
+fn random_networks_with_and_without_tangential_springs_are_as_stiff_by_either_path() {
+    for (swell, seed) in [(1.12, 1), (1.16, 2), (1.3, 3)] {
+        let p = random(120, swell, seed);
+        agree(&p, true);
+        if swell > 1.2 {
+            agree(&p, false);
+        }
+    }
+}
+
+/// Each contact fixes three directions of a grain's six with tangential springs, one of three without: fewer than 4 and 6
+/// contacts a grain cannot hold them.
+#[test]
+fn near_isostaticity_the_factorisation_takes_a_few_rounds_where_iterations_are_hundreds_of_times_as_many() {
+    let mut dice = Dice(4);
+    let p = random(300, 1.25, 4);
+    let share = 4.6 / coordination(&p);
+    let loose = thinned(p, || dice.next() > share);
+    let frictionless = random(300, 1.25, 5);
+    for (packing, tangential, isostatic) in [(loose, true, 4.0), (frictionless, false, 6.0)] {
+        let z = coordination(&packing);
+        assert!(z < isostatic + 0.7, "{z}");
+        let [iterations, rounds] = agree(&packing, tangential);
+        assert!(rounds <= 4 && iterations > 100 * rounds, "z {z}: {iterations} and {rounds}");
+    }
+}
+
+fn coordination(packing: &Packing) -> f64 {
+    2.0 * packing.contacts.len() as f64 / packing.grains() as f64
+}
+
+#[test]
+fn grains_without_contacts_and_grains_that_hang_on_one_do_no_harm() {
+    let mut dice = Dice(6);
+    let p = random(200, 1.2, 6);
+    // All contacts of some grains, and all but the first of others.
+    let fates: Vec<f64> = (0..p.grains()).map(|_| dice.next()).collect();
+    let mut kept = vec![false; p.grains()];
+    let mut p = p;
+    p.contacts.retain(|c| {
+        let ends = [c.i as usize, c.j as usize];
+        if ends.iter().any(|g| fates[*g] < 0.1 || (fates[*g] < 0.2 && kept[*g])) {
+            return false;
+        }
+        ends.iter().for_each(|g| kept[*g] = true);
+        true
+    });
+    let p = p.validated().unwrap();
+    let fabric = analyse(&p, &Settings::default()).unwrap().fabric;
+    assert!(fabric.rattlers > 20, "{}", fabric.rattlers);
+    agree(&p, true);
+}
+
+/// Each grain touches itself through two faces, and the other through several.
+#[test]
+fn contacts_with_own_images_and_several_between_two_grains_are_in_the_matrix() {
+    let d = 2.0e-4;
+    let cell = Cell::new(Mat3::new(d, 0.1 * d, 0.0, 0.0, 0.98 * d, 0.2 * d, 0.0, 0.0, 1.5 * d)).unwrap();
+    let positions = vec![Vec3::zeros(), Vec3::new(0.4, 0.6, 0.7) * d];
+    let p = packing(cell, positions, 0.52 * d, 0.1, None);
+    assert!(p.contacts.iter().any(|c| c.i == c.j));
+    assert!(p.contacts.iter().filter(|c| c.i != c.j).count() > 1);
+    agree(&p, true);
+    agree(&p, false);
+}
+
+#[test]
+fn the_same_packing_gives_the_same_bits_and_a_round_too_few_is_an_error() {
+    let p = random(60, 1.15, 15);
+    let bits = || moduli(&p, Solver::Direct, true).stiffness.row_major().map(f64::to_bits);
+    assert_eq!(bits(), bits());
+    let settings =
+        Settings { solver: Solver::Direct, tolerance: 1e-13, max_iterations: 0, ..Settings::default() };
+    let refused = analyse(&p, &settings);
+    assert!(matches!(refused, Err(MicroError::NotConverged { iterations: 0, .. })), "{refused:?}");
+}

@@ -1,0 +1,282 @@
+//! Contacts by orientation, A(d) and g fitted, fourth-order fabric, and the axis with its noise.
+
+use crate::golden::reference;
+use crate::samples::{Dice, Pair, drawn, eq6, normal, packing, pairs, random, spread, turned};
+use grainlab_core::{Cell, Fabric, Mat3, Packing, SymTensor, Vec3};
+use grainlab_micromechanics::fabric::fabric;
+use grainlab_micromechanics::orientation::contact_fit;
+use nalgebra::Rotation3;
+
+fn along_z(p: &Packing) -> Fabric {
+    fabric(p, &Vec3::z())
+}
+
+fn of_directions(directions: &[Vec3], seed: u64) -> Packing {
+    pairs(&directions.iter().map(|n| Pair::along(*n)).collect::<Vec<_>>(), seed)
+}
+
+/// Mean and standard deviation.
+fn moments(values: &[f64]) -> (f64, f64) {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64;
+    (mean, square.sqrt())
+}
+
+/// 400 sets of 1,000 contacts each: errors over standard errors are normal, and χ² says that A(d) fits.
+#[test]
+fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
+    for eps in [-0.3, 0.0, 0.1, 0.6] {
+        let mut dice = Dice(51);
+        let (mut pulls, mut chi2) = (Vec::new(), Vec::new());
+        for _ in 0..400 {
+            let directions = drawn(&mut dice, 1000, eq6(eps));
+            let fit = contact_fit(directions.iter().map(|n| n.z)).unwrap();
+            pulls.push((fit.eps - eps) / fit.eps_stddev);
+            chi2.push(fit.chi2_per_dof);
+        }
+        let (mean, spread) = moments(&pulls);
+        // Standard errors of mean and spread over 400: .05 and .035; of the share within one: .023.
+        assert!(mean.abs() < 0.2 && (spread - 1.0).abs() < 0.12, "{eps}: {mean} {spread}");
+        let within = pulls.iter().filter(|p| p.abs() < 1.0).count() as f64 / 400.0;
+        assert!((within - 0.683).abs() < 0.08, "{eps}: {within}");
+        assert!(pulls.iter().filter(|p| p.abs() > 3.0).count() <= 5, "{eps}");
+        // An unbinned fit leaves a little more than 8 of the 9 degrees of freedom; σ of the mean is .025.
+        let (chi2, _) = moments(&chi2);
+        assert!((0.9..1.2).contains(&chi2), "{eps}: {chi2}");
+    }
+}
+
+/// Contacts that do not follow Eq. 6 are told by χ²: a density 1 + P4.
+#[test]
+fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
+    let fourth = |x: f64| x + 0.125 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
+    let directions = drawn(&mut Dice(52), 2000, fourth);
+    let fit = contact_fit(directions.iter().map(|n| n.z)).unwrap();
+    assert!(fit.chi2_per_dof > 5.0 && fit.eps.abs() < 4.0 * fit.eps_stddev, "{fit:?}");
+}
+
+#[test]
+fn eps_is_kept_where_no_density_is_negative_and_not_fitted_where_nothing_tells() {
+    let chain = contact_fit([1.0, 1.0, -1.0].into_iter()).unwrap();
+    let disc = contact_fit([0.0, 0.0].into_iter()).unwrap();
+    assert_eq!((chain.eps, disc.eps), (1.0, -0.5));
+    assert_eq!(contact_fit([].into_iter()), None);
+    assert_eq!(contact_fit([(1.0f64 / 3.0).sqrt()].into_iter()), None);
+    let one = contact_fit([0.5].into_iter()).unwrap();
+    assert!(one.eps == -0.5 && one.eps_stddev > 0.5 && one.chi2_per_dof.is_finite());
+}
+
+#[test]
+fn bins_are_of_equal_solid_angle_and_hold_the_overlaps_of_their_contacts() {
+    let g = 0.05;
+    let contacts: Vec<Pair> = spread(10_000, eq6(0.0))
+        .into_iter()
+        .map(|n| Pair { overlap: (1e-4 * (1.0 + g - 3.0 * g * n.z * n.z)).powi(2), ..Pair::along(n) })
+        .collect();
+    let o = along_z(&pairs(&contacts, 1)).structure.orientation;
+    assert!(o.contacts.iter().all(|c| c.abs_diff(1000) <= 1), "{:?}", o.contacts);
+    for b in 0..10 {
+        // Mean of x² over the bin.
+        let (low, high) = (b as f64 / 10.0, (b + 1) as f64 / 10.0);
+        let square = (high.powi(3) - low.powi(3)) / 0.3;
+        let expected = 1e-4 * (1.0 + g - 3.0 * g * square);
+        assert!((o.sqrt_overlap[b] / expected - 1.0).abs() < 1e-4, "{b}");
+        assert!((o.overlap[b] / (expected * expected) - 1.0).abs() < 1e-3, "{b}");
+    }
+    let fit = o.overlap_fit.unwrap();
+    assert!((fit.g - g).abs() < 1e-13 && fit.g_stddev.unwrap() < 1e-9);
+}
+
+#[test]
+fn scattered_overlaps_give_back_g_with_an_honest_standard_error() {
+    for g in [-0.1, 0.03] {
+        let mut dice = Dice(53);
+        let pulls: Vec<f64> = (0..300)
+            .map(|_| {
+                let contacts: Vec<Pair> = drawn(&mut dice, 500, eq6(0.1))
+                    .into_iter()
+                    .map(|n| {
+                        let root = 1e-4 * (1.0 + g - 3.0 * g * n.z * n.z + 0.2 * normal(&mut dice));
+                        Pair { overlap: root.max(1e-6).powi(2), ..Pair::along(n) }
+                    })
+                    .collect();
+                let fit = along_z(&pairs(&contacts, 1)).structure.orientation.overlap_fit.unwrap();
+                (fit.g - g) / fit.g_stddev.unwrap()
+            })
+            .collect();
+        let (mean, spread) = moments(&pulls);
+        // Standard errors over 300: .058 and .041.
+        assert!(mean.abs() < 0.23 && (spread - 1.0).abs() < 0.15, "{g}: {mean} {spread}");
+    }
+}
+
+#[test]
+fn fourth_order_fabrics_of_lattices_are_exact_and_contract_to_the_second() {
+    let simple = [Vec3::x(), Vec3::y(), Vec3::z()];
+    let found = along_z(&of_directions(&simple, 1)).structure.fourth_order;
+    let mut expected = [0.0; 15];
+    [0, 10, 14].into_iter().for_each(|k| expected[k] = 1.0 / 3.0);
+    assert!(found.components.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15));
+    // H: 2/15 for xxxx, −1/15 for xxyy; |H|² = 3 (2/15)² + 18 (1/15)² = 2/15.
+    assert!((found.magnitude - 9.0 * (35.0f64 / 8.0 * 2.0 / 15.0).sqrt()).abs() < 1e-13);
+    let face = [(1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (0, 1, 1), (0, 1, -1)];
+    let face = face.map(|(x, y, z)| Vec3::new(f64::from(x), f64::from(y), f64::from(z)).normalize());
+    let found = along_z(&of_directions(&face, 1)).structure.fourth_order;
+    // H: −1/30 for xxxx, 1/60 for xxyy; |H|² = 1/120.
+    assert!((found.magnitude - 9.0 * (35.0f64 / 960.0).sqrt()).abs() < 1e-13);
+    let one = along_z(&of_directions(&[Vec3::new(0.36, 0.48, 0.8)], 1)).structure.fourth_order;
+    assert!((one.magnitude - 9.0).abs() < 1e-12);
+    let f = along_z(&random(60, 1.15, 54));
+    let (c, l) = (f.structure.fourth_order.components, f.contact_fabric);
+    let second = [
+        (c[0] + c[3] + c[5], l.xx),
+        (c[3] + c[10] + c[12], l.yy),
+        (c[5] + c[12] + c[14], l.zz),
+        (c[4] + c[11] + c[13], l.yz),
+        (c[2] + c[7] + c[9], l.xz),
+        (c[1] + c[6] + c[8], l.xy),
+    ];
+    assert!(second.iter().all(|(a, b)| (a - b).abs() < 1e-15), "{second:?}");
+}
+
+/// 1 + a2 P2 + a4 P4 about any axis: the magnitude is |a4|, and a2 does not leak into it.
+#[test]
+fn magnitude_of_the_fourth_order_is_that_of_its_p4_about_any_axis() {
+    let a4 = -0.4;
+    let cumulative = |x: f64| eq6(0.2)(x) + a4 / 8.0 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
+    let directions = spread(40_000, cumulative);
+    for r in [Rotation3::identity(), Rotation3::from_euler_angles(0.7, -0.4, 2.0)] {
+        let turned: Vec<Vec3> = directions.iter().map(|n| r * n).collect();
+        let found = along_z(&of_directions(&turned, 1)).structure.fourth_order;
+        assert!((found.magnitude - 0.4).abs() < 1e-3, "{}", found.magnitude);
+    }
+}
+
+/// Independent contacts scatter as independent contacts do, and an axis is hardly ever seen where there is none.
+#[test]
+fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
+    let mut dice = Dice(55);
+    let (mut noise, mut pulls, mut alarms) = (Vec::new(), Vec::new(), 0);
+    for seed in 0..200 {
+        let f = along_z(&of_directions(&drawn(&mut dice, 800, eq6(0.0)), seed));
+        let a = f.structure.axis;
+        noise.push(a.eps_stddev.unwrap() * 800f64.sqrt());
+        pulls.push(f.eps / a.eps_stddev.unwrap());
+        alarms += u32::from(a.determined);
+    }
+    // sd(ε)·√contacts = (15/4) √(4/45) = 1.118; each estimate is good to 12 %.
+    let (mean, spread) = moments(&noise);
+    assert!((mean - 1.118).abs() < 0.04 && spread < 0.2, "{mean} {spread}");
+    assert!((moments(&pulls).1 - 1.0).abs() < 0.2, "{:?}", moments(&pulls));
+    // 1 % of 200 are expected.
+    assert!(alarms <= 7, "{alarms}");
+}
+
+/// Prolate and oblate, about a random axis: found, with the angle it claims.
+#[test]
+fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
+    for eps in [0.4, -0.4] {
+        let mut dice = Dice(56);
+        let (mut square, mut claimed) = (0.0, 0.0);
+        for seed in 0..100 {
+            let r = Rotation3::new(Vec3::from_fn(|_, _| 3.0 * normal(&mut dice)));
+            let directions: Vec<Vec3> = drawn(&mut dice, 800, eq6(eps)).iter().map(|n| r * n).collect();
+            let f = along_z(&of_directions(&directions, seed));
+            let a = f.structure.axis;
+            assert!(a.determined, "{eps}: {a:?}");
+            assert!((a.eps - eps).abs() < 4.0 * a.eps_stddev.unwrap(), "{eps}: {a:?}");
+            square += f.axis.cross(&(r * Vec3::z())).norm().asin().powi(2) / 100.0;
+            claimed += a.angle_stddev.unwrap().powi(2) / 100.0;
+        }
+        let ratio = (square / claimed).sqrt();
+        assert!((0.8..1.25).contains(&ratio), "{eps}: {ratio}");
+    }
+}
+
+/// Three different eigenvalues with the middle one at the mean: two axes stand out alike.
+#[test]
+fn of_two_axes_that_stand_out_alike_neither_is_chosen() {
+    let mut dice = Dice(57);
+    let mut directions = Vec::new();
+    while directions.len() < 2000 {
+        let n = drawn(&mut dice, 1, eq6(0.0))[0];
+        // Density 1 + 0.6 (z² − x²).
+        if 1.6 * dice.next() < 1.0 + 0.6 * (n.z * n.z - n.x * n.x) {
+            directions.push(n);
+        }
+    }
+    let f = along_z(&of_directions(&directions, 1));
+    let l = f.contact_fabric;
+    assert!(l.zz - l.xx > 0.1 && (l.yy - 1.0 / 3.0).abs() < 0.02);
+    assert!(!f.structure.axis.determined, "{:?}", f.structure.axis);
+}
+
+#[test]
+fn lattices_and_handfuls_of_contacts_have_no_axis_to_trust() {
+    // 8 copies of a simple cubic cell: 24 contacts; 27: 81.
+    for (n, known) in [(2, false), (3, true)] {
+        let cell = Cell::new(Mat3::identity() * (f64::from(n) * 2e-4)).unwrap();
+        let sites =
+            (0..n * n * n).map(|k| Vec3::new(f64::from(k % n), f64::from(k / n % n), f64::from(k / n / n)));
+        let p = packing(cell, sites.map(|s| s * 2e-4).collect(), 1e-4 * (1.0 + 1e-4), 0.3, None);
+        assert_eq!(p.contacts.len(), 3 * p.grains());
+        let a = along_z(&p).structure.axis;
+        assert!(!a.determined && a.eps.abs() < 1e-12 && a.eps_stddev.is_some() == known, "{a:?}");
+    }
+}
+
+/// Every number about an axis is a property of the packing and that axis, not of the frame.
+#[test]
+fn turning_packing_and_axis_changes_no_number() {
+    let mut p = random(120, 1.15, 58);
+    let mut dice = Dice(58);
+    for c in &mut p.contacts {
+        let any = Vec3::from_fn(|_, _| dice.next() - 0.5);
+        c.tangential_force = c.normal.cross(&any) * 0.3 * c.normal_force;
+    }
+    let r = Rotation3::from_euler_angles(0.5, 0.8, -0.3);
+    let (f, g) = (along_z(&p), fabric(&turned(&p, r.matrix()), &(r * Vec3::z())));
+    let (a, b) = (&f.structure, &g.structure);
+    let about = |f: &Fabric| {
+        let s = &f.structure;
+        let (fit, h) = (s.orientation.contact_fit.unwrap(), s.reference_axis);
+        let (sff, forces) = (s.stress_force_fabric.unwrap(), s.forces.unwrap());
+        let pressure = s.stress.total().mean();
+        let mut numbers =
+            vec![f.eps, s.axis.eps, s.axis.eps_stddev.unwrap(), s.axis.angle_stddev.unwrap_or(0.0)];
+        numbers.extend([fit.eps, fit.eps_stddev, fit.chi2_per_dof, s.fourth_order.magnitude]);
+        numbers.extend([
+            s.orientation.overlap_fit.unwrap().g,
+            s.orientation.overlap_fit.unwrap().g_stddev.unwrap(),
+        ]);
+        numbers.extend([s.strong.eps, s.weak.eps, s.mobilisation.unwrap().mean, forces.participation()]);
+        let tensors =
+            [sff.contacts, sff.normal_forces, sff.branches, sff.tangential_forces, sff.stress_ratio()];
+        let stresses = [s.stress.normal, s.stress.tangential, s.strong.stress, s.weak.stress];
+        let scaled = |t: &SymTensor| SymTensor::from_voigt(t.voigt().map(|v| v / pressure));
+        for t in tensors.into_iter().chain(stresses.iter().map(scaled)).chain([s.tangential_fabric]) {
+            numbers.extend([t.along(&h), t.deviatoric_invariant()]);
+        }
+        numbers
+    };
+    for (k, (x, y)) in about(&f).into_iter().zip(about(&g)).enumerate() {
+        assert!((x - y).abs() < 1e-11, "{k}: {x} {y}");
+    }
+    assert_eq!(a.orientation.contacts, b.orientation.contacts);
+    assert_eq!(
+        (a.forces.unwrap().contacts, a.mobilisation.unwrap().contacts),
+        (b.forces.unwrap().contacts, b.mobilisation.unwrap().contacts)
+    );
+    assert_eq!(a.axis.determined, b.axis.determined);
+}
+
+#[test]
+fn the_reference_packing_is_isotropic_within_its_noise() {
+    let f = along_z(&reference());
+    let a = f.structure.axis;
+    // 1,277 contacts: .031 if they were independent; .02 is what packings of 500 grains scatter by.
+    let stddev = a.eps_stddev.unwrap();
+    assert!((0.010..0.025).contains(&stddev) && f.eps.abs() < 3.0 * stddev, "{} {a:?}", f.eps);
+    let fit = f.structure.orientation.contact_fit.unwrap();
+    assert!((fit.eps_stddev - 0.0313).abs() < 0.002 && (fit.eps - f.eps).abs() < 0.01, "{fit:?} {}", f.eps);
+}

@@ -1,0 +1,144 @@
+//! Cases at the edge of what has a stiffness.
+
+use crate::dense::dense_stiffness;
+use crate::samples::{Dice, packing_of_sizes, random, thinned};
+use grainlab_core::{Cell, Mat3, Material, Moduli, Packing, Vec3};
+use grainlab_micromechanics::{Network, NoNetwork, Settings, analyse};
+
+fn moduli(p: &Packing, tangential: bool) -> Moduli {
+    let settings = Settings { tangential, ..Settings::default() };
+    analyse(p, &settings).unwrap().moduli.unwrap()
+}
+
+/// Against the dense pseudo-inverse, as a share of the affine stiffness.
+fn error(p: &Packing, tangential: bool) -> f64 {
+    let m = moduli(p, tangential);
+    (m.stiffness.0 - dense_stiffness(p, tangential)).amax() / m.affine.0.amax()
+}
+
+/// Expected: a small stiffness, right to the precision of the dense solve, in spite of soft modes by the dozen.
+#[test]
+fn a_frictional_network_within_a_twentieth_of_isostaticity_is_solved() {
+    for (coordination, seed) in [(4.05, 21), (4.0, 22), (3.95, 23)] {
+        let p = thinned(&random(60, 1.25, seed), coordination);
+        let e = error(&p, true);
+        assert!(e < 1e-9, "z {coordination}: {e:e}");
+    }
+}
+
+/// Expected: the same where all rotations are zero modes and the isostatic coordination is six.
+#[test]
+fn a_frictionless_network_within_a_twentieth_of_isostaticity_is_solved() {
+    let mut floppy = 0;
+    for (coordination, seed) in [(6.05, 24), (6.0, 25), (5.95, 26)] {
+        let p = thinned(&random(60, 1.35, seed), coordination);
+        let settings = Settings { tangential: false, ..Settings::default() };
+        match analyse(&p, &settings).unwrap().moduli {
+            Ok(m) => {
+                let e = (m.stiffness.0 - dense_stiffness(&p, false)).amax() / m.affine.0.amax();
+                assert!(e < 1e-9, "z {coordination}: {e:e}");
+            }
+            Err(none) => {
+                assert!(matches!(none, NoNetwork::Floppy { .. }), "{none}");
+                assert!(dense_stiffness(&p, false).amax() < 1e-8 * 1e9);
+                floppy += 1;
+            }
+        }
+    }
+    assert!(floppy < 3, "none was stiff: the test shows nothing");
+}
+
+/// Expected: k ∝ F^⅓ leaves it a stiffness of 1/464 of the others': the moduli lie between those without it and those with
+/// it as strong as the rest.
+#[test]
+fn a_contact_of_1e_8_of_the_mean_force_is_a_feeble_spring_and_no_trouble() {
+    let mut p = random(60, 1.2, 27);
+    let mean = p.contacts.iter().map(|c| c.normal_force).sum::<f64>() / p.contacts.len() as f64;
+    let weak = p.contacts.len() / 2;
+    let r_eff = p.effective_radius(&p.contacts[weak]);
+    let c = &mut p.contacts[weak];
+    c.overlap *= (1e-8 * mean / c.normal_force).powf(2.0 / 3.0);
+    c.normal_force = p.material.normal_force(r_eff, c.overlap);
+    assert!((c.normal_force / mean / 1e-8 - 1.0).abs() < 1e-9);
+    assert!(error(&p, true) < 1e-9);
+    let with = moduli(&p, true).stiffness.0;
+    p.contacts.remove(weak);
+    let without = moduli(&p, true).stiffness.0;
+    let gain = with - without;
+    assert!(gain.symmetric_eigenvalues().min() > -1e-12 * with.amax(), "a spring more makes nothing softer");
+    assert!(gain.amax() < 1e-2 * with.amax(), "{:e}", gain.amax() / with.amax());
+}
+
+/// Expected: nothing special; levers and springs are those of the pair.
+#[test]
+fn sizes_of_one_to_five_are_solved_with_and_without_tangential_springs() {
+    let mut dice = Dice(28);
+    let (grains, smallest) = (70, 4.0e-5);
+    let radii: Vec<f64> =
+        (0..grains).map(|g| if g % 7 == 0 { 5.0 } else { 1.0 + dice.next() } * smallest).collect();
+    let cell = Cell::new(Mat3::identity() * 8.6e-4).unwrap();
+    let mut positions: Vec<Vec3> = Vec::new();
+    while positions.len() < grains {
+        let x = cell.matrix() * Vec3::new(dice.next(), dice.next(), dice.next());
+        let own = radii[positions.len()];
+        let clear = positions.iter().zip(&radii).all(|(y, r)| {
+            let mut s = cell.fractional(&(x - y));
+            s.apply(|v| *v -= v.round());
+            (cell.matrix() * s).norm() > 0.75 * (own + r)
+        });
+        if clear {
+            positions.push(x);
+        }
+    }
+    let p = packing_of_sizes(cell, positions, radii.iter().map(|r| 1.15 * r).collect(), 0.3, None);
+    assert!(p.contacts.len() > 2 * grains, "{}", p.contacts.len());
+    assert!(error(&p, true) < 1e-9);
+    assert!(error(&p, false) < 1e-9);
+}
+
+/// Expected: k_t/k_n = 2(1 − ν)/(2 − ν) = 1 and .675, and stiffnesses that follow.
+#[test]
+fn poisson_ratios_of_nothing_and_of_nearly_one_half_are_solved() {
+    let mut p = random(60, 1.2, 29);
+    let mut ratios = Vec::new();
+    for poisson_ratio in [0.0, 0.49] {
+        p.material = Material { poisson_ratio, ..Material::GLASS };
+        let (k_n, k_t) = p.contact_stiffness(&p.contacts[0]);
+        assert!((k_t / k_n - 2.0 * (1.0 - poisson_ratio) / (2.0 - poisson_ratio)).abs() < 1e-12);
+        assert!(error(&p, true) < 1e-9);
+        let c = moduli(&p, true).stiffness;
+        ratios.push(c.transverse_isotropy().g12 / c.bulk_voigt());
+    }
+    assert!(ratios[0] > 1.05 * ratios[1], "shear feels the tangential springs: {ratios:?}");
+}
+
+/// Expected: bits of the solve do not depend on what is near in memory, only its rounding does.
+#[test]
+fn numbering_the_grains_otherwise_changes_the_last_digits_alone() {
+    let p = random(60, 1.2, 30);
+    let mut q = p.clone();
+    q.positions.reverse();
+    q.radii.reverse();
+    let last = p.grains() as u32 - 1;
+    for c in &mut q.contacts {
+        *c = crate::samples::ordered(grainlab_core::packing::Contact { i: last - c.i, j: last - c.j, ..*c });
+    }
+    q.contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    let q = q.validated().unwrap();
+    let (a, b) = (moduli(&p, true).stiffness.0, moduli(&q, true).stiffness.0);
+    assert!((a - b).amax() < 1e-13 * a.amax(), "{:e}", (a - b).amax() / a.amax());
+}
+
+/// Expected: where rounding sends a round in single precision along nearly free motions, that round is undone, and double
+/// precision starts from what was good.
+#[test]
+fn networks_next_to_mechanisms_are_solved_though_single_precision_is_lost_in_them() {
+    for (swell, seed) in [(1.12, 1), (1.12, 3), (1.12, 4), (1.13, 5), (1.12, 7), (1.12, 8), (1.12, 9)] {
+        for tangential in [true, false] {
+            let network = Network::new(&random(120, swell, seed), tangential).unwrap();
+            let (loads, norms) = network.strain_loads();
+            let found = grainlab_micromechanics::solve::solve(&network, &loads, &norms, 1e-10, 20_000);
+            assert!(found.is_ok_and(|s| s.residual <= 1e-10), "swell {swell}, seed {seed}, {tangential}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What must not change the result, and what must cost nothing.
+
+use crate::samples::{random, repeated, turned};
+use grainlab_core::Vec3;
+use grainlab_micromechanics::{Network, Settings, analyse};
+use nalgebra::Rotation3;
+
+#[test]
+fn turning_the_packing_turns_the_stiffness() {
+    let p = random(60, 1.12, 11);
+    let r = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
+    let settings = Settings::default();
+    let (a, b) = (analyse(&p, &settings).unwrap(), analyse(&turned(&p, r.matrix()), &settings).unwrap());
+    let (c, turned) = (a.moduli.unwrap(), b.moduli.unwrap());
+    let error = (turned.stiffness.0 - c.stiffness.rotated(r.matrix()).0).amax() / c.stiffness.0.amax();
+    assert!(error < 1e-10, "relaxed: {error:e}");
+    let error = (turned.affine.0 - c.affine.rotated(r.matrix()).0).amax() / c.affine.0.amax();
+    assert!(error < 1e-13, "affine: {error:e}");
+}
+
+#[test]
+fn periodic_copies_change_nothing() {
+    let p = random(40, 1.12, 12);
+    let settings = Settings::default();
+    let one = analyse(&p, &settings).unwrap();
+    for copies in [2, 3] {
+        let many = analyse(&repeated(&p, copies), &settings).unwrap();
+        let (c, d) = (one.moduli.as_ref().unwrap(), many.moduli.as_ref().unwrap());
+        let error = (c.stiffness.0 - d.stiffness.0).amax() / c.stiffness.0.amax();
+        assert!(error < 1e-8, "{copies} copies: {error:e}");
+        assert_eq!((one.fabric.k, one.fabric.z), (many.fabric.k, many.fabric.z));
+        assert!((one.pressure / many.pressure - 1.0).abs() < 1e-12);
+    }
+}
+
+/// A cluster that touches no image is moved and turned as one body: no contact deforms.
+#[test]
+fn rigid_motion_costs_nothing() {
+    let mut p = random(30, 1.2, 13);
+    p.contacts.retain(|c| c.image == [0, 0, 0]);
+    assert!(p.contacts.len() > 30);
+    let network = Network::new(&p, true).unwrap();
+    let (shift, spin) = (Vec3::new(1.0, -2.0, 0.5) * 1e-5, Vec3::new(0.3, 0.2, -0.4));
+    let phi = spin * network.rotation_length();
+    let moved = |with_spin: bool| {
+        let phi = if with_spin { phi } else { -phi };
+        let rows = |x: &Vec3| {
+            let u = shift + spin.cross(x);
+            [[u.x], [u.y], [u.z], [phi.x], [phi.y], [phi.z]]
+        };
+        p.positions.iter().map(rows).collect::<Vec<_>>()
+    };
+    let mut force = vec![[[0.0]; 6]; p.grains()];
+    let [rigid] = network.apply(&moved(true), &mut force);
+    let [rolling] = network.apply(&moved(false), &mut force);
+    // Squares of rounding (1e-16) against squares of order one.
+    assert!(rigid.abs() < 1e-28 * rolling, "{rigid:e} against {rolling:e}");
+}
+
+#[test]
+fn operator_is_symmetric_and_reports_its_energy() {
+    let p = random(30, 1.1, 14);
+    let network = Network::new(&p, true).unwrap();
+    let x: Vec<grainlab_micromechanics::Motion<2>> = (0..p.grains())
+        .map(|g| std::array::from_fn(|r| std::array::from_fn(|l| ((g * 7 + r * 3 + l * 11) as f64).sin())))
+        .collect();
+    let mut y = vec![[[0.0; 2]; 6]; p.grains()];
+    let energy = network.apply(&x, &mut y);
+    let dot = |a: usize, b: usize| -> f64 {
+        x.iter().zip(&y).map(|(x, y)| (0..6).map(|k| x[k][a] * y[k][b]).sum::<f64>()).sum()
+    };
+    assert!((dot(0, 1) - dot(1, 0)).abs() < 1e-13 * dot(0, 0));
+    assert!((dot(0, 0) - energy[0]).abs() < 1e-13 * energy[0]);
+    assert!((dot(1, 1) - energy[1]).abs() < 1e-13 * energy[1]);
+}
+
+#[test]
+fn the_same_packing_gives_the_same_bits() {
+    let p = random(60, 1.15, 15);
+    let bits = || {
+        let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
+        m.stiffness.row_major().map(f64::to_bits)
+    };
+    assert_eq!(bits(), bits());
+}
+
+/// A loose solve must still bound the stiffness from above and be second order in its residual.
+#[test]
+fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
+    let p = random(60, 1.2, 16);
+    let with = |tolerance| {
+        analyse(&p, &Settings { tolerance, ..Settings::default() }).unwrap().moduli.unwrap().stiffness.0
+    };
+    let exact = with(1e-12);
+    let scale = exact.amax();
+    for tolerance in [1e-3, 1e-5] {
+        let difference = with(tolerance) - exact;
+        assert!(difference.symmetric_eigenvalues().min() > -1e-12 * scale, "{tolerance:e}: below the truth");
+        let error = difference.amax() / scale;
+        assert!(error < 10.0 * tolerance * tolerance.sqrt(), "{tolerance:e}: {error:e}");
+    }
+}
+
+/// Of a solve by its two evaluations: whatever the tolerance, no entry is further off than twice what is stated, and nothing
+/// is stated to be exact.
+#[test]
+fn the_standard_error_of_a_stiffness_covers_its_error() {
+    let p = random(60, 1.2, 17);
+    let with =
+        |tolerance| analyse(&p, &Settings { tolerance, ..Settings::default() }).unwrap().moduli.unwrap();
+    let exact = with(1e-13).stiffness.0;
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+        let m = with(tolerance);
+        assert!(m.stddev.0.min() > 0.0);
+        let off = (m.stiffness.0 - exact).abs();
+        // Entries that cancel in one evaluation are covered by the largest of their row.
+        for (a, row) in off.row_iter().enumerate() {
+            assert!(row.amax() <= 2.0 * m.stddev.0.row(a).amax(), "{tolerance:e}, row {a}: {row}");
+        }
+    }
+    assert!(
+        with(1e-2).stddev.0.amax() > 1e3 * with(1e-6).stddev.0.amax(),
+        "it says nothing of the tolerance"
+    );
+}

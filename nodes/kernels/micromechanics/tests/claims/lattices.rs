@@ -1,0 +1,122 @@
+//! Lattices with closed forms, and contacts with own images.
+
+use crate::samples::{packing, turned};
+use grainlab_core::{Cell, Mat3, Packing, SymmetryClass, Vec3, symmetry};
+use grainlab_micromechanics::{Settings, analyse};
+use nalgebra::{Matrix6, Rotation3};
+
+const D: f64 = 2.0e-4;
+const OVERLAP: f64 = 3.0e-8;
+
+/// Spheres that just overlap, with the overlap of every spring set to [`OVERLAP`]; branch lengths are D exactly.
+fn lattice(cell: Mat3, sites: &[[f64; 3]]) -> Packing {
+    let cell = Cell::new(cell).unwrap();
+    let positions = sites.iter().map(|s| cell.matrix() * Vec3::from(*s)).collect();
+    packing(cell, positions, 0.5 * D * (1.0 + 1e-9), 0.3, Some(OVERLAP))
+}
+
+fn simple_cubic() -> Packing {
+    lattice(Mat3::identity() * D, &[[0.1, 0.2, 0.3]])
+}
+
+fn fcc() -> Packing {
+    let half = 0.5;
+    lattice(
+        Mat3::identity() * (D * 2f64.sqrt()),
+        &[[0.0, 0.0, 0.0], [0.0, half, half], [half, 0.0, half], [half, half, 0.0]],
+    )
+}
+
+fn springs(p: &Packing) -> (f64, f64) {
+    p.contact_stiffness(&p.contacts[0])
+}
+
+fn cubic(c11: f64, c12: f64, c44: f64) -> Matrix6<f64> {
+    Matrix6::from_fn(|i, j| match (i == j, i < 3, j < 3) {
+        (true, true, _) => c11,
+        (true, false, _) => c44,
+        (false, true, true) => c12,
+        _ => 0.0,
+    })
+}
+
+/// Relative to the largest entry; 1e-10 leaves room for the rounding of the sum over contacts alone.
+fn assert_equal(found: &Matrix6<f64>, expected: &Matrix6<f64>, what: &str) {
+    let error = (found - expected).amax() / expected.amax();
+    assert!(error < 1e-10, "{what}: {error:e}\n{found}\n{expected}");
+}
+
+/// Three contacts a grain along the axes, V = D³: C11 = k_n/D, C12 = 0, C44 = k_t/(2D); nothing relaxes by symmetry.
+#[test]
+fn simple_cubic_is_exact_with_one_grain_touching_its_own_images() {
+    let p = simple_cubic();
+    assert_eq!(p.contacts.len(), 3);
+    let (k_n, k_t) = springs(&p);
+    let a = analyse(&p, &Settings::default()).unwrap();
+    assert_eq!((a.fabric.k, a.fabric.z, a.fabric.rattlers), (6.0, 6.0, 0));
+    let m = a.moduli.unwrap();
+    let expected = cubic(k_n / D, 0.0, 0.5 * k_t / D);
+    assert_equal(&m.stiffness.0, &expected, "relaxed");
+    assert_equal(&m.affine.0, &expected, "affine");
+}
+
+/// Six contacts a grain along ⟨110⟩, V = D³/√2: C11 = √2 (k_n + k_t)/D, C12 = (k_n − k_t)/(√2 D),
+/// C44 = (k_n + k_t)/(√2 D); affine motion is exact.
+#[test]
+fn fcc_is_exact_with_four_grains() {
+    let p = fcc();
+    assert_eq!(p.contacts.len(), 24);
+    let (k_n, k_t) = springs(&p);
+    let root = 2f64.sqrt();
+    let expected = cubic(root * (k_n + k_t) / D, (k_n - k_t) / (root * D), (k_n + k_t) / (root * D));
+    let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
+    assert_equal(&m.stiffness.0, &expected, "relaxed");
+    assert_equal(&m.affine.0, &expected, "affine");
+}
+
+#[test]
+fn fcc_is_exact_with_one_grain_in_a_skewed_primitive_cell() {
+    let h = D / 2f64.sqrt();
+    let p = lattice(Mat3::new(0.0, h, h, h, 0.0, h, h, h, 0.0), &[[0.0; 3]]);
+    assert_eq!(p.contacts.len(), 6);
+    let four = analyse(&fcc(), &Settings::default()).unwrap().moduli.unwrap();
+    let one = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
+    assert_equal(&one.stiffness.0, &four.stiffness.0, "primitive cell");
+}
+
+/// Eight contacts a grain along ⟨111⟩ and two grains a cell, V = 4D³/(3√3) each: Σ n_x² = 4/3, Σ n_x⁴ = Σ n_x²n_y² = 4/9.
+#[test]
+fn bcc_is_exact_with_two_grains() {
+    let p = lattice(Mat3::identity() * (2.0 * D / 3f64.sqrt()), &[[0.0; 3], [0.5; 3]]);
+    assert_eq!(p.contacts.len(), 8);
+    let (k_n, k_t) = springs(&p);
+    let f = 3.0 * 3f64.sqrt() / (4.0 * D);
+    let expected = cubic(
+        f * (4.0 / 9.0 * (k_n - k_t) + 4.0 / 3.0 * k_t),
+        f * 4.0 / 9.0 * (k_n - k_t),
+        f * (4.0 / 9.0 * (k_n - k_t) + 2.0 / 3.0 * k_t),
+    );
+    let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
+    assert_equal(&m.stiffness.0, &expected, "relaxed");
+}
+
+/// A lattice of cubic symmetry is cubic, seen from any side; a stiffness along ⟨110⟩ and one along the edges alike.
+#[test]
+fn cubic_lattices_are_found_cubic_and_their_edges_found() {
+    let r = Rotation3::from_euler_angles(0.4, 1.0, -0.6);
+    for p in [simple_cubic(), fcc()] {
+        let c = analyse(&turned(&p, r.matrix()), &Settings::default()).unwrap().moduli.unwrap().stiffness;
+        let s = symmetry(&c, 1e-6).unwrap();
+        assert_eq!(s.class, SymmetryClass::Cubic, "{s:?}");
+        let overlap = r.matrix().transpose() * s.cubic_axes;
+        assert!(overlap.iter().all(|v| v.abs() < 1e-6 || (v.abs() - 1.0).abs() < 1e-9), "{overlap}");
+    }
+}
+
+#[test]
+fn frictionless_simple_cubic_has_no_shear_stiffness_and_no_nan() {
+    let p = simple_cubic();
+    let settings = Settings { tangential: false, ..Settings::default() };
+    let m = analyse(&p, &settings).unwrap().moduli.unwrap();
+    assert_equal(&m.stiffness.0, &cubic(springs(&p).0 / D, 0.0, 0.0), "frictionless");
+}

@@ -1,0 +1,253 @@
+//! Packings to measure.
+
+use grainlab_core::material::effective_radius;
+use grainlab_core::packing::Contact;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+
+/// A packing of spheres of one radius at `positions`, with every contact that `radius` makes in `cell` (images up to
+/// one cell away). With `uniform`, that overlap is written into every contact, which makes all springs equal.
+pub(crate) fn packing(
+    cell: Cell,
+    positions: Vec<Vec3>,
+    radius: f64,
+    friction: f64,
+    uniform: Option<f64>,
+) -> Packing {
+    let radii = vec![radius; positions.len()];
+    packing_of_sizes(cell, positions, radii, friction, uniform)
+}
+
+/// The same with spheres of these radii.
+pub(crate) fn packing_of_sizes(
+    cell: Cell,
+    positions: Vec<Vec3>,
+    radii: Vec<f64>,
+    friction: f64,
+    uniform: Option<f64>,
+) -> Packing {
+    let n = positions.len();
+    let mut packing = Packing {
+        step: 7,
+        time: 0.5,
+        cell,
+        deformation: Mat3::identity(),
+        ids: (1..=n as u32).collect(),
+        radii,
+        positions,
+        velocities: vec![Vec3::zeros(); n],
+        spins: vec![Vec3::zeros(); n],
+        contacts: Vec::new(),
+        material: Material::GLASS,
+        friction,
+        time_step: 0.0,
+    };
+    let images: Vec<[i8; 3]> = (0..27i8).map(|k| [k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1]).collect();
+    for i in 0..n {
+        for j in i..n {
+            for &image in &images {
+                // Of a contact with an own image, one of the two directions is kept.
+                if i == j && image <= [0, 0, 0] {
+                    continue;
+                }
+                let l = packing.positions[j] - packing.positions[i] + packing.cell.shift(image);
+                let overlap = packing.radii[i] + packing.radii[j] - l.norm();
+                if overlap > 0.0 {
+                    let overlap = uniform.unwrap_or(overlap);
+                    packing.contacts.push(Contact {
+                        i: i as u32,
+                        j: j as u32,
+                        image,
+                        overlap,
+                        normal: l.normalize(),
+                        normal_force: Material::GLASS
+                            .normal_force(effective_radius(packing.radii[i], packing.radii[j]), overlap),
+                        tangential_force: Vec3::zeros(),
+                    });
+                }
+            }
+        }
+    }
+    packing.validated().expect("a sample is a packing")
+}
+
+/// Numbers in [0, 1) from a 64-bit linear congruential generator.
+pub(crate) struct Dice(pub(crate) u64);
+
+impl Dice {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// `grains` spheres thrown into a cube, no closer than 0.8 diameters, then blown up by `swell`: no equilibrium, but a
+/// network with every kind of grain, from none to a dozen contacts.
+pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
+    let mut dice = Dice(seed);
+    let diameter = 2.0e-4;
+    let edge = diameter * (grains as f64 * std::f64::consts::FRAC_PI_6 / 0.45).cbrt();
+    let cell = Cell::new(Mat3::new(edge, 0.2 * edge, 0.0, 0.0, edge, -0.1 * edge, 0.0, 0.0, edge)).unwrap();
+    let mut positions: Vec<Vec3> = Vec::new();
+    while positions.len() < grains {
+        let x = cell.matrix() * Vec3::new(dice.next(), dice.next(), dice.next());
+        let clear = positions.iter().all(|y| {
+            let mut s = cell.fractional(&(x - y));
+            s.apply(|v| *v -= v.round());
+            (cell.matrix() * s).norm() > 0.8 * diameter
+        });
+        if clear {
+            positions.push(x);
+        }
+    }
+    packing(cell, positions, 0.5 * swell * diameter, 0.1, None)
+}
+
+/// The packing without its weakest contacts, so that grains have `coordination` of them on average.
+pub(crate) fn thinned(p: &Packing, coordination: f64) -> Packing {
+    let mut out = p.clone();
+    let kept = (0.5 * coordination * p.grains() as f64).round() as usize;
+    assert!(kept < p.contacts.len(), "nothing to take away");
+    let mut overlaps: Vec<f64> = p.contacts.iter().map(|c| c.overlap).collect();
+    overlaps.sort_by(f64::total_cmp);
+    let least = overlaps[overlaps.len() - kept];
+    out.contacts.retain(|c| c.overlap >= least);
+    out.validated().expect("fewer contacts are a packing, too")
+}
+
+/// `copies` of the packing side by side along edge vector 0.
+pub(crate) fn repeated(p: &Packing, copies: i32) -> Packing {
+    let n = p.grains();
+    let edge: Vec3 = p.cell.matrix().column(0).into_owned();
+    let mut matrix = *p.cell.matrix();
+    matrix.set_column(0, &(edge * f64::from(copies)));
+    let mut out = Packing { cell: Cell::new(matrix).unwrap(), contacts: Vec::new(), ..p.clone() };
+    for copy in 1..copies {
+        out.positions.extend(p.positions.iter().map(|x| x + edge * f64::from(copy)));
+        out.velocities.extend(&p.velocities);
+        out.spins.extend(&p.spins);
+        out.radii.extend(&p.radii);
+    }
+    out.ids = (1..=(n as i32 * copies) as u32).collect();
+    for c in &p.contacts {
+        for copy in 0..copies {
+            let reached = copy + i32::from(c.image[0]);
+            let i = c.i + (copy as usize * n) as u32;
+            let j = c.j + (reached.rem_euclid(copies) as usize * n) as u32;
+            let image = [reached.div_euclid(copies) as i8, c.image[1], c.image[2]];
+            out.contacts.push(ordered(Contact { i, j, image, ..*c }));
+        }
+    }
+    out.contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    out.validated().expect("copies of a packing are a packing")
+}
+
+/// The same contact with `i ≤ j`.
+pub(crate) fn ordered(c: Contact) -> Contact {
+    if c.i <= c.j {
+        return c;
+    }
+    let image = c.image.map(|k| -k);
+    Contact { i: c.j, j: c.i, image, normal: -c.normal, tangential_force: -c.tangential_force, ..c }
+}
+
+/// The packing turned as a whole.
+pub(crate) fn turned(p: &Packing, rotation: &Mat3) -> Packing {
+    let mut out = p.clone();
+    out.cell = Cell::new(rotation * p.cell.matrix()).unwrap();
+    out.positions.iter_mut().for_each(|x| *x = rotation * *x);
+    for c in &mut out.contacts {
+        c.normal = rotation * c.normal;
+        c.tangential_force = rotation * c.tangential_force;
+    }
+    out.validated().expect("a turned packing is a packing")
+}
+
+/// Normally distributed, mean 0, variance 1.
+pub(crate) fn normal(dice: &mut Dice) -> f64 {
+    (-2.0 * (1.0 - dice.next()).ln()).sqrt() * (std::f64::consts::TAU * dice.next()).cos()
+}
+
+/// A contact to be put between two grains of its own.
+pub(crate) struct Pair {
+    pub(crate) normal: Vec3,
+    /// Distance of the centres, m.
+    pub(crate) branch: f64,
+    pub(crate) overlap: f64,
+    pub(crate) normal_force: f64,
+    /// On the second grain.
+    pub(crate) tangential_force: Vec3,
+}
+
+impl Pair {
+    /// Along `normal`, with a force of 1 N.
+    pub(crate) fn along(normal: Vec3) -> Self {
+        Self { normal, branch: 2e-4, overlap: 1e-8, normal_force: 1.0, tangential_force: Vec3::zeros() }
+    }
+}
+
+/// Contacts of any directions and forces, each between two grains of its own that touch nobody else, thrown into a cube
+/// of 1 cm³: what structure is measured on, and nothing that could stand.
+pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
+    let mut dice = Dice(seed);
+    let mut p = packing(Cell::cube(0.01).unwrap(), Vec::new(), 1e-4, 0.5, None);
+    for (k, pair) in contacts.iter().enumerate() {
+        let place = Vec3::from_fn(|_, _| 0.01 * dice.next());
+        for (half, offset) in [0.0, pair.branch].into_iter().enumerate() {
+            p.ids.push((2 * k + half + 1) as u32);
+            p.radii.push(0.5 * (pair.branch + pair.overlap));
+            p.positions.push(place + pair.normal * offset);
+            p.velocities.push(Vec3::zeros());
+            p.spins.push(Vec3::zeros());
+        }
+        p.contacts.push(Contact {
+            i: 2 * k as u32,
+            j: 2 * k as u32 + 1,
+            image: [0; 3],
+            overlap: pair.overlap,
+            normal: pair.normal,
+            normal_force: pair.normal_force,
+            tangential_force: -pair.tangential_force,
+        });
+    }
+    p.validated().expect("pairs are a packing")
+}
+
+/// Directions about z whose cosine x has the cumulative distribution `cumulative` on [0, 1], drawn from `dice`.
+pub(crate) fn drawn(dice: &mut Dice, count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
+    (0..count)
+        .map(|_| {
+            let side = if dice.next() < 0.5 { -1.0 } else { 1.0 };
+            direction(inverse(&cumulative, dice.next()) * side, dice.next())
+        })
+        .collect()
+}
+
+/// The same without scatter: evenly spread in x and about z.
+pub(crate) fn spread(count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
+    (0..count)
+        .map(|k| {
+            let x = inverse(&cumulative, (k as f64 + 0.5) / count as f64);
+            direction(x, (k as f64 * 0.618_033_988_749_895).fract())
+        })
+        .collect()
+}
+
+/// Cumulative distribution of x = |n·z| for A(d) of Eq. 6.
+pub(crate) fn eq6(eps: f64) -> impl Fn(f64) -> f64 {
+    move |x| (1.0 - eps) * x + eps * x.powi(3)
+}
+
+fn inverse(cumulative: &impl Fn(f64) -> f64, share: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > 1e-15 {
+        let x = 0.5 * (low + high);
+        if cumulative(x) < share { low = x } else { high = x }
+    }
+    0.5 * (low + high)
+}
+
+fn direction(x: f64, turn: f64) -> Vec3 {
+    let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+    let flat = (1.0 - x * x).max(0.0).sqrt();
+    Vec3::new(flat * cos, flat * sin, x).normalize()
+}
