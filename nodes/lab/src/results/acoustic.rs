@@ -102,7 +102,7 @@ impl AcousticView {
         let axis = found.axis.or_else(told).unwrap_or_else(Vec3::z);
         let density = Measured { value: found.density, stddev: found.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(found.pressure);
-        let fitted = christoffel::observation(&speeds, density, Some(axis), conditions);
+        let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions);
         let (mut moduli, mut sigma) = (ModuliView::default(), ModuliView::default());
         match &fitted {
             Ok(fitted) => {
@@ -140,8 +140,8 @@ impl AcousticView {
             sigma,
             chi_square: fitted.as_ref().and_then(|f| f.chi_square),
             degrees_of_freedom: fitted.as_ref().map(|f| f.degrees_of_freedom),
-            scatter: fitted.as_ref().and_then(christoffel::Fitted::scatter),
-            departure: fitted.as_ref().and_then(|f| Some(f.departure?.scatter)),
+            scatter: fitted.as_ref().and_then(christoffel::SpeedFit::scatter),
+            departure: fitted.as_ref().and_then(|f| Some(f.anisotropy_scatter?.scatter)),
             warnings,
         }
     }

@@ -92,7 +92,7 @@ impl Verdict {
 /// What a quantity is compared with: k̂ is no property of a packing, the coordination number that it stands for is.
 fn against(quantity: Quantity, way: &Way) -> Quantity {
     match quantity {
-        Quantity::KHat => way.calibration.isotropic().abscissa,
+        Quantity::KHat => way.calibration.isotropic().coordination_kind,
         other => other,
     }
 }

@@ -118,7 +118,7 @@ fn moduli(measurement: &Measurement, stiffness: &Stiffness, packing: &Packing) -
     let speeds: Vec<_> = measurement.waves.iter().map(|w| w.wave).collect();
     let density = Measured { value: measurement.density, stddev: measurement.density_stddev };
     let conditions = Conditions::at(grainlab_core::stress::stress(packing).tensor.mean().max(0.0));
-    let fitted = christoffel::observation(&speeds, density, measurement.axis, conditions).ok()?;
+    let fitted = christoffel::moduli_from_speeds(&speeds, density, measurement.axis, conditions).ok()?;
     let t = stiffness.transverse_isotropy();
     [
         (Modulus::C33, t.c33),

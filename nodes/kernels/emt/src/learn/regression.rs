@@ -1,6 +1,6 @@
-//! Weighted linear least squares, and the one nonlinear constant.
+//! Weighted linear least squares, and minimisation in one variable.
 
-use super::CalibrationError;
+use crate::calibration::CalibrationError;
 use nalgebra::{DMatrix, DVector};
 
 /// Coefficients, and the inverse of the normal matrix.
@@ -11,7 +11,7 @@ pub(super) struct Regression {
     pub(super) squares: f64,
 }
 
-/// Fits `y` by the columns of the rows, each row with its weight (of the residual, not of its square).
+/// Fits y by linear combinations of the columns of x. Each row is (x, y, weight of the residual).
 pub(super) fn linear<const N: usize>(
     rows: &[([f64; N], f64, f64)],
     what: &'static str,
@@ -22,7 +22,7 @@ pub(super) fn linear<const N: usize>(
     }
     let x = DMatrix::from_fn(rows.len(), N, |i, j| rows[i].0[j] * rows[i].2);
     let y = DVector::from_fn(rows.len(), |i, _| rows[i].1 * rows[i].2);
-    // Columns of one scale: then the threshold for what is no information needs no unit.
+    // Columns are scaled to norm 1, so that the threshold for a singular matrix has no unit.
     let scale: Vec<f64> = x.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
     let scaled = DMatrix::from_fn(rows.len(), N, |i, j| x[(i, j)] / scale[j]);
     let normal = scaled.transpose() * &scaled;
@@ -35,7 +35,7 @@ pub(super) fn linear<const N: usize>(
     Ok(Regression { coefficients, inverse, squares })
 }
 
-/// The argument in [low, high] where `f`, which has one minimum there, is least, by golden sections.
+/// The minimum of `f` in [low, high], if it is the only one there, by golden-section search.
 pub(super) fn minimum(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
     let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_comes_back_from_its_points_and_too_few_points_are_an_error() {
+    fn a_line_is_recovered_from_its_points_and_too_few_points_are_an_error() {
         let points: Vec<_> = (0..5).map(|i| ([1.0, f64::from(i)], 2.0 - 0.5 * f64::from(i), 1.0)).collect();
         let fit = linear(&points, "points").unwrap();
         assert!((fit.coefficients[0] - 2.0).abs() < 1e-12 && (fit.coefficients[1] + 0.5).abs() < 1e-12);

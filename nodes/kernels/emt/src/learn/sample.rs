@@ -1,16 +1,16 @@
 //! Packings that a calibration is learned from.
 
-use crate::conditions::{Conditions, Gamma, GammaSource, Measured};
+use crate::conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
 use crate::moduli::Moduli;
 use crate::observation::Observation;
 use grainlab_core::{Anisotropy, Material};
 
-/// One packing: its moduli, and its structure as counted.
+/// One packing: its moduli, and its structure counted from the contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    /// How it was prepared. Packings of one preparation are left out together when the models are judged.
+pub struct CalibrationSample {
+    /// How it was prepared. Packings of one preparation are left out together when the models are tested.
     pub preparation: String,
-    /// Which of them it is: states of the same packing at several pressures share it.
+    /// Name of the packing: states of the same packing at several pressures share it.
     pub packing: String,
     /// Number of grains.
     pub grains: u32,
@@ -28,17 +28,17 @@ pub struct Sample {
     pub k: f64,
     /// Coordination number without rattlers.
     pub z: f64,
-    /// Anisotropy of the number of contacts.
+    /// Contact anisotropy ε.
     pub eps: f64,
-    /// The same weighted by contact stiffness.
+    /// ε weighted by contact stiffness.
     pub eps_stiffness: f64,
 }
 
-impl Sample {
-    /// What an experimenter who knows this γ/Δ observes of it.
-    pub fn observation(&self, gamma: GammaSource) -> Observation {
+impl CalibrationSample {
+    /// The observation of an experimenter who knows this γ/Δ.
+    pub fn observation(&self, gamma: StrainRatioSource) -> Observation {
         let conditions = Conditions {
-            gamma: Gamma::of(&self.gamma, gamma),
+            gamma: StrainRatio::of(&self.gamma, gamma),
             solid_fraction: Some(Measured::exact(self.solid_fraction)),
             material: Some(self.material),
             ..Conditions::at(self.pressure)
@@ -46,7 +46,7 @@ impl Sample {
         Observation { grains: Some(self.grains), ..Observation::new(self.moduli, conditions) }
     }
 
-    /// Whether every number is one.
+    /// Whether every number is finite and every modulus positive.
     pub(super) fn is_finite(&self) -> bool {
         let numbers = [
             self.pressure,
@@ -61,4 +61,9 @@ impl Sample {
         numbers.iter().all(|v| v.is_finite())
             && self.moduli.values().iter().all(|m| m.is_some_and(|m| m.is_finite() && m > 0.0))
     }
+}
+
+/// Lowest and highest.
+pub(super) fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }

@@ -1,19 +1,20 @@
-//! Each modulus by its own coordination number: G_ij = α(k·3 m_ij + β) p^⅓, Θ = ρ(k + ζ) p^⅓ with the constants of
-//! Eqs. 21 and 22, and 3 m_ij the share of contacts that shear in the plane ij meets, 1 in an isotropic packing.
+//! Each modulus with its own coordination number: G_ij = α(k·3 m_ij + β) p^⅓, Θ = ρ(k + ζ) p^⅓ with the constants of
+//! Eqs. 21 and 22, and 3 m_ij the fraction of contacts that carry shear in the plane ij, 1 in an isotropic packing.
 //!
-//! The constants α and β hold what a network's relaxation does to the shear modulus, so that ε comes out amplified by
-//! k/(k + β) without any γ/Δ. Any two of G12, G13 and Θ give k and ε; of three, the least squares of their relative
-//! deviations. On the paper's own rows this is the best of the models with three moduli; on packings of ours it amplifies
-//! too much.
+//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies the effect
+//! of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε; with all three, k and ε minimise
+//! the sum of squares of the relative deviations. On the paper's own rows this is the best of the models that use three
+//! moduli; on packings of the calibration `grainlab` the amplification is too large.
 
-use crate::calibration::{Calibration, Isotropic};
+use crate::calibration::{Calibration, IsotropicCalibration};
+use crate::checks::outside_fit;
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::model::{Model, Slopes, Solution};
+use crate::model::Model;
 use crate::moduli::{MODULI, Moduli, Modulus};
 use crate::observation::Observation;
-use crate::ratio::outside_fit;
+use crate::point_estimate::{Jacobian, PointEstimate};
 use crate::structure::{QUANTITIES, Quantity, Structure};
 use nalgebra::{Matrix2x3, Matrix3x2, Vector2, Vector3};
 
@@ -23,10 +24,10 @@ pub struct Directional;
 
 const NAME: &str = "directional";
 
-/// |ε| of the domain: beyond, weak directions of loose packings would have no stiffness.
-const REACH: f64 = 0.3;
+/// Largest |ε| of the domain: beyond it the weakest direction of a loose packing would have no stiffness.
+const MAX_EPS: f64 = 0.3;
 
-/// Gauss–Newton steps: four do near a solution.
+/// Maximum number of Gauss–Newton steps; four suffice near a solution.
 const STEPS: usize = 100;
 
 impl Model for Directional {
@@ -40,10 +41,11 @@ impl Model for Directional {
 
     fn domain(&self, calibration: &Calibration) -> Domain {
         let isotropic = calibration.isotropic();
-        let weakest = shares(REACH)[0].min(shares(-REACH)[1]);
+        let weakest = shares(MAX_EPS)[0].min(shares(-MAX_EPS)[1]);
         let mut structure = [None; QUANTITIES];
-        structure[isotropic.abscissa as usize] = Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
-        structure[Quantity::Eps as usize] = Some([-REACH, REACH]);
+        structure[isotropic.coordination_kind as usize] =
+            Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
+        structure[Quantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
         Domain {
             model: NAME,
             structure,
@@ -59,14 +61,14 @@ impl Model for Directional {
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
-        let found = self.domain(calibration).take(structure, conditions)?;
+        let found = self.domain(calibration).validate(structure, conditions)?;
         let isotropic = calibration.isotropic_for(conditions.material);
-        let [k, eps] = [isotropic.abscissa, Quantity::Eps].map(|q| found[q as usize]);
+        let [k, eps] = [isotropic.coordination_kind, Quantity::Eps].map(|q| found[q as usize]);
         let (moduli, _) = forward(&isotropic, conditions.pressure.value, k, eps);
         Ok(Moduli::paper(moduli[0], moduli[1], moduli[2]))
     }
 
-    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<Solution, EmtError> {
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
         let isotropic = calibration.isotropic_for(observation.conditions.material);
         let given = [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| observation.moduli.get(m));
         if given.iter().flatten().count() < 2 {
@@ -83,21 +85,22 @@ impl Model for Directional {
             }
         })?;
         let (k, eps) = (found[0], found[1]);
-        let mut slopes = Slopes::zeros();
-        for (row, quantity) in [isotropic.abscissa, Quantity::Eps].into_iter().enumerate() {
+        let mut jacobian = Jacobian::zeros();
+        for (row, quantity) in [isotropic.coordination_kind, Quantity::Eps].into_iter().enumerate() {
             for i in 0..3 {
-                slopes[(quantity as usize, i)] = gain[(row, i)];
-                // All moduli go with the cube root of the pressure.
-                slopes[(quantity as usize, MODULI)] -= gain[(row, i)] / 3.0;
+                jacobian[(quantity as usize, i)] = gain[(row, i)];
+                // All moduli are proportional to the cube root of the pressure.
+                jacobian[(quantity as usize, MODULI)] -= gain[(row, i)] / 3.0;
             }
         }
-        let structure = Structure::default().with(isotropic.abscissa, k).with(Quantity::Eps, eps);
-        let warnings = outside_fit(isotropic.abscissa, k, calibration).into_iter().collect();
-        Ok(Solution { slopes: Some(slopes), warnings, ..Solution::exact(structure) })
+        let structure = Structure::default().with(isotropic.coordination_kind, k).with(Quantity::Eps, eps);
+        let warnings = outside_fit(isotropic.coordination_kind, k, calibration).into_iter().collect();
+        Ok(PointEstimate { jacobian: Some(jacobian), warnings, ..PointEstimate::exact(structure) })
     }
 }
 
-/// 3 m12 and 3 m13, which sums the compliances of both directions of the plane, and their slopes by ε.
+/// 3 m12 and 3 m13, the latter from the sum of the compliances of both directions of the plane, and their derivatives with
+/// respect to ε.
 fn shares_and_slopes(eps: f64) -> [(f64, f64); 2] {
     let (radial, axial) = (1.0 - 0.4 * eps, 1.0 + 0.8 * eps);
     let sum = radial + axial;
@@ -110,8 +113,13 @@ fn shares(eps: f64) -> [f64; 2] {
     shares_and_slopes(eps).map(|(share, _)| share)
 }
 
-/// G12, G13 and Θ, Pa, and their slopes by k and ε.
-fn forward(isotropic: &Isotropic, pressure: f64, k: f64, eps: f64) -> (Vector3<f64>, Matrix3x2<f64>) {
+/// G12, G13 and Θ, Pa, and their derivatives with respect to k and ε.
+fn forward(
+    isotropic: &IsotropicCalibration,
+    pressure: f64,
+    k: f64,
+    eps: f64,
+) -> (Vector3<f64>, Matrix3x2<f64>) {
     let shear_slope = isotropic.shear_modulus(1.0, pressure) - isotropic.shear_modulus(0.0, pressure);
     let bulk_slope = isotropic.bulk_modulus(1.0, pressure) - isotropic.bulk_modulus(0.0, pressure);
     let [(m12, by12), (m13, by13)] = shares_and_slopes(eps);
@@ -131,8 +139,8 @@ fn forward(isotropic: &Isotropic, pressure: f64, k: f64, eps: f64) -> (Vector3<f
     (moduli, slopes)
 }
 
-/// The coordination number that the moduli have in the mean, were they isotropic.
-fn start(isotropic: &Isotropic, pressure: f64, [g12, g13, theta]: [Option<f64>; 3]) -> f64 {
+/// The coordination number of an isotropic packing with this Θ or, without Θ, this mean shear modulus.
+fn start(isotropic: &IsotropicCalibration, pressure: f64, [g12, g13, theta]: [Option<f64>; 3]) -> f64 {
     let unit = 1e6 * (pressure / 1e6).cbrt();
     let [alpha, beta, rho, zeta] = isotropic.constants();
     let of_theta = theta.map(|t| t / (rho * unit) - zeta);
@@ -141,11 +149,11 @@ fn start(isotropic: &Isotropic, pressure: f64, [g12, g13, theta]: [Option<f64>; 
     of_theta.or(of_shear).unwrap_or(0.0)
 }
 
-/// k, ε, and their changes per relative change of G12, G13 and Θ.
+/// (k, ε), and their changes per relative change of G12, G13 and Θ.
 type Found = (Vector2<f64>, Matrix2x3<f64>);
 
-/// Gauss–Newton, halving what does not improve; `None` where it does not settle on something that a packing can have.
-fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) -> Option<Found> {
+/// Gauss–Newton with step halving; `None` where it does not converge, or to a negative coordination number or stiffness.
+fn least_squares(isotropic: &IsotropicCalibration, pressure: f64, given: [Option<f64>; 3]) -> Option<Found> {
     let weight = Vector3::from(given.map(|g| g.map_or(0.0, |g| 1.0 / g)));
     let value = Vector3::from(given.map(|g| g.unwrap_or(0.0)));
     let at = |found: Vector2<f64>| {
@@ -162,7 +170,7 @@ fn least_squares(isotropic: &Isotropic, pressure: f64, given: [Option<f64>; 3]) 
             return None;
         }
         let mut share = 1.0;
-        // Rounding alone is no deterioration.
+        // An increase by rounding alone is accepted.
         let enough = residual.norm() + 4.0 * f64::EPSILON;
         while share > 1e-9 && at(found + step * share).0.norm() > enough {
             share *= 0.5;

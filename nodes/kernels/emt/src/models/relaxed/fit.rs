@@ -1,23 +1,23 @@
 //! The least squares problem at one coordination number, and what follows from its solution.
 
-use super::State;
-use crate::calibration::{Network, SCATTERED};
+use super::state::State;
+use crate::calibration::{RelaxationCalibration, SCATTERED};
 use crate::invariants::INVARIANTS;
-use crate::model::Slopes;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
+use crate::point_estimate::Jacobian;
 use crate::structure::{Quantity, Structure, StructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
-/// Relative error of the relation between six moduli below which they are five.
+/// Relative error of the relation between the six moduli below which only five of them are independent.
 const NO_ROOM: f64 = 1e-6;
 
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
 
-/// The moduli used, in units of [`State::unit`]. The one that was not measured but follows from the others is left out; of
-/// six that were, Θ, if their errors leave no room for a sixth. The rows of what is left out or not known are neutral: no
-/// residual, unit variance.
+/// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left out; if
+/// all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known have residual
+/// 0 and variance 1.
 pub(super) struct Data {
     value: Moduli,
     covariance: Square,
@@ -61,14 +61,14 @@ impl Data {
 pub(super) struct Fit {
     pub(super) z: f64,
     eps: f64,
-    /// Whether ε is fitted; else it is one of the things that packings differ by.
+    /// Whether ε is fitted; else it is part of the scatter of the packings.
     fits_eps: bool,
     pub(super) chi_square: f64,
     /// χ² + ln det of the covariance: twice the negative logarithm of the likelihood.
     pub(super) objective: f64,
-    /// Observed less predicted.
+    /// Observed minus predicted.
     residual: Moduli,
-    /// Slopes of the moduli by the invariants, by φ, and by (z, ε).
+    /// Derivatives of the moduli with respect to the invariants, ln φ, and (z, ε).
     by_invariants: SMatrix<f64, MODULI, INVARIANTS>,
     by_ln_phi: Moduli,
     by_unknowns: SMatrix<f64, MODULI, 2>,
@@ -80,15 +80,15 @@ pub(super) struct Fit {
 /// The estimate and its errors.
 pub(super) struct Inferred {
     pub(super) structure: Structure,
-    pub(super) slopes: Slopes,
+    pub(super) jacobian: Jacobian,
     pub(super) discrepancy: StructureCovariance,
 }
 
 impl Fit {
-    /// At z, with ε given or, for `None`, the best one; `None` where no covariance is left.
+    /// At z, with the given ε or, for `None`, the best one; `None` where the covariance is singular.
     pub(super) fn at(
         data: &Data,
-        network: &Network,
+        network: &RelaxationCalibration,
         state: &State,
         z: f64,
         eps: Option<f64>,
@@ -103,8 +103,10 @@ impl Fit {
         let at_zero = data.masked(isotropic.slopes());
         let first = Moduli::from(isotropic.moduli());
         let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_ln_phi: &Moduli, by_eps: &Moduli| {
-            let scatter =
-                network.scatter_at(z, state.wider).fixed_view::<INVARIANTS, INVARIANTS>(0, 0).into_owned();
+            let scatter = network
+                .scatter_at(z, state.variance_factor)
+                .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
+                .into_owned();
             let mut c = slopes * scatter * slopes.transpose() + data.covariance;
             c += by_ln_phi * by_ln_phi.transpose() * state.ln_phi[1].powi(2);
             if !fits_eps {
@@ -175,7 +177,7 @@ impl Fit {
         [step[0], step[1]]
     }
 
-    /// Change of (z, ε) by a change of the moduli.
+    /// Change of (z, ε) per change of the moduli.
     fn gain(&self) -> SMatrix<f64, 2, MODULI> {
         let mut gain = self.unknowns * self.by_unknowns.transpose() * self.weight;
         if !self.fits_eps {
@@ -184,7 +186,7 @@ impl Fit {
         gain
     }
 
-    /// ε of the linearisation.
+    /// ε at which the problem is linearised.
     pub(super) fn eps_now(&self) -> f64 {
         self.eps
     }
@@ -198,15 +200,15 @@ impl Fit {
         self.unknowns[(1, 1)].max(0.0).sqrt()
     }
 
-    /// Data less unknowns; `None` if there are no more.
+    /// Number of data minus number of unknowns; `None` if not positive.
     pub(super) fn degrees_of_freedom(&self, data: &Data) -> Option<usize> {
         let unknowns = if self.fits_eps { 2 } else { 1 };
         data.used.checked_sub(unknowns).filter(|d| *d > 0)
     }
 
-    /// The modulus furthest from what the others say, and by how many standard deviations.
+    /// The modulus furthest from its prediction by the others, and by how many standard deviations.
     pub(super) fn worst(&self, data: &Data) -> (Modulus, f64) {
-        // Left out of the fit, a datum differs from its prediction by (W r)_i over the square root of (W C W)_ii.
+        // A datum left out of the fit differs from its prediction by (W r)_i over the square root of (W C W)_ii.
         let left = self.weight - self.weight * self.by_unknowns * self.gain();
         let pull = left * self.residual;
         let sigma = |i: usize| pull[i].abs() / left[(i, i)].max(f64::MIN_POSITIVE).sqrt();
@@ -215,23 +217,23 @@ impl Fit {
         (Modulus::ALL[worst], sigma(worst))
     }
 
-    /// z and ε, and what follows: k and ε by stiffness from both and from what the moduli still differ by.
-    pub(super) fn inferred(&self, data: &Data, network: &Network, state: &State) -> Inferred {
+    /// z and ε; and k and the ε weighted by stiffness, which follow from them and from the residual of the moduli.
+    pub(super) fn inferred(&self, data: &Data, network: &RelaxationCalibration, state: &State) -> Inferred {
         let (z, eps) = (self.z, self.eps);
         let gain = self.gain();
-        let scatter = network.scatter_at(z, state.wider);
+        let scatter = network.scatter_at(z, state.variance_factor);
         let ln_rattlers = network.ln_rattlers(z, state.ln_phi[0], state.ln_p);
         let rattlers = ln_rattlers.exp();
         let [_, by_z, by_phi, by_p] = network.rattlers;
         let amplitude = network.eps_stiffness;
-        // Rows: ε by stiffness, k. Columns: z, ε.
+        // Rows: ε weighted by stiffness, k. Columns: z, ε.
         let follows = SMatrix::<f64, 2, 2>::new(
             amplitude.slope(z) * eps,
             amplitude.value(z),
             1.0 - rattlers - z * rattlers * by_z,
             0.0,
         );
-        // What the residual of the moduli says of the scatter of the two.
+        // The scatter of these two is correlated with that of the moduli: regression on the residual.
         let regression =
             scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() * self.weight;
         let residual_gain = SMatrix::<f64, MODULI, MODULI>::identity() - self.by_unknowns * gain;
@@ -251,8 +253,8 @@ impl Fit {
         by_moduli.fixed_view_mut::<2, MODULI>(0, 0).copy_from(&gain);
         by_moduli.fixed_view_mut::<2, MODULI>(2, 0).copy_from(&following);
 
-        // The residual changes with the data, and against the prediction with the state.
-        let mut slopes = Slopes::zeros();
+        // The residual changes with the data and, with opposite sign, with the prediction for the state.
+        let mut jacobian = Jacobian::zeros();
         let by_ln_p = -data.value / 3.0
             - self.by_invariants.column(0) * network.theta.by_pressure
             - self.by_invariants.column(1) * network.shear.by_pressure;
@@ -263,18 +265,18 @@ impl Fit {
             }
             let of = quantity as usize;
             for i in 0..MODULI {
-                slopes[(of, i)] = by_moduli[(row, i)] * data.value[i];
+                jacobian[(of, i)] = by_moduli[(row, i)] * data.value[i];
             }
-            slopes[(of, MODULI)] = by_state[0][row];
-            slopes[(of, MODULI + 2)] = if state.phi_known { by_state[1][row] } else { 0.0 };
+            jacobian[(of, MODULI)] = by_state[0][row];
+            jacobian[(of, MODULI + 2)] = if state.phi_known { by_state[1][row] } else { 0.0 };
         }
         let of_k = Quantity::K as usize;
-        slopes[(of_k, MODULI)] -= z * rattlers * by_p;
+        jacobian[(of_k, MODULI)] -= z * rattlers * by_p;
         if state.phi_known {
-            slopes[(of_k, MODULI + 2)] -= z * rattlers * by_phi;
+            jacobian[(of_k, MODULI + 2)] -= z * rattlers * by_phi;
         }
 
-        // Errors by the scatter of the packings: through the moduli, and of k and ε by stiffness themselves.
+        // Errors from the scatter of the packings: through the moduli, and that of k and of ε weighted by stiffness.
         let mut by_scatter = SMatrix::<f64, 4, SCATTERED>::zeros();
         by_scatter.fixed_view_mut::<4, INVARIANTS>(0, 0).copy_from(&(by_moduli * self.by_invariants));
         by_scatter[(2, INVARIANTS)] = -1.0;
@@ -297,11 +299,11 @@ impl Fit {
                 discrepancy[(qa as usize, qb as usize)] = errors[(a, b)];
             }
         }
-        Inferred { structure, slopes, discrepancy }
+        Inferred { structure, jacobian, discrepancy }
     }
 
-    /// Slope of the moduli by ε.
-    fn of_eps(&self, network: &Network) -> Moduli {
+    /// Derivative of the moduli with respect to ε.
+    fn of_eps(&self, network: &RelaxationCalibration) -> Moduli {
         let amplitudes = [network.dilatation, network.voigt, network.harmonic];
         (0..3).map(|i| self.by_invariants.column(2 + i) * amplitudes[i].value(self.z)).sum()
     }

@@ -1,28 +1,29 @@
-//! Our model: the moduli of a relaxed contact network, without γ/Δ.
+//! The moduli of a relaxed contact network, without γ/Δ.
 //!
-//! The scalars of the stiffness follow the coordination number z, its two deviators follow ε, amplified as the network
-//! nears its isostatic point; the harmonic part carries the fourth-order fabric and hardly any ε (see [`Invariants`]). What
-//! packings of the same structure still differ by is known as a covariance of those five, so that any set of moduli is
-//! weighed by what it is worth: the estimate is the generalised least squares one, which for a linear model is the most
-//! probable of all with no prior knowledge of z and ε. k and the ε weighted by contact stiffness follow from z and ε, and
-//! from what the moduli still differ by.
+//! The scalars of the stiffness depend on the coordination number z. Its two deviators are proportional to ε, with factors
+//! that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order fabric and hardly
+//! on ε (see [`crate::Invariants`]). Packings of the same structure still differ; their scatter is known as a covariance of
+//! these five numbers, and the estimate is the generalised least-squares one: for a linear model, the most probable one with
+//! a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z, ε and the residual of the moduli.
 //!
-//! The constants come from packings ([`crate::calibration`]); only the form is derived.
+//! The constants come from packings ([`crate::Calibration`]); only the form is derived.
 
 mod fit;
 mod scan;
+mod state;
 
-use crate::calibration::{Calibration, Network};
+use crate::calibration::{Calibration, RelaxationCalibration};
 use crate::conditions::Conditions;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::invariants::Invariants;
-use crate::model::{Misfit, Model, Solution};
+use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
+use crate::point_estimate::{Misfit, PointEstimate};
 use crate::structure::{QUANTITIES, Quantity, Structure};
 use crate::warning::Warning;
 use fit::{Data, Fit};
+use state::State;
 
 /// The relaxed network: model `relaxed`.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +31,7 @@ pub struct Relaxed;
 
 const NAME: &str = "relaxed";
 
-/// Beyond this standard deviation of ε the data do not determine it: it is more than any packing has.
+/// Standard deviation of ε from which on ε counts as undetermined: more than the ε of any packing.
 const UNDETERMINED: f64 = 0.2;
 
 impl Model for Relaxed {
@@ -64,7 +65,7 @@ impl Model for Relaxed {
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let network = network(calibration)?;
-        let found = self.domain(calibration).take(structure, conditions)?;
+        let found = self.domain(calibration).validate(structure, conditions)?;
         let [z, eps] = [Quantity::Z, Quantity::Eps].map(|q| found[q as usize]);
         let state = State::of(conditions, None, network, calibration);
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
@@ -76,7 +77,7 @@ impl Model for Relaxed {
         Ok(Moduli::of_values(moduli.map(Some)))
     }
 
-    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<Solution, EmtError> {
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
         let network = network(calibration)?;
         let state = State::of(&observation.conditions, observation.grains, network, calibration);
         let data = Data::of(observation, &state);
@@ -87,76 +88,26 @@ impl Model for Relaxed {
         let fit = match both {
             Some(Ok(fit)) if fit.eps_stddev() < UNDETERMINED => fit,
             Some(Err(error)) if data.used > 2 => return Err(error),
-            // The coordination alone, whatever ε packings have.
+            // The coordination number alone, with ε distributed as in the packings of the calibration.
             _ => scan::best(&data, network, &state, calibration.name(), true)?,
         };
-        Ok(solution(&fit, &data, network, &state))
+        Ok(point_estimate(&fit, &data, network, &state))
     }
 }
 
-fn network(calibration: &Calibration) -> Result<&Network, EmtError> {
+fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError> {
     let missing = || EmtError::NotCalibrated { model: NAME, calibration: calibration.name().to_owned() };
     calibration.network().ok_or_else(missing)
 }
 
-/// The state of a sample in the units of the network's laws.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    /// E*^⅔ p^⅓, Pa.
-    unit: f64,
-    /// ln(φ/φ0), and its standard deviation.
-    ln_phi: [f64; 2],
-    /// ln of p/E* over that of the calibration's reference.
-    ln_p: f64,
-    /// Whether φ was given.
-    phi_known: bool,
-    /// How much wider than those of the calibration samples of this size scatter, as a variance.
-    wider: f64,
-}
-
-impl State {
-    fn of(
-        conditions: &Conditions,
-        grains: Option<u32>,
-        network: &Network,
-        calibration: &Calibration,
-    ) -> Self {
-        let own = calibration.material();
-        let young = conditions.material.as_ref().unwrap_or(own).effective_young();
-        let pressure = conditions.pressure.value;
-        let [mean, spread] = network.solid_fraction;
-        let ln_phi = match conditions.solid_fraction {
-            Some(phi) => [(phi.value / mean).ln(), phi.stddev / phi.value],
-            None => [0.0, spread / mean],
-        };
-        Self {
-            unit: young.cbrt().powi(2) * pressure.cbrt(),
-            ln_phi,
-            ln_p: (pressure / network.pressure * (own.effective_young() / young)).ln(),
-            phi_known: conditions.solid_fraction.is_some(),
-            wider: network.wider(grains),
-        }
-    }
-
-    fn invariants(&self, network: &Network, z: f64, eps: f64) -> Invariants {
-        Invariants {
-            ln_theta: network.theta.value(z, self.ln_phi[0], self.ln_p),
-            ln_shear: network.shear.value(z, self.ln_phi[0], self.ln_p),
-            dilatation: network.dilatation.value(z) * eps,
-            voigt: network.voigt.value(z) * eps,
-            harmonic: network.harmonic.value(z) * eps,
-        }
-    }
-}
-
-fn solution(fit: &Fit, data: &Data, network: &Network, state: &State) -> Solution {
+fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state: &State) -> PointEstimate {
     let mut warnings = Vec::new();
     if !state.phi_known {
         warnings.push(Warning::SolidFractionAssumed { phi: network.solid_fraction[0] });
     }
     let phi = state.ln_phi[0].exp() * network.solid_fraction[0];
     let [loosest, densest] = network.solid_fractions;
-    // A hair's breadth: φ went through a logarithm.
+    // The tolerance is for the rounding of φ through a logarithm.
     if !(loosest - 1e-9..=densest + 1e-9).contains(&phi) {
         warnings.push(Warning::SolidFractionOutsideFit { phi, range: network.solid_fractions });
     }
@@ -181,16 +132,16 @@ fn solution(fit: &Fit, data: &Data, network: &Network, state: &State) -> Solutio
         warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
     }
     let inferred = fit.inferred(data, network, state);
-    Solution {
+    PointEstimate {
         structure: inferred.structure,
-        slopes: Some(inferred.slopes),
+        jacobian: Some(inferred.jacobian),
         discrepancy: Some(inferred.discrepancy),
         misfit,
         warnings,
     }
 }
 
-/// Value of χ² that chance exceeds once in a thousand.
+/// Value that χ² exceeds by chance once in a thousand times.
 fn one_in_a_thousand(degrees_of_freedom: usize) -> f64 {
     [10.83, 13.82, 16.27, 18.47][degrees_of_freedom.clamp(1, 4) - 1]
 }

@@ -1,23 +1,23 @@
-//! The search for the coordination number: never a silent local solution.
+//! The search for the coordination number on a grid, so that a second solution is reported and not missed.
 
-use super::State;
 use super::fit::{Data, Fit};
-use crate::calibration::Network;
+use super::state::State;
+use crate::calibration::RelaxationCalibration;
 use crate::error::EmtError;
 
-/// Coordination numbers looked at: their spacing, 0.1, is a few times the error of an exact measurement.
+/// Number of coordination numbers tried: their spacing, 0.1, is a few times the error of an exact measurement.
 const GRID: usize = 24;
 
-/// Gauss–Newton steps: three or four do for data that fit.
+/// Maximum number of Gauss–Newton steps; three or four suffice for data that fit.
 const STEPS: usize = 60;
 
-/// Difference of twice the logarithm of the likelihood below which two solutions are as good as each other (two sigma).
+/// Difference of twice the log-likelihood below which two solutions are equally good (two sigma).
 const AMBIGUOUS: f64 = 4.0;
 
 /// The most probable solution, if it is the only one.
 pub(super) fn best(
     data: &Data,
-    network: &Network,
+    network: &RelaxationCalibration,
     state: &State,
     calibration: &str,
     coordination_alone: bool,
@@ -53,7 +53,7 @@ pub(super) fn best(
     })
 }
 
-/// Gauss–Newton from a point of the grid; `None` if it leaves the domain, or does not settle.
+/// Gauss–Newton from a point of the grid; `None` if it leaves the domain or does not converge.
 fn refined(at: &impl Fn(f64, Option<f64>) -> Option<Fit>, start: f64, [low, high]: [f64; 2]) -> Option<Fit> {
     let spacing = (high - low) / (GRID - 1) as f64;
     let mut fit = at(start, None)?;
@@ -67,7 +67,7 @@ fn refined(at: &impl Fn(f64, Option<f64>) -> Option<Fit>, start: f64, [low, high
             let inside = (low - 1e-9..=high + 1e-9).contains(&fit.z);
             return inside.then_some(fit);
         }
-        // A step of twice the grid's spacing is as far as the linearisation is trusted.
+        // The linearisation is trusted over twice the grid's spacing.
         let shorten = (2.0 * spacing / dz.abs()).min(1.0);
         let z = (fit.z + shorten * dz).clamp(low - 0.5 * spacing, high + 0.5 * spacing);
         if !(low..=high).contains(&z) {
