@@ -3,9 +3,9 @@
 mod chain;
 mod crystals;
 mod dispersion;
-mod flight;
+mod time_of_flight;
 mod instrument;
 mod picks;
-mod repeat;
+mod supercell;
 mod sample;
-mod standing;
+mod standing_wave;

@@ -81,8 +81,8 @@ enum Rays {
 impl From<Rays> for Survey {
     fn from(rays: Rays) -> Self {
         match rays {
-            Rays::Three => Survey::Three,
-            Rays::Complete => Survey::Complete,
+            Rays::Three => Survey::Minimal,
+            Rays::Complete => Survey::AzimuthalAverage,
         }
     }
 }

@@ -87,7 +87,7 @@ impl FromArgMatches for Flags {
 mod tests {
     use super::*;
     use clap::Args as _;
-    use grainlab_acoustics::Way;
+    use grainlab_acoustics::MethodSettings;
 
     fn settings(words: &[&str]) -> Result<Settings, String> {
         let command = Flags::augment_args(Command::new("probe").allow_negative_numbers(true));
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn lists_and_axes_are_typed_as_elsewhere() {
         let s = settings(&["--wavelengths", "30,40,60", "--axis", "0,0,2", "--seed", "7"]).unwrap().0;
-        let Way::Dispersion(d) = s.way else { panic!("the default") };
+        let MethodSettings::Dispersion(d) = s.method else { panic!("the default") };
         assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grainlab_core::Vec3::z())));
         assert_eq!(s.instrument.seed, 7);
     }

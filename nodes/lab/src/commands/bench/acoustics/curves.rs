@@ -2,8 +2,8 @@
 
 use crate::commands::bench::plot::{AXES, Axis, COLOURS, axes, begin, circle, line, text};
 use crate::failure::Failure;
-use grainlab_acoustics::curve::Point;
-use grainlab_acoustics::{Curve, Modes, Ray, Survey, dispersion, standing};
+use grainlab_acoustics::DispersionPoint;
+use grainlab_acoustics::{DispersionCurve, Modes, Ray, Survey, dispersion, standing_wave};
 use grainlab_core::{Packing, Vec3};
 use grainlab_node_kit::Exit;
 use std::f64::consts::TAU;
@@ -22,31 +22,37 @@ const NAMES: [&str; 9] =
 pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
     let invalid = |e: grainlab_acoustics::AcousticsError| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let axis = Vec3::z();
-    let rays = Survey::Three.rays(&axis, Modes::All);
+    let rays = Survey::Minimal.rays(&axis, Modes::All);
     let laws = dispersion::curves(packing, &rays, &dispersion::Settings::default()).map_err(invalid)?;
     let seen = seen(packing, &rays);
-    let lattice = Survey::Three.lattice_rays(&packing.cell, &axis, Modes::All);
-    let settings = standing::Settings { copies: 12, ..Default::default() };
-    let (rung, ..) = standing::curves(packing, &lattice, &settings, &Default::default()).map_err(invalid)?;
+    let lattice = Survey::Minimal.lattice_rays(&packing.cell, &axis, Modes::All);
+    let settings = standing_wave::Settings { copies: 12, ..Default::default() };
+    let (rung, ..) =
+        standing_wave::curves(packing, &lattice, &settings, &Default::default()).map_err(invalid)?;
     let diameter = 2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64;
     Ok(draw(&laws, &seen, &rung, diameter))
 }
 
 /// Speeds at every wavelength shown, by curve, where the packing has modes of that length that are waves.
-fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<Point>> {
+fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<DispersionPoint>> {
     let at = |wavelength: f64| {
         let wavelengths = vec![wavelength, LONG, 2.0 * LONG];
         let settings = dispersion::Settings { wavelengths, tolerance: 1e-4, ..Default::default() };
         dispersion::curves(packing, rays, &settings).ok()
     };
-    let all: Vec<Vec<Curve>> = SHOWN.into_iter().filter_map(at).collect();
+    let all: Vec<Vec<DispersionCurve>> = SHOWN.into_iter().filter_map(at).collect();
     let of = |k: usize| all.iter().filter_map(|curves| curves.get(k)?.points.last().copied()).collect();
     (0..all.first().map_or(0, Vec::len)).map(of).collect()
 }
 
-fn draw(laws: &[Curve], seen: &[Vec<Point>], rung: &[Curve], diameter: f64) -> String {
-    let slower = |law: &Curve, points: &[Point]| -> Vec<[f64; 2]> {
-        let of = |p: &Point| [TAU / (p.wavenumber * diameter), 1.0 - (p.speed / law.speed).powi(2)];
+fn draw(
+    laws: &[DispersionCurve],
+    seen: &[Vec<DispersionPoint>],
+    rung: &[DispersionCurve],
+    diameter: f64,
+) -> String {
+    let slower = |law: &DispersionCurve, points: &[DispersionPoint]| -> Vec<[f64; 2]> {
+        let of = |p: &DispersionPoint| [TAU / (p.wavenumber * diameter), 1.0 - (p.speed / law.speed).powi(2)];
         points.iter().map(of).filter(|[_, y]| *y > 0.0).collect()
     };
     let points: Vec<_> = laws.iter().zip(seen).map(|(law, seen)| slower(law, seen)).collect();
@@ -61,8 +67,8 @@ fn draw(laws: &[Curve], seen: &[Vec<Point>], rung: &[Curve], diameter: f64) -> S
     let ends = [SHOWN[0], SHOWN[SHOWN.len() - 1]];
     for (k, law) in laws.iter().enumerate() {
         let colour = COLOURS[k % COLOURS.len()];
-        let bent = |wavelength: f64| law.bend * (TAU / (wavelength * diameter)).powi(2);
-        if law.bend > 0.0 {
+        let bent = |wavelength: f64| law.dispersion_coefficient * (TAU / (wavelength * diameter)).powi(2);
+        if law.dispersion_coefficient > 0.0 {
             let [from, to] = ends.map(|w| [x.at(w), y.at(bent(w))]);
             line(&mut svg, [from[0], from[1], to[0], to[1]], colour);
         }
@@ -75,7 +81,7 @@ fn draw(laws: &[Curve], seen: &[Vec<Point>], rung: &[Curve], diameter: f64) -> S
         }
         let at = AXES[2] + 10.0 + 20.0 * k as f64;
         circle(&mut svg, [AXES[1] + 36.0, at - 4.0], (colour, colour), "");
-        let bend = law.bend / (diameter * diameter);
+        let bend = law.dispersion_coefficient / (diameter * diameter);
         text(&mut svg, AXES[1] + 50.0, at, "start", "", &format!("{name}: b = {bend:.2} D^2"));
     }
     svg + "</svg>\n"

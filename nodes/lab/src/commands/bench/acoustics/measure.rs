@@ -4,8 +4,10 @@ use super::report::{Error, Row};
 use super::{Args, Method};
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
-use grainlab_acoustics::flight::{self, Pick};
-use grainlab_acoustics::{AcousticsError, Measurement, Settings, Way, dispersion, measure, standing};
+use grainlab_acoustics::time_of_flight::{self, ArrivalPick};
+use grainlab_acoustics::{
+    AcousticsError, Measurement, MethodSettings, Settings, dispersion, measure, standing_wave,
+};
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use grainlab_node_kit::Exit;
@@ -23,34 +25,34 @@ pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> 
     let mut rows = Vec::new();
     for method in args.methods() {
         for (value, way) in ways(*method, args) {
-            let settings = Settings { way, survey: args.survey.into(), ..Settings::default() };
+            let settings = Settings { method: way, survey: args.survey.into(), ..Settings::default() };
             rows.push(row(*method, value, packing, &settings, &stiffness)?);
         }
     }
     Ok(rows)
 }
 
-fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, Way)> {
+fn ways(method: Method, args: &Args) -> Vec<(Option<f64>, MethodSettings)> {
     let flight = |pick| {
-        let settings = flight::Settings { pick, ..flight::Settings::default() };
-        vec![(None, Way::Flight(settings))]
+        let settings = time_of_flight::Settings { pick, ..time_of_flight::Settings::default() };
+        vec![(None, MethodSettings::TimeOfFlight(settings))]
     };
     match method {
         Method::Dispersion => (args.tolerances.iter())
             .map(|tolerance| {
                 let settings = dispersion::Settings { tolerance: *tolerance, ..Default::default() };
-                (Some(*tolerance), Way::Dispersion(settings))
+                (Some(*tolerance), MethodSettings::Dispersion(settings))
             })
             .collect(),
         Method::StandingWave => (args.copies.iter())
             .map(|copies| {
-                let settings = standing::Settings { copies: *copies, ..Default::default() };
-                (Some(f64::from(*copies)), Way::Standing(settings))
+                let settings = standing_wave::Settings { copies: *copies, ..Default::default() };
+                (Some(f64::from(*copies)), MethodSettings::StandingWave(settings))
             })
             .collect(),
-        Method::FirstArrival => flight(Pick::FirstArrival),
-        Method::CrossCorrelation => flight(Pick::CrossCorrelation),
-        Method::Peak => flight(Pick::Peak),
+        Method::FirstArrival => flight(ArrivalPick::FirstArrival),
+        Method::CrossCorrelation => flight(ArrivalPick::CrossCorrelation),
+        Method::Peak => flight(ArrivalPick::Peak),
     }
 }
 
