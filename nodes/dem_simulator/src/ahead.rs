@@ -28,7 +28,7 @@ impl Ahead {
     ///
     /// `None` where the law gives none.
     pub(crate) fn of(run: &Simulation, request: &Request, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = grainlab_servo::answer(&request.question());
+        let answer = grainlab_servo::control(&request.question());
         let rate = answer.ok()?.rate;
         let began = now();
         let mut run = run.clone();

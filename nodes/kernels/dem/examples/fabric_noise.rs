@@ -51,7 +51,7 @@ fn seconds<T>(work: impl FnOnce() -> T) -> f64 {
 fn made(scene: grainlab_scene::Scene) -> Result<Packing, Box<dyn std::error::Error>> {
     let mut run = grainlab_dem::Simulation::new(scene)?;
     while let Some(r) = run.request() {
-        run.answer(&grainlab_servo::answer(&r.question())?.rate)?;
+        run.answer(&grainlab_servo::control(&r.question())?.rate)?;
     }
     Ok(run.packing())
 }

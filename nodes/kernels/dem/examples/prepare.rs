@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut run = grainlab_dem::Simulation::new(scene)?;
     let (begin, mut mark, mut steps) = (Instant::now(), Instant::now(), 0);
     while let Some(r) = run.request() {
-        let answer = grainlab_servo::answer(&r.question())?;
+        let answer = grainlab_servo::control(&r.question())?;
         let advanced = run.answer(&answer.rate)?;
         if let Some(name) = advanced.ended {
             let (e, done) = (run.engine(), run.engine().steps() - steps);

@@ -47,7 +47,7 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
     );
     let mut run = Simulation::new(Scene::parse(&text)?)?;
     while let Some(r) = run.request() {
-        let answer = grainlab_servo::answer(&r.question())?;
+        let answer = grainlab_servo::control(&r.question())?;
         run.answer(&answer.rate)?;
     }
     print(&run.packing());

@@ -75,8 +75,8 @@ pub struct Request {
 
 impl Request {
     /// What a servo is asked.
-    pub fn question(&self) -> grainlab_servo::Request {
-        grainlab_servo::Request {
+    pub fn question(&self) -> grainlab_servo::ServoInput {
+        grainlab_servo::ServoInput {
             stress: self.snapshot.stress.tensor,
             controls: self.controls,
             rate: self.rate,

@@ -47,7 +47,7 @@ publish = true
 
 fn advance(run: &mut Simulation) -> bool {
     let Some(r) = run.request() else { return false };
-    run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate).unwrap();
+    run.answer(&grainlab_servo::control(&r.question()).unwrap().rate).unwrap();
     true
 }
 

@@ -45,7 +45,7 @@ fn settled() -> &'static Vec<(Engine, f64)> {
         let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
         let mut out = Vec::new();
         while let Some(r) = run.request() {
-            let advanced = run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate).unwrap();
+            let advanced = run.answer(&grainlab_servo::control(&r.question()).unwrap().rate).unwrap();
             if advanced.packing_due {
                 let target = PRESSURES[out.len()];
                 let stress = run.engine().snapshot().unwrap().stress.tensor.voigt();
@@ -113,7 +113,7 @@ impl Loop {
             if errors[errors.len() - 1] > 100.0 && rate_limit.is_infinite() {
                 break;
             }
-            let request = grainlab_servo::Request {
+            let request = grainlab_servo::ServoInput {
                 stress,
                 controls: self.controls,
                 rate: self.engine.rate(),
@@ -123,7 +123,7 @@ impl Loop {
                 tangent: [0.0; 6],
                 control_interval: self.interval(),
             };
-            self.engine.set_rate(&grainlab_servo::answer(&request).unwrap().rate).unwrap();
+            self.engine.set_rate(&grainlab_servo::control(&request).unwrap().rate).unwrap();
             for _ in 0..self.period {
                 self.engine.step().unwrap();
             }

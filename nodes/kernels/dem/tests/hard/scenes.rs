@@ -61,7 +61,7 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
     let mut run = Simulation::new(scene).unwrap();
     let mut errors = Vec::new();
     while let Some(r) = run.request() {
-        let advanced = run.answer(&grainlab_servo::answer(&r.question()).unwrap().rate);
+        let advanced = run.answer(&grainlab_servo::control(&r.question()).unwrap().rate);
         let advanced = advanced.unwrap_or_else(|e| panic!("{label}{e}"));
         let targets = r.controls.map(|c| match c {
             ComponentControl::Stress(target) => target,

@@ -144,9 +144,9 @@ pub(crate) fn servo(
     law: ServoLaw,
     rate_limit: f64,
     period: u32,
-) -> grainlab_servo::Answer {
+) -> grainlab_servo::ServoOutput {
     let seen = e.snapshot().unwrap();
-    grainlab_servo::answer(&grainlab_servo::Request {
+    grainlab_servo::control(&grainlab_servo::ServoInput {
         stress: seen.stress.tensor,
         controls,
         rate: e.rate(),

@@ -24,8 +24,8 @@ fn servoed(
     controls: [ComponentControl; 6],
     law: ServoLaw,
     periods: usize,
-) -> grainlab_servo::Answer {
-    let mut last = grainlab_servo::Answer { rate: [0.0; 6], saturated: [false; 6] };
+) -> grainlab_servo::ServoOutput {
+    let mut last = grainlab_servo::ServoOutput { rate: [0.0; 6], saturated: [false; 6] };
     for _ in 0..periods {
         last = servo(e, controls, law, LIMIT, PERIOD);
         e.set_rate(&last.rate).unwrap();

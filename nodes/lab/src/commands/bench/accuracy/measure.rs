@@ -45,7 +45,7 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
             let tangent = r.snapshot.tangent[..3].iter().copied().fold(0.0, f64::max);
             servoed = Some(Servoed { tangent, interval: r.control_interval });
         }
-        let answer = grainlab_servo::answer(&r.question()).map_err(|e| e.to_string())?;
+        let answer = grainlab_servo::control(&r.question()).map_err(|e| e.to_string())?;
         run.answer(&answer.rate).map_err(|e| e.to_string())?;
     }
     let seconds = clock()? - begin;

@@ -163,7 +163,7 @@ fn answered(
     control_interval: f64,
 ) -> Result<[f64; 6], Failure> {
     let target = |c| ComponentControl::Stress(if c < 3 { pressure } else { 0.0 });
-    let request = grainlab_servo::Request {
+    let request = grainlab_servo::ServoInput {
         stress,
         controls: std::array::from_fn(target),
         rate,
@@ -172,7 +172,7 @@ fn answered(
         tangent,
         control_interval,
     };
-    grainlab_servo::answer(&request).map(|a| a.rate).map_err(Failure::failed)
+    grainlab_servo::control(&request).map(|a| a.rate).map_err(Failure::failed)
 }
 
 /// Builds an engine, warms it up for a tenth of the steps, and times it.

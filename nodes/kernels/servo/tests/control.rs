@@ -1,7 +1,7 @@
 //! One request, one answer.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_servo::{Request, ServoError, answer, critical_gain};
+use grainlab_servo::{ServoError, ServoInput, control, critical_gain};
 use proptest::prelude::*;
 
 const SCALED: ServoLaw = ServoLaw::Scaled { response_time: 1.0e-4 };
@@ -9,8 +9,8 @@ const EQ_1: ServoLaw = ServoLaw::Integral { gain: 1.0e-6, leak: 0.0 };
 const NORMALISED: ServoLaw = ServoLaw::Normalised { share: 0.3, leak: 0.0 };
 
 /// Every component at its stress target of 50 kPa (diagonal) or 0, with a tangent of 200 and 70 MPa.
-fn at_target(law: ServoLaw) -> Request {
-    Request {
+fn at_target(law: ServoLaw) -> ServoInput {
+    ServoInput {
         stress: SymTensor::isotropic(50.0e3),
         controls: std::array::from_fn(|i| ComponentControl::Stress(if i < 3 { 50.0e3 } else { 0.0 })),
         rate: [0.0; 6],
@@ -25,11 +25,11 @@ fn at_target(law: ServoLaw) -> Request {
 fn every_law_compresses_towards_50_kpa_from_below_and_extends_from_above() {
     for law in [SCALED, EQ_1, NORMALISED] {
         let mut request = at_target(law);
-        assert_eq!(answer(&request).unwrap().rate, [0.0; 6]);
+        assert_eq!(control(&request).unwrap().rate, [0.0; 6]);
         request.stress = SymTensor::isotropic(49.0e3);
-        assert!(answer(&request).unwrap().rate[..3].iter().all(|&r| r < 0.0));
+        assert!(control(&request).unwrap().rate[..3].iter().all(|&r| r < 0.0));
         request.stress = SymTensor::isotropic(51.0e3);
-        assert!(answer(&request).unwrap().rate[..3].iter().all(|&r| r > 0.0));
+        assert!(control(&request).unwrap().rate[..3].iter().all(|&r| r > 0.0));
     }
 }
 
@@ -38,7 +38,7 @@ fn every_law_compresses_towards_50_kpa_from_below_and_extends_from_above() {
 fn scaled_rate_removes_the_error_in_one_response_time_on_and_off_the_diagonal() {
     let mut request = at_target(SCALED);
     request.stress = SymTensor { xx: 50.0e3, yy: 50.0e3, zz: 52.0e3, yz: 0.0, xz: 0.0, xy: 1.0e3 };
-    let rate = answer(&request).unwrap().rate;
+    let rate = control(&request).unwrap().rate;
     assert!((rate[2] * 1.0e-4 * 200.0e6 - 2.0e3).abs() < 1e-9);
     assert!((2.0 * rate[5] * 1.0e-4 * 70.0e6 - 1.0e3).abs() < 1e-9);
 }
@@ -48,9 +48,9 @@ fn eq_1_adds_gain_times_error_to_the_rate_in_force_and_leaks() {
     let mut request = at_target(EQ_1);
     request.stress.zz = 51.0e3;
     request.rate[2] = 0.5;
-    assert!((answer(&request).unwrap().rate[2] - 0.501).abs() < 1e-15);
+    assert!((control(&request).unwrap().rate[2] - 0.501).abs() < 1e-15);
     request.law = ServoLaw::Integral { gain: 1.0e-6, leak: 0.1 };
-    assert!((answer(&request).unwrap().rate[2] - 0.451).abs() < 1e-15);
+    assert!((control(&request).unwrap().rate[2] - 0.451).abs() < 1e-15);
 }
 
 /// All three normal components servoed: K = 200 + 2 (200 − 2·70) MPa; a shear alone: K = 2·70 MPa.
@@ -61,7 +61,7 @@ fn the_normalised_law_is_eq_1_with_its_share_of_the_critical_gain_of_each_compon
     request.stress.zz = 51.0e3;
     request.stress.xy = 1.0e3;
     request.rate[2] = 0.5;
-    let rate = answer(&request).unwrap().rate;
+    let rate = control(&request).unwrap().rate;
     let kick = |k: f64| 0.3 * 3.8 / (k * 2.0e-8) * 1.0e3;
     assert!((rate[2] - (0.45 + kick(320.0e6))).abs() < 1e-9 * rate[2]);
     assert!((rate[5] - kick(140.0e6)).abs() < 1e-9 * rate[5]);
@@ -81,9 +81,9 @@ fn a_gain_of_eq_1_from_the_critical_one_on_is_refused_with_both_named() {
     let mut request = at_target(EQ_1);
     let critical = critical_gain(&request.tangent, &request.controls, request.control_interval, 0.0);
     request.law = ServoLaw::Integral { gain: 0.999 * critical, leak: 0.0 };
-    assert!(answer(&request).is_ok());
+    assert!(control(&request).is_ok());
     request.law = ServoLaw::Integral { gain: critical, leak: 0.0 };
-    let error = answer(&request).unwrap_err();
+    let error = control(&request).unwrap_err();
     assert!(
         matches!(error, ServoError::Gain { .. }) && error.to_string().contains("control_period"),
         "{error}"
@@ -96,7 +96,7 @@ fn rates_beyond_the_limit_are_cut_off_and_flagged_one_by_one() {
     request.stress.xx = 500.0e3;
     request.controls[1] = ComponentControl::StrainRate(-7.0);
     request.controls[3] = ComponentControl::StrainRate(1.5);
-    let a = answer(&request).unwrap();
+    let a = control(&request).unwrap();
     assert_eq!((a.rate[0], a.rate[1], a.rate[3]), (2.0, -2.0, 1.5));
     assert_eq!(a.saturated, [true, true, false, false, false, false]);
 }
@@ -107,7 +107,7 @@ fn held_components_do_not_move_whatever_their_stress_and_rate() {
     request.controls = [ComponentControl::Held; 6];
     request.rate = [1.0; 6];
     request.stress = SymTensor::isotropic(1.0e9);
-    assert_eq!(answer(&request).unwrap().rate, [0.0; 6]);
+    assert_eq!(control(&request).unwrap().rate, [0.0; 6]);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn without_contacts_laws_that_know_the_stiffness_drive_at_the_limit_towards_the_
         let mut request = at_target(law);
         request.stress = SymTensor::default();
         request.tangent = [0.0; 6];
-        let a = answer(&request).unwrap();
+        let a = control(&request).unwrap();
         assert_eq!(a.rate, [-2.0, -2.0, -2.0, 0.0, 0.0, 0.0]);
         assert_eq!(a.saturated, [true, true, true, false, false, false]);
     }
@@ -129,17 +129,17 @@ fn errors_and_stiffnesses_beyond_the_largest_number_do_not_make_nan() {
     request.stress.zz = f64::MAX;
     request.controls[2] = ComponentControl::Stress(-f64::MAX);
     request.tangent = [f64::MAX; 6];
-    assert_eq!(answer(&request).unwrap().rate[2], 0.0);
+    assert_eq!(control(&request).unwrap().rate[2], 0.0);
 }
 
 #[test]
 fn each_fault_has_its_own_error_and_names_the_culprit() {
-    let fault = |change: &dyn Fn(&mut Request)| {
+    let fault = |change: &dyn Fn(&mut ServoInput)| {
         let mut request = at_target(SCALED);
         change(&mut request);
-        answer(&request).unwrap_err()
+        control(&request).unwrap_err()
     };
-    let shown = |change: &dyn Fn(&mut Request)| fault(change).to_string();
+    let shown = |change: &dyn Fn(&mut ServoInput)| fault(change).to_string();
     assert!(shown(&|r| r.stress.yz = f64::NAN).contains("stress[yz]"));
     assert!(shown(&|r| r.rate[5] = f64::INFINITY).contains("rate[xy]"));
     assert!(shown(&|r| r.tangent[0] = f64::NAN).contains("tangent[xx]"));
@@ -165,7 +165,7 @@ fn each_fault_has_its_own_error_and_names_the_culprit() {
 fn a_phase_without_stress_targets_does_not_need_a_valid_law() {
     let mut request = at_target(ServoLaw::Scaled { response_time: 0.0 });
     request.controls = [ComponentControl::StrainRate(-1.0); 6];
-    assert_eq!(answer(&request).unwrap().rate, [-1.0; 6]);
+    assert_eq!(control(&request).unwrap().rate, [-1.0; 6]);
 }
 
 fn component() -> impl Strategy<Value = ComponentControl> {
@@ -198,14 +198,14 @@ proptest! {
             ServoLaw::Integral { gain, leak } => ServoLaw::Integral { gain: gain.abs(), leak },
             normalised => normalised,
         };
-        let request = Request {
+        let request = ServoInput {
             stress: SymTensor::from_voigt(stress), controls, rate, law,
             rate_limit: rate_limit.abs(),
             tangent: tangent.map(f64::abs),
             control_interval: control_interval.abs(),
         };
-        let first = answer(&request);
-        prop_assert_eq!(&first, &answer(&request));
+        let first = control(&request);
+        prop_assert_eq!(&first, &control(&request));
         prop_assume!(first.is_ok());
         let a = first.unwrap();
         for i in 0..6 {
