@@ -138,7 +138,7 @@ impl Outbox {
 mod tests {
     use super::*;
     use grainlab_msgs::topics;
-    use grainlab_node_kit::bulk::LIMIT;
+    use grainlab_node_kit::BULK_LIMIT;
     use grainlab_node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
     use std::time::Duration;
 

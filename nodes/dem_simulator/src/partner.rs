@@ -1,7 +1,7 @@
 //! Which servo the run stays with.
 
-use grainlab_node_kit::admission::Participant;
-use grainlab_node_kit::identity::{member_of, run_of};
+use grainlab_node_kit::Participant;
+use grainlab_node_kit::{member_of, run_of};
 use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::BTreeSet;
 

@@ -16,8 +16,8 @@ use crate::output::Table;
 use crate::results::strangers::{self, Authors, StrangerView};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Topic, from_cdr, topics};
-use grainlab_node_kit::bus::Published;
-use grainlab_node_kit::identity::{member_of, run_of};
+use grainlab_node_kit::Published;
+use grainlab_node_kit::{member_of, run_of};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,

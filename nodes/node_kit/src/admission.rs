@@ -1,7 +1,7 @@
 //! Whose samples are taken, and whose are ignored, counted and named.
 
-use crate::bus::WriterId;
 use crate::identity::{Identity, RunId, Scope, member_of, run_of};
+use crate::sample::WriterId;
 use std::collections::BTreeMap;
 
 /// The GUID prefix of one participant.

@@ -1,8 +1,9 @@
 //! What a process reports about itself on `/diagnostics`, as a value and as a message.
 
-use crate::bus::{Bus, Published, Received, WriterId};
+use crate::bus::{Bus, Published, Received};
 use crate::exit::Exit;
-use crate::node::{Health, Level};
+use crate::health::{Health, Level};
+use crate::sample::WriterId;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::std_msgs::Header;

@@ -1,8 +1,11 @@
 //! Who lives, by heartbeats: DDS keeps a crashed process matched for up to a minute.
 
-use crate::bus::{Bus, BusError, Demand, SampleInfo};
+use crate::bus::Bus;
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::diagnostics::Report;
 use crate::exit::Exit;
+use crate::sample::SampleInfo;
 use crate::typed::Subscription;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::topics;
@@ -31,7 +34,7 @@ pub struct Peer {
 
 /// Whether a peer lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Life {
+pub enum Liveliness {
     /// Heard within [`SILENCE`].
     Alive,
     /// Not heard for this long: it computes, or it is dead.
@@ -42,12 +45,12 @@ pub enum Life {
 
 impl Peer {
     /// Whether it lives at `now`, in [`Bus::now`].
-    pub fn life(&self, now: Duration) -> Life {
+    pub fn liveliness(&self, now: Duration) -> Liveliness {
         let silent = now.saturating_sub(self.last_heard);
         match self.report.exit {
-            Some(exit) => Life::Left(exit),
-            None if silent > SILENCE => Life::Silent(silent),
-            None => Life::Alive,
+            Some(exit) => Liveliness::Left(exit),
+            None if silent > SILENCE => Liveliness::Silent(silent),
+            None => Liveliness::Alive,
         }
     }
 }
@@ -134,8 +137,8 @@ impl PeerWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bus::WriterId;
-    use crate::node::Health;
+    use crate::health::Health;
+    use crate::sample::WriterId;
 
     fn beat(pid: u32, exit: Option<Exit>) -> (DiagnosticArray, SampleInfo) {
         let report = Report {
@@ -158,12 +161,12 @@ mod tests {
         let mut peers = Peers::default();
         let (message, info) = beat(1, None);
         peers.hear(&message, &info, Duration::from_secs(10));
-        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.life(Duration::from_secs(at)));
-        assert_eq!(life(&peers, 15), Some(Life::Alive));
-        assert_eq!(life(&peers, 16), Some(Life::Silent(Duration::from_secs(6))));
+        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.liveliness(Duration::from_secs(at)));
+        assert_eq!(life(&peers, 15), Some(Liveliness::Alive));
+        assert_eq!(life(&peers, 16), Some(Liveliness::Silent(Duration::from_secs(6))));
         let (message, info) = beat(1, Some(Exit::Done));
         peers.hear(&message, &info, Duration::from_secs(20));
-        assert_eq!(life(&peers, 100), Some(Life::Left(Exit::Done)));
+        assert_eq!(life(&peers, 100), Some(Liveliness::Left(Exit::Done)));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Running a node: the only place that waits.
 
 use crate::args::RosArgs;
-use crate::bus::{Bus, BusError, Wake, WriterId};
+use crate::bus::{Bus, Wake};
+use crate::bus_error::BusError;
 use crate::dds::{DdsBus, Network};
 use crate::diagnostics::Report;
 use crate::exit::Exit;
@@ -11,6 +12,7 @@ use crate::names::Names;
 use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
+use crate::sample::WriterId;
 use crate::signals::Signals;
 use crate::typed::Publisher;
 use crate::watchdog;
@@ -93,8 +95,8 @@ where
         })?;
         let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
         let driven = drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop);
-        if let Err(DriveError::Dead(dead)) = driven {
-            log::error!("{dead}");
+        if let Err(DriveError::Dds(failure)) = driven {
+            log::error!("{failure}");
             // Dropping the bus would wait for the dead threads.
             std::process::exit(i32::from(Exit::Failure.code()));
         }
@@ -114,16 +116,16 @@ pub fn drive(
     logger: Option<&Logger>,
     stop: &dyn Fn() -> bool,
 ) -> Result<Exit, DriveError> {
-    let mut tender = Tender::new(bus, node_name, logger)?;
+    let mut housekeeping = Housekeeping::new(bus, node_name, logger)?;
     let mut asked = false;
     let exit = loop {
-        let until_beat = tender.tend(node, bus)?;
+        let until_beat = housekeeping.tend(node, bus)?;
         if asked || stop() {
             log::info!("asked to stop");
             break settle(node.on_shutdown(bus));
         }
         match node.step(bus) {
-            Ok(Next::Again) if tender.look_due(bus.now()) => {
+            Ok(Next::Again) if housekeeping.look_due(bus.now()) => {
                 asked = bus.wait(Duration::ZERO) == Wake::Shutdown
             }
             Ok(Next::Again) => {}
@@ -132,7 +134,7 @@ pub fn drive(
             Err(error) => break settle(Err(error)),
         }
     };
-    tender.leave(node, bus, exit)?;
+    housekeeping.leave(node, bus, exit)?;
     Ok(exit)
 }
 
@@ -148,14 +150,14 @@ fn settle(result: Result<Exit, NodeError>) -> Exit {
 pub enum DriveError {
     /// The DDS threads of this process are dead or stuck; the bus must not even be dropped, which would wait for them.
     #[error(transparent)]
-    Dead(#[from] watchdog::Dead),
+    Dds(#[from] watchdog::DdsFailure),
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
 }
 
 /// Heartbeats, log lines, peers and watchdog of one process.
-struct Tender<'a> {
+struct Housekeeping<'a> {
     node_name: String,
     pid: u32,
     diagnostics: Publisher<DiagnosticArray>,
@@ -167,7 +169,7 @@ struct Tender<'a> {
     next_look: Duration,
 }
 
-impl<'a> Tender<'a> {
+impl<'a> Housekeeping<'a> {
     fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'a Logger>) -> Result<Self, BusError> {
         let diagnostics = Publisher::advertise(bus, &topics::DIAGNOSTICS)?;
         let diagnostics_writer = bus.published().last().map(|p| p.writer);

@@ -1,6 +1,9 @@
 //! Typed handles over the raw bus.
 
-use crate::bus::{Bus, BusError, Demand, PublisherId, SampleId, SampleInfo, SubscriptionId};
+use crate::bus::{Bus, PublisherId, SubscriptionId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::{SampleId, SampleInfo};
 use grainlab_msgs::{DecodeError, Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -52,7 +52,7 @@ pub fn watch_dds_threads() {
 
 /// Why the DDS layer counts as dead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Dead {
+pub enum DdsFailure {
     /// One of its threads panicked.
     #[error("a DDS thread of this process panicked (see above): nothing is sent or received any more")]
     Panicked,
@@ -67,17 +67,17 @@ pub enum Dead {
 }
 
 /// Whether the DDS threads of this process are all there. To be asked once a second.
-pub fn check() -> Result<(), Dead> {
+pub fn check() -> Result<(), DdsFailure> {
     if DDS_THREAD_PANICKED.load(Ordering::Relaxed) {
-        return Err(Dead::Panicked);
+        return Err(DdsFailure::Panicked);
     }
     judge(THREADS * PARTICIPANTS.load(Ordering::Relaxed), dds_threads())
 }
 
 /// The same, `found` being there now; `None` where they cannot be counted.
-fn judge(started: usize, found: Option<usize>) -> Result<(), Dead> {
+fn judge(started: usize, found: Option<usize>) -> Result<(), DdsFailure> {
     match found {
-        Some(left) if left < started => Err(Dead::Ended { started, left }),
+        Some(left) if left < started => Err(DdsFailure::Ended { started, left }),
         _ => Ok(()),
     }
 }
@@ -97,7 +97,7 @@ mod tests {
     fn a_thread_that_is_gone_is_missed_from_the_first_look_on() {
         assert_eq!(judge(2, Some(2)), Ok(()));
         assert_eq!(judge(2, None), Ok(()), "no count is no evidence");
-        assert_eq!(judge(2, Some(1)), Err(Dead::Ended { started: 2, left: 1 }));
-        assert_eq!(judge(2, Some(0)), Err(Dead::Ended { started: 2, left: 0 }));
+        assert_eq!(judge(2, Some(1)), Err(DdsFailure::Ended { started: 2, left: 1 }));
+        assert_eq!(judge(2, Some(0)), Err(DdsFailure::Ended { started: 2, left: 0 }));
     }
 }

@@ -10,7 +10,7 @@ use grainlab_acoustic_probe::AcousticProbe;
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
-use grainlab_node_kit::run::NodeSpec;
+use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
 use grainlab_recordings::input;
 use grainlab_servo_controller::ServoController;

@@ -4,7 +4,7 @@ use super::Run;
 use super::plan::NodePlan;
 use crate::failure::Failure;
 use crate::lifeline::VARIABLE;
-use grainlab_node_kit::identity::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
+use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};

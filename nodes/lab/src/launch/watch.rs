@@ -9,7 +9,7 @@ use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::identity::member_of;
+use grainlab_node_kit::member_of;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Identity, Report, Stranger, Subscription, watchdog};
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -4,7 +4,7 @@
 //! say which of its samples they are about (see `SampleInfo::about`).
 
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::admission::Participant;
+use grainlab_node_kit::Participant;
 use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::{BTreeMap, BTreeSet};
 

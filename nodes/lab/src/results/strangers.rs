@@ -1,7 +1,7 @@
 //! Who was on the bus beside the run, and who wrote which result.
 
 use grainlab_node_kit::Stranger;
-use grainlab_node_kit::identity::member_of;
+use grainlab_node_kit::member_of;
 use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -14,7 +14,9 @@
 //! - [`BulkPublisher`], [`BulkSubscription`]: the same on a [`crate::Bus`], for nodes
 
 mod assembly;
+mod limits;
 mod part;
+mod part_topics;
 mod publisher;
 mod receiver;
 mod sender;
@@ -22,49 +24,6 @@ mod subscription;
 #[cfg(test)]
 mod tests;
 
-pub use part::PartError;
+pub use limits::LIMIT as BULK_LIMIT;
 pub use publisher::BulkPublisher;
 pub use subscription::BulkSubscription;
-
-use grainlab_msgs::{Topic, topics};
-use std::time::Duration;
-
-/// Longest body that travels as one sample, bytes: measured to arrive reliably at 10 Hz.
-pub const LIMIT: usize = 2_000_000;
-
-/// Bytes of a part.
-pub const STRIDE: usize = 128 << 10;
-
-/// Parts on their way to the slowest reader: with [`STRIDE`] 1 MiB, a quarter of a socket's buffer.
-pub const WINDOW: u32 = 8;
-
-/// Longest body that a reader accepts, bytes.
-pub const LONGEST: u64 = 1 << 30;
-
-/// A reader that gives no credit for this long is left behind.
-pub const SILENCE: Duration = Duration::from_secs(5);
-
-/// A reader that gives credits, takes more, and gets nothing for this long is left behind, too.
-const STALLED: Duration = Duration::from_secs(30);
-
-/// How long a writer waits for the first credit of a reader that is there.
-const FIRST_WORD: Duration = Duration::from_secs(3);
-
-/// A part that a reader does not have so long after it was sent is lost.
-const LOST: Duration = Duration::from_millis(40);
-
-/// How often a credit is repeated while parts are missing, and how rarely while none are.
-const REPEAT: Duration = Duration::from_millis(50);
-const REST: Duration = Duration::from_secs(1);
-
-/// How often either end looks after the graph and the silent.
-const LOOK: Duration = Duration::from_millis(20);
-
-/// The topic of parts or credits that belongs to a plain topic, by the name that this resolved to.
-///
-/// The contract's `packing` has `packing_chunk` and `packing_credit` beside it, whatever it was remapped to.
-fn beside(resolved: &str, transport: &Topic) -> Topic {
-    let suffix = transport.name.strip_prefix(topics::PACKING.name).unwrap_or(transport.name);
-    // A topic of the contract lives as long as the program; these few names do, too.
-    Topic { name: Box::leak(format!("{resolved}{suffix}").into_boxed_str()), ..*transport }
-}

@@ -1,6 +1,6 @@
 //! One part of a body.
 
-use super::{LONGEST, STRIDE};
+use super::limits::{LONGEST, STRIDE};
 use grainlab_msgs::msg::PackingChunk;
 
 /// Longest part that a reader accepts, bytes: it holds some dozens of them out of order.

@@ -1,8 +1,12 @@
 //! The writing end on a bus.
 
+use super::limits::{LIMIT, LOOK, WINDOW};
+use super::part_topics::beside;
 use super::sender::Sender;
-use super::{LIMIT, LOOK, WINDOW, beside};
-use crate::bus::{Bus, BusError, Demand, PublisherId, WriterId};
+use crate::bus::{Bus, PublisherId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::WriterId;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Topic, topics};

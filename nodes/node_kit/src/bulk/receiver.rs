@@ -1,9 +1,9 @@
 //! The reading end: parts of any number of writers become bodies, and credits say what is missing.
 
 use super::assembly::Assembly;
+use super::limits::{REPEAT, REST};
 use super::part::{PartError, Shape};
-use super::{REPEAT, REST};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! The writing end: what to send next, and who still lacks what.
 
+use super::limits::{FIRST_WORD, LOST, SILENCE, STALLED, WINDOW};
 use super::part::Shape;
-use super::{FIRST_WORD, LOST, SILENCE, STALLED, WINDOW};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;

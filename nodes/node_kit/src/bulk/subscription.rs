@@ -1,8 +1,12 @@
 //! The reading end on a bus.
 
+use super::limits::REST;
+use super::part_topics::beside;
 use super::receiver::Receiver;
-use super::{REST, beside};
-use crate::bus::{Bus, BusError, Demand, Sample, SubscriptionId};
+use crate::bus::{Bus, SubscriptionId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::Sample;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Topic, topics};
@@ -31,7 +35,7 @@ pub struct BulkSubscription {
     queue: VecDeque<Sample>,
     depth: usize,
     /// Times of the body under way of each writer: when its first part was written.
-    written: BTreeMap<crate::bus::WriterId, Option<u64>>,
+    written: BTreeMap<crate::sample::WriterId, Option<u64>>,
     /// Writers of parts that are matched.
     writers: usize,
     next_look: Duration,
@@ -91,7 +95,7 @@ impl BulkSubscription {
             }
             if let Some(whole) = heard.whole {
                 let source_time = self.written.remove(&info.writer).flatten().or(info.source_time);
-                let info = crate::bus::SampleInfo { sequence: whole.number, source_time, ..info };
+                let info = crate::sample::SampleInfo { sequence: whole.number, source_time, ..info };
                 self.push(Sample { body: whole.body, info });
             }
         }

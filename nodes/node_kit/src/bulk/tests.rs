@@ -1,10 +1,10 @@
 //! Both ends on a network that is made of lists: it loses, repeats, reorders and corrupts, in virtual time.
 
+use super::limits::{LONGEST, SILENCE, STRIDE, WINDOW};
 use super::part::{PartError, Shape};
 use super::receiver::Receiver;
 use super::sender::Sender;
-use super::{LONGEST, SILENCE, STRIDE, WINDOW};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::time::Duration;
 

@@ -1,20 +1,22 @@
 //! The bus over DDS.
 
-use super::caretaker::{Caretaker, Inboxes, lock};
+use super::background_reader::{BackgroundReader, Inboxes, lock};
+use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
-use super::presence::Presence;
+use super::network::Network;
+use super::qos;
 use super::raw::{RawAdapter, RawPayload};
+use super::ros_graph::RosGraph;
 use super::writer::Writer;
-use super::{Network, create_error, qos};
 use crate::admission::Stranger;
-use crate::bus::{
-    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleId, SampleInfo,
-    SubscriptionId, Wake, WriterId,
-};
+use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use crate::signals::Signals;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
@@ -57,7 +59,7 @@ struct Subscriber {
 /// Dropping it tells the peers that the node leaves; a process that ends without that stays matched for up to a minute.
 pub struct DdsBus {
     // Fields are dropped in this order, and endpoints have to go before their participant.
-    caretaker: Caretaker,
+    background_reader: BackgroundReader,
     writers: Vec<Writer>,
     subscribers: Vec<Subscriber>,
     readers: Vec<Reader>,
@@ -65,7 +67,7 @@ pub struct DdsBus {
     waker: Arc<Waker>,
     /// Another thread called, and no wait has said so yet.
     called: Arc<AtomicBool>,
-    presence: Presence,
+    ros_graph: RosGraph,
     signals: Option<Signals>,
     poll: Poll,
     events: Events,
@@ -112,7 +114,7 @@ impl DdsBus {
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
         let subscriber =
             participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
-        let presence = Presence::new(&participant, &publisher, &names)?;
+        let ros_graph = RosGraph::new(&participant, &publisher, &names)?;
 
         let io = |e: std::io::Error| create_error("poll", &e);
         let poll = Poll::new().map_err(io)?;
@@ -120,17 +122,18 @@ impl DdsBus {
         poll.registry().register(status.as_status_source_mio1(), STATUS, Interest::READABLE).map_err(io)?;
         let inboxes = Inboxes::default();
         let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
-        let caretaker = Caretaker::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
+        let background_reader =
+            BackgroundReader::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
         let graph = Graph::new(participant.guid());
         Ok(Self {
-            caretaker,
+            background_reader,
             writers: Vec::new(),
             subscribers: Vec::new(),
             readers: Vec::new(),
             inboxes,
             waker,
             called: Arc::default(),
-            presence,
+            ros_graph,
             signals: None,
             poll,
             events: Events::with_capacity(64),
@@ -194,7 +197,7 @@ impl DdsBus {
             .map_err(|e| create_error(&resolved, &e))?;
         let guid = inbox.guid();
         self.gate.add_reader(guid, &resolved);
-        self.presence.add_reader(guid);
+        self.ros_graph.add_reader(guid);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
         self.readers.push(Reader { inbox, guid, topic: resolved, ready: false, notified: false });
@@ -283,7 +286,7 @@ impl Bus for DdsBus {
             .publisher
             .create_datawriter_no_key(&dds_topic, Some(qos::offered(topic)))
             .map_err(|e| create_error(&resolved, &e))?;
-        self.presence.add_writer(data.guid());
+        self.ros_graph.add_writer(data.guid());
         self.writers.push(Writer::new(data, resolved, qos::window(topic)));
         Ok(PublisherId(self.writers.len() - 1))
     }
@@ -310,7 +313,7 @@ impl Bus for DdsBus {
     }
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
-        self.caretaker.seen();
+        self.background_reader.seen();
         let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
         let reader = &mut self.readers[subscriber.reader];
         let mut inbox = lock(&reader.inbox);
@@ -326,8 +329,8 @@ impl Bus for DdsBus {
     }
 
     fn wait(&mut self, timeout: Duration) -> Wake {
-        self.presence.announce();
-        self.caretaker.seen();
+        self.ros_graph.announce();
+        self.background_reader.seen();
         // A caller may mean for ever; a day is as good and cannot overflow.
         let timeout = timeout.min(Duration::from_secs(86_400));
         let deadline = Instant::now() + timeout;
@@ -344,7 +347,7 @@ impl Bus for DdsBus {
                 wake = self.poll_once(deadline - now);
             }
         }
-        self.caretaker.seen();
+        self.background_reader.seen();
         wake.unwrap_or(Wake::Timeout)
     }
 

@@ -1,10 +1,10 @@
 //! Between RustDDS's threads and the rules of admission.
 
-use super::caretaker::lock;
+use super::background_reader::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::WriterId;
 use crate::identity::{Identity, Scope};
+use crate::sample::WriterId;
 use rustdds::GUID;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;

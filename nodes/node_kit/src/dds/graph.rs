@@ -2,7 +2,7 @@
 //!
 //! The endpoints' own status channels hold four events and drop the rest; the participant's holds 2048.
 
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use rustdds::{DomainParticipantStatusEvent as Event, GUID};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,9 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
 use super::raw::{RawAdapter, RawBody};
-use crate::bus::{BusError, Demand, Sample, SampleId, SampleInfo, WriterId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
 use rustdds::{GUID, Timestamp};
 use std::collections::VecDeque;

@@ -5,7 +5,7 @@ use std::net::Ipv4Addr;
 
 /// How far discovery reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
+pub enum Reach {
     /// This host alone, over the loopback interface. Our default.
     Localhost,
     /// Whatever multicast reaches, as ROS 2 does by default.
@@ -18,7 +18,7 @@ pub struct Network {
     /// DDS domain, 0 to 232; participants of different domains do not see each other.
     pub domain: u16,
     /// How far discovery reaches.
-    pub range: Range,
+    pub reach: Reach,
 }
 
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
@@ -39,7 +39,7 @@ pub struct NetworkError {
 impl Network {
     /// This host alone, in the given domain.
     pub const fn localhost(domain: u16) -> Self {
-        Self { domain, range: Range::Localhost }
+        Self { domain, reach: Reach::Localhost }
     }
 
     /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and `ROS_STATIC_PEERS`.
@@ -68,13 +68,13 @@ impl Network {
             ));
         }
         let localhost_only = get("ROS_LOCALHOST_ONLY");
-        let range = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
+        let reach = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
             // ROS_LOCALHOST_ONLY is deprecated in ROS 2, but still wins when it is 1.
-            _ if localhost_only.as_deref() == Some("1") => Range::Localhost,
-            None => Range::Localhost,
+            _ if localhost_only.as_deref() == Some("1") => Reach::Localhost,
+            None => Reach::Localhost,
             Some(text) => match text.to_ascii_uppercase().as_str() {
-                "LOCALHOST" => Range::Localhost,
-                "SUBNET" | "SYSTEM_DEFAULT" => Range::Subnet,
+                "LOCALHOST" => Reach::Localhost,
+                "SUBNET" | "SYSTEM_DEFAULT" => Reach::Subnet,
                 "OFF" => {
                     return Err(refuse(
                         "ROS_AUTOMATIC_DISCOVERY_RANGE",
@@ -91,15 +91,15 @@ impl Network {
                 }
             },
         };
-        Ok(Self { domain, range })
+        Ok(Self { domain, reach })
     }
 
     /// What a participant of this network is made with.
     pub(crate) fn participant(&self) -> DomainParticipantBuilder {
         let builder = DomainParticipantBuilder::new(self.domain);
-        match self.range {
-            Range::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Range::Subnet => builder,
+        match self.reach {
+            Reach::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+            Reach::Subnet => builder,
         }
     }
 }
@@ -116,13 +116,13 @@ mod tests {
     fn everything_stays_on_this_host_unless_asked() {
         assert_eq!(read(&[]), Ok(Network::localhost(0)));
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "")]), Ok(Network::localhost(0)));
-        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().range, Range::Subnet);
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().reach, Reach::Subnet);
         assert_eq!(
-            read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().range,
-            Range::Subnet
+            read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().reach,
+            Reach::Subnet
         );
         let both = [("ROS_LOCALHOST_ONLY", "1"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
-        assert_eq!(read(&both).unwrap().range, Range::Localhost);
+        assert_eq!(read(&both).unwrap().reach, Reach::Localhost);
         assert_eq!(read(&[("ROS_LOCALHOST_ONLY", "0")]), Ok(Network::localhost(0)));
     }
 

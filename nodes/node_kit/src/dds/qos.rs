@@ -1,6 +1,6 @@
 //! From the contract table to RustDDS policies.
 
-use crate::bus::Demand;
+use crate::demand::Demand;
 use grainlab_msgs::Topic;
 use rustdds::policy::{Deadline, Durability, History, Lifespan, Liveliness, Reliability, ResourceLimits};
 use rustdds::{Duration, QosPolicies, QosPolicyBuilder};

@@ -1,7 +1,9 @@
 //! One DDS writer of this process.
 
 use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
-use crate::bus::{BusError, Published, SampleId, WriterId};
+use crate::bus::Published;
+use crate::bus_error::BusError;
+use crate::sample::{SampleId, WriterId};
 use rustdds::bytes::Bytes;
 use rustdds::dds::WriteError;
 use rustdds::no_key::DataWriter;

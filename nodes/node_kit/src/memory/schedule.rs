@@ -1,6 +1,7 @@
 //! Several nodes in one thread, in a fixed order and in virtual time.
 
-use super::{Hub, MemoryBus};
+use super::bus::MemoryBus;
+use super::hub::Hub;
 use crate::exit::Exit;
 use crate::node::{Next, Node, NodeError};
 use std::time::Duration;

@@ -1,6 +1,8 @@
 //! ROS 2 parameter files: node keys (`/**`, `/ns/node`, nested namespaces), then `ros__parameters`.
 
-use super::{ParameterError, ParameterValue, yaml::Yaml};
+use super::error::ParameterError;
+use super::value::ParameterValue;
+use super::yaml::Yaml;
 use std::path::Path;
 
 const PARAMETERS_KEY: &str = "ros__parameters";

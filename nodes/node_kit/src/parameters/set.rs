@@ -1,6 +1,9 @@
 //! The values a node runs with.
 
-use super::{ParameterError, ParameterSpec, ParameterValue, file, yaml::Yaml};
+use super::error::ParameterError;
+use super::spec::ParameterSpec;
+use super::value::ParameterValue;
+use super::{file, yaml::Yaml};
 use crate::{args::RosArgs, names::Names};
 use std::collections::BTreeMap;
 
@@ -158,7 +161,7 @@ from_parameter! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::Range;
+    use crate::parameters::spec::Range;
 
     fn specs() -> Vec<ParameterSpec> {
         vec![

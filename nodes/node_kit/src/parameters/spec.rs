@@ -1,6 +1,6 @@
 //! What a node declares about a parameter: name, type and default, range, meaning.
 
-use super::ParameterValue;
+use super::value::ParameterValue;
 use std::fmt;
 
 /// Which values a parameter may take.
@@ -109,26 +109,4 @@ impl fmt::Display for ParameterSpec {
         }
         write!(f, "): {}", self.description)
     }
-}
-
-macro_rules! into_value {
-    ($($from:ty => $variant:ident),* $(,)?) => {$(
-        impl From<$from> for ParameterValue {
-            fn from(value: $from) -> Self {
-                ParameterValue::$variant(value.into())
-            }
-        }
-    )*};
-}
-
-into_value! {
-    bool => Bool,
-    i64 => Integer,
-    f64 => Double,
-    &str => String,
-    String => String,
-    Vec<bool> => BoolArray,
-    Vec<i64> => IntegerArray,
-    Vec<f64> => DoubleArray,
-    Vec<String> => StringArray,
 }

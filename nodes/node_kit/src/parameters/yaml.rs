@@ -1,6 +1,6 @@
 //! YAML of any shape, and the parameter values in it.
 
-use super::ParameterValue;
+use super::value::ParameterValue;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 

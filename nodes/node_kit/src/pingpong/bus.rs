@@ -1,7 +1,9 @@
 //! The exchange over our bus.
 
-use super::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
-use crate::bus::{Bus, BusError, Demand};
+use super::exchange::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
+use crate::bus::Bus;
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;

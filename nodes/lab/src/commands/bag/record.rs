@@ -3,7 +3,7 @@
 use crate::commands::run::record;
 use crate::failure::Failure;
 use crate::recorder::{self, Settings};
-use grainlab_node_kit::run::NodeSpec;
+use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Exit, RosArgs, Scope};
 use std::path::PathBuf;
 

@@ -5,7 +5,7 @@ use super::sink::{Ending, Place, Sink};
 use super::{Measure, Outlet};
 use crate::failure::{Failure, worse};
 use grainlab_node_kit::Exit;
-use grainlab_node_kit::signals::Signals;
+use grainlab_node_kit::Signals;
 use grainlab_recordings::Recording;
 use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
 use std::collections::VecDeque;

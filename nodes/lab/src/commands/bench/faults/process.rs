@@ -4,7 +4,7 @@ use super::recorder::{MemoryRecorder, Record};
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
-use grainlab_node_kit::memory::Hub;
+use grainlab_node_kit::Hub;
 use grainlab_node_kit::{Exit, Identity, MemoryBus, Names, Node, NodeError, RunId};
 use grainlab_scene::Scene;
 use grainlab_servo_controller::ServoController;

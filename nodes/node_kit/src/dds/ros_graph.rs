@@ -1,6 +1,7 @@
 //! The node in the ROS graph: `ros2 node list` and `ros2 node info` read `ros_discovery_info`.
 
-use super::{BusError, create_error};
+use super::error::create_error;
+use crate::bus_error::BusError;
 use crate::names::Names;
 use ros2_client::Gid;
 use ros2_client::NodeName;
@@ -10,14 +11,14 @@ use rustdds::no_key::DataWriterCdr;
 use rustdds::{DomainParticipant, GUID, Publisher, RTPSEntity, TopicKind};
 
 /// Tells the ROS graph which endpoints are this node's.
-pub(super) struct Presence {
+pub(super) struct RosGraph {
     writer: DataWriterCdr<ParticipantEntitiesInfo>,
     participant: GUID,
     node: NodeEntitiesInfo,
     dirty: bool,
 }
 
-impl Presence {
+impl RosGraph {
     pub(super) fn new(
         participant: &DomainParticipant,
         publisher: &Publisher,

@@ -2,7 +2,7 @@
 //!
 //! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the marker
 //! of what is complete goes with the writer). A node that computes for seconds would so lose the last packing of a
-//! simulator that ended meanwhile. The caretaker moves samples into our own queues as soon as the node has been away
+//! simulator that ended meanwhile. The background_reader moves samples into our own queues as soon as the node has been away
 //! from the bus for a while; a node that exchanges quickly never meets it.
 
 use super::inbox::Inbox;
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// How long a node may be away before its readers are emptied for it. A leaving node lingers longer than this.
 const ABSENCE: Duration = Duration::from_millis(20);
 
-/// Readers of one bus, shared with the caretaker.
+/// Readers of one bus, shared with the background_reader.
 pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;
 
 /// Locks, whether or not another thread panicked while it held the lock: queues are valid after every statement.
@@ -31,12 +31,12 @@ struct Shared {
 }
 
 /// The thread; it ends when this is dropped.
-pub(super) struct Caretaker {
+pub(super) struct BackgroundReader {
     shared: Arc<Shared>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
 
-impl Caretaker {
+impl BackgroundReader {
     pub(super) fn spawn(inboxes: Inboxes, waker: Arc<Waker>) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             start: Instant::now(),
@@ -46,7 +46,7 @@ impl Caretaker {
         });
         let its = Arc::clone(&shared);
         let thread = std::thread::Builder::new()
-            .name("bus caretaker".into())
+            .name("bus reader".into())
             .spawn(move || run(&its, &inboxes, &waker))?;
         Ok(Self { shared, thread: Some(thread) })
     }
@@ -57,14 +57,14 @@ impl Caretaker {
     }
 }
 
-impl Drop for Caretaker {
+impl Drop for BackgroundReader {
     fn drop(&mut self) {
         *lock(&self.shared.stopped) = true;
         self.shared.stop.notify_all();
         if let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {
-            log::error!("the bus caretaker panicked");
+            log::error!("the bus reader panicked");
         }
     }
 }

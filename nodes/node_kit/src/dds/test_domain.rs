@@ -1,6 +1,6 @@
 //! Domains for tests: two that run at once on one host must not meet.
 
-use super::Network;
+use super::network::Network;
 use std::net::{Ipv4Addr, TcpListener};
 
 /// Domains handed out: below 101, where Linux has no ephemeral ports, and above those that people type.
