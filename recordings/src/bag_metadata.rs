@@ -6,22 +6,13 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use crate::reader::Recording;
+use crate::reader::{FileCount, Recording};
 use crate::writer::TopicSpec;
 
 /// What is said of one topic.
 #[derive(Clone, Debug)]
 pub(crate) struct TopicCount {
     pub(crate) spec: TopicSpec,
-    pub(crate) messages: u64,
-}
-
-/// What is said of one file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct FileCount {
-    pub(crate) name: String,
-    /// First and last log time, ns since 1970; `None` without messages.
-    pub(crate) bounds: Option<(u64, u64)>,
     pub(crate) messages: u64,
 }
 

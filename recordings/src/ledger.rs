@@ -5,95 +5,17 @@
 //! only that writer knows; it reports its count when it ends ([`Ledger::report`]).
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
-use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
-
+mod guid;
 mod merge;
 mod sequence;
+mod tally;
 
+pub use guid::{Guid, GuidError};
 pub use merge::merge;
 use sequence::Sequence;
-
-/// The RTPS identity of one writer: 16 bytes, shown as 32 hexadecimal digits.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Guid(pub [u8; 16]);
-
-impl fmt::Display for Guid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|b| write!(f, "{b:02x}"))
-    }
-}
-
-impl fmt::Debug for Guid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-/// A text that is not 32 hexadecimal digits.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a writer GUID: 32 hexadecimal digits are needed")]
-pub struct GuidError(pub String);
-
-impl FromStr for Guid {
-    type Err = GuidError;
-
-    fn from_str(text: &str) -> Result<Self, GuidError> {
-        // Digits only: from_str_radix alone would take a sign.
-        let value = match text.len() {
-            32 if text.bytes().all(|b| b.is_ascii_hexdigit()) => u128::from_str_radix(text, 16).ok(),
-            _ => None,
-        };
-        value.map(|v| Self(v.to_be_bytes())).ok_or_else(|| GuidError(text.to_owned()))
-    }
-}
-
-/// Account of one topic, all writers together.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TopicTally {
-    /// Name of the topic, absolute.
-    pub name: String,
-    /// Messages published: a writer's own count where it reported one, else its highest sequence number seen.
-    pub published: u64,
-    /// Messages in the recording.
-    pub recorded: u64,
-    /// Published but not recorded.
-    pub lost: u64,
-    /// Messages that say what was already recorded, delivered or published once more; not recorded again.
-    pub repeated: u64,
-    /// The writers, in order of GUID.
-    pub writers: Vec<WriterTally>,
-}
-
-/// Account of one writer of one topic.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct WriterTally {
-    /// GUID, 32 hexadecimal digits.
-    pub guid: String,
-    /// Name of the node, if it was told.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub node: Option<String>,
-    /// Messages recorded.
-    pub recorded: u64,
-    /// Count the writer reported; `None` if it ended without a word (a crash) or has not ended.
-    pub reported: Option<u64>,
-    /// Lowest sequence number recorded; `None` if nothing was.
-    pub first: Option<i64>,
-    /// Highest sequence number recorded; `None` if nothing was.
-    pub last: Option<i64>,
-    /// Published but not recorded.
-    pub lost: u64,
-    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most
-    /// 32 are kept here; `lost` counts all.
-    pub gaps: Vec<(i64, i64)>,
-    /// Deliveries of a message that was already recorded.
-    pub repeated: u64,
-}
-
-/// Ranges that a [`WriterTally`] lists at most.
-const LISTED_GAPS: usize = 32;
+use tally::LISTED_GAPS;
+pub use tally::{TopicTally, WriterTally};
 
 #[derive(Clone, Debug, Default)]
 struct Writer {

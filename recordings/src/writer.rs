@@ -21,8 +21,8 @@ use mcap::{Attachment, McapError};
 
 use crate::bag_metadata::{BagMetadata, TopicCount};
 use crate::ledger::{Guid, Ledger};
+use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::Recording;
-use crate::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 
 mod device_sync;
 mod error;

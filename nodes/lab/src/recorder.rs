@@ -22,8 +22,8 @@ use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,
 };
-use grainlab_recordings::ledger::Guid;
-use grainlab_recordings::writer::Finished;
+use grainlab_recordings::Guid;
+use grainlab_recordings::Finished;
 use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;

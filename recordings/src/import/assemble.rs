@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
-use super::Imported;
 use super::contacts::{self, SearchError};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::Settings;
 use super::text::{Line, digits};
 

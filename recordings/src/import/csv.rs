@@ -14,9 +14,9 @@
 
 use grainlab_core::Vec3;
 
-use super::Imported;
 use super::assemble::{self, GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::ImportOptions;
 use super::text::{Line, lines, shown};
 

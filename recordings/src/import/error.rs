@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use grainlab_core::PackingError;
 
-use super::settings::Setting;
+use super::setting::Setting;
 use crate::reader::ReadError;
 
 /// Why something is not a packing that can be used.

@@ -9,9 +9,10 @@ use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
+use super::imported::Imported;
+use super::lammps_cell::lammps_cell;
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, lines};
-use super::{Imported, lammps_cell};
 
 /// The packing of a data file.
 ///

@@ -13,9 +13,12 @@ use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
-use super::settings::{ImportOptions, Known, Setting};
+use super::imported::Imported;
+use super::lammps_cell::lammps_cell;
+use super::lammps_local;
+use super::setting::Setting;
+use super::settings::{ImportOptions, Known};
 use super::text::{Line, cut, lines, shown};
-use super::{Imported, lammps_cell, lammps_local};
 
 /// The packings of a dump, in order.
 ///

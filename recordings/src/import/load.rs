@@ -5,8 +5,9 @@ use std::io::{self, Read as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use super::imported::Imported;
 use super::text::{lines, shown};
-use super::{ImportError, ImportOptions, Imported, csv, lammps_data, lammps_dump, recording, yade};
+use super::{ImportError, ImportOptions, csv, lammps_data, lammps_dump, recording, yade};
 use crate::input;
 use crate::reader::{Recording, Warning};
 

@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use grainlab_core::Packing;
 use grainlab_msgs::{Message as _, from_cdr, msg, topics};
 
+use super::ImportOptions;
 use super::error::ImportError;
-use super::{ImportOptions, Imported};
+use super::imported::Imported;
 use crate::reader::{Message, ReadError, Recording, Selection};
 
 /// Gives `take` the packings of a recording one by one, in order of log time, until it has enough. A message

@@ -3,6 +3,7 @@
 use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
+use super::setting::Setting;
 
 /// Values given by hand; each one goes before what the file or its sidecar says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,49 +28,6 @@ pub struct ImportOptions {
     /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for those
     /// by default.
     pub contact_columns: Vec<String>,
-}
-
-/// Something that must be known of a packing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Setting {
-    /// The periodic cell.
-    Cell,
-    /// Shear modulus of the grain.
-    ShearModulus,
-    /// Poisson ratio of the grain.
-    PoissonRatio,
-    /// Density of the grain.
-    Density,
-    /// Friction coefficient.
-    Friction,
-    /// Radius of the grains.
-    Radius,
-}
-
-impl Setting {
-    /// In words.
-    pub fn what(self) -> &'static str {
-        match self {
-            Self::Cell => "the cell",
-            Self::ShearModulus => "the grain's shear modulus",
-            Self::PoissonRatio => "the grain's Poisson ratio",
-            Self::Density => "the grain's density",
-            Self::Friction => "the friction coefficient",
-            Self::Radius => "the radius of the grains",
-        }
-    }
-
-    /// The command-line flag that gives it, with its unit.
-    pub fn flag(self) -> &'static str {
-        match self {
-            Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",
-            Self::ShearModulus => "--shear-modulus PA",
-            Self::PoissonRatio => "--poisson NU",
-            Self::Density => "--density KG_PER_M3",
-            Self::Friction => "--friction MU",
-            Self::Radius => "--radius M",
-        }
-    }
 }
 
 /// What a file says, to be completed by the options.

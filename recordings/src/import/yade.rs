@@ -14,9 +14,9 @@
 
 use grainlab_core::{Mat3, Vec3};
 
-use super::Imported;
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, cut, lines, shown};
 

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{LISTED_GAPS, TopicTally, WriterTally};
+use super::tally::{LISTED_GAPS, TopicTally, WriterTally};
 
 /// One account of several, in the order of their recorders. A writer that several of them heard is accounted for once.
 pub fn merge(accounts: Vec<Vec<TopicTally>>) -> Vec<TopicTally> {

@@ -1,6 +1,7 @@
 //! Framing: one byte of opcode, eight of length, the body.
 
-use mcap::records::Record;
+use mcap::records::{MessageHeader, Record};
+use std::ops::Range;
 
 use super::lengths;
 
@@ -31,6 +32,16 @@ impl<'a> RawRecord<'a> {
             mcap::McapError::Parse(_) => format!("not a record of type 0x{:02x}", self.opcode),
             other => other.to_string(),
         })
+    }
+}
+
+impl RawRecord<'_> {
+    /// Header of a message record, and the position of its data in the bytes from which the record was taken.
+    pub(super) fn message(&self) -> Option<(MessageHeader, Range<usize>)> {
+        match self.parse() {
+            Ok(Record::Message { header, data }) => Some((header, self.end() - data.len()..self.end())),
+            _ => None,
+        }
     }
 }
 

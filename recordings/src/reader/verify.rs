@@ -7,9 +7,11 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 use serde::Serialize;
 
+use super::chunk;
+use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
+use super::recording::Recording;
 use super::records::{FRAME, RawRecord, Records};
-use super::{Recording, Warning, WarningKind, chunk, messages};
 
 /// What a complete check found.
 #[derive(Clone, Debug, Serialize)]
@@ -34,40 +36,48 @@ pub struct Check {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads everything but the account.
-pub(super) fn files(recording: &Recording) -> Vec<Warning> {
-    Found::of(recording);
-    recording.warnings()
-}
+impl Recording {
+    /// Reads everything and returns all faults: checksums, the index against the messages, log times that decrease, and the
+    /// ledger against the messages.
+    pub fn verify(&self) -> Vec<Warning> {
+        self.check().warnings
+    }
 
-/// Reads everything.
-pub(super) fn recording(recording: &Recording) -> Check {
-    let found = Found::of(recording);
-    let ledger = recording.ledger();
-    let unaccounted = recording.unaccounted();
-    if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
-        for topic in ledger {
-            let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
-            if topic.recorded != there {
-                let detail = format!(
-                    "the account says that {} messages on {} were recorded, the files hold {there}",
-                    topic.recorded, topic.name
-                );
-                let path = recording.path().to_owned();
-                recording.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+    /// The same without the ledger: in a recovered file it also counts what could no longer be read.
+    pub(crate) fn verify_files(&self) -> Vec<Warning> {
+        Found::of(self);
+        self.warnings()
+    }
+
+    /// [`Recording::verify`] with the counts of what was read.
+    pub fn check(&self) -> Check {
+        let found = Found::of(self);
+        let ledger = self.ledger();
+        let unaccounted = self.unaccounted();
+        if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
+            for topic in ledger {
+                let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
+                if topic.recorded != there {
+                    let detail = format!(
+                        "the account says that {} messages on {} were recorded, the files hold {there}",
+                        topic.recorded, topic.name
+                    );
+                    let path = self.path().to_owned();
+                    self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+                }
             }
         }
-    }
-    Check {
-        files: recording.paths(),
-        bytes: recording.files.iter().map(|f| f.bytes().len() as u64).sum(),
-        records: found.records,
-        chunks: found.chunks,
-        messages: found.messages,
-        attachments: found.attachments,
-        lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
-        unaccounted,
-        warnings: recording.warnings(),
+        Check {
+            files: self.paths(),
+            bytes: self.size(),
+            records: found.records,
+            chunks: found.chunks,
+            messages: found.messages,
+            attachments: found.attachments,
+            lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
+            unaccounted,
+            warnings: self.warnings(),
+        }
     }
 }
 
@@ -175,7 +185,7 @@ impl Found {
         counts: &mut BTreeMap<u16, u64>,
         warn: &mut dyn FnMut(Warning),
     ) {
-        let Some((header, _)) = messages::message(record) else { return };
+        let Some((header, _)) = record.message() else { return };
         self.messages += 1;
         *counts.entry(header.channel_id).or_default() += 1;
         if let Some(channel) = file.index.channels.get(&header.channel_id) {

@@ -6,9 +6,10 @@ use std::path::Path;
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
+use super::chunk;
+use super::error::{ReadError, Warning, WarningKind};
 use super::file::OpenFile;
 use super::records::Records;
-use super::{ReadError, Warning, WarningKind, chunk};
 
 /// What the walk comes upon.
 pub(crate) enum Walked<'a> {

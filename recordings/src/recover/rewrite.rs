@@ -9,9 +9,9 @@ use std::path::Path;
 use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader};
 use mcap::{Attachment, McapError};
 
-use crate::METADATA_RECORD;
-use crate::reader::walk::{Walk, Walked};
+use crate::metadata_keys::METADATA_RECORD;
 use crate::reader::{ReadError, Warning};
+use crate::reader::{Walk, Walked};
 use crate::writer::part;
 
 /// What was written.

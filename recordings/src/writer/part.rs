@@ -11,7 +11,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use super::device_sync::DeviceSync;
 use super::{TopicSpec, WriteError};
-use crate::bag_metadata::FileCount;
+use crate::reader::FileCount;
 
 type Writer = mcap::Writer<BufWriter<File>>;
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
-use grainlab_recordings::reader::WarningKind;
+use grainlab_recordings::WarningKind;
 use grainlab_recordings::{METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, recover};
 
 type Said = (String, u32, u64, u64, Vec<u8>);

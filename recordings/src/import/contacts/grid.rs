@@ -2,7 +2,7 @@
 
 use grainlab_core::{Cell, Vec3};
 
-use super::SearchError;
+use super::error::SearchError;
 
 /// Spheres of a packing fill less than the cell; overlapping ones that fill it this often are in the wrong units.
 const MOST_FULL: f64 = 20.0;

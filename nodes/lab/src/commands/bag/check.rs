@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::{Format, Table, json, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
-use grainlab_recordings::reader::Check;
+use grainlab_recordings::Check;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

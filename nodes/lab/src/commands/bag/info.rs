@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::{Format, Table, json, print};
 use crate::results::strangers::{self, StrangerView};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::reader::Info;
+use grainlab_recordings::Info;
 use grainlab_recordings::{METADATA_RECORD, Recording};
 use serde::Serialize;
 use std::path::PathBuf;

@@ -1,0 +1,44 @@
+//! Quantities that must be known of a packing.
+
+/// Something that must be known of a packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Setting {
+    /// The periodic cell.
+    Cell,
+    /// Shear modulus of the grain.
+    ShearModulus,
+    /// Poisson ratio of the grain.
+    PoissonRatio,
+    /// Density of the grain.
+    Density,
+    /// Friction coefficient.
+    Friction,
+    /// Radius of the grains.
+    Radius,
+}
+
+impl Setting {
+    /// In words.
+    pub fn what(self) -> &'static str {
+        match self {
+            Self::Cell => "the cell",
+            Self::ShearModulus => "the grain's shear modulus",
+            Self::PoissonRatio => "the grain's Poisson ratio",
+            Self::Density => "the grain's density",
+            Self::Friction => "the friction coefficient",
+            Self::Radius => "the radius of the grains",
+        }
+    }
+
+    /// The command-line flag that gives it, with its unit.
+    pub fn flag(self) -> &'static str {
+        match self {
+            Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",
+            Self::ShearModulus => "--shear-modulus PA",
+            Self::PoissonRatio => "--poisson NU",
+            Self::Density => "--density KG_PER_M3",
+            Self::Friction => "--friction MU",
+            Self::Radius => "--radius M",
+        }
+    }
+}
