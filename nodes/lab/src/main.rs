@@ -6,7 +6,7 @@
 //! - [`failure`], [`output`]: how a command ends, and where its result goes
 //! - [`scenes`]: the scenes built in
 //! - [`launch`]: launch files, processes and their supervision
-//! - [`lifeline`]: ends a node whose launcher died
+//! - [`launcher_pipe`]: ends a node when its launcher is gone
 //! - [`recorder`]: the recorder node
 //! - [`tape`]: a recording of what a node would publish
 //! - [`network`]: buses of tools, free domains
@@ -15,7 +15,7 @@ mod cli;
 mod commands;
 mod failure;
 mod launch;
-mod lifeline;
+mod launcher_pipe;
 mod network;
 mod output;
 mod recorder;

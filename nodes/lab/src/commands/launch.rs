@@ -1,28 +1,21 @@
 //! `grainlab launch`: the main job.
 
-use crate::failure::{Failure, worse};
-use crate::launch::Run;
+use crate::failure::Failure;
 use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
-use crate::launch::supervisor::{Heard, Supervised, Supervisor};
-use crate::network::FreeDomain;
-use crate::output::{Format, json, print};
-use crate::results::continuity;
-use crate::results::read_back::{self, ReadBack};
-use crate::results::state;
-use crate::results::summary::{Launched, NodeEnd, Summary};
-use crate::results::summary_text;
+use crate::output::Format;
 use crate::scenes::{self, SceneText};
-use grainlab_msgs::topics;
-use grainlab_node_kit::{Exit, Network, RunId};
-use grainlab_recordings::Recording;
+use grainlab_node_kit::Exit;
 use grainlab_recordings::input;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+mod conduct;
+mod finish;
 mod order;
 mod resume;
 
+use conduct::{conduct, domain};
 use order::Order;
 
 const EXAMPLES: &str = "\
@@ -36,7 +29,7 @@ Examples:
   grainlab launch --resume recordings/runs/s2-1-1
 
 The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
-Without ROS_DOMAIN_ID, a DDS domain that nobody uses is taken and named.";
+Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
 /// What to launch.
 #[derive(Debug, clap::Args)]
@@ -52,11 +45,11 @@ pub(crate) struct Args {
     /// Seed of every random choice [default: the one of the scene]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Folder in which the run gets a directory of its own
+    /// Folder for the directory of the run
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
-    /// Goes on with this run, from the last packing in its recording, to the bytes that it would have come to; with its
-    /// own launch file, arguments, scene and seed
+    /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed; the
+    /// result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "seed", "out"])]
     resume: Option<PathBuf>,
     /// How to print the result
@@ -92,7 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         seed: scene.scene.seed,
     };
-    // All that can be refused is refused before the run has a directory.
+    // Invalid input is refused before the directory is created.
     refuse_unknown(&order(given.clone()).plans(Path::new("."))?)?;
     let (domain, lock) = domain()?;
     let directory = run_directory(&args.out, &scene)?;
@@ -102,36 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     conduct(plans, domain, lock, &directory, &scene, args.format)
 }
 
-/// Starts the processes, follows the run to its end, and reports it.
-fn conduct(
-    mut plans: Vec<NodePlan>,
-    domain: u16,
-    lock: Option<FreeDomain>,
-    directory: &Path,
-    scene: &SceneText,
-    format: Format,
-) -> Result<Exit, Failure> {
-    plans.iter_mut().for_each(NodePlan::do_not_look_around);
-    let run = Run { id: RunId::fresh(), domain };
-    crate::output::say!(
-        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
-        scene.scene.name,
-        scene.scene.seed,
-        scene.scene.grains,
-        run.id,
-        directory.display()
-    );
-    let supervised = supervise(plans, run, directory, scene.scene.phases.len());
-    drop(lock);
-    let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
-    let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
-    if failed && remove_if_unused(directory) {
-        return Ok(supervised.exit);
-    }
-    finish(format, directory, scene, run, supervised)
-}
-
-/// A launch file that names a node or a program that does not exist would end in the midst of its start.
+/// Refuses a launch file that names an unknown node or program, before anything is started.
 fn refuse_unknown(plans: &[NodePlan]) -> Result<(), Failure> {
     let known: Vec<&str> = crate::commands::run::nodes().iter().map(|n| n.name).collect();
     for plan in plans {
@@ -164,24 +128,6 @@ fn is_program(name: &str) -> bool {
     }
     std::env::var_os("PATH")
         .is_some_and(|path| std::env::split_paths(&path).any(|d| executable(&d.join(name))))
-}
-
-/// Removes the directory of a run that did not start: nothing but the scene, and logs without a word, is in it. False if
-/// there is more.
-fn remove_if_unused(directory: &Path) -> bool {
-    let logs = directory.join("logs");
-    let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
-    let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
-        entries.all(|e| {
-            e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs)
-        })
-    });
-    let silent = match std::fs::read_dir(&logs) {
-        Ok(mut entries) => entries.all(|e| e.as_ref().is_ok_and(empty)),
-        Err(_) => true,
-    };
-    // What cannot be removed stays: the reason for which the run did not start is told in any case.
-    unused && silent && std::fs::remove_dir_all(directory).is_ok()
 }
 
 /// The launch file, if one is named, and the values for its arguments.
@@ -224,21 +170,7 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
-fn network() -> Result<Network, Failure> {
-    Network::from_env().map_err(Failure::usage)
-}
-
-/// The domain of the environment, else a free one, kept while the second value lives.
-fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
-    let network = network()?;
-    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
-        return Ok((network.domain, None));
-    }
-    let free = FreeDomain::take()?;
-    Ok((free.id, Some(free)))
-}
-
-/// The run's directory, with the scene as it is now: a file edited later changes neither the run nor a restart.
+/// Creates the directory of the run, with a copy of the scene: later edits of the file affect neither the run nor a restart.
 fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", root.display()));
     let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;
@@ -246,106 +178,3 @@ fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     std::fs::write(directory.join("scene.toml"), &scene.text).map_err(failed)?;
     Ok(directory)
 }
-
-fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Supervised, Failure> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
-}
-
-/// What the run published and its recording does not hold.
-fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
-    let mut missing = Vec::new();
-    if let Some(published) = heard.packings.filter(|n| back.packings < *n as usize) {
-        missing.push(format!("{} of {published} packings are in the recording", back.packings));
-    }
-    for (topic, steps) in &heard.results {
-        let recorded = back.results.get(topic);
-        for step in steps.iter().filter(|step| recorded.is_none_or(|known| !known.contains(step))) {
-            missing.push(format!("the {topic} of step {step} was published and is not in the recording"));
-        }
-    }
-    missing
-}
-
-/// Reads the recording back, prints the result and writes it beside the recording.
-fn finish(
-    format: Format,
-    directory: &Path,
-    scene: &SceneText,
-    run: Run,
-    supervised: Supervised,
-) -> Result<Exit, Failure> {
-    let mut exit = supervised.exit;
-    let recording = Recording::open(directory);
-    let (back, tallies) = match &recording {
-        Ok(recording) => (read_back::read(recording), recording.ledger()),
-        Err(error) => (ReadBack { complaints: vec![error.to_string()], ..ReadBack::default() }, None),
-    };
-    if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
-        exit = worse(exit, Exit::DataLoss);
-    }
-    let mut back = back;
-    let mut missing = missing(&supervised.heard, &back);
-    // A run that was cut off has a request without its answer.
-    if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
-        missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
-    }
-    let has = |node: &str| supervised.children.iter().any(|c| c.plan.is(node));
-    let unanswered = (has(topics::FABRIC.writer) && back.not_analysed > 0)
-        || (has(topics::MICROSTRUCTURE.writer) && back.not_inverted > 0);
-    if !missing.is_empty() || unanswered {
-        exit = worse(exit, Exit::DataLoss);
-        back.complaints.extend(missing);
-    }
-    let nodes = supervised.children.iter().map(|c| NodeEnd {
-        name: c.plan.name.clone(),
-        pid: c.last_pid,
-        exit: c.code,
-        restarts: c.restarts.len(),
-    });
-    let launched = Launched {
-        scene: scene.scene.name.clone(),
-        seed: scene.scene.seed,
-        domain: run.domain,
-        run: run.id.to_string(),
-        wall_seconds: supervised.wall.as_secs_f64(),
-        nodes: nodes.collect(),
-        recording: recording.is_ok().then(|| directory.display().to_string()),
-        exit,
-    };
-    let summary = Summary::new(launched, back, tallies.as_deref());
-    let path = directory.join("summary.json");
-    let text = json(&summary)?;
-    summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
-    summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
-    let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
-    // Printed before anything that may fail: the result is not lost with the disk.
-    let printed = print(&match format {
-        Format::Json => text.clone(),
-        Format::Csv => state::csv(&states),
-        Format::Table => {
-            let text = summary_text::text(&summary);
-            format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())
-        }
-    });
-    for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
-        crate::output::say!("grainlab: {failure}");
-        // A run that lost data because the disk was full has lost data; that its summary is missing, too, is no other fault.
-        exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
-    }
-    Ok(exit)
-}
-
-/// Writes a file whole or not at all.
-fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
-    let partial = path.with_extension("json.part");
-    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
-    written.map_err(|e| {
-        let _ = std::fs::remove_file(&partial);
-        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
-    })
-}
-
-#[cfg(test)]
-mod tests;

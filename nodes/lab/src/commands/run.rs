@@ -1,7 +1,7 @@
 //! `grainlab run`: one node as this process.
 
 use crate::failure::Failure;
-use crate::lifeline;
+use crate::launcher_pipe;
 use crate::output::print;
 use crate::recorder::{self, Recorder};
 use crate::results::last_packing;
@@ -84,7 +84,7 @@ fn help() -> String {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    lifeline::watch();
+    launcher_pipe::watch();
     let mut nodes = nodes();
     let known = nodes.iter().map(|n| n.name).collect::<Vec<_>>().join(", ");
     let Some(at) = nodes.iter().position(|n| n.name == args.node) else {

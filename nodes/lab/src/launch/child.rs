@@ -3,7 +3,7 @@
 use super::Run;
 use super::plan::NodePlan;
 use crate::failure::Failure;
-use crate::lifeline::VARIABLE;
+use crate::launcher_pipe::VARIABLE;
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -87,10 +87,10 @@ impl Child {
         self.code = None;
         let ended = ended.clone();
         // Held open as long as the process runs; `wait` alone would close it at once.
-        let lifeline = process.stdin.take();
+        let pipe = process.stdin.take();
         tokio::spawn(async move {
             let status = process.wait().await;
-            drop(lifeline);
+            drop(pipe);
             // Nobody listens any more only when the launcher itself ends.
             let _ = ended.send(Ended { index, status });
         });

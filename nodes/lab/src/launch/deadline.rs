@@ -1,8 +1,8 @@
 //! How long the end of a run waits for what is due.
 
-use super::debts::{INSTRUMENT, Standing};
+use super::names::{INSTRUMENT, INVERSION, PROBE};
 use super::patience::Patience;
-use super::supervisor::{INVERSION, PROBE};
+use super::pending_results::ResultState;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
@@ -16,33 +16,33 @@ const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
 /// What is waited for, and for how long.
 pub(super) struct Deadline {
-    pub(super) of: Standing,
+    pub(super) of: ResultState,
     pub(super) patience: Patience,
     pub(super) exit: Exit,
     pub(super) message: String,
 }
 
 impl Deadline {
-    pub(super) fn of(standing: Standing) -> Self {
+    pub(super) fn of(standing: ResultState) -> Self {
         let (time, exit, message) = match standing {
-            Standing::Bare(node) => {
+            ResultState::Bare(node) => {
                 (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
             }
-            Standing::Measured(node) => {
+            ResultState::Measured(node) => {
                 let message = format!(
                     "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
                 );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
-            Standing::Open(INSTRUMENT) => {
+            ResultState::Open(INSTRUMENT) => {
                 let message = "a program that the launch file lists sent wave speeds of other packings, and none of the last";
                 (INSTRUMENT_WITHIN, Exit::DataLoss, message.to_owned())
             }
-            Standing::Open(node) | Standing::Declined(node) => {
+            ResultState::Open(node) | ResultState::Declined(node) => {
                 let message = format!("the last packing was not measured: see logs/{node}.log");
                 (MEASURED_WITHIN, Exit::Failure, message)
             }
-            Standing::Complete => (Duration::ZERO, Exit::Done, String::new()),
+            ResultState::Complete => (Duration::ZERO, Exit::Done, String::new()),
         };
         Self { of: standing, patience: Patience::new(time), exit, message }
     }

@@ -1,7 +1,8 @@
 //! In which order the processes of a run end.
 
 use super::child::{Child, Ended};
-use super::supervisor::{RECORDER, Supervisor};
+use super::names::RECORDER;
+use super::supervisor::Supervisor;
 use super::watch::{Event, Watch};
 use grainlab_node_kit::Exit;
 use std::time::Duration;

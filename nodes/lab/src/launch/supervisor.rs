@@ -3,8 +3,9 @@
 use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
-use super::debts::{Debts, Standing};
+use super::names::{PROBE, RECORDER, SIMULATOR};
 use super::patience::Patience;
+use super::pending_results::{PendingResults, ResultState};
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::stopped::Stopped;
@@ -39,15 +40,6 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 /// What a run waits for whose simulator was not heard yet.
 const SEARCHING: &str = "its processes have not found each other";
 
-/// The node whose end is the end of the record.
-pub(super) const RECORDER: &str = "recorder";
-/// The node that goes on from its last packing when it dies.
-const SIMULATOR: &str = "dem_simulator";
-/// The node that sends waves.
-pub(super) const PROBE: &str = "acoustic_probe";
-/// The node that infers.
-pub(super) const INVERSION: &str = "emt_inversion";
-
 /// A run from its first process to its last.
 pub(crate) struct Supervisor {
     pub(super) children: Vec<Child>,
@@ -67,7 +59,7 @@ pub(crate) struct Supervisor {
     failed: Option<String>,
     /// The watch failed: nobody would notice the end of the run.
     blind: bool,
-    debts: Debts,
+    pending: PendingResults,
     /// The probe was heard at work since the last look.
     probing: bool,
     pub(super) stopped: Stopped,
@@ -113,7 +105,7 @@ impl Supervisor {
     ) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
-        let debts = Debts::of(&plans);
+        let pending = PendingResults::of(&plans);
         Ok(Self {
             children: plans.into_iter().zip(1..).map(|(plan, member)| Child::new(plan, member)).collect(),
             run,
@@ -130,7 +122,7 @@ impl Supervisor {
             finished: None,
             failed: None,
             blind: false,
-            debts,
+            pending,
             probing: false,
             stopped: Stopped::default(),
             deaths: Vec::new(),
@@ -230,15 +222,15 @@ impl Supervisor {
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
             let Some(step) = last else { return self.caught_up().await };
-            match self.debts.standing(step) {
-                Standing::Complete => return self.caught_up().await,
-                Standing::Declined(node) => {
+            match self.pending.state_of(step) {
+                ResultState::Complete => return self.caught_up().await,
+                ResultState::Declined(node) => {
                     crate::output::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
                     // Bursts through a long path take as long as they take; who is at work is waited for.
-                    let at_work = std::mem::take(&mut self.probing) && standing == Standing::Open(PROBE);
+                    let at_work = std::mem::take(&mut self.probing) && standing == ResultState::Open(PROBE);
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         deadline = Some(Deadline::of(standing));
                     }
@@ -287,13 +279,13 @@ impl Supervisor {
             Event::Open => {}
             Event::Structure(step) => {
                 self.heard(topics::FABRIC.name, step);
-                self.debts.structure(step);
+                self.pending.structure(step);
             }
             Event::Measured(topic, step) => {
                 self.heard(topic, step);
-                self.debts.measured(topic, step);
+                self.pending.measured(topic, step);
             }
-            Event::Declined(topic, step) => self.debts.declined(topic, step),
+            Event::Declined(topic, step) => self.pending.declined(topic, step),
             Event::Probing(step) => {
                 self.probing = true;
                 if self.finished.is_some() {
@@ -302,7 +294,7 @@ impl Supervisor {
             }
             Event::Microstructure { source, step, member } => {
                 self.heard(topics::MICROSTRUCTURE.name, step);
-                self.debts.inverted(&source, step, member);
+                self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
                 self.progress.say(&match step {
                     // An instrument's data are of no packing of the run.
@@ -389,7 +381,7 @@ impl Supervisor {
             return self.restart(index, how).await;
         }
         if !self.children.iter().any(|c| c.plan.node.is_none() && c.pid.is_some()) {
-            self.debts.instruments_left();
+            self.pending.instruments_left();
         }
         if child.code == Some(0) {
             self.progress.say(&format!("{} {how}", child.plan.name));

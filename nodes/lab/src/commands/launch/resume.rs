@@ -3,8 +3,8 @@
 //! What is recorded stays as it is. The recorder goes on in the next file of the recording; what the processes say once
 //! more, with the same bytes, is not recorded again.
 
+use super::conduct::{conduct, domain};
 use super::order::Order;
-use super::{conduct, domain};
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::results::last_packing;

@@ -1,11 +1,9 @@
 //! What the run still owes of its last packing: one microstructure from every kind of data that its nodes measure.
 
+use super::names::INSTRUMENT;
 use super::plan::NodePlan;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
-
-/// Stands for the programs of a launch file that are not ours.
-pub(crate) const INSTRUMENT: &str = "instrument";
 
 /// One kind of data, by the topic that carries it.
 #[derive(Debug)]
@@ -29,7 +27,7 @@ impl Kind {
 
 /// Where the run stands with one packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Standing {
+pub(crate) enum ResultState {
     /// Every kind of data is inverted.
     Complete,
     /// Nothing is to come any more, and this node found nothing to invert.
@@ -44,7 +42,7 @@ pub(crate) enum Standing {
 
 /// What is known of every kind of data.
 #[derive(Debug)]
-pub(crate) struct Debts {
+pub(crate) struct PendingResults {
     kinds: Vec<Kind>,
     /// Inversions of the run: each of them infers from every kind of data. One, where the run has none: somebody has to.
     inversions: usize,
@@ -55,7 +53,7 @@ pub(crate) struct Debts {
     structures: BTreeSet<u64>,
 }
 
-impl Debts {
+impl PendingResults {
     /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
     /// without analyzer and probe gets to know that nothing is inferred.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
@@ -116,7 +114,7 @@ impl Debts {
     }
 
     /// Where the run stands with the packing of `step`: by what takes longest.
-    pub(crate) fn standing(&self, step: u64) -> Standing {
+    pub(crate) fn state_of(&self, step: u64) -> ResultState {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
         // A program that is gone sends nothing more.
         let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
@@ -124,15 +122,15 @@ impl Debts {
         let due = || owed().filter(|k| !k.declined.contains(&step));
         let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
         if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
-            return Standing::Open(open.node);
+            return ResultState::Open(open.node);
         }
         if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
-            return Standing::Bare(bare.node);
+            return ResultState::Bare(bare.node);
         }
         if let Some(measured) = due().next() {
-            return Standing::Measured(measured.node);
+            return ResultState::Measured(measured.node);
         }
-        owed().next().map_or(Standing::Complete, |k| Standing::Declined(k.node))
+        owed().next().map_or(ResultState::Complete, |k| ResultState::Declined(k.node))
     }
 }
 
@@ -143,7 +141,7 @@ mod tests {
     const ANALYZER: &str = "fabric_analyzer";
     const PROBE: &str = "acoustic_probe";
 
-    fn debts(nodes: &[&str]) -> Debts {
+    fn pending(nodes: &[&str]) -> PendingResults {
         let plan = |node: &&str| NodePlan {
             name: (*node).to_owned(),
             node: Some((*node).to_owned()),
@@ -151,7 +149,7 @@ mod tests {
             arguments: Vec::new(),
             respawn: false,
         };
-        Debts::of(&nodes.iter().map(plan).collect::<Vec<_>>())
+        PendingResults::of(&nodes.iter().map(plan).collect::<Vec<_>>())
     }
 
     #[test]
@@ -164,80 +162,80 @@ mod tests {
             respawn: false,
         };
         let ours = NodePlan { node: Some(ANALYZER.to_owned()), ..foreign.clone() };
-        let mut d = Debts::of(&[ours, foreign]);
+        let mut d = PendingResults::of(&[ours, foreign]);
         for step in [7, 9] {
             d.measured("moduli", step);
             d.inverted("moduli", step, 2);
         }
         d.measured("wave_speeds", 0);
-        assert_eq!(d.standing(9), Standing::Complete, "speeds of no packing");
+        assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
         d.measured("wave_speeds", 7);
-        assert_eq!(d.standing(9), Standing::Open(INSTRUMENT));
+        assert_eq!(d.state_of(9), ResultState::Open(INSTRUMENT));
         d.measured("wave_speeds", 9);
-        assert_eq!(d.standing(9), Standing::Measured(INSTRUMENT));
+        assert_eq!(d.state_of(9), ResultState::Measured(INSTRUMENT));
         d.inverted("wave_speeds", 9, 2);
-        assert_eq!(d.standing(9), Standing::Complete);
-        assert_eq!(d.standing(11), Standing::Open(ANALYZER));
+        assert_eq!(d.state_of(9), ResultState::Complete);
+        assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
         d.measured("moduli", 11);
         d.inverted("moduli", 11, 2);
         d.instruments_left();
-        assert_eq!(d.standing(11), Standing::Complete);
+        assert_eq!(d.state_of(11), ResultState::Complete);
     }
 
     #[test]
     fn with_a_probe_both_kinds_of_data_must_be_inverted() {
-        let mut d = debts(&[ANALYZER, PROBE]);
-        assert_eq!(d.standing(7), Standing::Open(ANALYZER));
+        let mut d = pending(&[ANALYZER, PROBE]);
+        assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
-        assert_eq!(d.standing(7), Standing::Open(PROBE));
+        assert_eq!(d.state_of(7), ResultState::Open(PROBE));
         d.measured("wave_speeds", 7);
-        assert_eq!(d.standing(7), Standing::Measured(PROBE));
+        assert_eq!(d.state_of(7), ResultState::Measured(PROBE));
         d.inverted("wave_speeds", 6, 2);
-        assert_eq!(d.standing(7), Standing::Measured(PROBE), "another packing");
+        assert_eq!(d.state_of(7), ResultState::Measured(PROBE), "another packing");
         d.inverted("wave_speeds", 7, 2);
-        assert_eq!(d.standing(7), Standing::Complete);
+        assert_eq!(d.state_of(7), ResultState::Complete);
     }
 
     #[test]
     fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
-        let mut d = debts(&[ANALYZER]);
+        let mut d = pending(&[ANALYZER]);
         d.inverted("wave_speeds", 7, 2);
-        assert_eq!(d.standing(7), Standing::Open(ANALYZER));
+        assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
         d.inverted("moduli", 7, 2);
-        assert_eq!(d.standing(7), Standing::Complete);
-        assert_eq!(debts(&[]).standing(7), Standing::Open(ANALYZER));
-        let mut d = debts(&[PROBE]);
+        assert_eq!(d.state_of(7), ResultState::Complete);
+        assert_eq!(pending(&[]).state_of(7), ResultState::Open(ANALYZER));
+        let mut d = pending(&[PROBE]);
         d.inverted("wave_speeds", 7, 2);
-        assert_eq!(d.standing(7), Standing::Complete);
+        assert_eq!(d.state_of(7), ResultState::Complete);
     }
 
     #[test]
     fn a_probe_that_declines_is_not_waited_for() {
-        let mut d = debts(&[ANALYZER, PROBE]);
+        let mut d = pending(&[ANALYZER, PROBE]);
         d.declined("wave_speeds", 7);
         d.measured("moduli", 7);
-        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
         d.inverted("moduli", 7, 2);
-        assert_eq!(d.standing(7), Standing::Declined(PROBE));
+        assert_eq!(d.state_of(7), ResultState::Declined(PROBE));
     }
     #[test]
     fn every_inversion_of_the_run_is_waited_for() {
-        let mut d = debts(&[ANALYZER, "emt_inversion", "emt_inversion"]);
+        let mut d = pending(&[ANALYZER, "emt_inversion", "emt_inversion"]);
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
         d.inverted("moduli", 7, 2);
-        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
         d.inverted("moduli", 7, 3);
-        assert_eq!(d.standing(7), Standing::Complete);
+        assert_eq!(d.state_of(7), ResultState::Complete);
     }
 
     #[test]
     fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
-        let mut d = debts(&[ANALYZER]);
+        let mut d = pending(&[ANALYZER]);
         d.structure(7);
-        assert_eq!(d.standing(7), Standing::Bare(ANALYZER));
+        assert_eq!(d.state_of(7), ResultState::Bare(ANALYZER));
         d.measured("moduli", 7);
-        assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
     }
 }

@@ -1,0 +1,80 @@
+//! A launch from the first process to the report.
+
+use super::finish::finish;
+use super::order;
+use crate::failure::Failure;
+use crate::launch::Run;
+use crate::launch::plan::NodePlan;
+use crate::launch::supervisor::{Supervised, Supervisor};
+use crate::network::FreeDomain;
+use crate::output::Format;
+use crate::scenes::SceneText;
+use grainlab_node_kit::{Exit, Network, RunId};
+use std::path::Path;
+
+/// Starts the processes, follows the run to its end, and reports it.
+pub(super) fn conduct(
+    mut plans: Vec<NodePlan>,
+    domain: u16,
+    lock: Option<FreeDomain>,
+    directory: &Path,
+    scene: &SceneText,
+    format: Format,
+) -> Result<Exit, Failure> {
+    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    let run = Run { id: RunId::fresh(), domain };
+    crate::output::say!(
+        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
+        scene.scene.name,
+        scene.scene.seed,
+        scene.scene.grains,
+        run.id,
+        directory.display()
+    );
+    let supervised = supervise(plans, run, directory, scene.scene.phases.len());
+    drop(lock);
+    let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
+    let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
+    if failed && remove_if_unused(directory) {
+        return Ok(supervised.exit);
+    }
+    finish(format, directory, scene, run, supervised)
+}
+
+/// Removes the directory of a run that did not start: it holds nothing but the scene and empty logs. False if there is
+/// more.
+fn remove_if_unused(directory: &Path) -> bool {
+    let logs = directory.join("logs");
+    let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
+    let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
+        entries.all(|e| {
+            e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs)
+        })
+    });
+    let silent = match std::fs::read_dir(&logs) {
+        Ok(mut entries) => entries.all(|e| e.as_ref().is_ok_and(empty)),
+        Err(_) => true,
+    };
+    // A failure to remove it is not reported: the reason why the run did not start is.
+    unused && silent && std::fs::remove_dir_all(directory).is_ok()
+}
+
+fn network() -> Result<Network, Failure> {
+    Network::from_env().map_err(Failure::usage)
+}
+
+/// The domain of the environment, else a free one, which is reserved until the second value is dropped.
+pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
+    let network = network()?;
+    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
+        return Ok((network.domain, None));
+    }
+    let free = FreeDomain::take()?;
+    Ok((free.id, Some(free)))
+}
+
+fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Supervised, Failure> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
+    runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
+}
