@@ -1,4 +1,4 @@
-//! From the run to messages. Only simulated time is in any of them.
+//! The messages of a run. All their times are simulated time.
 
 use grainlab_core::PackingError;
 use grainlab_dem::{Request, Simulation};
@@ -65,7 +65,7 @@ pub(crate) fn clock(run: &Simulation) -> Clock {
     Clock { clock: stamp(run.engine().time()) }
 }
 
-/// The frame of the cell rests in the world: what a viewer needs to show anything.
+/// The cell's frame is at rest in the world frame; viewers need this transform.
 pub(crate) fn frames() -> TFMessage {
     let rotation = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
     let rest = TransformStamped {

@@ -1,33 +1,33 @@
-//! Messages in their order, none lost where a reader is behind.
+//! Messages in order, none lost if a reader is behind.
 
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, PublisherId};
 use std::collections::VecDeque;
 
-/// Packings that may wait behind the one that is under way before the run waits for the readers: megabytes each.
-const PACKINGS_AHEAD: usize = 2;
+/// Number of packings, of megabytes each, that may be queued behind the one in transit before the run waits for the readers.
+const QUEUED_PACKINGS: usize = 2;
 
 #[derive(Debug)]
 enum Item {
-    /// A request: the lockstep goes on while a packing is under way.
+    /// A request: it may overtake a packing in transit.
     Request(PublisherId, Vec<u8>),
-    /// Where the run stands: not before the packings that it speaks of are delivered.
+    /// A run state: it follows the packings that it counts.
     State(PublisherId, Vec<u8>),
     /// A packing of any length.
     Packing(Vec<u8>),
 }
 
-/// What is still to be published, in order. A large packing takes its time; requests pass it, everything else waits.
+/// Messages to publish, in order. Requests overtake a large packing in transit; all other messages wait for it.
 #[derive(Debug)]
-pub(crate) struct Outbox {
+pub(crate) struct SendQueue {
     packings: BulkPublisher,
     waiting: VecDeque<Item>,
-    /// States and packings behind the packing that is under way.
+    /// States and packings behind the packing in transit.
     behind: VecDeque<Item>,
     under_way: bool,
     held_up: u64,
 }
 
-impl Outbox {
+impl SendQueue {
     pub(crate) fn new(packings: BulkPublisher) -> Self {
         let (waiting, behind) = (VecDeque::new(), VecDeque::new());
         Self { packings, waiting, behind, under_way: false, held_up: 0 }
@@ -38,20 +38,20 @@ impl Outbox {
         &self.packings
     }
 
-    pub(crate) fn post_request(&mut self, publisher: PublisherId, body: Vec<u8>) {
+    pub(crate) fn push_request(&mut self, publisher: PublisherId, body: Vec<u8>) {
         self.waiting.push_back(Item::Request(publisher, body));
     }
 
-    pub(crate) fn post_state(&mut self, publisher: PublisherId, body: Vec<u8>) {
+    pub(crate) fn push_state(&mut self, publisher: PublisherId, body: Vec<u8>) {
         self.waiting.push_back(Item::State(publisher, body));
     }
 
-    pub(crate) fn post_packing(&mut self, body: Vec<u8>) {
+    pub(crate) fn push_packing(&mut self, body: Vec<u8>) {
         self.waiting.push_back(Item::Packing(body));
     }
 
-    /// Publishes what the bus takes and moves a large packing on; true if the run may go on. A reliable reader that is too
-    /// far behind holds the rest up: the run waits for it rather than lose a sample.
+    /// Publishes what the bus accepts and sends parts of a large packing; true if the run may continue. If a reliable reader is
+    /// too far behind, the run waits for it instead of losing a sample.
     pub(crate) fn deliver(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
         self.under_way = !self.packings.advance(bus)?;
         while let Some(item) = self.behind.pop_front() {
@@ -69,10 +69,10 @@ impl Outbox {
                 return Ok(false);
             }
         }
-        Ok(self.behind.iter().filter(|item| matches!(item, Item::Packing(_))).count() < PACKINGS_AHEAD)
+        Ok(self.behind.iter().filter(|item| matches!(item, Item::Packing(_))).count() < QUEUED_PACKINGS)
     }
 
-    /// The item comes back if it cannot be sent now.
+    /// Sends an item; returns it if it cannot be sent now.
     fn send(&mut self, bus: &mut dyn Bus, item: Item) -> Result<Option<Item>, BusError> {
         let sent = match &item {
             Item::Request(publisher, body) => bus.publish(*publisher, body).map(|_| ()),
@@ -83,7 +83,7 @@ impl Outbox {
         match sent {
             Ok(()) => {
                 if matches!(item, Item::Packing(_)) {
-                    // A large one takes its time from now on.
+                    // A large packing is in transit from now on.
                     self.under_way = !self.packings.advance(bus)?;
                 }
                 Ok(None)
@@ -99,19 +99,18 @@ impl Outbox {
         }
     }
 
-    /// Whether everything was delivered to every reader that lives.
+    /// Whether all messages were delivered to all active readers.
     pub(crate) fn is_empty(&self) -> bool {
         !self.under_way && self.behind.is_empty() && self.waiting.is_empty()
     }
 
-    /// Whether a packing is under way, so that [`Outbox::deliver`] has to be called again soon.
+    /// Whether a packing is in transit, so that [`SendQueue::deliver`] must be called again soon.
     pub(crate) fn is_under_way(&self) -> bool {
         self.under_way || !self.behind.is_empty()
     }
 
-    /// There is little time left: everything that waits goes out now, and the last packing takes the place of one that is
-    /// still under way to somebody.
-    pub(crate) fn hurry(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
+    /// Sends all queued messages now, for a process that is about to end: the last packing replaces one in transit.
+    pub(crate) fn flush(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         for item in self.behind.drain(..).chain(self.waiting.drain(..)) {
             let sent = match &item {
                 Item::Request(publisher, body) | Item::State(publisher, body) => {
@@ -128,7 +127,7 @@ impl Outbox {
         Ok(())
     }
 
-    /// How often a reader held the run up.
+    /// Number of times that a slow reader delayed the run.
     pub(crate) fn held_up(&self) -> u64 {
         self.held_up
     }
@@ -142,11 +141,11 @@ mod tests {
     use grainlab_node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
     use std::time::Duration;
 
-    /// A simulator's bus with its outbox, and a reader of everything.
+    /// A simulator's bus with its queue, and a reader of everything.
     struct Bench {
         hub: Hub,
         bus: MemoryBus,
-        outbox: Outbox,
+        queue: SendQueue,
         stress: PublisherId,
         run_state: PublisherId,
         reader: MemoryBus,
@@ -173,10 +172,10 @@ mod tests {
             let states = reader.subscribe(&topics::RUN_STATE, demand).unwrap();
             let mut bus = hub.bus(Names::new("dem_simulator").unwrap());
             let stress = bus.advertise(&topics::STRESS).unwrap();
-            let outbox = Outbox::new(BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap());
+            let queue = SendQueue::new(BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap());
             let run_state = bus.advertise(&topics::RUN_STATE).unwrap();
             let heard = Vec::new();
-            Self { hub, bus, outbox, stress, run_state, reader, packings, requests, states, heard }
+            Self { hub, bus, queue, stress, run_state, reader, packings, requests, states, heard }
         }
 
         /// The reader looks, and a millisecond passes.
@@ -193,13 +192,13 @@ mod tests {
         }
 
         fn deliver(&mut self) -> bool {
-            self.outbox.deliver(&mut self.bus).unwrap()
+            self.send_queue.deliver(&mut self.bus).unwrap()
         }
 
         fn until_empty(&mut self) {
             for _ in 0..20_000 {
                 self.deliver();
-                if self.outbox.is_empty() {
+                if self.send_queue.is_empty() {
                     return self.look();
                 }
                 self.look();
@@ -209,17 +208,17 @@ mod tests {
     }
 
     #[test]
-    fn requests_pass_a_large_packing_and_the_state_that_speaks_of_it_does_not() {
+    fn requests_overtake_a_large_packing_and_its_state_does_not() {
         let mut bench = Bench::new();
         let (stress, run_state) = (bench.stress, bench.run_state);
-        bench.outbox.post_packing(body(1, 3 * LIMIT));
-        bench.outbox.post_state(run_state, body(2, 8));
-        bench.outbox.post_packing(body(3, 100));
-        bench.outbox.post_request(stress, body(4, 8));
+        bench.queue.push_packing(body(1, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(2, 8));
+        bench.queue.push_packing(body(3, 100));
+        bench.queue.push_request(stress, body(4, 8));
         assert!(bench.deliver(), "the run goes on");
         bench.look();
         assert_eq!(bench.heard, ["r4"]);
-        assert!(bench.outbox.is_under_way() && !bench.outbox.is_empty());
+        assert!(bench.queue.is_under_way() && !bench.queue.is_empty());
         bench.until_empty();
         assert_eq!(bench.heard, ["r4", "p1", "s2", "p3"]);
     }
@@ -228,10 +227,10 @@ mod tests {
     fn small_messages_are_published_at_once_in_the_order_in_which_they_were_posted() {
         let mut bench = Bench::new();
         let (stress, run_state) = (bench.stress, bench.run_state);
-        bench.outbox.post_packing(body(1, 100));
-        bench.outbox.post_state(run_state, body(2, 8));
-        bench.outbox.post_request(stress, body(3, 8));
-        assert!(bench.deliver() && bench.outbox.is_empty());
+        bench.queue.push_packing(body(1, 100));
+        bench.queue.push_state(run_state, body(2, 8));
+        bench.queue.push_request(stress, body(3, 8));
+        assert!(bench.deliver() && bench.queue.is_empty());
         bench.look();
         bench.heard.sort();
         assert_eq!(bench.heard, ["p1", "r3", "s2"]);
@@ -244,7 +243,7 @@ mod tests {
         for _ in 0..100 {
             if bench.deliver() {
                 posted += 1;
-                bench.outbox.post_packing(body(posted, LIMIT + 1));
+                bench.queue.push_packing(body(posted, BULK_LIMIT + 1));
             }
         }
         assert_eq!(posted, 3, "one under way, two behind it");
@@ -257,21 +256,21 @@ mod tests {
         let mut bench = Bench::new();
         (0..100).for_each(|_| bench.look());
         let run_state = bench.run_state;
-        bench.outbox.post_packing(body(1, 3 * LIMIT));
-        bench.outbox.post_state(run_state, body(2, 8));
+        bench.queue.push_packing(body(1, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(2, 8));
         let began = bench.hub.now();
-        while !bench.outbox.is_empty() {
+        while !bench.queue.is_empty() {
             bench.deliver();
             bench.hub.advance(Duration::from_millis(5));
             assert!(bench.hub.now() - began < Duration::from_secs(10));
         }
-        assert_eq!(bench.outbox.packings().left_behind(), 1);
+        assert_eq!(bench.queue.packings().left_behind(), 1);
         // Where there is no time for that, what waits is sent all the same.
-        bench.outbox.post_packing(body(3, 3 * LIMIT));
-        bench.outbox.post_state(run_state, body(4, 8));
-        bench.outbox.post_packing(body(5, 3 * LIMIT));
+        bench.queue.push_packing(body(3, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(4, 8));
+        bench.queue.push_packing(body(5, 3 * BULK_LIMIT));
         bench.deliver();
-        bench.outbox.hurry(&mut bench.bus).unwrap();
+        bench.queue.flush(&mut bench.bus).unwrap();
         // It was only asleep.
         for _ in 0..500 {
             bench.deliver();

@@ -4,22 +4,22 @@ use grainlab_node_kit::WriterId;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A rival that lives and has the larger GUID may have started at the same moment: it gets this long to give way.
+/// A running simulator with the larger GUID may have started at the same moment: it gets this long to end.
 const GRACE: Duration = Duration::from_secs(2);
 
-/// A crashed process stays in the graph until its lease ends, within a minute. A rival that has said nothing for so long
-/// and is still there is none of those.
+/// A crashed process stays in the graph until its lease ends, within a minute. A writer that has published nothing for
+/// this long and is still in the graph has not crashed.
 const SILENCE: Duration = Duration::from_secs(75);
 
-/// Rivals that are kept in mind: one is enough to refuse a run.
+/// Maximum number of other simulators that are remembered: one is enough to refuse a run.
 const KEPT: usize = 512;
 
 type Participant = [u8; 12];
 
-/// What is known of other writers of `stress`. A living simulator says where it stands (`run_state`, latched and once a
-/// second); a writer that says nothing may be what a crash left behind.
+/// Other writers of `stress`. A running simulator publishes `run_state` (latched, and once a second); a silent writer may be
+/// left from a crash.
 #[derive(Debug)]
-pub(crate) struct Rivals {
+pub(crate) struct DuplicateSimulators {
     own: Participant,
     seen: BTreeMap<Participant, Duration>,
     heard: BTreeMap<Participant, Duration>,
@@ -28,20 +28,20 @@ pub(crate) struct Rivals {
 /// Whether a run may start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// Nobody else is there.
+    /// There is no other writer.
     Clear,
-    /// It is not known yet.
+    /// Whether this writer is a simulator is not known yet.
     Wait(WriterId),
-    /// Another simulator was first.
+    /// Another simulator started earlier.
     Refuse(WriterId),
 }
 
-impl Rivals {
+impl DuplicateSimulators {
     pub(crate) fn new(own: Participant) -> Self {
         Self { own, seen: BTreeMap::new(), heard: BTreeMap::new() }
     }
 
-    /// A `run_state` of this writer has arrived. True the first time, if it is a rival's.
+    /// Notes a `run_state` of this writer. True the first time for each other simulator.
     pub(crate) fn hear(&mut self, writer: WriterId, now: Duration) -> bool {
         let participant = writer.participant();
         if self.heard.len() >= KEPT {
@@ -50,7 +50,7 @@ impl Rivals {
         participant != self.own && self.heard.insert(participant, now).is_none()
     }
 
-    /// Judges the other writers of `stress` that are in the graph now.
+    /// Evaluates the other writers of `stress` that are in the graph.
     pub(crate) fn verdict(&mut self, foreign: &[WriterId], now: Duration) -> Verdict {
         let mut verdict = Verdict::Clear;
         for writer in foreign {
@@ -85,7 +85,8 @@ mod tests {
     #[test]
     fn of_two_that_start_at_once_the_larger_guid_gives_way_and_the_smaller_starts() {
         let (small, large) = (writer(1), writer(2));
-        let (mut first, mut second) = (Rivals::new(small.participant()), Rivals::new(large.participant()));
+        let (mut first, mut second) =
+            (DuplicateSimulators::new(small.participant()), DuplicateSimulators::new(large.participant()));
         assert!(first.hear(large, SECOND) && second.hear(small, SECOND));
         assert_eq!(second.verdict(&[small], SECOND), Verdict::Refuse(small));
         assert_eq!(first.verdict(&[large], SECOND), Verdict::Wait(large));
@@ -93,27 +94,27 @@ mod tests {
     }
 
     #[test]
-    fn one_that_lives_and_does_not_give_way_was_first() {
+    fn a_running_simulator_that_does_not_end_was_first() {
         let (small, large) = (writer(1), writer(2));
-        let mut rivals = Rivals::new(small.participant());
-        rivals.hear(large, SECOND);
-        assert_eq!(rivals.verdict(&[large], SECOND), Verdict::Wait(large));
-        assert_eq!(rivals.verdict(&[large], SECOND + GRACE), Verdict::Refuse(large));
+        let mut duplicates = DuplicateSimulators::new(small.participant());
+        duplicates.hear(large, SECOND);
+        assert_eq!(duplicates.verdict(&[large], SECOND), Verdict::Wait(large));
+        assert_eq!(duplicates.verdict(&[large], SECOND + GRACE), Verdict::Refuse(large));
     }
 
     #[test]
-    fn what_a_crash_left_behind_is_waited_out_and_never_taken_for_dead_while_it_is_there() {
+    fn a_silent_writer_is_waited_for_until_its_lease_has_ended() {
         let dead = writer(1);
-        let mut rivals = Rivals::new(writer(2).participant());
-        assert_eq!(rivals.verdict(&[dead], SECOND), Verdict::Wait(dead));
-        assert_eq!(rivals.verdict(&[dead], 60 * SECOND), Verdict::Wait(dead));
-        assert_eq!(rivals.verdict(&[], 61 * SECOND), Verdict::Clear);
-        assert_eq!(rivals.verdict(&[dead], SECOND + SILENCE), Verdict::Refuse(dead));
+        let mut duplicates = DuplicateSimulators::new(writer(2).participant());
+        assert_eq!(duplicates.verdict(&[dead], SECOND), Verdict::Wait(dead));
+        assert_eq!(duplicates.verdict(&[dead], 60 * SECOND), Verdict::Wait(dead));
+        assert_eq!(duplicates.verdict(&[], 61 * SECOND), Verdict::Clear);
+        assert_eq!(duplicates.verdict(&[dead], SECOND + SILENCE), Verdict::Refuse(dead));
     }
 
     #[test]
-    fn our_own_messages_are_no_rivals() {
+    fn our_own_messages_are_not_those_of_a_duplicate() {
         let own = writer(1);
-        assert!(!Rivals::new(own.participant()).hear(own, SECOND));
+        assert!(!DuplicateSimulators::new(own.participant()).hear(own, SECOND));
     }
 }
