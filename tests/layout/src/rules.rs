@@ -13,7 +13,8 @@ pub const MAX_LINES: usize = 500;
 /// Groups of modules each of which uses all others of its group, if by way of others.
 pub fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let imports = imports(modules);
-    let number: BTreeMap<&ModulePath, usize> = imports.keys().enumerate().map(|(i, path)| (path, i)).collect();
+    let number: BTreeMap<&ModulePath, usize> =
+        imports.keys().enumerate().map(|(i, path)| (path, i)).collect();
     let names: Vec<String> = imports.keys().map(|path| name(path)).collect();
     let edges = imports.iter().flat_map(|(from, used)| used.iter().map(|to| (number[from], number[to])));
     let graph = DiGraphMap::<usize, ()>::from_edges(edges);

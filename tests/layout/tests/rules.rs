@@ -20,7 +20,9 @@ fn roots() -> Vec<PathBuf> {
 fn holds(rule: fn(&std::collections::BTreeMap<Vec<String>, layout::modules::Module>) -> Vec<String>) {
     let faults: Vec<String> = roots()
         .iter()
-        .flat_map(|root| rule(&modules(root)).into_iter().map(move |fault| format!("{}: {fault}", root.display())))
+        .flat_map(|root| {
+            rule(&modules(root)).into_iter().map(move |fault| format!("{}: {fault}", root.display()))
+        })
         .collect();
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
