@@ -1,10 +1,10 @@
 //! Recordings of runs: MCAP files in the conventions of rosbag2, written so that a crash loses half a second at most.
 //!
-//! - `writer`: a run directory (`<name>_0.mcap` … and `metadata.yaml`), written crash-safe
-//! - `ledger`: what was recorded, lost and repeated, per topic and per writer
-//! - `reader`: recordings by topic and time, tolerant of truncation and damage, which are reported
+//! - `writer`: writes a run directory (`<name>_0.mcap` … and `metadata.yaml`), safe against crashes
+//! - `ledger`: counts of recorded, lost and repeated messages, per topic and per writer
+//! - `reader`: reads recordings by topic and time; truncation and damage are reported
 //! - [`recover()`]: completes the files of a recorder that was killed
-//! - `player`: when to send which message, without a clock or a socket
+//! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
 //! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories

@@ -1,13 +1,13 @@
 //! Recordings: one MCAP file or a run directory, read by topic and time.
 //!
-//! A complete file is read through its index. A file that was cut off, or whose index is damaged, is read
-//! from its start as far as it goes. A chunk whose checksum fails is left out. Whatever could not be read is
-//! named by [`Recording::warnings`]; bytes never make it panic.
+//! A complete file is read through its index. A file that is truncated, or whose index is damaged, is read
+//! from its start as far as possible. A chunk whose checksum fails is left out. Unreadable parts are
+//! listed by [`Recording::warnings`]; no content causes a panic.
 //!
-//! Memory is bounded: a chunk may decompress to 64 times its size, or 64 MiB where that is more, and never to more than
-//! 1 GiB; all that is in memory at once, to 64 times the recording's size, or 256 MiB, and one chunk more.
+//! Memory is bounded: a chunk may decompress to 64 times its size, or 64 MiB if that is more, and never to more than
+//! 1 GiB; all data in memory at once is at most 64 times the recording's size, or 256 MiB, plus one chunk.
 //!
-//! The file is mapped into memory: it must not be shortened by somebody else meanwhile (growing is fine).
+//! The file is mapped into memory: no other process may shorten it meanwhile (it may grow).
 
 mod channel;
 mod chunk;

@@ -16,8 +16,8 @@ const KEPT: usize = 512;
 
 type Participant = [u8; 12];
 
-/// Other writers of `stress`. A running simulator publishes `run_state` (latched, and once a second); a silent writer may be
-/// left from a crash.
+/// Other writers of `stress`. A running simulator publishes `run_state` (latched, and once a second); a silent writer
+/// may be left from a crash.
 #[derive(Debug)]
 pub(crate) struct DuplicateSimulators {
     own: Participant,

@@ -16,7 +16,8 @@ use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
 impl DemSimulator {
-    /// Receives all answers. Returns the reason to end the run, if there is one. Answers to other simulators are dropped.
+    /// Receives all answers. Returns the reason to end the run, if there is one. Answers to other simulators are
+    /// dropped.
     pub(crate) fn receive_answers(
         &mut self,
         bus: &mut dyn Bus,

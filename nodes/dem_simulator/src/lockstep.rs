@@ -89,8 +89,8 @@ impl Lockstep {
         self.busy += time;
     }
 
-    /// Receives an answer. It is accepted if sequence number and stamp are those of a current request and the rates are allowed
-    /// by it.
+    /// Receives an answer. It is accepted if sequence number and stamp are those of a current request and the rates are
+    /// allowed by it.
     pub(crate) fn hear(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
         let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
         let Some(question) = self.questions.iter().find(asked) else {
@@ -138,8 +138,9 @@ impl Lockstep {
         Some(rate)
     }
 
-    /// The messages to publish again, if the current request is due: with the previous one, since a servo that was killed may
-    /// have delivered its last answer to the simulator and not to the recorder. The next servo repeats that answer.
+    /// The messages to publish again, if the current request is due: with the previous one, since a servo that was
+    /// killed may have delivered its last answer to the simulator and not to the recorder. The next servo repeats that
+    /// answer.
     pub(crate) fn resend(&mut self, now: Duration) -> Option<[&[u8]; 2]> {
         if now < self.resend_at {
             return None;

@@ -114,7 +114,8 @@ impl DemSimulator {
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
-        // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own window.
+        // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own
+        // window.
         let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
         frames.publish(bus, &messages::frames())?;
         let own_stress = bus.published().first().map(|p| p.writer).unwrap_or_default();

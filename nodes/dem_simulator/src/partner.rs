@@ -34,8 +34,8 @@ pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
     run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
 }
 
-/// Whether `b` is the restarted process of `a`. Only processes of a launcher have a member number (1 to 254); without one, two
-/// simulators are always two processes.
+/// Whether `b` is the restarted process of `a`. Only processes of a launcher have a member number (1 to 254); without
+/// one, two simulators are always two processes.
 pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
     same_member(a, b) && member_of(b) != 0
 }

@@ -42,8 +42,8 @@ impl Question {
         }
     }
 
-    /// Whether these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed rate.
-    /// The servo chooses only the rates of components with a stress target.
+    /// Whether these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed
+    /// rate. The servo chooses only the rates of components with a stress target.
     pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
         let limit = self.rate_limit;
         for ((component, control), found) in COMPONENTS.into_iter().zip(&self.controls).zip(*rate) {

@@ -3,7 +3,8 @@
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, PublisherId};
 use std::collections::VecDeque;
 
-/// Number of packings, of megabytes each, that may be queued behind the one in transit before the run waits for the readers.
+/// Number of packings, of megabytes each, that may be queued behind the one in transit before the run waits for the
+/// readers.
 const QUEUED_PACKINGS: usize = 2;
 
 #[derive(Debug)]
@@ -50,8 +51,8 @@ impl SendQueue {
         self.waiting.push_back(Item::Packing(body));
     }
 
-    /// Publishes what the bus accepts and sends parts of a large packing; true if the run may continue. If a reliable reader is
-    /// too far behind, the run waits for it instead of losing a sample.
+    /// Publishes what the bus accepts and sends parts of a large packing; true if the run may continue. If a reliable
+    /// reader is too far behind, the run waits for it instead of losing a sample.
     pub(crate) fn deliver(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
         self.under_way = !self.packings.advance(bus)?;
         while let Some(item) = self.behind.pop_front() {
@@ -153,7 +154,7 @@ mod tests {
         requests: SubscriptionId,
         states: SubscriptionId,
         /// The first letter of each message's topic, and its number.
-        heard: Vec<String>,
+        received: Vec<String>,
     }
 
     fn body(number: u8, length: usize) -> Vec<u8> {
@@ -174,31 +175,31 @@ mod tests {
             let stress = bus.advertise(&topics::STRESS).unwrap();
             let queue = SendQueue::new(BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap());
             let run_state = bus.advertise(&topics::RUN_STATE).unwrap();
-            let heard = Vec::new();
-            Self { hub, bus, queue, stress, run_state, reader, packings, requests, states, heard }
+            let received = Vec::new();
+            Self { hub, bus, queue, stress, run_state, reader, packings, requests, states, received }
         }
 
         /// The reader looks, and a millisecond passes.
         fn look(&mut self) {
             for (letter, subscription) in [("r", self.requests), ("s", self.states)] {
                 while let Some(sample) = self.reader.take(subscription).unwrap() {
-                    self.heard.push(format!("{letter}{}", sample.body[4]));
+                    self.received.push(format!("{letter}{}", sample.body[4]));
                 }
             }
             while let Some(sample) = self.packings.take(&mut self.reader).unwrap() {
-                self.heard.push(format!("p{}", sample.body[4]));
+                self.received.push(format!("p{}", sample.body[4]));
             }
             self.hub.advance(Duration::from_millis(1));
         }
 
         fn deliver(&mut self) -> bool {
-            self.send_queue.deliver(&mut self.bus).unwrap()
+            self.queue.deliver(&mut self.bus).unwrap()
         }
 
         fn until_empty(&mut self) {
             for _ in 0..20_000 {
                 self.deliver();
-                if self.send_queue.is_empty() {
+                if self.queue.is_empty() {
                     return self.look();
                 }
                 self.look();
@@ -217,10 +218,10 @@ mod tests {
         bench.queue.push_request(stress, body(4, 8));
         assert!(bench.deliver(), "the run goes on");
         bench.look();
-        assert_eq!(bench.heard, ["r4"]);
+        assert_eq!(bench.received, ["r4"]);
         assert!(bench.queue.is_under_way() && !bench.queue.is_empty());
         bench.until_empty();
-        assert_eq!(bench.heard, ["r4", "p1", "s2", "p3"]);
+        assert_eq!(bench.received, ["r4", "p1", "s2", "p3"]);
     }
 
     #[test]
@@ -232,8 +233,8 @@ mod tests {
         bench.queue.push_request(stress, body(3, 8));
         assert!(bench.deliver() && bench.queue.is_empty());
         bench.look();
-        bench.heard.sort();
-        assert_eq!(bench.heard, ["p1", "r3", "s2"]);
+        bench.received.sort();
+        assert_eq!(bench.received, ["p1", "r3", "s2"]);
     }
 
     #[test]
@@ -248,7 +249,7 @@ mod tests {
         }
         assert_eq!(posted, 3, "one under way, two behind it");
         bench.until_empty();
-        assert_eq!(bench.heard, ["p1", "p2", "p3"]);
+        assert_eq!(bench.received, ["p1", "p2", "p3"]);
     }
 
     #[test]
@@ -276,7 +277,7 @@ mod tests {
             bench.deliver();
             bench.look();
         }
-        assert_eq!(bench.heard.iter().rfind(|message| message.starts_with('p')).unwrap(), "p5");
-        assert!(bench.heard.contains(&"s4".into()), "{:?}", bench.heard);
+        assert_eq!(bench.received.iter().rfind(|message| message.starts_with('p')).unwrap(), "p5");
+        assert!(bench.received.contains(&"s4".into()), "{:?}", bench.received);
     }
 }

@@ -12,8 +12,8 @@ use std::time::Duration;
 /// Period at which a waiting start checks again.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 
-/// A crashed servo stays in the graph until its lease ends, within a minute. Two servos that are present for longer are an
-/// error.
+/// A crashed servo stays in the graph until its lease ends, within a minute. Two servos that are present for longer are
+/// an error.
 const TWO_SERVOS: Duration = Duration::from_secs(75);
 
 impl DemSimulator {

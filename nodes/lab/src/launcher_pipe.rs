@@ -1,7 +1,7 @@
 //! Ends a node when its launcher is gone: its standard input is a pipe that only the launcher holds open.
 //!
-//! The kernel's own mechanism (PR_SET_PDEATHSIG) sends one signal for each thread of a killed launcher, and the second one
-//! would end a recorder before its file is finished.
+//! The kernel's own mechanism (PR_SET_PDEATHSIG) sends one signal for each thread of a killed launcher, and the second
+//! one would end a recorder before its file is finished.
 
 use std::io::Read;
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! Buses of tools, and free domains.
 
 use crate::failure::Failure;
-use grainlab_node_kit::RosArgs;
 use grainlab_node_kit::Logger;
+use grainlab_node_kit::RosArgs;
 use grainlab_node_kit::Signals;
 use grainlab_node_kit::{DdsBus, Identity, Names, Network, Scope};
 use std::net::{Ipv4Addr, UdpSocket};

@@ -1,8 +1,8 @@
 //! The recorder node: every sample of every topic into one recording.
 //!
-//! - [`Settings`], [`parameters`]: what is recorded, and where to
-//! - `binding`: whose messages belong to a run by hand; `repeats`: messages that say what was recorded already
-//! - [`Recorder`]: the node; [`Finished`]: what it leaves behind
+//! - [`Settings`], [`parameters`]: the topics to record and the directory
+//! - `binding`: the messages of a run by hand; `repeats`: repetitions of recorded messages
+//! - [`Recorder`]: the node; [`Finished`]: its result
 
 mod binding;
 pub(crate) mod repeats;
@@ -17,21 +17,21 @@ use crate::results::strangers::{self, Authors, StrangerView};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Topic, from_cdr, topics};
 use grainlab_node_kit::Published;
-use grainlab_node_kit::{member_of, run_of};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,
 };
-use grainlab_recordings::Guid;
+use grainlab_node_kit::{member_of, run_of};
 use grainlab_recordings::Finished;
+use grainlab_recordings::Guid;
 use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, TopicTally, WriterOptions};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Samples that may wait while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many of each topic,
-/// also after they were taken, so that a topic of few or long messages gets less.
+/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many
+/// of each topic, also after they were taken, so that a topic of few or long messages gets less.
 fn backlog(topic: &Topic) -> u32 {
     match topic.name {
         name if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&name) => 20_000,
@@ -41,29 +41,29 @@ fn backlog(topic: &Topic) -> u32 {
     }
 }
 
-/// The writer wants to be called this often.
+/// Period of the writer's `tick`.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Older than any message may become before it is handed to the system.
+/// Longer than the time before any message is written.
 const OLD_ENOUGH: Duration = Duration::from_secs(1);
 
-/// A recorder that took nothing in for this long was stopped by a signal, or its disk was slow.
+/// A recorder without a step for this long was stopped by a signal, or its disk was slow.
 const STALLED: Duration = Duration::from_secs(2);
 
-/// How long a recorder that is to end waits for what writers report and it does not have, and how long for silence, unless
-/// everyone has said goodbye.
+/// How long an ending recorder waits for reported messages that it lacks, and how long for a pause of messages, unless
+/// every process has sent its last report.
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
 
-/// Where the recorder leaves what it finished, for whoever started it.
+/// Where the recorder leaves its result for the caller.
 pub(crate) type Result = Rc<RefCell<Option<Finished>>>;
 
 type Participant = [u8; 12];
 
-/// How a topic's messages come.
+/// How the messages of a topic are received and written.
 enum Source {
     Samples(SubscriptionId),
-    /// Large ones in parts: what is recorded is the whole, as if it were one sample.
+    /// Large ones in parts: recorded whole, as one sample.
     Bulk(Box<BulkSubscription>),
 }
 
@@ -81,7 +81,7 @@ struct Channel {
     source: Source,
     name: String,
     reports: bool,
-    /// A result: handed to the system at once.
+    /// A result: written at once.
     precious: bool,
 }
 
@@ -96,20 +96,20 @@ pub(crate) struct Recorder {
     whole_run: bool,
     recorded: u64,
     company: Company,
-    /// Where the processes of the run share no run id.
+    /// For a run whose processes share no run id.
     binding: Option<Binding>,
-    /// Where one run is recorded.
+    /// For the recording of one run.
     repeats: Option<Repeats>,
     contradictions: u64,
-    /// Who wrote each result.
+    /// The writer of each result.
     authors: Authors,
     /// Time of the last step, since the bus was opened.
     stepped: Option<Duration>,
-    /// The recorder took nothing in for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
+    /// The recorder had no step for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
     stalled: bool,
 }
 
-/// Who was heard, and who said goodbye: a last report counts everything that its process ever published.
+/// The processes that published, and those that sent their last report, which counts all messages of the process.
 #[derive(Debug, Default)]
 struct Company {
     own: Option<Participant>,
@@ -122,13 +122,13 @@ impl Company {
         self.heard.insert(writer.participant());
     }
 
-    /// How many processes are gone and sent no last report.
+    /// Number of processes that left without a last report.
     fn missing(&self, present: &[WriterId]) -> usize {
         let there: BTreeSet<_> = present.iter().map(WriterId::participant).chain(self.own).collect();
         self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
     }
 
-    /// Whether everyone who was heard, or has a writer in `present`, has said goodbye.
+    /// Whether every process that published, or has a writer in `present`, has sent its last report.
     fn all_left(&self, present: &[WriterId]) -> bool {
         let mut known = self.heard.iter().copied().chain(present.iter().map(WriterId::participant));
         known.all(|p| Some(p) == self.own || self.left.contains(&p))
@@ -210,7 +210,7 @@ impl Recorder {
         })
     }
 
-    /// Everything that arrived; true if anything did.
+    /// Records all samples that arrived; true if there were any.
     fn take_all(&mut self, bus: &mut dyn Bus) -> std::result::Result<bool, NodeError> {
         let Some(writer) = self.writer.as_mut() else { return Ok(false) };
         let mut any = false;
@@ -261,7 +261,7 @@ impl Recorder {
                     if let Outcome::Recorded { log_time } = outcome {
                         self.authors.enter(&channel.name, log_time, incoming.guid);
                     }
-                    // To the writer, whatever waits is old enough then.
+                    // With this time the writer counts all queued messages as old enough.
                     writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
                 }
             }
@@ -270,7 +270,7 @@ impl Recorder {
         Ok(any)
     }
 
-    /// Everyone whose messages were left out.
+    /// The processes whose messages were left out.
     fn strangers(&self, bus: &dyn Bus) -> Vec<StrangerView> {
         let of_bus = bus.strangers();
         let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {
@@ -280,7 +280,7 @@ impl Recorder {
         strangers::grouped(of_bus.into_iter().chain(of_binding))
     }
 
-    /// Waits for what is known to be on its way, then for a moment of silence if anyone may still speak.
+    /// Waits for messages known to be in transit, then for a short pause if any process may still publish.
     fn last_call(&mut self, bus: &mut dyn Bus) -> std::result::Result<(), NodeError> {
         self.company.own = bus.published().first().map(|p| p.writer.participant());
         let end = bus.now() + LAST_CALL;
@@ -303,7 +303,7 @@ impl Recorder {
     }
 }
 
-/// The same for a process of a launched run and the one that takes its place.
+/// The same value for a process of a launched run and for its restarted successor.
 fn author(writer: WriterId) -> u64 {
     let participant = writer.participant();
     match (run_of(&participant), member_of(&participant)) {
@@ -312,7 +312,7 @@ fn author(writer: WriterId) -> u64 {
     }
 }
 
-/// Names a process whose message is left out, once for each kind of message.
+/// Logs a process whose messages are left out, once for each kind of message.
 fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Binding) {
     let first =
         binding.ignored().get(&who.participant).is_some_and(|topics| topics.get(topic.name) == Some(&1));
@@ -321,32 +321,32 @@ fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Bindin
     }
     match outside {
         Outside::Stranger => {
-            log::warn!("{}: {who} is not of this run: what it publishes is left out", topic.name)
+            log::warn!("{}: {who} is not of this run: its messages are left out", topic.name)
         }
         Outside::Second => log::error!(
-            "{}: {who} writes about this run beside the process that was heard first: what it publishes is left out",
+            "{}: {who} publishes about this run in addition to the first process: its messages are left out",
             topic.name
         ),
     }
 }
 
-/// A recording that cannot go on has lost data.
+/// A recording that cannot continue has lost data.
 fn lost(error: &dyn std::fmt::Display) -> NodeError {
     NodeError::new(Exit::DataLoss, error.to_string())
 }
 
-/// What each process says it published so far, and which node it is; true if it is the last that the writer will say.
+/// Passes the counts of a report to the recording, with the node's name; true for the last report of a process.
 fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
     let mut goodbye = false;
     for report in Report::from_message(&message) {
-        // A replayed report speaks of writers that are not there.
+        // A replayed report refers to writers that do not exist.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
         goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
-            // Topics that are not recorded owe nothing.
+            // Topics that are not recorded are not counted.
             if recorded.contains(&published.topic) {
                 writer.ledger_mut().report(&published.topic, guid, published.count);
             }
@@ -355,16 +355,16 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
     goodbye
 }
 
-/// Messages missing before the first one recorded of each writer, and those missing after it.
+/// Number of messages missing before the first recorded one of each writer, and after it.
 pub(crate) fn losses(tallies: &[TopicTally]) -> (u64, u64) {
     tallies.iter().flat_map(|t| &t.writers).fold((0, 0), |(before, after), w| {
-        // A writer of which nothing was recorded has no first message: all that it says it published is missing.
+        // A writer without a recorded message has no first one: all that it published are missing.
         let early = w.first.map_or(0, |first| (first - 1).max(0) as u64).min(w.lost);
         (before + early, after + w.lost - early)
     })
 }
 
-/// The counts of a recording for people.
+/// The counts of a recording, for the user.
 pub(crate) fn counts(tallies: &[TopicTally]) -> String {
     let mut t = Table::new(["topic", "published", "recorded", "lost", "repeated"]);
     for topic in tallies.iter().filter(|t| t.published > 0) {
@@ -397,7 +397,7 @@ impl Node for Recorder {
             .with("missing", lost)
     }
 
-    /// Finishes the file. What this process itself says after that, it cannot record.
+    /// Finishes the file. Later messages of this process itself are not recorded.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> std::result::Result<Exit, NodeError> {
         self.last_call(bus)?;
         let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));

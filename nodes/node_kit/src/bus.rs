@@ -1,4 +1,4 @@
-//! The bus: what a node sees of the network. Two implementations exist, over DDS and in memory.
+//! The bus: a node's interface to the network. There are two implementations, over DDS and in memory.
 
 use crate::admission::Stranger;
 use crate::bus_error::BusError;
@@ -18,18 +18,18 @@ pub struct PublisherId(pub(crate) usize);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SubscriptionId(pub(crate) usize);
 
-/// Why [`Bus::wait`] returned.
+/// The reason why [`Bus::wait`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wake {
     /// A subscription holds a sample.
     Data,
-    /// A peer's endpoint appeared, matched or went.
+    /// A peer's endpoint appeared, matched or left.
     Graph,
     /// SIGINT or SIGTERM, once for each.
     Shutdown,
     /// Another thread called: see [`Bus::caller`].
     Called,
-    /// Nothing, for the whole time.
+    /// The time limit was reached.
     Timeout,
 }
 
@@ -38,7 +38,7 @@ pub enum Wake {
 pub struct Caller(pub(crate) Arc<dyn Fn() + Send + Sync>);
 
 impl Caller {
-    /// The wait under way, or the next one, ends with [`Wake::Called`].
+    /// Ends the current wait, or else the next one, with [`Wake::Called`].
     pub fn call(&self) {
         (self.0)();
     }
@@ -50,52 +50,52 @@ impl fmt::Debug for Caller {
     }
 }
 
-/// What one writer of ours published.
+/// The statistics of one of our writers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Published {
     /// Resolved topic name, as in `/lab/stress`.
     pub topic: String,
-    /// Our writer.
+    /// The writer.
     pub writer: WriterId,
-    /// Samples accepted; the last one has this RTPS sequence number.
+    /// Number of samples published, which is the RTPS sequence number of the last one.
     pub count: u64,
-    /// Samples refused because a reliable reader is too far behind.
+    /// Number of samples dropped because a reliable reader was too far behind.
     pub full: u64,
 }
 
-/// What one subscription of ours received.
+/// The statistics of one of our subscriptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Received {
     /// Resolved topic name.
     pub topic: String,
-    /// Samples taken.
+    /// Number of samples taken.
     pub taken: u64,
-    /// Samples whose content was refused: undecodable, or invalid to the node.
+    /// Number of samples whose content was refused: undecodable, or invalid for the node.
     pub refused: u64,
 }
 
-/// The bus as a node sees it: serialized samples in and out, and one place to wait.
+/// Sends and receives serialized samples, and waits for events.
 ///
-/// Names are resolved with the node's namespace and remaps; QoS comes from the contract table and nowhere else.
+/// Names are resolved with the node's namespace and remaps; the QoS is always that of the topic table.
 pub trait Bus {
-    /// The name that a topic has here, namespace and remaps applied.
+    /// The resolved name of a topic: namespace and remaps applied.
     fn resolve(&self, topic: &Topic) -> Result<String, BusError>;
 
-    /// Offers a topic with the QoS of the contract table. Each call makes a writer of its own.
+    /// Advertises a topic with the QoS of the topic table. Each call makes a separate writer.
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError>;
 
-    /// Subscribes to a topic. Each of several subscriptions to one topic gets everything that arrives.
+    /// Subscribes to a topic. Each of several subscriptions to one topic receives every sample.
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError>;
 
     /// Publishes one serialized message, encapsulation header included, and returns its RTPS sequence number.
     ///
-    /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and says
+    /// Waits at most some milliseconds for a reliable reader that is far behind, then drops the sample and returns
     /// [`BusError::Full`].
     fn publish(&mut self, publisher: PublisherId, body: &[u8]) -> Result<i64, BusError> {
         self.publish_about(publisher, body, None)
     }
 
-    /// The same of a message about a sample that came; see [`SampleInfo::about`].
+    /// The same for a message that refers to a received sample; see [`SampleInfo::about`].
     fn publish_about(
         &mut self,
         publisher: PublisherId,
@@ -103,58 +103,62 @@ pub trait Bus {
         about: Option<SampleId>,
     ) -> Result<i64, BusError>;
 
-    /// The next sample, if there is one. Never waits.
+    /// The next sample, if any. Never waits.
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError>;
 
-    /// Blocks (never spins) until a subscription holds a sample, the graph changes, a signal comes, another thread calls, or
-    /// `timeout` is over.
+    /// Blocks (never spins) until a subscription holds a sample, the graph changes, a signal arrives, another thread
+    /// calls, or
+    /// `timeout` has passed.
     /// Returns [`Wake::Data`] at once while a sample is left untaken.
     fn wait(&mut self, timeout: Duration) -> Wake;
 
-    /// What another thread ends [`Bus::wait`] with. `None` on a bus whose time is virtual: nothing may happen there that
-    /// depends on how fast a thread is.
+    /// A handle for another thread to end [`Bus::wait`]. `None` on a bus with virtual time, where results must not
+    /// depend on the speed of a thread.
     fn caller(&self) -> Option<Caller>;
 
-    /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`]. A crashed peer counts until its lease
-    /// ends, up to a minute: see [`crate::Peers`].
+    /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
+    /// A crashed peer counts until its lease ends, up to a minute: see [`crate::Peers`].
     fn readers(&self, publisher: PublisherId) -> usize;
 
-    /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
+    /// Writers matched with this subscription, of those that [`Bus::identity`] counts, as known at the last
+    /// [`Bus::wait`].
     fn writers(&self, subscription: SubscriptionId) -> usize;
 
-    /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted, as known at the last [`Bus::wait`].
+    /// Writers on the resolved topic that are not this process's own, of those that [`Bus::identity`] counts, sorted,
+    /// as known at the last [`Bus::wait`].
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
     /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
     fn strange_writers(&self, topic: &Topic) -> Vec<WriterId>;
 
-    /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`] tells of
-    /// it as if that writer were one of `topic`.
+    /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`]
+    /// lists it as if that writer were one of `topic`.
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError>;
 
-    /// What our writers published, in the order of [`Bus::advertise`]; what one of them published in parts stands before it.
+    /// The statistics of our writers, in the order of [`Bus::advertise`]; messages sent in parts come before their
+    /// writer.
     fn published(&self) -> Vec<Published>;
 
-    /// What our subscriptions received, in the order of [`Bus::subscribe`].
+    /// The statistics of our subscriptions, in the order of [`Bus::subscribe`].
     fn received(&self) -> Vec<Received>;
 
     /// Counts a taken sample whose content was refused.
     fn count_refused(&mut self, subscription: SubscriptionId);
 
-    /// What this process is to its run: whose samples it takes.
+    /// The process's place in its run, and whose samples it accepts.
     fn identity(&self) -> Identity;
 
-    /// Who wrote samples that were not taken, because they are of another run or of none, and how many.
+    /// The participants whose samples were ignored because they belong to another run or to none, with counts.
     fn strangers(&self) -> Vec<Stranger>;
 
-    /// Who has this writer, for people.
+    /// The owner of this writer, for messages to users.
     fn describe(&self, writer: WriterId) -> Stranger;
 
-    /// Waits until every reliable reader has acknowledged everything, or `timeout` is over; true in the first case. Topics
-    /// that this bus reads reliably itself are left out: nobody can tell there.
+    /// Waits until every reliable reader has acknowledged everything, or `timeout` has passed; true in the first case.
+    /// Topics that this bus itself reads reliably are left out: their acknowledgements are not known.
     fn flush(&mut self, timeout: Duration) -> bool;
 
-    /// Time since an arbitrary start, never going back; virtual on the in-memory bus.
+    /// Monotonic time since an arbitrary start; virtual on the in-memory bus.
     fn now(&self) -> Duration;
 
     /// Wall-clock time, ns since 1970; virtual on the in-memory bus.

@@ -1,14 +1,14 @@
-//! Why a bus operation failed.
+//! Errors of the bus.
 
 use crate::names::NameError;
 
-/// Why the bus could not do what was asked.
+/// Errors of a bus operation.
 #[derive(Debug, thiserror::Error)]
 pub enum BusError {
-    /// A topic name that does not resolve.
+    /// The topic name is invalid.
     #[error("topic name: {0}")]
     Name(#[from] NameError),
-    /// A reliable reader is so far behind that the window stayed full for the whole bounded wait. The sample was dropped.
+    /// A reliable reader is so far behind that the window stayed full until the time limit. The sample was dropped.
     #[error("{topic}: a reliable reader is more than {window} samples behind; the sample was dropped")]
     Full {
         /// Resolved topic name.
@@ -16,7 +16,7 @@ pub enum BusError {
         /// Samples that may be unacknowledged.
         window: u32,
     },
-    /// A body that cannot be published as it is.
+    /// The body does not begin with the encapsulation header.
     #[error(
         "{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)"
     )]
@@ -26,15 +26,15 @@ pub enum BusError {
         /// Its first bytes, at most four.
         found: Vec<u8>,
     },
-    /// A handle of another bus.
+    /// The handle belongs to another bus.
     #[error("{0}: this handle does not belong to this bus")]
     Handle(&'static str),
-    /// The network refused.
+    /// The network returned an error.
     #[error("{what}: {reason}")]
     Network {
         /// What was attempted.
         what: String,
-        /// What the layer below said.
+        /// The error of DDS.
         reason: String,
     },
 }

@@ -2,22 +2,22 @@
 
 use grainlab_msgs::Topic;
 
-/// What a subscription asks of its writers. It asks at most what the topic offers, so that it always matches.
+/// The requested quality of service: at most what the topic offers, so that it always matches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Demand {
-    /// Lost samples are sent again, and a latched topic's last samples come to a late joiner.
+    /// Whether lost samples are repeated and a late reader receives the last samples of a latched topic.
     pub reliable: bool,
-    /// Samples kept between two takes; older ones give way. At least the worst backlog.
+    /// Maximum number of queued samples; a full queue drops the oldest. At least the largest backlog.
     pub depth: u32,
 }
 
 impl Demand {
-    /// Every sample, and the latched ones for a late joiner: at least the topic's depth of them, possibly more.
+    /// Every sample, and for a late reader the latched ones: at least the topic's depth of them, possibly more.
     pub const fn reliable(depth: u32) -> Self {
         Self { reliable: true, depth }
     }
 
-    /// No repetition by the bus: for partners that repeat by themselves, and that must not hold up a writer when dead.
+    /// No repetition by the bus: for nodes that repeat by themselves and must not block a writer when they crash.
     pub const fn best_effort(depth: u32) -> Self {
         Self { reliable: false, depth }
     }

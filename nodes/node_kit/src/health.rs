@@ -1,22 +1,22 @@
 //! The health of a node.
 
-/// How bad it is, in the numbers of `diagnostic_msgs/DiagnosticStatus`.
+/// The severity, numbered as in `diagnostic_msgs/DiagnosticStatus`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Level {
-    /// All is well.
+    /// No problem.
     #[default]
     Ok = 0,
-    /// Something a user should look at.
+    /// The user should check something.
     Warn = 1,
     /// The node cannot do its work.
     Error = 2,
-    /// What the node reports is old.
+    /// The node's report is out of date.
     Stale = 3,
 }
 
 impl Level {
-    /// From the number on the wire.
+    /// The level of a number in a message.
     pub fn from_wire(level: u8) -> Level {
         match level {
             0 => Level::Ok,
@@ -27,24 +27,24 @@ impl Level {
     }
 }
 
-/// How a node is, for `/diagnostics`.
+/// The state of a node, for `/diagnostics`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    /// How bad it is.
+    /// The severity.
     pub level: Level,
-    /// One line for a person.
+    /// One line for the user.
     pub message: String,
     /// Numbers by name; units in the names, as in `waiting_s`.
     pub values: Vec<(String, String)>,
 }
 
 impl Health {
-    /// All is well.
+    /// A report without problems.
     pub fn ok(message: impl Into<String>) -> Self {
         Self { message: message.into(), ..Self::default() }
     }
 
-    /// Something a user should look at.
+    /// The user should check something.
     pub fn warn(message: impl Into<String>) -> Self {
         Self { level: Level::Warn, message: message.into(), values: Vec::new() }
     }

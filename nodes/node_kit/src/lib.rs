@@ -1,7 +1,9 @@
 //! What every process of the laboratory shares. This is the only crate that uses DDS.
 //!
-//! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`: its types
-//! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long computations
+//! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
+//!   its types
+//! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long
+//!   computations
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
 //! - `identity`: the run of a process; `admission`: which samples a process accepts
 //! - `node`: a node as a state machine; `health`: its health; `run`: running it as a process

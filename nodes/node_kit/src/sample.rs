@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The 16-byte GUID of one writer, as RTPS has it: 12 bytes of participant, 4 of entity. Unique among all processes.
+/// The 16-byte RTPS GUID of one writer: 12 bytes of participant, 4 of entity. Unique among all processes.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WriterId(pub [u8; 16]);
 
@@ -15,7 +15,7 @@ impl WriterId {
         Self(id)
     }
 
-    /// The 12 bytes that every endpoint of one process shares.
+    /// The GUID prefix: the 12 bytes that all endpoints of one process share.
     pub fn participant(&self) -> [u8; 12] {
         let mut prefix = [0; 12];
         prefix.copy_from_slice(&self.0[..12]);
@@ -36,7 +36,7 @@ impl fmt::Debug for WriterId {
     }
 }
 
-/// Text that is not 32 hexadecimal digits.
+/// The text is not a writer id.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not a writer id: 32 hexadecimal digits")]
 pub struct WriterIdError(pub String);
@@ -62,33 +62,33 @@ impl FromStr for WriterId {
 pub struct Sample {
     /// The serialized message with its 4-byte encapsulation header.
     pub body: Vec<u8>,
-    /// Where it came from, and in which place of that writer's sequence.
+    /// Its writer, sequence number and times.
     pub info: SampleInfo,
 }
 
-/// Origin and times of one sample.
+/// Writer, sequence number and times of one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleInfo {
-    /// Who wrote it.
+    /// The writer.
     pub writer: WriterId,
     /// RTPS sequence number: 1, 2, 3, … for each writer; a missing number is a lost sample.
     pub sequence: i64,
-    /// When the writer says it wrote it, ns since 1970; `None` if it does not say.
+    /// Source time of the writer, ns since 1970, if given.
     pub source_time: Option<u64>,
-    /// When it reached this process, ns since 1970.
+    /// Time of arrival in this process, ns since 1970.
     pub received: u64,
-    /// The sample that it is about, where its writer says one: the request that an answer answers, the packing that a
-    /// result was measured of. It travels beside the body, as DDS-RPC relates a reply to its request.
+    /// The sample it refers to, if given: the request of an answer, the packing of a
+    /// result. It is sent beside the body, as DDS-RPC relates a reply to its request.
     pub about: Option<SampleId>,
 }
 
 impl SampleInfo {
-    /// The sample itself, for those about it.
+    /// The identity of this sample, for samples that refer to it.
     pub fn id(&self) -> SampleId {
         SampleId { writer: self.writer, sequence: self.sequence }
     }
 
-    /// What a result from this sample is about: what the sample is about, or the sample itself.
+    /// The sample that a result computed from this one refers to: the one this sample refers to, or else this one.
     pub fn origin(&self) -> SampleId {
         self.about.unwrap_or_else(|| self.id())
     }
@@ -97,7 +97,7 @@ impl SampleInfo {
 /// One sample of one writer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SampleId {
-    /// Who wrote it.
+    /// The writer.
     pub writer: WriterId,
     /// Its RTPS sequence number.
     pub sequence: i64,

@@ -1,6 +1,7 @@
 //! The servo node: answers every stress with a strain rate.
 //!
-//! - [`answer`]: the work of the node, a pure function of one message: the same stress gets the same answer, so that a servo
+//! - [`answer`]: the work of the node, a pure function of one message: the same stress gets the same answer, so that a
+//!   servo
 //!   can be restarted in the middle of a run
 //! - [`ServoController`]: the node
 //! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed

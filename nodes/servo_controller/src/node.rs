@@ -32,8 +32,8 @@ pub struct ServoController {
 }
 
 impl ServoController {
-    /// Creates the publisher and the subscription. The latter is best effort: the simulator repeats lost stresses, and a servo
-    /// that stopped must not fill the simulator's window.
+    /// Creates the publisher and the subscription. The latter is best effort: the simulator repeats lost stresses, and
+    /// a servo that stopped must not fill the simulator's window.
     pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
             settings,

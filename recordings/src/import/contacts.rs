@@ -1,4 +1,4 @@
-//! Contacts found from positions, in a time and a memory proportional to the number of grains, whatever the
+//! Finds contacts from positions, in time and memory proportional to the number of grains, whatever the
 //! shape of the cell.
 
 use grainlab_core::material::effective_radius;
@@ -16,7 +16,7 @@ use grid::Grid;
 /// several images of another. Positions and radii must be finite and radii positive.
 ///
 /// # Errors
-/// If two centres coincide, an image is too far away to be named, grains fill the cell many times over, or lie
+/// If two centres coincide, the index of an image is too large, grains fill the cell many times over, or lie
 /// in a tiny part of it.
 ///
 /// ```
@@ -37,17 +37,17 @@ pub fn find(
     let mut contacts = Vec::new();
     for i in 0..positions.len() {
         grid.visit(i, |j, lattice| {
-            // Each pair once; of a grain and its own images, one of each opposite two.
+            // Each pair once; of a grain's own images, one of each opposite pair.
             if j < i || (j == i && lattice <= [0, 0, 0]) {
                 return Ok(());
             }
-            // Measured from positions as they are, so that `Packing::branch` gives the same number.
+            // Computed from unfolded positions, so that `Packing::branch` gives the same number.
             let step =
                 |k: usize| lattice[k].saturating_add(grid.cells[i][k]).saturating_sub(grid.cells[j][k]);
             let steps: [i64; 3] = std::array::from_fn(step);
             let image = steps.map(i8::try_from);
             let [Ok(a), Ok(b), Ok(c)] = image else {
-                // Too far to be named, but only an error if the two touch.
+                // The image index is too large, which is only an error if the two touch.
                 let shift = cell.matrix() * Vec3::new(steps[0] as f64, steps[1] as f64, steps[2] as f64);
                 let touch = (positions[j] - positions[i] + shift).norm() < radii[i] + radii[j];
                 return if touch { Err(SearchError::FarImage(i, j)) } else { Ok(()) };

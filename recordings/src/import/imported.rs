@@ -3,17 +3,17 @@
 use grainlab_core::Packing;
 use grainlab_msgs::std_msgs::Header;
 
-/// A packing and where it comes from.
+/// A packing and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     /// The packing.
     pub packing: Packing,
-    /// The header of its message: as recorded, or as a message of it would have.
+    /// The header of its message: the recorded one, or the one that a message of it would have.
     pub header: Header,
-    /// Solver step at which it was taken; 0 if the source does not say.
+    /// Solver step of the state; 0 if unknown.
     pub step: u64,
-    /// What it was read from, for people.
+    /// Description of its source, for the user.
     pub source: String,
-    /// What people should know about it: contacts found rather than given, quantities that disagree.
+    /// Warnings: contacts found rather than given, quantities that disagree.
     pub notes: Vec<String>,
 }

@@ -2,7 +2,7 @@
 
 use grainlab_core::Mat3;
 
-/// The cell with edge vectors a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz), as LAMMPS has it, m.
+/// The cell of LAMMPS with edge vectors a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz), m.
 pub(super) fn lammps_cell(lengths: [f64; 3], [xy, xz, yz]: [f64; 3]) -> Mat3 {
     let [lx, ly, lz] = lengths;
     Mat3::new(

@@ -1,6 +1,6 @@
-//! Quantities that must be known of a packing.
+//! Required properties of a packing.
 
-/// Something that must be known of a packing.
+/// A required property of a packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Setting {
     /// The periodic cell.
@@ -18,7 +18,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// In words.
+    /// Its name in messages.
     pub fn what(self) -> &'static str {
         match self {
             Self::Cell => "the cell",
@@ -30,7 +30,7 @@ impl Setting {
         }
     }
 
-    /// The command-line flag that gives it, with its unit.
+    /// Its command-line flag, with the unit.
     pub fn flag(self) -> &'static str {
         match self {
             Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",

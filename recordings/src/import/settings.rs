@@ -1,11 +1,11 @@
-//! What a file does not say about a packing.
+//! Properties of a packing that a file may lack.
 
 use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
 use super::setting::Setting;
 
-/// Values given by hand; each one goes before what the file or its sidecar says.
+/// Values given by the user; each one overrides the file and its sidecar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// The cell: edge vectors as columns, m.
@@ -24,13 +24,13 @@ pub struct ImportOptions {
     pub topic: Option<String>,
     /// Text of a LAMMPS `dump local` with the contact forces of the one frame of a dump.
     pub contact_forces: Option<String>,
-    /// Its columns, where they are not those by default: ids of the two grains, normal force on the first, tangential
-    /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for those
-    /// by default.
+    /// Its columns, if not the default ones: ids of the two grains, normal force on the first, tangential
+    /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for the
+    /// default ones.
     pub contact_columns: Vec<String>,
 }
 
-/// What a file says, to be completed by the options.
+/// The properties in a file, to be completed by the options.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     pub(super) cell: Option<Mat3>,
@@ -40,7 +40,7 @@ pub(super) struct Known {
     pub(super) friction: Option<f64>,
 }
 
-/// All that a packing needs beside its grains.
+/// All properties of a packing except its grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
     pub(super) cell: Cell,

@@ -19,7 +19,7 @@ impl fmt::Debug for Guid {
     }
 }
 
-/// A text that is not 32 hexadecimal digits.
+/// The text is not 32 hexadecimal digits.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not a writer GUID: 32 hexadecimal digits are needed")]
 pub struct GuidError(pub String);
@@ -28,7 +28,7 @@ impl FromStr for Guid {
     type Err = GuidError;
 
     fn from_str(text: &str) -> Result<Self, GuidError> {
-        // Digits only: from_str_radix alone would take a sign.
+        // Digits only: from_str_radix alone would accept a sign.
         let value = match text.len() {
             32 if text.bytes().all(|b| b.is_ascii_hexdigit()) => u128::from_str_radix(text, 16).ok(),
             _ => None,

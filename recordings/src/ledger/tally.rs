@@ -1,35 +1,35 @@
-//! Accounts of topics and writers.
+//! Counts of topics and writers.
 
 use serde::{Deserialize, Serialize};
 
-/// Account of one topic, all writers together.
+/// Counts of one topic, all writers together.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TopicTally {
     /// Name of the topic, absolute.
     pub name: String,
-    /// Messages published: a writer's own count where it reported one, else its highest sequence number seen.
+    /// Messages published: a writer's own count if reported, else its highest received sequence number.
     pub published: u64,
     /// Messages in the recording.
     pub recorded: u64,
     /// Published but not recorded.
     pub lost: u64,
-    /// Messages that say what was already recorded, delivered or published once more; not recorded again.
+    /// Repetitions of recorded messages, delivered or published once more; not recorded again.
     pub repeated: u64,
     /// The writers, in order of GUID.
     pub writers: Vec<WriterTally>,
 }
 
-/// Account of one writer of one topic.
+/// Counts of one writer of one topic.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WriterTally {
     /// GUID, 32 hexadecimal digits.
     pub guid: String,
-    /// Name of the node, if it was told.
+    /// Name of the node, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub node: Option<String>,
     /// Messages recorded.
     pub recorded: u64,
-    /// Count the writer reported; `None` if it ended without a word (a crash) or has not ended.
+    /// Count reported by the writer; `None` if it crashed or has not ended.
     pub reported: Option<u64>,
     /// Lowest sequence number recorded; `None` if nothing was.
     pub first: Option<i64>,
@@ -37,12 +37,12 @@ pub struct WriterTally {
     pub last: Option<i64>,
     /// Published but not recorded.
     pub lost: u64,
-    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most
+    /// Ranges of sequence numbers, both ends included, that are missing below the highest received one. At most
     /// 32 are kept here; `lost` counts all.
     pub gaps: Vec<(i64, i64)>,
     /// Deliveries of a message that was already recorded.
     pub repeated: u64,
 }
 
-/// Ranges that a [`WriterTally`] lists at most.
+/// Maximum number of ranges in a [`WriterTally`].
 pub(super) const LISTED_GAPS: usize = 32;

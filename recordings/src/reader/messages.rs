@@ -20,9 +20,9 @@ pub struct Messages<'r> {
     topics: Option<BTreeSet<String>>,
     start: u64,
     end: u64,
-    /// Blocks still to be read: file and block, the next one last.
+    /// Blocks still to read: file and block, the next one last.
     blocks: Vec<(usize, usize)>,
-    /// Messages read and not yet given, the earliest on top. Blocks of one file may overlap in time.
+    /// Messages read and not yet returned, the earliest on top. Blocks of one file may overlap in time.
     pending: BinaryHeap<Reverse<Pending>>,
     held: Held,
 }
@@ -54,7 +54,7 @@ impl Recording {
     /// The messages selected, in order of log time; messages of equal log time in the order of the file.
     ///
     /// # Errors
-    /// If a topic named does not exist.
+    /// If a named topic does not exist.
     pub fn messages(&self, selection: &Selection) -> Result<Messages<'_>, ReadError> {
         let topics = match &selection.topics {
             None => None,
@@ -122,7 +122,7 @@ impl Iterator for Messages<'_> {
     type Item = Message;
 
     fn next(&mut self) -> Option<Message> {
-        // A block that starts no later than the earliest message at hand may hold an earlier one.
+        // A block that starts no later than the earliest read message may hold an earlier one.
         while let Some(&(f, n)) = self.blocks.last() {
             let start = self.recording.files[f].index.blocks[n].start;
             if self.pending.peek().is_some_and(|Reverse(p)| p.key.0 < start) {
@@ -162,7 +162,7 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
     channels.iter().any(|c| file.index.channels.get(c).is_some_and(|c| topics.contains(&c.topic)))
 }
 
-/// Gives each message of a block to `take`, with its position in the block; what cannot be read becomes a
+/// Passes each message of a block to `take`, with its position in the block; an unreadable one becomes a
 /// warning.
 fn decode(
     recording: &Recording,

@@ -20,11 +20,11 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` names, else all that it
+    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` lists, else all that it
     /// holds.
     ///
     /// # Errors
-    /// If there is nothing, or what is there is not MCAP. A damaged recording is no error: see
+    /// If nothing is there, or it is not MCAP. A damaged recording is not an error: see
     /// [`Recording::warnings`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut warnings = BTreeSet::new();
@@ -36,7 +36,7 @@ impl Recording {
         Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
     }
 
-    /// Reads an MCAP file that is in memory; `name` stands for its path in messages.
+    /// Reads an MCAP file in memory; `name` replaces its path in messages.
     ///
     /// # Errors
     /// If the bytes are not MCAP.
@@ -51,7 +51,7 @@ impl Recording {
         self.files.iter().map(|f| f.bytes().len() as u64).sum()
     }
 
-    /// The path it was opened by.
+    /// The path passed to [`Recording::open`].
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -61,7 +61,7 @@ impl Recording {
         self.files.iter().map(|f| f.path.clone()).collect()
     }
 
-    /// What could not be read so far: damage inside a chunk shows when the chunk is read. Data was lost if
+    /// The parts that could not be read so far: damage inside a chunk is found when the chunk is read. Data was lost if
     /// this is not empty.
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
@@ -71,7 +71,7 @@ impl Recording {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).insert(warning);
     }
 
-    /// The topics, sorted by name; a topic that files or channels repeat appears once.
+    /// The topics, sorted by name; a topic of several files or channels is listed once.
     pub fn channels(&self) -> Vec<Arc<ChannelInfo>> {
         let mut by_topic = BTreeMap::new();
         for channel in self.files.iter().flat_map(|f| f.index.channels.values()) {
@@ -83,7 +83,7 @@ impl Recording {
     /// The topic of this name, with or without the leading slash.
     ///
     /// # Errors
-    /// If there is none; the message lists those there are.
+    /// If it does not exist; the message lists the existing ones.
     pub fn channel(&self, topic: &str) -> Result<Arc<ChannelInfo>, ReadError> {
         let channels = self.channels();
         let wanted = topic.trim_start_matches('/');
@@ -114,13 +114,13 @@ impl Recording {
         self.files.iter().flat_map(|f| f.index.metadata.iter().map(|m| m.name.clone())).collect()
     }
 
-    /// The account of the recorders, if the recording was finished by ours: of several recorders one after the other, and
-    /// of the files of each, as one. [`Recording::unaccounted`] names the files that it does not cover.
+    /// The ledger of the recorders, if our recorder finished the recording: that of several recorders one after the
+    /// other, and of the files of each, as one. [`Recording::unaccounted`] lists the files that it does not cover.
     pub fn ledger(&self) -> Option<Vec<TopicTally>> {
         let mut sessions = BTreeMap::new();
         for (order, file) in self.files.iter().enumerate() {
             if let Some((session, tallies)) = self.account(file) {
-                // The last file of a recorder accounts for those before.
+                // The ledger of a recorder's last file covers those before.
                 let order = sessions.remove(&session).map_or(order, |(first, _)| first);
                 sessions.insert(session, (order, tallies));
             }
@@ -133,16 +133,16 @@ impl Recording {
         Some(merge(accounts.into_iter().map(|(_, tallies)| tallies).collect()))
     }
 
-    /// The files that no recorder accounted for: it was killed, or is still at work.
+    /// The files without a ledger: the recorder was killed, or is still running.
     pub fn unaccounted(&self) -> Vec<PathBuf> {
         self.files.iter().filter(|f| self.account(f).is_none()).map(|f| f.path.clone()).collect()
     }
 
-    /// What a file says of its recorder and of what that has recorded so far.
+    /// The session of a file's recorder and its ledger so far.
     fn account(&self, file: &OpenFile) -> Option<(String, Vec<TopicTally>)> {
         let metadata = file.metadata(METADATA_RECORD, |w| self.warn(w))?;
         let tallies = serde_json::from_str(metadata.get(LEDGER_KEY)?).ok()?;
-        // Files of an earlier version say no session: each is one.
+        // Files of an earlier version have no session: each counts as one.
         let session = metadata.get(SESSION_KEY).cloned();
         Some((session.unwrap_or_else(|| file.path.display().to_string()), tallies))
     }

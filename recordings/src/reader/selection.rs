@@ -1,6 +1,6 @@
 //! Selection of messages.
 
-/// Which messages are wanted.
+/// Selects messages by topic and log time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     /// Names of topics, with or without the leading slash; `None` for all.
@@ -12,7 +12,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Everything on these topics.
+    /// All messages on these topics.
     pub fn topics<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Self {
         Self { topics: Some(names.into_iter().map(Into::into).collect()), ..Self::default() }
     }

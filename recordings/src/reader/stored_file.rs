@@ -1,6 +1,6 @@
 //! Files of a recording, and files stored in it.
 
-/// What is said of one file.
+/// Information on one file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FileCount {
     pub(crate) name: String,
@@ -16,7 +16,7 @@ pub struct StoredFile {
     pub name: String,
     /// Its media type.
     pub media_type: String,
-    /// When it was stored, ns since 1970.
+    /// Time at which it was stored, ns since 1970.
     pub time: u64,
     /// Its content.
     pub bytes: Vec<u8>,

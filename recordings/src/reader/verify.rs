@@ -13,7 +13,7 @@ use super::file::OpenFile;
 use super::recording::Recording;
 use super::records::{FRAME, RawRecord, Records};
 
-/// What a complete check found.
+/// The result of a complete check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
     /// Files read.
@@ -28,22 +28,22 @@ pub struct Check {
     pub messages: u64,
     /// Stored files.
     pub attachments: u64,
-    /// Messages lost by the account of the recorders; `None` without an account.
+    /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,
-    /// Files that no recorder accounted for: it was killed, or is still at work.
+    /// Files without a ledger: the recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
-    /// All that is wrong.
+    /// All faults.
     pub warnings: Vec<Warning>,
 }
 
 impl Recording {
-    /// Reads everything and returns all faults: checksums, the index against the messages, log times that decrease, and the
-    /// ledger against the messages.
+    /// Reads all data and returns all faults: checksums, the index against the messages, log times that decrease, and
+    /// the ledger against the messages.
     pub fn verify(&self) -> Vec<Warning> {
         self.check().warnings
     }
 
-    /// The same without the ledger: in a recovered file it also counts what could no longer be read.
+    /// The same without the ledger: in a recovered file it also counts messages that are no longer readable.
     pub(crate) fn verify_files(&self) -> Vec<Warning> {
         Found::of(self);
         self.warnings()
@@ -59,7 +59,7 @@ impl Recording {
                 let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
                 if topic.recorded != there {
                     let detail = format!(
-                        "the account says that {} messages on {} were recorded, the files hold {there}",
+                        "the ledger lists {} recorded messages on {}, the files hold {there}",
                         topic.recorded, topic.name
                     );
                     let path = self.path().to_owned();
@@ -113,10 +113,10 @@ impl Found {
             let record = match record {
                 Ok(record) => record,
                 Err(at) => {
-                    // Of a file without its proper end, opening it has said so.
+                    // Opening a file without its proper end has already given a warning.
                     if file.index.complete {
                         let detail =
-                            "no whole record starts here; what follows can be reached by the index only"
+                            "no complete record starts here; later ones can be reached by the index only"
                                 .to_owned();
                         warn(file.warning(at, WarningKind::Inconsistent, detail));
                     }
@@ -228,7 +228,7 @@ fn data_checksum(file: &OpenFile, end: &RawRecord<'_>) -> Option<String> {
         return Some(format!("the end record has {} bytes", end.body.len() + FRAME));
     };
     let crc = crc32fast::hash(&file.bytes()[..end.offset]);
-    // 0 stands for "not computed".
+    // 0 means "not computed".
     (claimed.data_section_crc != 0 && claimed.data_section_crc != crc).then(|| {
         format!(
             "the checksum of the whole data is {crc:08x}, not {:08x}: bytes were altered",

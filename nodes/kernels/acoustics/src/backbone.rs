@@ -1,10 +1,10 @@
 //! The backbone: the grains that carry waves, and their effective density.
 //!
-//! Rattlers do not move with a wave, and a grain that can rotate freely, for example about the line through its two contacts,
-//! moves with less than its mass. Modes are M-orthogonal to every floppy motion Z, so that the uniform translation T of a long
-//! wave has the kinetic energy of its part M-orthogonal to all Z: V ρ = Tᵀ M T − TᵀMZ (ZᵀMZ)⁻¹ ZᵀMT, a tensor. A nearly
-//! floppy motion, of a frequency below that of the wave, does not follow it either: the effective density depends weakly on
-//! frequency.
+//! Rattlers do not move with a wave, and a grain that can rotate freely, for example about the line through its two
+//! contacts, moves with less than its mass. Modes are M-orthogonal to every floppy motion Z, so that the uniform
+//! translation T of a long wave has the kinetic energy of its part M-orthogonal to all Z: V ρ = Tᵀ M T − TᵀMZ (ZᵀMZ)⁻¹
+//! ZᵀMT, a tensor. A nearly floppy motion, of a frequency below that of the wave, does not follow it either: the
+//! effective density depends weakly on frequency.
 
 mod cluster;
 

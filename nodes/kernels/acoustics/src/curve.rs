@@ -1,7 +1,7 @@
 //! A speed at several wavelengths, and its limit at long ones.
 //!
-//! In a packing of grains of diameter D waves of wave number q have v² = v₀² (1 − b q² + O(q⁴)) with b of the order of D²/10:
-//! D²/12 for a chain, 0.1 D² (S) to 0.2 D² (P) for packings.
+//! In a packing of grains of diameter D waves of wave number q have v² = v₀² (1 − b q² + O(q⁴)) with b of the order of
+//! D²/10: D²/12 for a chain, 0.1 D² (S) to 0.2 D² (P) for packings.
 
 use grainlab_core::Vec3;
 use nalgebra::{DMatrix, DVector};
@@ -37,9 +37,9 @@ pub struct DispersionCurve {
 impl DispersionCurve {
     /// Fits v² = v₀² (1 − b q²) to two or more points by weighted least squares.
     ///
-    /// The standard deviation is that of the points, or their scatter about the law where it is larger; with three or more
-    /// points it includes the change of v₀ by a term in q⁴. `None` with fewer than two different wavelengths, if a number is
-    /// not finite and positive, or if v₀² is not positive.
+    /// The standard deviation is that of the points, or their scatter about the law where it is larger; with three or
+    /// more points it includes the change of v₀ by a term in q⁴. `None` with fewer than two different wavelengths, if a
+    /// number is not finite and positive, or if v₀² is not positive.
     pub fn fit(direction: Vec3, polarization: Vec3, mut points: Vec<DispersionPoint>) -> Option<Self> {
         let valid = |x: f64| x.is_finite() && x > 0.0;
         if !points.iter().all(|p| valid(p.wavenumber) && valid(p.speed) && valid(p.stddev)) {

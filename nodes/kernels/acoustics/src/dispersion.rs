@@ -31,15 +31,16 @@ use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Wavelength in mean diameters below which loosely held grains stay behind a wave, which increases ω² by up to this fraction.
+/// Wavelength in mean diameters below which loosely held grains stay behind a wave, which increases ω² by up to this
+/// fraction.
 const SOFT_BELOW: f64 = 100.0;
 const SOFT: f64 = 1e-3;
 
 /// The curves of all polarizations of all rays, in that order.
 ///
-/// If a ray has three polarizations, the first two span its plane with the axis and are rotated in it to those of the modes;
-/// the coupling with the third averages out over azimuths and is left out. One or two polarizations are taken as given. The
-/// speed of the polarization p is √(pᵀ A p)/q, with A = Σ ω² p p* over the modes.
+/// If a ray has three polarizations, the first two span its plane with the axis and are rotated in it to those of the
+/// modes; the coupling with the third averages out over azimuths and is left out. One or two polarizations are taken as
+/// given. The speed of the polarization p is √(pᵀ A p)/q, with A = Σ ω² p p* over the modes.
 pub fn curves(
     packing: &Packing,
     rays: &[Ray],
@@ -112,7 +113,8 @@ fn curves_along(
     let mut wavelengths = settings.wavelengths.clone();
     wavelengths.sort_by(|a, b| b.total_cmp(a));
     let completed = completed(&ray.polarizations);
-    // All three modes are computed, so that none is mistaken for another; if some have no stiffness, only those of the ray.
+    // All three modes are computed, so that none is mistaken for another; if some have no stiffness, only those of the
+    // ray.
     let tensors = acoustic_tensors(backbone, ray, &completed, diameter, &wavelengths, settings);
     let tensors = match tensors {
         Err(_) if ray.polarizations.len() < completed.len() => {

@@ -18,8 +18,8 @@ const MAX_SHOTS: u32 = 1_000_000;
 pub struct Instrument {
     /// Sampling rate, Hz; `None`: forty samples per period of the centre frequency.
     pub sample_rate: Option<f64>,
-    /// Signal-to-noise ratio of one shot, dB: root mean square of the noise-free burst at the nearest receiver over that of white
-    /// noise; infinite for no noise.
+    /// Signal-to-noise ratio of one shot, dB: root mean square of the noise-free burst at the nearest receiver over
+    /// that of white noise; infinite for no noise.
     pub signal_to_noise: f64,
     /// Standard deviation of the trigger time from shot to shot, s.
     pub jitter: f64,
@@ -88,8 +88,8 @@ impl Instrument {
         Ok(self)
     }
 
-    /// Sampling rate for waves of `frequency`, Hz. The spectrum of a burst reaches to twice its centre, so that fewer than six
-    /// samples per period would alias; more than 10,000 only take memory.
+    /// Sampling rate for waves of `frequency`, Hz. The spectrum of a burst reaches to twice its centre, so that fewer
+    /// than six samples per period would alias; more than 10,000 only take memory.
     pub fn rate(&self, frequency: f64) -> Result<f64, AcousticsError> {
         let rate = self.sample_rate.unwrap_or(SAMPLES_PER_PERIOD * frequency);
         if !(MIN_PER_PERIOD..=MAX_PER_PERIOD).contains(&(rate / frequency)) {
@@ -102,8 +102,8 @@ impl Instrument {
     /// The recorded samples of each receiver: the mean of the shots, each delayed by its jitter and with its own noise.
     ///
     /// There is no anti-aliasing filter: the signals are averages over slabs of grains and of a source without higher
-    /// frequencies. `signal` is the root mean square to which the signal-to-noise ratio refers. All receivers of a shot share
-    /// its trigger. The noise depends on the seed and on `place` alone.
+    /// frequencies. `signal` is the root mean square to which the signal-to-noise ratio refers. All receivers of a shot
+    /// share its trigger. The noise depends on the seed and on `place` alone.
     pub fn record(
         &self,
         signals: &ReceiverSignals,

@@ -14,8 +14,8 @@ pub(crate) fn seed_at(seed: u64, place: &[u64]) -> u64 {
 pub(crate) struct Noise(Pcg64Mcg);
 
 impl Noise {
-    /// The numbers of `seed` at a place, such as (ray, polarization, shot), independent of the order in which places are
-    /// visited.
+    /// The numbers of `seed` at a place, such as (ray, polarization, shot), independent of the order in which places
+    /// are visited.
     pub(crate) fn at(seed: u64, place: &[u64]) -> Self {
         Self(Pcg64Mcg::seed_from_u64(seed_at(seed, place)))
     }

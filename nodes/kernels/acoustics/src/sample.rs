@@ -19,8 +19,8 @@ const SKIN: f64 = 0.02;
 const REST_LOOK: u32 = 100;
 const REST_STEPS: u32 = 20_000;
 
-/// Unbalanced force ratio below which a packing is at rest: its motion is then far below that of a wave of strain 1e-9, whose
-/// forces are 1e-5 of those of overlaps of 1e-4 diameters.
+/// Unbalanced force ratio below which a packing is at rest: its motion is then far below that of a wave of strain 1e-9,
+/// whose forces are 1e-5 of those of overlaps of 1e-4 diameters.
 const AT_REST: f64 = 1e-9;
 
 /// A packing at rest.
@@ -99,7 +99,8 @@ impl Sample {
         Ok(Self { packing: rested, present, setting, diameter, unbalanced })
     }
 
-    /// Speed of long waves if every grain moved with the mean deformation, m/s: some tens of per cent above the real one.
+    /// Speed of long waves if every grain moved with the mean deformation, m/s: some tens of per cent above the real
+    /// one.
     pub(crate) fn affine_speed(&self, direction: &Vec3, polarization: &Vec3) -> f64 {
         let p = &self.packing;
         let modulus: f64 = p

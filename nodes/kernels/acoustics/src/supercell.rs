@@ -1,7 +1,7 @@
 //! Supercells: a packing repeated along the normal of its lattice planes.
 //!
-//! A periodic packing is periodic along any of its lattice vectors, so that a cell whose first two edges lie in the planes
-//! (h k l) and whose third crosses `copies` of them contains the packing `copies` times, for any planes.
+//! A periodic packing is periodic along any of its lattice vectors, so that a cell whose first two edges lie in the
+//! planes (h k l) and whose third crosses `copies` of them contains the packing `copies` times, for any planes.
 
 mod lattice;
 
@@ -22,8 +22,8 @@ const MAX_INDEX: u32 = 1000;
 /// A packing repeated along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Supercell {
-    /// All copies in order: grain `c n + g`, which is also its id, is grain `g` of the `n` of the packing in copy `c`. Positions
-    /// are in the cell. Contacts keep their forces.
+    /// All copies in order: grain `c n + g`, which is also its id, is grain `g` of the `n` of the packing in copy `c`.
+    /// Positions are in the cell. Contacts keep their forces.
     pub packing: Packing,
     /// Unit normal of the lattice planes: the direction of the path.
     pub normal: Vec3,
@@ -43,8 +43,8 @@ impl Supercell {
 /// Repeats `packing` `copies` times (1 or more) along the normal of its lattice planes (h k l), divided by their common
 /// divisor: see [`crate::Ray::normal`].
 ///
-/// The copies are stacked by the lattice vector nearest to the normal, and the edges across it are the shortest possible, so
-/// that the cell has the least skew.
+/// The copies are stacked by the lattice vector nearest to the normal, and the edges across it are the shortest
+/// possible, so that the cell has the least skew.
 pub fn supercell(packing: &Packing, indices: [i32; 3], copies: u32) -> Result<Supercell, AcousticsError> {
     let n = packing.grains();
     let grains = (copies as usize).saturating_mul(n);

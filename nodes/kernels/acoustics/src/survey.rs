@@ -1,10 +1,11 @@
 //! Sets of rays.
 //!
-//! A packing of a few thousand grains is not exactly isotropic about any axis: moduli along different azimuths differ by some
-//! per cent. The transversely isotropic projection of its stiffness is their average over all azimuths, and a stiffness has
-//! harmonics up to the fourth. Three rays across the axis, 60° apart (their opposites are the same rays), and five at 45° to
-//! it, 72° apart, therefore average exactly to the moduli of the projection. Rays normal to lattice planes have fixed
-//! directions: four azimuths across the axis, and twice four between, whose fourth harmonics have opposite signs.
+//! A packing of a few thousand grains is not exactly isotropic about any axis: moduli along different azimuths differ
+//! by some per cent. The transversely isotropic projection of its stiffness is their average over all azimuths, and a
+//! stiffness has harmonics up to the fourth. Three rays across the axis, 60° apart (their opposites are the same rays),
+//! and five at 45° to it, 72° apart, therefore average exactly to the moduli of the projection. Rays normal to lattice
+//! planes have fixed directions: four azimuths across the axis, and twice four between, whose fourth harmonics have
+//! opposite signs.
 
 use crate::ray::Ray;
 use grainlab_core::{Cell, Vec3};

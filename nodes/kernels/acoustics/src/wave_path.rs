@@ -67,7 +67,7 @@ pub(crate) fn paths(packing: &Packing, rays: &[Ray]) -> Result<Vec<WavePath>, Ac
 pub(crate) fn measure_all(
     paths: &[WavePath],
     sample: &Sample,
-    measure: impl Fn(&WavePath) -> Result<PathResult, AcousticsError> + Sync,
+    measure: impl Fn(&WavePath) -> Result<PathResult, AcousticsError> + Send + Sync,
 ) -> Result<(Vec<DispersionCurve>, Vec<Trace>, Vec<Warning>), AcousticsError> {
     let results: Vec<_> = paths.par_iter().map(measure).collect();
     let (mut curves, mut traces) = (Vec::new(), Vec::new());

@@ -22,8 +22,8 @@ const ROUNDING: f64 = 5e-3;
 /// Number of standard deviations that chance exceeds less than once in a thousand times.
 const CERTAIN: f64 = 3.3;
 
-/// Relative error of a modulus beyond which linear propagation is inaccurate: at 5 % the intervals still cover their level, at
-/// 30 % they do not.
+/// Relative error of a modulus beyond which linear propagation is inaccurate: at 5 % the intervals still cover their
+/// level, at 30 % they do not.
 const LARGE_ERROR: f64 = 0.1;
 
 /// Warnings that follow from the observation and the structure alone.

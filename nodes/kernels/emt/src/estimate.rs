@@ -83,8 +83,9 @@ impl Estimate {
         Some([middle - half, middle + half])
     }
 
-    /// Condition number: ratio of the largest to the smallest singular value of the Jacobian of the model's unknowns, with
-    /// relative changes for coordination numbers. It compares how strongly errors of the data act on different combinations.
+    /// Condition number: ratio of the largest to the smallest singular value of the Jacobian of the model's unknowns,
+    /// with relative changes for coordination numbers. It compares how strongly errors of the data act on different
+    /// combinations.
     pub fn condition_number(&self) -> Option<f64> {
         let mut scaled = SMatrix::<f64, QUANTITIES, INPUTS>::zeros();
         let mut determined = 0;
@@ -102,9 +103,10 @@ impl Estimate {
         Some(largest / smallest)
     }
 
-    /// Contribution of each input to the variance of a quantity from the errors of the data, as fractions of it, in the order
-    /// of [`crate::INPUT_NAMES`]. Correlated errors divide their covariance equally, so that a fraction may be negative. Where
-    /// the errors are not known, all inputs are given the same relative error. `None` if the quantity is undetermined.
+    /// Contribution of each input to the variance of a quantity from the errors of the data, as fractions of it, in the
+    /// order of [`crate::INPUT_NAMES`]. Correlated errors divide their covariance equally, so that a fraction may be
+    /// negative. Where the errors are not known, all inputs are given the same relative error. `None` if the quantity
+    /// is undetermined.
     pub fn information(&self, quantity: Quantity) -> Option<[f64; INPUTS]> {
         self.structure.get(quantity)?;
         let row = self.jacobian.row(quantity as usize);

@@ -1,9 +1,10 @@
 //! Decomposition of a transversely isotropic stiffness into irreducible parts.
 //!
 //! An elastic tensor consists of two scalars, two deviators and one harmonic tensor of fourth order. To first order, a
-//! contact distribution that differs from an isotropic one by a deviator (ε of Eq. 6) changes the two deviators alone: the
-//! scalars depend on the coordination number, the harmonic part on the fourth-order fabric. A ratio such as G13/G12 depends
-//! on all three, so that the fourth-order fabric of a sample, which no acoustic measurement gives, is an error in it.
+//! contact distribution that differs from an isotropic one by a deviator (ε of Eq. 6) changes the two deviators alone:
+//! the scalars depend on the coordination number, the harmonic part on the fourth-order fabric. A ratio such as G13/G12
+//! depends on all three, so that the fourth-order fabric of a sample, which no acoustic measurement gives, is an error
+//! in it.
 
 use crate::moduli::{Moduli, Modulus};
 use nalgebra::SMatrix;
@@ -22,8 +23,8 @@ pub struct Invariants {
     pub dilatation: f64,
     /// V = 3 (C_3k3k − C_1k1k)/C_ikik, of the Voigt deviator.
     pub voigt: f64,
-    /// H = 3 (C11 + C33 − 2 C13 − 4 C44)/C_ikik, of the harmonic part: how P speeds at 45° differ from the mean of those
-    /// along and across the axis.
+    /// H = 3 (C11 + C33 − 2 C13 − 4 C44)/C_ikik, of the harmonic part: how P speeds at 45° differ from the mean of
+    /// those along and across the axis.
     pub harmonic: f64,
 }
 

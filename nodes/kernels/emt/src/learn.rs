@@ -16,8 +16,8 @@ use isotropic::of_isotropic;
 use relaxation::network;
 use sample::bounds;
 
-/// Constants from isotropic and from anisotropic packings, all of one material. Without anisotropic ones only Eqs. 21 and
-/// 22 are fitted.
+/// Constants from isotropic and from anisotropic packings, all of one material. Without anisotropic ones only Eqs. 21
+/// and 22 are fitted.
 pub fn learn(
     name: &str,
     isotropic: &[CalibrationSample],

@@ -1,8 +1,9 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
-//! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012). The inversion is closed, or
-//! a root that is unique in its bracket; errors are propagated to first order or by sampling. SI units at every interface.
-//! The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension, along it.
+//! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012). The inversion is closed,
+//! or a root that is unique in its bracket; errors are propagated to first order or by sampling. SI units at every
+//! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
+//! along it.
 //!
 //! - `structure`, `moduli`, `conditions`: what is inferred, what it is inferred from, and at what state
 //! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion

@@ -141,7 +141,8 @@ impl Observation {
         Some(relative)
     }
 
-    /// The same with one input changed by the relative amount `by`, γ/Δ by the absolute one. `None` if the input is not known.
+    /// The same with one input changed by the relative amount `by`, γ/Δ by the absolute one. `None` if the input is not
+    /// known.
     pub(crate) fn moved(&self, input: usize, by: f64) -> Option<Self> {
         let mut moved = self.clone();
         match input {

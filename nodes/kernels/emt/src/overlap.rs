@@ -1,8 +1,8 @@
 //! How the overlap, and with it the stiffness of a contact, depends on its direction.
 //!
-//! The overlap of a contact at angle arccos x from the axis is (DΔ/3)(1 + 2g − 6gx²), and its stiffness is proportional to
-//! the root of that. Eq. 10 expands the root to first order in g, which costs less than 0.006 in ε for g in [−0.3, 0.1]
-//! and 0.1 at g = 1/4.
+//! The overlap of a contact at angle arccos x from the axis is (DΔ/3)(1 + 2g − 6gx²), and its stiffness is proportional
+//! to the root of that. Eq. 10 expands the root to first order in g, which costs less than 0.006 in ε for g in [−0.3,
+//! 0.1] and 0.1 at g = 1/4.
 
 use crate::error::EmtError;
 

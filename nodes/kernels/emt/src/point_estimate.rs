@@ -16,7 +16,8 @@ pub struct PointEstimate {
     pub structure: Structure,
     /// How it depends on the inputs; `None`: by central differences of [`crate::Model::solve`].
     pub jacobian: Option<Jacobian>,
-    /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the model.
+    /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the
+    /// model.
     pub discrepancy: Option<StructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,

@@ -1,9 +1,9 @@
 //! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
-//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a draw of the
-//! model's own error is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals become
-//! asymmetric, and some draws have no solution. Those are counted. Every number here is of the draws with a solution, and is
-//! not meaningful where many have none.
+//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a draw of
+//! the model's own error is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals
+//! become asymmetric, and some draws have no solution. Those are counted. Every number here is of the draws with a
+//! solution, and is not meaningful where many have none.
 
 use crate::calibration::Calibration;
 use crate::error::EmtError;
@@ -20,7 +20,8 @@ use std::f64::consts::TAU;
 /// How to sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SamplingSettings {
-    /// Number of draws. With 10,000 draws the end of a 95 % interval is accurate to 3 % of its distance from the middle.
+    /// Number of draws. With 10,000 draws the end of a 95 % interval is accurate to 3 % of its distance from the
+    /// middle.
     pub draws: usize,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -81,8 +82,8 @@ impl MonteCarlo {
         Some([self.quantile(quantity, outside)?, self.quantile(quantity, 1.0 - outside)?])
     }
 
-    /// Skewness of the interval about the median: 0 if symmetric, 1 if all of it lies above, −1 if all lies below. Higher
-    /// moments need not exist.
+    /// Skewness of the interval about the median: 0 if symmetric, 1 if all of it lies above, −1 if all lies below.
+    /// Higher moments need not exist.
     pub fn skewness(&self, quantity: Quantity) -> Option<f64> {
         let [low, high] = self.interval(quantity)?;
         let median = self.quantile(quantity, 0.5)?;
@@ -192,8 +193,8 @@ fn solve(
     Ok(values)
 }
 
-/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an error depends on
-/// those before it.
+/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an error
+/// depends on those before it.
 fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     /// Fraction of a variance that is rounding.
     const ROUNDING: f64 = 1e-12;

@@ -7,8 +7,8 @@ const K: f64 = 200.0e6;
 const TARGET: f64 = 50.0e3;
 const DT: f64 = 1.0e-6;
 
-/// Stress errors σ − σ* before each of `periods` control periods, Pa, from 1 kPa too little compression. Eq. 1 is told a
-/// tenth of the stiffness K that the others are, else it would be refused beyond its limit.
+/// Stress errors σ − σ* before each of `periods` control periods, Pa, from 1 kPa too little compression. Eq. 1 is told
+/// a tenth of the stiffness K that the others are, else it would be refused beyond its limit.
 fn errors(law: ServoLaw, stiffness: f64, dt: f64, periods: usize) -> Vec<f64> {
     let known = if matches!(law, ServoLaw::Integral { .. }) { 0.1 * K } else { K };
     errors_with(law, stiffness, known, dt, periods)

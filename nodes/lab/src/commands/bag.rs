@@ -1,4 +1,4 @@
-//! `grainlab bag`: recordings, as `ros2 bag`.
+//! `grainlab bag`: commands for recordings, as `ros2 bag`.
 
 mod check;
 mod info;
@@ -10,18 +10,18 @@ use crate::failure::Failure;
 use clap::Subcommand;
 use grainlab_node_kit::Exit;
 
-/// What to do with a recording.
+/// Commands for recordings.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Record topics until SIGINT or SIGTERM.
     Record(record::Args),
-    /// Publish what was recorded.
+    /// Publish the messages of a recording.
     Play(play::Args),
-    /// Show what a recording holds.
+    /// Show the content of a recording.
     Info(info::Args),
-    /// Read every record of a recording and name all that is wrong.
+    /// Read every record of a recording and list all faults.
     Check(check::Args),
-    /// Finish the recording of a recorder that was killed, so that other tools read it.
+    /// Complete the recording of a recorder that was killed, so that other tools read it.
     Recover(recover::Args),
 }
 

@@ -35,8 +35,8 @@ Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Launch file: demo (the laboratory), acoustic (the same with an acoustic probe) or a file in the YAML form of ROS 2
-    /// launch [default: demo], and values for its arguments, as in threads:=2
+    /// Launch file: demo (the laboratory), acoustic (the same with an acoustic probe) or a file in the YAML form of ROS
+    /// 2 launch [default: demo], and values for its arguments, as in threads:=2
     #[arg(value_name = "FILE or NAME:=VALUE")]
     words: Vec<String>,
     /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
@@ -48,8 +48,8 @@ pub(crate) struct Args {
     /// Folder for the directory of the run
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
-    /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed; the
-    /// result is the same to the last byte as without the interruption
+    /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed;
+    /// the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "seed", "out"])]
     resume: Option<PathBuf>,
     /// How to print the result
@@ -170,7 +170,8 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
-/// Creates the directory of the run, with a copy of the scene: later edits of the file affect neither the run nor a restart.
+/// Creates the directory of the run, with a copy of the scene: later edits of the file affect neither the run nor a
+/// restart.
 fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", root.display()));
     let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;

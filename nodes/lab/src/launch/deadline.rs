@@ -1,4 +1,4 @@
-//! How long the end of a run waits for what is due.
+//! Time limits at the end of a run for its pending results.
 
 use super::names::{INSTRUMENT, INVERSION, PROBE};
 use super::patience::Patience;
@@ -6,15 +6,16 @@ use super::pending_results::ResultState;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
-/// How long the last packing may take to be measured, what was measured to be inverted, and moduli to follow a structure.
+/// Time limit for the measurement of the last packing, for the inversion of a measurement, and for moduli after a
+/// structure.
 const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(30);
 const MODULI_WITHIN: Duration = Duration::from_secs(5);
 
-/// How long the last packing may take to be measured by a program that is not ours and measured others.
+/// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
-/// What is waited for, and for how long.
+/// The result that is waited for, and its time limit.
 pub(super) struct Deadline {
     pub(super) of: ResultState,
     pub(super) patience: Patience,
@@ -30,7 +31,7 @@ impl Deadline {
             }
             ResultState::Measured(node) => {
                 let message = format!(
-                    "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
+                    "the result of {node} for the last packing was not inverted: see logs/{INVERSION}.log"
                 );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
@@ -48,7 +49,7 @@ impl Deadline {
     }
 }
 
-/// What a node did not find of a packing, and where it says why.
+/// Message about missing data of a node, with its log.
 pub(super) fn nothing(node: &str) -> String {
     let data = if node == PROBE { "wave speeds" } else { "stiffness" };
     format!("{data} to invert: see logs/{node}.log")

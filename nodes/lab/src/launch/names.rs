@@ -12,5 +12,5 @@ pub(super) const PROBE: &str = "acoustic_probe";
 /// The inversion.
 pub(super) const INVERSION: &str = "emt_inversion";
 
-/// Stands for all third-party programs of a launch file.
+/// Name for all third-party programs of a launch file.
 pub(super) const INSTRUMENT: &str = "instrument";

@@ -1,19 +1,19 @@
-//! What the run still owes of its last packing: one microstructure from every kind of data that its nodes measure.
+//! The pending results of the last packing: one microstructure for every kind of data that the run's nodes measure.
 
 use super::names::INSTRUMENT;
 use super::plan::NodePlan;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
-/// One kind of data, by the topic that carries it.
+/// One kind of data, by its topic.
 #[derive(Debug)]
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Node that writes it.
+    /// Node that publishes it.
     node: &'static str,
     measured: BTreeSet<u64>,
-    /// Step and place of the inversion.
+    /// Step of the packing, and member number of the inversion.
     inverted: BTreeSet<(u64, u8)>,
     declined: BTreeSet<u64>,
 }
@@ -25,37 +25,38 @@ impl Kind {
     }
 }
 
-/// Where the run stands with one packing.
+/// The state of the results of one packing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ResultState {
     /// Every kind of data is inverted.
     Complete,
-    /// Nothing is to come any more, and this node found nothing to invert.
+    /// No further result will come, and this node found nothing to invert.
     Declined(&'static str),
-    /// This node measured a structure, and nothing that could be inverted has come.
+    /// This node measured a structure, and no data to invert have arrived.
     Bare(&'static str),
-    /// What is there is not inverted yet; this node measured it.
+    /// The data of this node are not inverted yet.
     Measured(&'static str),
-    /// This node has not measured it yet.
+    /// This node has not measured the packing yet.
     Open(&'static str),
 }
 
-/// What is known of every kind of data.
+/// The known results of every kind of data.
 #[derive(Debug)]
 pub(crate) struct PendingResults {
     kinds: Vec<Kind>,
-    /// Inversions of the run: each of them infers from every kind of data. One, where the run has none: somebody has to.
+    /// Number of inversions of the run, each of which inverts every kind of data. 1 for a run without inversion: its
+    /// results stay pending.
     inversions: usize,
-    /// Whether programs that are not ours run, which may send wave speeds. If they sent those of one packing, the run waits
-    /// for those of its last packing.
+    /// Whether third-party programs run, which may publish wave speeds. If they published those of one packing, the run
+    /// waits for those of its last packing.
     instruments: bool,
-    /// Packings whose structure was measured.
+    /// Steps of the packings whose structure was measured.
     structures: BTreeSet<u64>,
 }
 
 impl PendingResults {
-    /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
-    /// without analyzer and probe gets to know that nothing is inferred.
+    /// For the nodes of a run. A microstructure from the moduli is expected even without an analyzer: a user who
+    /// launches without analyzer and probe is informed that nothing is inferred.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
         let kind = |topic: &grainlab_msgs::Topic| Kind::new(topic.name, topic.writer);
         let has = |node: &str| plans.iter().any(|p| p.is(node));
@@ -78,9 +79,9 @@ impl PendingResults {
         self.structures.insert(step);
     }
 
-    /// The data of this topic about the packing of `step` are there.
+    /// The data of this topic about the packing of `step` were published.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
-        // Step 0 is of no packing.
+        // Step 0 stands for no packing.
         let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
         if instrument && self.of_topic(topic).next().is_none() {
             self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
@@ -90,19 +91,19 @@ impl PendingResults {
         });
     }
 
-    /// No program that is not ours runs any more.
+    /// All third-party programs have ended.
     pub(crate) fn instruments_left(&mut self) {
         self.instruments = false;
     }
 
-    /// A microstructure from the data of this topic is there, by the inversion in this place.
+    /// The inversion with this member number published a microstructure from the data of this topic.
     pub(crate) fn inverted(&mut self, topic: &str, step: u64, member: u8) {
         self.of_topic(topic).for_each(|k| {
             k.inverted.insert((step, member));
         });
     }
 
-    /// There are no data of this topic about the packing of `step`, and there will be none.
+    /// There will be no data of this topic about the packing of `step`.
     pub(crate) fn declined(&mut self, topic: &str, step: u64) {
         self.of_topic(topic).for_each(|k| {
             k.declined.insert(step);
@@ -113,10 +114,10 @@ impl PendingResults {
         self.kinds.iter_mut().filter(move |k| k.topic == topic)
     }
 
-    /// Where the run stands with the packing of `step`: by what takes longest.
+    /// The state of the results of the packing of `step`: that of the slowest one.
     pub(crate) fn state_of(&self, step: u64) -> ResultState {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
-        // A program that is gone sends nothing more.
+        // A program that has ended publishes nothing more.
         let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));

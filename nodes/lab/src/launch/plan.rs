@@ -1,4 +1,4 @@
-//! Launch files: the YAML form of ROS 2 launch, as much of it as starts processes: nodes of ours, and any other program.
+//! Launch files: the part of the YAML form of ROS 2 launch that starts processes: our nodes and other programs.
 
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,13 +9,13 @@ pub(crate) const BUILT_IN: [(&str, &str); 2] = [
     ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
 ];
 
-/// Why a launch file cannot be run here.
+/// Errors of a launch file.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub(crate) enum PlanError {
     /// Not YAML, or not this subset of ROS 2 launch.
     #[error("not a launch file that can be run here: {0}")]
     Format(String),
-    /// Another command of ours than one that runs a node, or none at all.
+    /// A `grainlab` command that does not run a node, or no command.
     #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
     Command { cmd: String },
     /// A substitution other than `$(var NAME)`.
@@ -24,25 +24,25 @@ pub(crate) enum PlanError {
     /// A variable that no `arg` declares.
     #[error("`{text}`: no arg declares the variable {name:?}; declared are: {known}")]
     Undeclared { text: String, name: String, known: String },
-    /// A value for an argument that is not declared.
+    /// A value for an undeclared argument.
     #[error("the launch file declares no arg {name:?}; declared are: {known}")]
     NoSuchArgument { name: String, known: String },
-    /// An argument without default and value.
+    /// An argument without a default and a value.
     #[error("arg {0:?} has no default and no value was given")]
     NoValue(String),
     /// A value of `output` or `respawn` that is not supported.
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
-    /// A name that could not be the name of a log.
+    /// A name that cannot be a file name of a log.
     #[error("executable name {0:?}: use lower case letters, digits, _ and - (it names a file)")]
     Name(String),
-    /// Two processes would write one log.
+    /// Two processes with the same name would write one log.
     #[error("two executables are called {0:?}: give one of them another name")]
     Twice(String),
-    /// A node that no laboratory works without, or with two of.
+    /// A required node is missing, or a node occurs too often.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
     Count { node: &'static str, count: usize, allowed: &'static str },
-    /// More than a run has places for.
+    /// More processes than member numbers.
     #[error("the launch file starts {count} processes; a run has at most {most}")]
     Many { count: usize, most: usize },
 }
@@ -78,10 +78,10 @@ struct Executable {
     respawn: Option<String>,
 }
 
-/// Most processes of a run. The place of a process is one byte: 0 means no place, and 255 is the launcher.
+/// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
 
-/// How many of each node a run may have: two of those that one run has one of would contradict each other.
+/// Allowed numbers of each node in a run: two simulators, for example, would contradict each other.
 const COUNTS: [(&str, std::ops::RangeInclusive<usize>, &str); 5] = [
     ("recorder", 1..=1, "one"),
     ("dem_simulator", 1..=1, "one"),
@@ -93,35 +93,35 @@ const COUNTS: [(&str, std::ops::RangeInclusive<usize>, &str); 5] = [
 /// One process to start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NodePlan {
-    /// Name of the process: its log is called so.
+    /// Name of the process and of its log.
     pub(crate) name: String,
-    /// Which of our nodes; `None` for a program that is not ours.
+    /// The node; `None` for a third-party program.
     pub(crate) node: Option<String>,
-    /// The program; of a node of ours, whatever `grainlab` this is.
+    /// The program; for a node, this `grainlab`.
     pub(crate) program: String,
-    /// Its arguments. Of a node: `run`, the node, its ROS arguments.
+    /// Its arguments; for a node: `run`, the node, its ROS arguments.
     pub(crate) arguments: Vec<String>,
-    /// Started again when it ends by itself.
+    /// Whether it is restarted when it ends by itself.
     pub(crate) respawn: bool,
 }
 
 impl NodePlan {
-    /// Whether it is this node of ours.
+    /// Whether it is this node.
     pub(crate) fn is(&self, node: &str) -> bool {
         self.node.as_deref() == Some(node)
     }
 
-    /// A simulator of a launched run has no rivals to look for, unless it is told to.
+    /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
     pub(crate) fn do_not_look_around(&mut self) {
         if self.is("dem_simulator") {
-            // Behind `run NODE`: a value of the launch file comes later and wins.
+            // After `run NODE`: a value of the launch file comes later and overrides it.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
         }
     }
 }
 
-/// A launch file that was read, with what its arguments default to.
+/// A parsed launch file, with the defaults of its arguments.
 #[derive(Debug)]
 pub(crate) struct LaunchFile {
     text: String,
@@ -143,12 +143,12 @@ impl LaunchFile {
         Ok(Self { text: text.to_owned(), arguments, executables })
     }
 
-    /// What it was read from.
+    /// Its text.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The default of an argument without the quotes that keep an empty string a word; `None` if it has none.
+    /// The default of an argument, without the quotes of an empty string; `None` if it has no default.
     pub(crate) fn default_of(&self, name: &str) -> Option<&str> {
         let (_, default) = self.arguments.iter().find(|(n, _)| n == name)?;
         default.as_deref().map(|d| d.trim_matches('\''))
@@ -195,7 +195,7 @@ impl Executable {
         };
         let value = |name: &str| {
             let value = variables.get(name)?;
-            // Parameters of nodes are YAML, in which a path is quoted; a program of anybody's gets the path.
+            // Parameters of nodes are YAML, in which a path is quoted; a third-party program gets the plain path.
             let plain =
                 || serde_json::from_str(value).unwrap_or_else(|_| value.trim_matches('\'').to_owned());
             Some(if node.is_some() { value.clone() } else { plain() })
@@ -233,7 +233,7 @@ impl Executable {
     }
 }
 
-/// Words of a command line, split at blanks outside quotes; `None` where a quote is left open.
+/// Words of a command line, split at spaces outside quotes; `None` if a quote is not closed.
 fn words(cmd: &str) -> Option<Vec<String>> {
     let mut words = Vec::new();
     // Two quotes with nothing between them are an empty word.
@@ -267,7 +267,7 @@ fn words(cmd: &str) -> Option<Vec<String>> {
     quote.is_none().then_some(words)
 }
 
-/// Puts the values of variables in. A value is never split.
+/// Substitutes the values of variables. A value is never split.
 fn substitute(
     word: &str,
     value: impl Fn(&str) -> Option<String>,

@@ -1,4 +1,4 @@
-//! Who is restarted, and whose death ends the run.
+//! Runs the processes of a launch: restarts them, and ends the run.
 
 use super::Run;
 use super::child::{Child, Ended};
@@ -21,23 +21,23 @@ use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::sleep;
 
-/// A node that ends this often within this time is not started again.
+/// A node that ends this often within this time is not restarted.
 const RESTARTS: usize = 10;
 const RESTART_WINDOW: Duration = Duration::from_secs(30);
-/// Pause before a start after an end.
+/// Pause before a restart.
 const RESTART_PAUSE: Duration = Duration::from_millis(100);
 
-/// How often the processes are looked at.
+/// Period of the checks of the processes.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// How long a process that was stopped may take to catch up before the run ends, and how long the end waits for it.
+/// Time for a process that was stopped to catch up before the run ends, and how long the end waits for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
-/// How long a run that has not begun is silent about it.
+/// Time before a message about a run that has not begun.
 const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
-/// What a run waits for whose simulator was not heard yet.
+/// The message while the simulator has published nothing.
 const SEARCHING: &str = "its processes have not found each other";
 
 /// A run from its first process to its last.
@@ -53,50 +53,50 @@ pub(crate) struct Supervisor {
     hangup: Signal,
     pub(super) progress: Progress,
     begun: bool,
-    /// The step that the run began or went on at.
+    /// The step at which the run began or resumed.
     first_step: Option<u64>,
     finished: Option<RunStateReading>,
     failed: Option<String>,
-    /// The watch failed: nobody would notice the end of the run.
+    /// The watch failed: the end of the run would not be noticed.
     blind: bool,
     pending: PendingResults,
-    /// The probe was heard at work since the last look.
+    /// The probe reported work since the last check.
     probing: bool,
     pub(super) stopped: Stopped,
-    /// Packings that were recorded each time the simulator died.
+    /// Number of recorded packings at each crash of the simulator.
     deaths: Vec<u64>,
-    /// A program that is not ours failed.
+    /// A third-party program failed.
     foreign_failure: bool,
-    /// Results that were heard, by topic: steps of packings.
+    /// Received results: steps of packings by topic.
     results: BTreeMap<&'static str, BTreeSet<u64>>,
-    /// Processes that sent their last report.
+    /// Ids of the processes that sent their last report.
     pub(super) left: BTreeSet<u32>,
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Supervised {
-    /// How it ended.
+    /// Its exit.
     pub(crate) exit: Exit,
     /// Every process with its last process id.
     pub(crate) children: Vec<Child>,
     /// From the first start to the last end.
     pub(crate) wall: Duration,
-    /// What was heard of the run: has to be in the recording.
+    /// The received messages of the run, which the recording must contain.
     pub(crate) heard: Heard,
 }
 
-/// What the run published, as the launcher heard it.
+/// The messages of the run that the launcher received.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
     /// Packings, by the last run state; `None` if the path was not finished.
     pub(crate) packings: Option<u32>,
-    /// Steps of the packings of which there is a result, by topic.
+    /// Steps of the packings with a result, by topic.
     pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
 }
 
 impl Supervisor {
-    /// To be made inside the runtime.
+    /// Call this inside the runtime.
     pub(crate) fn new(
         plans: Vec<NodePlan>,
         run: Run,
@@ -136,7 +136,7 @@ impl Supervisor {
     pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
         let (watch, mut events) = Watch::start(self.run)?;
-        // Nothing that the processes say is missed.
+        // The watch starts first, so that it receives all messages.
         if let Some(event) = events.recv().await {
             self.take(event);
         }
@@ -153,14 +153,14 @@ impl Supervisor {
         }
         let code = |node: &str| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
         if code(RECORDER) != Some(0) {
-            // Data loss is in the table; anything else only the recorder can tell.
+            // Data loss is in the table; other errors are only in the recorder's log.
             if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
                 crate::output::say!("grainlab: {RECORDER} ended with exit code 1:");
                 recorder.quote_log(&self.logs);
             }
             exit = worse(exit, Exit::DataLoss);
         }
-        // A simulator that ended with an error fails the run, whatever was heard before.
+        // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
             crate::output::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
@@ -183,12 +183,12 @@ impl Supervisor {
         self.children[index].start(index, &self.run, &self.logs, &self.report_end)
     }
 
-    /// Follows the run until it is over; the children still run then.
+    /// Follows the run until it is complete; the children still run then.
     async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
         let mut deadline: Option<Deadline> = None;
         let mut beginning = Patience::new(BEGINS_WITHIN);
         loop {
-            // What has happened comes before what has not happened in time.
+            // Events take precedence over time limits.
             tokio::select! {
                 biased;
                 _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
@@ -229,7 +229,7 @@ impl Supervisor {
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
-                    // Bursts through a long path take as long as they take; who is at work is waited for.
+                    // Waves through a long path may take long; a working probe is waited for.
                     let at_work = std::mem::take(&mut self.probing) && standing == ResultState::Open(PROBE);
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         deadline = Some(Deadline::of(standing));
@@ -239,8 +239,8 @@ impl Supervisor {
         }
     }
 
-    /// Ends a complete run, but not before a stopped process goes on and has had time to catch up: its writers keep what it
-    /// missed only until they leave.
+    /// Ends a complete run, but waits until a stopped process continues and has had time to catch up: its writers keep
+    /// the samples it missed only until they leave.
     async fn caught_up(&mut self) -> Exit {
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);
@@ -297,7 +297,7 @@ impl Supervisor {
                 self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
                 self.progress.say(&match step {
-                    // An instrument's data are of no packing of the run.
+                    // Data of an external instrument belong to no packing of the run.
                     0 => format!("the {data} of an instrument inverted"),
                     _ => format!("packing of step {step} measured and inverted, by its {data}"),
                 });
@@ -312,14 +312,14 @@ impl Supervisor {
         }
     }
 
-    /// An instrument's data are of no packing of the run.
+    /// Data of an external instrument belong to no packing of the run.
     fn heard(&mut self, topic: &'static str, step: u64) {
         if step > 0 {
             self.results.entry(topic).or_default().insert(step);
         }
     }
 
-    /// Says once who is stopped and who goes on; true while anyone is stopped.
+    /// Prints once which processes are stopped or continue; true while any is stopped.
     pub(super) fn look_for_stopped(&mut self) -> bool {
         let changes = self.stopped.look(&self.children);
         for (name, pid) in changes.stopped {
@@ -333,11 +333,11 @@ impl Supervisor {
         self.stopped.any()
     }
 
-    /// What the simulator says in its log that it waits for.
+    /// What the simulator waits for, from its log.
     fn say_what_is_waited_for(&self) {
         let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
         let waits = simulator.and_then(|c| c.last_line_if(&self.logs, "waiting for"));
-        // A simulator that is heard and does not wait is at work on its first step.
+        // A simulator that publishes and does not wait computes its first step.
         let Some(what) = waits.or_else(|| self.first_step.is_none().then(|| SEARCHING.to_owned())) else {
             return;
         };
@@ -349,7 +349,7 @@ impl Supervisor {
         Exit::Interrupted
     }
 
-    /// A process ended by itself. How the run ends because of that, if it does.
+    /// Handles a process that ended by itself; returns the exit of the run if this ends it.
     async fn on_end(&mut self, ended: &Ended) -> Option<Exit> {
         let how = self.note_end(ended);
         let child = &self.children[ended.index];
@@ -374,7 +374,7 @@ impl Supervisor {
         Some(exit)
     }
 
-    /// A program that is not ours may end when it is done; one that fails does not end the run, but it is no good end.
+    /// A third-party program may end when it is done; one that fails does not end the run, but counts as a failure.
     async fn on_foreign_end(&mut self, index: usize, how: &str) -> Option<Exit> {
         let child = &self.children[index];
         if child.plan.respawn {
@@ -392,11 +392,11 @@ impl Supervisor {
         None
     }
 
-    /// Starts the simulator again, from the last packing that was recorded; see `--resume`.
+    /// Restarts the simulator from the last recorded packing; see `--resume`.
     async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
         let packings = crate::results::last_packing::count(&self.directory);
         self.deaths.push(packings);
-        // It got no further in three attempts: the next one would not, either.
+        // Three attempts ended at the same packing: the next one would, too.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
             crate::output::say!(
                 "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"

@@ -1,21 +1,21 @@
-//! Whose messages are those of the run, where its processes were started by hand and share no run id.
+//! Finds the messages of a run whose processes were started by hand and share no run id.
 //!
-//! The run is that of the simulator that is heard first. Its id is the participant of that simulator: answers and results
-//! say which of its samples they are about (see `SampleInfo::about`).
+//! The run is that of the first simulator that publishes. Its id is the participant of that simulator: answers and
+//! results refer to its samples (see `SampleInfo::about`).
 
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::Participant;
 use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Participants that are counted one by one.
+/// Maximum number of participants counted separately.
 const COUNTED: usize = 64;
 
-/// Topics that only the simulator writes.
+/// Topics that only the simulator publishes.
 const OF_SIMULATOR: [Topic; 5] =
     [topics::STRESS, topics::PACKING, topics::RUN_STATE, topics::CLOCK, topics::TF_STATIC];
 
-/// Topics of which anyone's messages are kept: they tell of processes and not of the run.
+/// Topics of which all messages are recorded: they are about processes, not about the run.
 const OF_ANYONE: [Topic; 2] = [topics::DIAGNOSTICS, topics::ROSOUT];
 
 fn is_among(topic: &Topic, list: &[Topic]) -> bool {
@@ -25,25 +25,25 @@ fn is_among(topic: &Topic, list: &[Topic]) -> bool {
 /// Why a message is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outside {
-    /// It is of another simulator, or about no sample of this one.
+    /// It comes from another simulator, or refers to no sample of this one.
     Stranger,
-    /// It is about this run, and another process that is still there says the same kind of thing.
+    /// It refers to this run, but another present process publishes the same kind of message.
     Second,
 }
 
-/// The run that a recorder by hand stays with.
+/// The run that a recorder started by hand is bound to.
 #[derive(Debug, Default)]
 pub(crate) struct Binding {
-    /// The simulators of the run: the last one is at work, those before it are gone.
+    /// The simulators of the run: the last one is running, earlier ones have ended.
     simulators: Vec<Participant>,
-    /// Who writes each kind of answer and result.
+    /// The writer of each kind of answer and result.
     authors: BTreeMap<&'static str, Participant>,
     seconds: BTreeSet<(&'static str, Participant)>,
     ignored: BTreeMap<Participant, BTreeMap<&'static str, u64>>,
 }
 
 impl Binding {
-    /// Whether a message belongs to the run; `present` tells the writers of a topic that are there.
+    /// Whether a message belongs to the run; `present` lists the present writers of a topic.
     pub(crate) fn takes(
         &mut self,
         topic: &Topic,
@@ -97,12 +97,13 @@ impl Binding {
         }
     }
 
-    /// Messages that were left out, by participant and topic.
+    /// Numbers of messages left out, by participant and topic.
     pub(crate) fn ignored(&self) -> &BTreeMap<Participant, BTreeMap<&'static str, u64>> {
         &self.ignored
     }
 
-    /// Topics on which two processes wrote about this run, and the second of them: which one is right cannot be told.
+    /// Topics on which two processes published about this run, and the second of them: it is unknown which one is
+    /// right.
     pub(crate) fn seconds(&self) -> &BTreeSet<(&'static str, Participant)> {
         &self.seconds
     }

@@ -1,7 +1,7 @@
-//! Messages that say what was recorded already.
+//! Detects repetitions of recorded messages.
 //!
-//! A request without an answer is published again, a servo that takes another's place answers again, and a simulator that
-//! goes on from a packing asks again what was asked before: all with the same bytes. The recording holds each of them once.
+//! A request without an answer is published again, a servo that replaces another answers again, and a simulator that
+//! resumes from a packing repeats its requests: all with the same bytes. The recording holds each of them once.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Topic, from_cdr, topics};
@@ -9,30 +9,30 @@ use grainlab_recordings::{ReadError, Recording, Selection};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Exchanges whose bytes are compared, 2 MB of them: a run that goes on from its last packing repeats at most the tail
-/// behind it.
+/// Number of exchanges whose bytes are compared, 2 MB: a run that resumes from its last packing repeats at most the
+/// exchanges after it.
 const WINDOW: usize = 1 << 17;
 
-/// What a message is to those before it.
+/// Relation of a message to earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Novelty {
-    /// It says something new.
+    /// It is new.
     New,
-    /// It was recorded before, byte for byte.
+    /// An equal message was recorded before, byte for byte.
     Repeat,
     /// Another message with this number was recorded before.
     Contradiction {
-        /// Its number in the lockstep.
+        /// Its sequence number in the lockstep.
         sequence: u64,
     },
 }
 
-/// Numbers of the lockstep that were recorded, with a fingerprint of each body.
+/// Recorded sequence numbers of the lockstep, with a fingerprint of each body.
 #[derive(Debug, Default)]
 struct Window {
-    /// Number and fingerprint, in the order of numbers.
+    /// Number and fingerprint, sorted by number.
     recent: VecDeque<(u64, u64)>,
-    /// Numbers below this were recorded and have left the window.
+    /// Numbers below this were recorded and are no longer kept.
     settled: u64,
 }
 
@@ -57,7 +57,7 @@ impl Window {
     }
 }
 
-/// What was recorded so far, as far as it may come again.
+/// The recorded messages that may be repeated.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
     lockstep: BTreeMap<&'static str, Window>,
@@ -68,7 +68,7 @@ pub(crate) struct Repeats {
 }
 
 impl Repeats {
-    /// Takes in what recorders before this one recorded.
+    /// Reads the messages of earlier recorders.
     pub(crate) fn remember(&mut self, recording: &Recording) -> Result<(), ReadError> {
         let contract = |resolved: &str| {
             Topic::by_name(resolved.rsplit('/').next().unwrap_or(resolved)).filter(|t| t.reproducible)
@@ -86,8 +86,8 @@ impl Repeats {
         Ok(())
     }
 
-    /// Takes in one message of a topic; `author` is the same for a process and the one that takes its place. What cannot
-    /// be decoded is new.
+    /// Classifies one message of a topic; `author` is the same for a process and its restarted successor. A message
+    /// that does not decode counts as new.
     pub(crate) fn enter(&mut self, topic: &Topic, author: u64, body: &[u8]) -> Novelty {
         if !topic.reproducible {
             return Novelty::New;

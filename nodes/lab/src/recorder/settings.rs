@@ -1,4 +1,4 @@
-//! What is recorded, and where to.
+//! Settings of the recorder.
 
 use crate::failure::Failure;
 use crate::scenes::{self, SceneText};
@@ -8,19 +8,19 @@ use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What is recorded, and where to.
+/// Settings of the recorder.
 #[derive(Clone, Debug)]
 pub(crate) struct Settings {
     /// The run directory; `None` makes the next one under `recordings/runs`.
     pub(crate) output: Option<PathBuf>,
-    /// Rows of the contract.
+    /// Rows of the topic table.
     pub(crate) topics: Vec<Topic>,
-    /// The scene of the run, which is attached.
+    /// The scene of the run, attached to the recording.
     pub(crate) scene: Option<SceneText>,
-    /// One run is recorded, from its first message on: what is missing at its beginning counts as lost, too, and what its
-    /// processes say again is recorded once.
+    /// One run is recorded, from its first message on: messages missing at its beginning count as lost, too, and
+    /// repetitions are recorded once.
     pub(crate) whole_run: bool,
-    /// Goes on with the recording that is there, in its next file.
+    /// Continues the existing recording, in its next file.
     pub(crate) append: bool,
 }
 
@@ -71,7 +71,7 @@ impl Settings {
     }
 }
 
-/// Rows of the contract by name; all of them for no name, except those that only carry parts of another topic's messages.
+/// Rows of the topic table by name; without names all, except those for parts of another topic's messages.
 pub(crate) fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
     let recorded = || TOPICS.iter().filter(|t| !t.is_transport());
     if names.is_empty() {
@@ -80,7 +80,7 @@ pub(crate) fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
     let known = || recorded().map(|t| t.name).collect::<Vec<_>>().join(", ");
     let row = |name: &String| match Topic::by_name(name) {
         Some(row) if row.is_transport() => Err(Failure::usage(format!(
-            "topic {name:?} only carries parts of large packings: record packing, which holds them whole"
+            "topic {name:?} has only parts of large packings: record packing, which has them whole"
         ))),
         Some(row) => Ok(*row),
         None => Err(Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))),

@@ -2,33 +2,34 @@
 
 use std::time::Duration;
 
-/// Longest body that travels as one sample, bytes: measured to arrive reliably at 10 Hz.
+/// Largest body sent as one sample, bytes: measured to arrive reliably at 10 Hz.
 pub const LIMIT: usize = 2_000_000;
 
-/// Bytes of a part.
-pub const STRIDE: usize = 128 << 10;
+/// Size of a part, bytes.
+pub(crate) const STRIDE: usize = 128 << 10;
 
-/// Parts on their way to the slowest reader: with [`STRIDE`] 1 MiB, a quarter of a socket's buffer.
-pub const WINDOW: u32 = 8;
+/// Maximum number of parts in transit to the slowest reader: with [`STRIDE`] 1 MiB, a quarter of a socket's buffer.
+pub(crate) const WINDOW: u32 = 8;
 
-/// Longest body that a reader accepts, bytes.
-pub const LONGEST: u64 = 1 << 30;
+/// Largest body that a reader accepts, bytes.
+pub(crate) const LONGEST: u64 = 1 << 30;
 
-/// A reader that gives no credit for this long is left behind.
-pub const SILENCE: Duration = Duration::from_secs(5);
+/// The writer stops waiting for a reader that sends no credit for this long.
+pub(crate) const SILENCE: Duration = Duration::from_secs(5);
 
-/// A reader that gives credits, takes more, and gets nothing for this long is left behind, too.
+/// The writer stops waiting for a reader that sends credits, is ready, and makes no progress for this long.
 pub(super) const STALLED: Duration = Duration::from_secs(30);
 
-/// How long a writer waits for the first credit of a reader that is there.
+/// How long a writer waits for the first credit of a reader in the graph.
 pub(super) const FIRST_WORD: Duration = Duration::from_secs(3);
 
-/// A part that a reader does not have so long after it was sent is lost.
+/// A part that a reader does not have this long after it was sent counts as lost.
 pub(super) const LOST: Duration = Duration::from_millis(40);
 
-/// How often a credit is repeated while parts are missing, and how rarely while none are.
+/// Period of credits while parts are missing.
 pub(super) const REPEAT: Duration = Duration::from_millis(50);
+/// Longest period of credits while no part is missing.
 pub(super) const REST: Duration = Duration::from_secs(1);
 
-/// How often either end looks after the graph and the silent.
+/// Period at which a writer checks the graph and the time limits of its readers.
 pub(super) const LOOK: Duration = Duration::from_millis(20);

@@ -1,15 +1,16 @@
-//! Messages too large for one sample: in parts, with credits.
+//! Messages too large for one sample: sent in parts, with flow control by credits.
 //!
-//! RustDDS carries some megabytes in one sample and fails far above that: the sample exceeds what a socket buffers, and
-//! repair is slow. So a body over [`LIMIT`] travels in parts on a topic beside its own, best effort. Each reader says on a
-//! second topic which parts it holds; the writer keeps at most [`WINDOW`] parts ahead of the slowest reader that lives, and
-//! sends again what a reader says it misses. Bodies up to the limit travel on the plain topic as ever.
+//! RustDDS sends some megabytes in one sample and fails far above that: the sample exceeds the buffer of a socket, and
+//! repair is slow. So a body over [`BULK_LIMIT`] is sent in parts on a separate best-effort topic. Each reader
+//! publishes on a second topic which parts it holds (a credit). The writer sends at most `WINDOW` parts beyond the
+//! first one that the slowest active reader lacks, and repeats lost parts. Bodies up to the limit are sent on the plain
+//! topic.
 //!
-//! Every reader that lives gets every body, in order, before the writer is done with it. A reader that says nothing for
-//! [`SILENCE`] is left behind with a warning, so that the dead hold nobody up. The latest body is kept for readers that come
-//! late, as on a latched topic.
+//! Every active reader receives every body, in order, before the next one is sent. The writer stops waiting for a
+//! reader that sends no credit for `SILENCE`, with a warning, so that a crashed reader stops nobody. The latest body is
+//! kept for readers that join late, as on a latched topic.
 //!
-//! - `part`: one part, and what is wrong with it; `assembly`: the parts of one body
+//! - `part`: one part and its checks; `assembly`: the parts of one body
 //! - `sender`, `receiver`: the two ends as state machines without a bus or a clock
 //! - [`BulkPublisher`], [`BulkSubscription`]: the same on a [`crate::Bus`], for nodes
 

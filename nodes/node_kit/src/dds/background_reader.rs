@@ -1,9 +1,9 @@
 //! Empties the readers while the node computes.
 //!
-//! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the marker
-//! of what is complete goes with the writer). A node that computes for seconds would so lose the last packing of a
-//! simulator that ended meanwhile. The background_reader moves samples into our own queues as soon as the node has been away
-//! from the bus for a while; a node that exchanges quickly never meets it.
+//! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the
+//! marker of what is complete leaves with the writer). A node that computes for seconds would lose the last packing of
+//! a simulator that ended meanwhile. The background reader moves samples into our own queues as soon as the node has
+//! not used the bus for a while; it does nothing for a node with short steps.
 
 use super::inbox::Inbox;
 use rustdds::mio1::Waker;
@@ -11,10 +11,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long a node may be away before its readers are emptied for it. A leaving node lingers longer than this.
+/// Time without use of the bus after which the background reader empties the readers. An ending node stays longer than
+/// this.
 const ABSENCE: Duration = Duration::from_millis(20);
 
-/// Readers of one bus, shared with the background_reader.
+/// Readers of one bus, shared with the background reader.
 pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;
 
 /// Locks, whether or not another thread panicked while it held the lock: queues are valid after every statement.
@@ -24,7 +25,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 
 struct Shared {
     start: Instant,
-    /// Nanoseconds from `start` to when the node last used the bus.
+    /// Time at which the node last used the bus, ns since `start`.
     last_seen: AtomicU64,
     stopped: Mutex<bool>,
     stop: Condvar,
@@ -51,7 +52,7 @@ impl BackgroundReader {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// The node uses the bus now.
+    /// Notes that the node uses the bus now.
     pub(super) fn seen(&self) {
         self.shared.last_seen.store(self.shared.start.elapsed().as_nanos() as u64, Ordering::Relaxed);
     }
@@ -80,10 +81,10 @@ fn run(shared: &Shared, inboxes: &Inboxes, waker: &Waker) {
         let all: Vec<Arc<Mutex<Inbox>>> = lock(inboxes).clone();
         let mut moved = false;
         for inbox in &all {
-            // A failing reader is reported to the node itself, by its next take.
+            // The node's next take returns the error of a failing reader.
             moved |= lock(inbox).collect().unwrap_or(false);
         }
-        // The node may have begun to wait meanwhile: what woke it is gone from the reader, so wake it again.
+        // The node may have begun to wait meanwhile: the reader is empty now, so wake it again.
         if moved && let Err(error) = waker.wake() {
             log::error!("cannot wake the node: {error}");
         }

@@ -41,7 +41,7 @@ struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: GUID,
     topic: String,
-    /// A notification came and the reader was not seen empty since.
+    /// A notification arrived, and the reader was not found empty since.
     ready: bool,
     /// That notification is still to be cleared.
     notified: bool,
@@ -54,18 +54,19 @@ struct Subscriber {
     refused: u64,
 }
 
-/// A participant of its own, for one node.
+/// The participant of one node.
 ///
-/// Dropping it tells the peers that the node leaves; a process that ends without that stays matched for up to a minute.
+/// Dropping it informs the peers that the node leaves; a process that ends without that stays matched for up to a
+/// minute.
 pub struct DdsBus {
-    // Fields are dropped in this order, and endpoints have to go before their participant.
+    // Fields are dropped in this order, and endpoints have to be dropped before their participant.
     background_reader: BackgroundReader,
     writers: Vec<Writer>,
     subscribers: Vec<Subscriber>,
     readers: Vec<Reader>,
     inboxes: Inboxes,
     waker: Arc<Waker>,
-    /// Another thread called, and no wait has said so yet.
+    /// Another thread called, and no wait has returned it yet.
     called: Arc<AtomicBool>,
     ros_graph: RosGraph,
     signals: Option<Signals>,
@@ -84,8 +85,8 @@ pub struct DdsBus {
 }
 
 impl DdsBus {
-    /// Joins the domain as a process of the run that the environment names, or hears everyone where it names none. Peers
-    /// are known some 0.2 s later.
+    /// Joins the domain as a process of the run in the environment; without one it accepts the samples of all runs.
+    /// Peers are known some 0.2 s later.
     pub fn open(network: Network, names: Names) -> Result<Self, BusError> {
         Self::join(network, names, Identity::from_env(Scope::Everyone))
     }
@@ -103,11 +104,11 @@ impl DdsBus {
                 .participant_listener(move |peer| {
                     listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
                 })
-                // Who is not of the run gets what is there, and is not waited for.
+                // Readers outside the run receive what is sent, and are not waited for.
                 .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
                 .build()
         };
-        // RustDDS gives its threads ten seconds to start; a process that is stopped meanwhile tries once more.
+        // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
         let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
         let open = OpenParticipant::new();
         let none = QosPolicyBuilder::new().build();
@@ -150,7 +151,7 @@ impl DdsBus {
         })
     }
 
-    /// Lets signals end a [`Bus::wait`].
+    /// Makes signals end a [`Bus::wait`].
     pub fn watch(&mut self, mut signals: Signals) -> Result<(), BusError> {
         self.poll
             .registry()
@@ -178,7 +179,7 @@ impl DdsBus {
         Ok(created)
     }
 
-    /// The reader that serves `demand` on a topic, made if there is none.
+    /// The reader for `demand` on a topic, made if there is none.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
         let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
         if let Some(index) = self.readers.iter().position(serves) {
@@ -204,8 +205,8 @@ impl DdsBus {
         Ok(index)
     }
 
-    /// Hands what we published to our own subscriptions: a participant without multicast does not find itself,
-    /// and DDS would bring it nothing of its own.
+    /// Passes published samples to our own subscriptions: a participant without multicast does not discover itself,
+    /// and DDS would not deliver its own samples.
     fn echo(&self, topic: &str, id: SampleId, about: Option<SampleId>, body: &[u8]) {
         for reader in self.readers.iter().filter(|r| r.topic == topic) {
             let now = self.wall_nanos();
@@ -215,7 +216,7 @@ impl DdsBus {
         }
     }
 
-    /// Takes in what discovery reported; true if something changed.
+    /// Processes the events of discovery; true if something changed.
     fn follow_graph(&mut self) -> bool {
         let mut changed = false;
         while let Some(event) = self.status.try_recv_status() {
@@ -233,7 +234,7 @@ impl DdsBus {
         self.readers.iter().any(|r| r.ready || lock(&r.inbox).has_data())
     }
 
-    /// Polls once. Reports in the order of urgency; what is not reported now is found at the next call.
+    /// Polls once. Returns the most urgent event; the others are found at the next call.
     fn poll_once(&mut self, timeout: Duration) -> Option<Wake> {
         if let Err(error) = self.poll.poll(&mut self.events, Some(timeout)) {
             // Interrupted by a signal handler: the signal's own event follows.
@@ -331,7 +332,7 @@ impl Bus for DdsBus {
     fn wait(&mut self, timeout: Duration) -> Wake {
         self.ros_graph.announce();
         self.background_reader.seen();
-        // A caller may mean for ever; a day is as good and cannot overflow.
+        // A caller may pass an unlimited time; a day cannot overflow.
         let timeout = timeout.min(Duration::from_secs(86_400));
         let deadline = Instant::now() + timeout;
         let at_once = self.has_data() || self.called.load(Ordering::Acquire);

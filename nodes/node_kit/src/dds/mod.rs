@@ -4,7 +4,8 @@
 //! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
 //! - `gate`: which samples are accepted; `processes`: the process of a participant
 //! - `graph`: endpoints of other processes; `ros_graph`: announces this node in the ROS graph
-//! - `network`: domain and reach; `test_domain`: domains for tests; `qos`: the contract as policies; `raw`: bytes in and out
+//! - `network`: domain and reach; `test_domain`: domains for tests; `qos`: the contract as policies; `raw`: bytes in
+//!   and out
 //! - `writer`: one writer
 
 mod background_reader;

@@ -10,7 +10,7 @@ use ros2_client::entities_info::{NodeEntitiesInfo, ParticipantEntitiesInfo};
 use rustdds::no_key::DataWriterCdr;
 use rustdds::{DomainParticipant, GUID, Publisher, RTPSEntity, TopicKind};
 
-/// Tells the ROS graph which endpoints are this node's.
+/// Announces the endpoints of this node to the ROS graph.
 pub(super) struct RosGraph {
     writer: DataWriterCdr<ParticipantEntitiesInfo>,
     participant: GUID,
@@ -49,7 +49,7 @@ impl RosGraph {
         self.dirty = true;
     }
 
-    /// Announces what changed since the last call, at most one message however many endpoints came.
+    /// Announces the changes since the last call, in at most one message.
     pub(super) fn announce(&mut self) {
         if !std::mem::take(&mut self.dirty) {
             return;

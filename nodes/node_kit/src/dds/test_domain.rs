@@ -1,9 +1,9 @@
-//! Domains for tests: two that run at once on one host must not meet.
+//! Domains for tests: two tests that run at once on one host must use different ones.
 
 use super::network::Network;
 use std::net::{Ipv4Addr, TcpListener};
 
-/// Domains handed out: below 101, where Linux has no ephemeral ports, and above those that people type.
+/// The domains for tests: below 101, where Linux has no ephemeral ports, and above those that users choose.
 const DOMAINS: std::ops::Range<u16> = 20..101;
 
 /// A domain that no other holder of a claim on this host uses, until this is dropped.
@@ -25,7 +25,7 @@ impl ClaimedDomain {
         })
     }
 
-    /// The domain, on this host alone.
+    /// The domain, on this host only.
     pub fn network(&self) -> Network {
         self.network
     }

@@ -21,10 +21,10 @@ pub struct MemoryBus {
     participant: Participant,
     admission: Admission,
     names: Names,
-    /// Places in the hub.
+    /// Indices in the hub.
     writers: Vec<usize>,
     readers: Vec<usize>,
-    /// Messages that a writer, by its place in the hub, sent in parts.
+    /// Number of messages that a writer, by its index in the hub, sent in parts.
     wholes: BTreeMap<(usize, String), u64>,
     interrupted: bool,
 }
@@ -41,12 +41,12 @@ impl MemoryBus {
         Self { state, participant, admission, names, writers, readers, wholes, interrupted: false }
     }
 
-    /// What a signal does on the real bus: the next wait says [`Wake::Shutdown`], once.
+    /// Acts as a signal on the real bus: the next wait returns [`Wake::Shutdown`], once.
     pub fn interrupt(&mut self) {
         self.interrupted = true;
     }
 
-    /// Whether a sample is there to be taken now.
+    /// Whether a sample can be taken now.
     pub fn has_arrivals(&self) -> bool {
         self.has_data()
     }
@@ -60,7 +60,7 @@ impl MemoryBus {
         count(&self.state.borrow(), topic)
     }
 
-    /// Another process's writer that is not a stranger's.
+    /// Whether it is an admitted writer of another process.
     fn counts(&self, writer: WriterId) -> bool {
         let participant = writer.participant();
         participant != self.participant && self.admission.admits(&participant)

@@ -1,8 +1,8 @@
-//! Why parameters were refused.
+//! Errors of parameters.
 
 use std::path::PathBuf;
 
-/// Why parameters were refused. The process then ends with [`crate::Exit::Usage`].
+/// Errors of parameters. The process then ends with [`crate::Exit::Usage`].
 #[derive(Debug, thiserror::Error)]
 pub enum ParameterError {
     /// A name that the node does not declare.
@@ -30,7 +30,7 @@ pub enum ParameterError {
         found: &'static str,
         /// The value found.
         value: String,
-        /// What to do, where that is not obvious.
+        /// How to correct it, if not obvious.
         hint: &'static str,
     },
     /// A value outside the declared range.
@@ -47,7 +47,7 @@ pub enum ParameterError {
     },
     /// `-p other:name:=value` for a node that is not this one.
     #[error(
-        "-p {prefix}:{name}: this process runs node {node}, so the value would be lost; remove the prefix or correct it"
+        "-p {prefix}:{name}: this process runs node {node}, so the value would be ignored; remove the prefix or correct it"
     )]
     OtherNode {
         /// The prefix given.
@@ -67,22 +67,22 @@ pub enum ParameterError {
         /// The keys the file has.
         keys: String,
     },
-    /// A parameter file that is not shaped as ROS 2 demands.
+    /// A parameter file without the structure of ROS 2.
     #[error("{}: {reason}", path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong and where.
+        /// The error and its place.
         reason: String,
     },
-    /// Text that is not YAML, or YAML that is no parameter value.
+    /// The text is not YAML, or the YAML is not a parameter value.
     #[error("{origin}: parameter {name:?}: {reason}")]
     Value {
         /// Where it was set.
         origin: String,
         /// The parameter.
         name: String,
-        /// What is wrong.
+        /// The error.
         reason: String,
     },
 }

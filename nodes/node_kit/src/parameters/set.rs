@@ -1,4 +1,4 @@
-//! The values a node runs with.
+//! The parameter values of a node.
 
 use super::error::ParameterError;
 use super::spec::ParameterSpec;
@@ -16,8 +16,8 @@ pub struct Parameters {
 impl Parameters {
     /// Applies files and command line to the declared parameters; files first, later ones win.
     ///
-    /// Everything given must be for this node and declared by it, of its type and within its range. An integer is taken
-    /// where a double is declared.
+    /// Every given parameter must be for this node and declared by it, of its type and within its range. An integer is
+    /// accepted where a double is declared.
     pub fn resolve(
         specs: &[ParameterSpec],
         default_node: &str,
@@ -112,7 +112,7 @@ impl Parameters {
     }
 }
 
-/// Makes `value` the type of `like` where nothing is lost by it; else gives it back.
+/// Converts `value` to the type of `like` where this is exact; else returns it unchanged.
 fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue, ParameterValue> {
     use ParameterValue as V;
     match (value, like) {
@@ -120,7 +120,7 @@ fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue
         (V::IntegerArray(v), V::DoubleArray(_)) => {
             Ok(V::DoubleArray(v.into_iter().map(|v| v as f64).collect()))
         }
-        // An empty list carries no type of its own.
+        // An empty list has no type.
         (V::IntegerArray(v), V::StringArray(_)) if v.is_empty() => Ok(V::StringArray(Vec::new())),
         (V::IntegerArray(v), V::BoolArray(_)) if v.is_empty() => Ok(V::BoolArray(Vec::new())),
         (value, like) if value.type_name() == like.type_name() => Ok(value),

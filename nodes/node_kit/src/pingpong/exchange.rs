@@ -1,18 +1,18 @@
-//! One exchange, and the times that bound it.
+//! One exchange and its time limits.
 
 use grainlab_msgs::msg::{StrainRate, Stress};
 use std::time::Duration;
 
-/// Exchanges before the clock counts: discovery, first allocations.
+/// Number of exchanges before the measurement: discovery, first allocations.
 pub(super) const WARM_UP: u64 = 200;
 
-/// A question not answered within this is asked again. Some hundred exchanges long: only a loss takes so long.
+/// A request without an answer after this time is repeated. Some hundred exchanges long: only a loss takes this long.
 pub(super) const REPEAT: Duration = Duration::from_millis(20);
 
-/// An answering side that hears nothing for this long leaves.
+/// The answering side ends if no request arrives for this long.
 pub(super) const IDLE: Duration = Duration::from_secs(5);
 
-/// A pinging side gives up on its partner after this.
+/// The requesting side ends if no answer arrives for this long.
 pub(super) const GIVE_UP: Duration = Duration::from_secs(30);
 
 pub(super) fn question(sequence: u64) -> Stress {

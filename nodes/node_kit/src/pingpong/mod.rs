@@ -1,9 +1,9 @@
-//! The lockstep's exchange and nothing else, over our bus and over bare ros2-client, so that one can be held against the
-//! other in one run.
+//! The exchange of the lockstep alone, over our bus and over bare ros2-client, so that the two can be compared
+//! in one run.
 //!
-//! Each function is one role of one process: the pinging side publishes a `Stress`, the answering side a `StrainRate` with
-//! the same sequence. Writers are reliable, the partners read best effort and the pinging side repeats, as in the real
-//! exchange. A listener stands for the recorder.
+//! Each function is one role of one process: the pinging side publishes a `Stress`, the answering side a `StrainRate`
+//! with the same sequence. Writers are reliable, the partners read best effort and the pinging side repeats, as in the
+//! real exchange. A third role reads both topics, as the recorder does.
 
 mod bare;
 mod bus;

@@ -73,7 +73,7 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
         observer.until("the final report", |o| o.last.as_ref().is_some_and(Report::is_final));
         let (code, _, stderr) = child.end();
         assert_eq!(code, Some(i32::from(exit.code())), "{stderr}");
-        assert!(stderr.contains(&format!("[{role}]: asked to stop")), "{stderr}");
+        assert!(stderr.contains(&format!("[{role}]: stopping on request")), "{stderr}");
 
         observer.until("the leave", |o| o.bus.foreign_writers(&topics::RUN_STATE).is_empty());
         let last = observer.last.clone().unwrap();

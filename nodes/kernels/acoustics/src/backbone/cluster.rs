@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 /// Largest number of contacts of a loosely held grain: with one more it cannot move without straining contacts.
 const FEW: usize = 3;
 
-/// Eigenvalue of a cluster's stiffness over the largest, below which the motion is floppy: rounding gives 1e-15, real contacts
-/// more than 1e-8.
+/// Eigenvalue of a cluster's stiffness over the largest, below which the motion is floppy: rounding gives 1e-15, real
+/// contacts more than 1e-8.
 const FREE: f64 = 1e-10;
 
 /// The same, below which motions are kept: others are no softer than a wave of some tens of grains.

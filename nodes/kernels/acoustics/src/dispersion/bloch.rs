@@ -1,9 +1,10 @@
 //! The frozen network as an operator on Bloch waves.
 //!
-//! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. The relative
-//! displacement at a contact with the branch l is, up to a factor of modulus one, c (w_j − w_i) + is (w_j + w_i) from
-//! displacements, and c (φ_j + φ_i) + is (φ_j − φ_i) times their levers from rotations, with c = cos(q·l/2) and
-//! s = sin(q·l/2). A uniform amplitude is a plane wave, and the amplitude of a long wave changes little between neighbours.
+//! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. The
+//! relative displacement at a contact with the branch l is, up to a factor of modulus one, c (w_j − w_i) + is (w_j +
+//! w_i) from displacements, and c (φ_j + φ_i) + is (φ_j − φ_i) times their levers from rotations, with c = cos(q·l/2)
+//! and s = sin(q·l/2). A uniform amplitude is a plane wave, and the amplitude of a long wave changes little between
+//! neighbours.
 
 use crate::backbone::Backbone;
 use crate::dispersion::waves::{Amplitude, Row};
@@ -179,7 +180,8 @@ impl BlochContact {
         [fx, fy, fz, mz * fy - my * fz, mx * fz - mz * fx, my * fx - mx * fy]
     }
 
-    /// Contribution of this contact to the diagonal blocks: real parts, which are positive semidefinite if the blocks are.
+    /// Contribution of this contact to the diagonal blocks: real parts, which are positive semidefinite if the blocks
+    /// are.
     fn blocks(&self) -> Vec<(u32, Block)> {
         let unit = |moves: bool, column: usize| {
             let mut x = Amplitude::STILL;

@@ -1,8 +1,9 @@
 //! Acoustic modes at one wave vector.
 //!
-//! Inverse iteration on K x = ω² M x, from plane waves: each round solves K y = M x by conjugate gradients and takes the best
-//! combinations of x and y (Rayleigh–Ritz). The acoustic modes of a long wave are the softest modes, so that a round reduces
-//! the components along other modes by (ω/ω')², with ω' the softest of these; the error of ω² is the square of that.
+//! Inverse iteration on K x = ω² M x, from plane waves: each round solves K y = M x by conjugate gradients and takes
+//! the best combinations of x and y (Rayleigh–Ritz). The acoustic modes of a long wave are the softest modes, so that a
+//! round reduces the components along other modes by (ω/ω')², with ω' the softest of these; the error of ω² is the
+//! square of that.
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
@@ -20,8 +21,8 @@ const RESIDUAL: f64 = 1.0;
 /// The acoustic modes at one wave vector.
 #[derive(Debug)]
 pub(crate) struct Modes {
-    /// Σ ω² p p* over the modes with their polarizations p, 1/s²: the acoustic tensor over the density, times q². Zero for
-    /// polarizations that were not given.
+    /// Σ ω² p p* over the modes with their polarizations p, 1/s²: the acoustic tensor over the density, times q². Zero
+    /// for polarizations that were not given.
     pub(crate) acoustic_tensor: Mat3,
     /// Largest relative change of ω² in the last round.
     pub(crate) change: f64,
@@ -29,7 +30,8 @@ pub(crate) struct Modes {
     pub(crate) found: Vec<Block>,
 }
 
-/// The modes nearest to plane waves with one to three perpendicular `polarizations`, to the relative error `tolerance` of ω².
+/// The modes nearest to plane waves with one to three perpendicular `polarizations`, to the relative error `tolerance`
+/// of ω².
 /// `near`: modes found at a neighbouring wave vector.
 pub(crate) fn modes(
     bloch: &Bloch<'_>,

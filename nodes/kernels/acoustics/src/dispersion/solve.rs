@@ -1,5 +1,5 @@
-//! K y = M x by conjugate gradients, compiled for each instruction set. No operation is contracted or reordered, so that all
-//! instruction sets give the same bits.
+//! K y = M x by conjugate gradients, compiled for each instruction set. No operation is contracted or reordered, so
+//! that all instruction sets give the same bits.
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;

@@ -65,7 +65,8 @@ impl SubAssign for Row {
     }
 }
 
-/// Amplitudes of one grain for all waves, rows w_x, w_y, w_z, φ_x, φ_y, φ_z, or the conjugate forces: real and imaginary parts.
+/// Amplitudes of one grain for all waves, rows w_x, w_y, w_z, φ_x, φ_y, φ_z, or the conjugate forces: real and
+/// imaginary parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Amplitude {
     pub(crate) re: [Row; 6],

@@ -1,8 +1,8 @@
 //! Free vibration of a supercell that starts with the velocities of plane waves.
 //!
-//! A wave with m periods in `copies` copies has its own Bloch wave vector: while contacts respond linearly, waves of different
-//! m are independent of each other, and of motions that are the same in all copies. All waves are therefore excited at once,
-//! and the packing's own residual motion is in none of them.
+//! A wave with m periods in `copies` copies has its own Bloch wave vector: while contacts respond linearly, waves of
+//! different m are independent of each other, and of motions that are the same in all copies. All waves are therefore
+//! excited at once, and the packing's own residual motion is in none of them.
 
 use crate::contact_changes::ContactChanges;
 use crate::error::AcousticsError;
@@ -108,9 +108,9 @@ impl<'a> FreeVibration<'a> {
         Ok(())
     }
 
-    /// sin² of the angle between the polarization sent and that of its mode. With one mode of each kind the transverse motion of
-    /// the longest wave is sin θ cos θ (cos ω₁t − cos ω₂t). The relative difference of ρv² of the mode and of the polarization
-    /// sent is of this size.
+    /// sin² of the angle between the polarization sent and that of its mode. With one mode of each kind the transverse
+    /// motion of the longest wave is sin θ cos θ (cos ω₁t − cos ω₂t). The relative difference of ρv² of the mode and of
+    /// the polarization sent is of this size.
     pub(super) fn misalignment(&self) -> f64 {
         self.transverse / self.samples().max(1) as f64 / self.excitation.velocity.powi(2)
     }

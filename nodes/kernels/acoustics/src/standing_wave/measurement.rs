@@ -41,8 +41,9 @@ const TYPICAL_SPEED: f64 = 0.8;
 /// Part of the first period that is left out.
 const LEFT_OUT: f64 = 0.25;
 
-/// Part of the dispersion of the longest wave by which speeds depart from a smooth law, because waves couple to motions of a few
-/// loosely held grains at their own frequency. Confirmed on packings of 2,000 grains that were not used to determine it.
+/// Part of the dispersion of the longest wave by which speeds depart from a smooth law, because waves couple to motions
+/// of a few loosely held grains at their own frequency. Confirmed on packings of 2,000 grains that were not used to
+/// determine it.
 const STRUCTURE: f64 = 0.2;
 
 /// Relative change of the traces at half the amplitude above which the response is nonlinear.

@@ -25,8 +25,8 @@ pub(crate) struct Tone {
 }
 
 impl Tone {
-    /// The tone in `samples`, `interval` s apart with the first at `start` s, with ω in `range` (rad/s). `None` if none is
-    /// significant.
+    /// The tone in `samples`, `interval` s apart with the first at `start` s, with ω in `range` (rad/s). `None` if none
+    /// is significant.
     pub(crate) fn found(samples: &[f64], start: f64, interval: f64, range: [f64; 2]) -> Option<Self> {
         let length = samples.len() as f64 * interval;
         // The samples must cover half a period or more.
@@ -144,8 +144,8 @@ impl Fit {
     }
 }
 
-/// The factor by which correlations of `noise` increase the variance of a mean: 1 + 2 Σ of its autocorrelation, up to the first
-/// zero.
+/// The factor by which correlations of `noise` increase the variance of a mean: 1 + 2 Σ of its autocorrelation, up to
+/// the first zero.
 fn correlation_factor(noise: &[f64]) -> f64 {
     let at = |lag: usize| noise.iter().zip(&noise[lag..]).map(|(a, b)| a * b).sum::<f64>();
     let square = at(0);

@@ -14,15 +14,16 @@ pub(crate) struct Layers {
     pub(crate) step: Whole,
     /// Edges: two in the planes, the third from the first copy to the one after the last.
     pub(crate) cell: Cell,
-    /// Transforms coordinates in the edge vectors of the packing's cell to coordinates in (first edge, second edge, step).
+    /// Transforms coordinates in the edge vectors of the packing's cell to coordinates in (first edge, second edge,
+    /// step).
     coordinates: Matrix3<i64>,
     /// Third edge minus `copies` steps, in first and second edges.
     skew: [i64; 2],
 }
 
 impl Layers {
-    /// The copy reached from copy `copy` by the lattice vector `by`, in edge vectors of the packing's cell, and its image, in
-    /// edges of the stack.
+    /// The copy reached from copy `copy` by the lattice vector `by`, in edge vectors of the packing's cell, and its
+    /// image, in edges of the stack.
     pub(crate) fn image(&self, copy: i64, by: &Whole, copies: i64) -> (i64, Whole) {
         let at = self.coordinates * by;
         let layer = copy + at.z;

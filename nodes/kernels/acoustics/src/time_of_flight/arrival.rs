@@ -1,8 +1,9 @@
 //! Arrival times of one burst, and the speed from them.
 //!
-//! The speed is the slope of distance against arrival time, so that delays common to all receivers (source, trigger) cancel.
-//! The samples before the trigger give the level of the noise. Its effect on the slope is found by picking again in traces
-//! with as much noise added, which includes large errors, such as a correlation that is off by a period.
+//! The speed is the slope of distance against arrival time, so that delays common to all receivers (source, trigger)
+//! cancel. The samples before the trigger give the level of the noise. Its effect on the slope is found by picking
+//! again in traces with as much noise added, which includes large errors, such as a correlation that is off by a
+//! period.
 
 use super::burst::Burst;
 use super::line::Line;
@@ -43,7 +44,8 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// Picks the arrivals in `trace` of a burst of so many `cycles` under a Hann window, which the source starts at the trigger.
+    /// Picks the arrivals in `trace` of a burst of so many `cycles` under a Hann window, which the source starts at the
+    /// trigger.
     /// `seed` is that of the noisy copies.
     pub fn pick(trace: &Trace, cycles: f64, pick: ArrivalPick, seed: u64) -> Result<Self, AcousticsError> {
         let (burst, picker) = prepared(trace, cycles, pick)?;

@@ -23,8 +23,8 @@ use std::f64::consts::PI;
 /// Wavelengths of the default frequencies, mean diameters.
 const WAVELENGTHS: [f64; 3] = [20.0, 28.0, 40.0];
 
-/// The first burst, which gives the speed to a few per cent: its wavelength in mean diameters for a typical speed over the affine
-/// one; and number, first and last distance of its receivers, wavelengths.
+/// The first burst, which gives the speed to a few per cent: its wavelength in mean diameters for a typical speed over
+/// the affine one; and number, first and last distance of its receivers, wavelengths.
 const FIRST_WAVELENGTH: f64 = 20.0;
 const TYPICAL_SPEED: f64 = 0.75;
 const FIRST_RECEIVERS: (u32, f64, f64) = (3, 0.75, 2.0);
@@ -166,8 +166,8 @@ impl TimeOfFlight<'_> {
         })
     }
 
-    /// If contacts opened or closed, sends the burst of the highest frequency again at half the amplitude and adds the change to
-    /// the uncertainty.
+    /// If contacts opened or closed, sends the burst of the highest frequency again at half the amplitude and adds the
+    /// change to the uncertainty.
     fn nonlinearity(
         &self,
         settings: &Settings,

@@ -1,9 +1,9 @@
 //! Conversion of picked speeds to phase velocities.
 //!
-//! On a path where waves have the slowness s₀ (1 + β ω²), the slope of a pick is s₀ (1 + κ β ω²) at the centre frequency, with κ
-//! depending on the pick: about 1 for a correlation, which follows the crests; about 3 for the peak of an envelope, which moves
-//! with the group velocity; and between for an onset, where long waves arrive first. κ is found by picking a burst computed for
-//! such a path, at the same receivers and with the same noise.
+//! On a path where waves have the slowness s₀ (1 + β ω²), the slope of a pick is s₀ (1 + κ β ω²) at the centre
+//! frequency, with κ depending on the pick: about 1 for a correlation, which follows the crests; about 3 for the peak
+//! of an envelope, which moves with the group velocity; and between for an onset, where long waves arrive first. κ is
+//! found by picking a burst computed for such a path, at the same receivers and with the same noise.
 
 use super::arrival::Arrivals;
 use super::burst::Burst;
@@ -20,18 +20,18 @@ use std::f64::consts::TAU;
 const SMALL: f64 = 0.003;
 const LARGE: f64 = 0.2;
 
-/// Assumed relative difference of ρ v² at a single frequency from that of long waves, over (q × mean diameter)²: 1/12 for
-/// chains, 0.3 to 0.4 (S) and 0.6 to 0.7 (P) for supercells of packings of 2,000 grains.
+/// Assumed relative difference of ρ v² at a single frequency from that of long waves, over (q × mean diameter)²: 1/12
+/// for chains, 0.3 to 0.4 (S) and 0.6 to 0.7 (P) for supercells of packings of 2,000 grains.
 const SINGLE_BEND: f64 = 0.4;
 
 /// Least dispersion assumed for the uncertainty of a pick, in the same units.
 const LEAST_BEND: f64 = 0.2;
 
-/// Relative uncertainty of the correction of a slowness by the dispersion law and κ. Supercells have gaps in their spectrum where
-/// half the wavelength is a period of the packing, and no smooth dispersion law near them; this affects crests least, and
-/// onsets, which depend on the whole spectrum, most. With these values 54 speeds in two packings of 2,000 grains are within two
-/// standard deviations of those of the frozen network. For the correlation half the value sufficed there, but not for 18 speeds
-/// in two other packings.
+/// Relative uncertainty of the correction of a slowness by the dispersion law and κ. Supercells have gaps in their
+/// spectrum where half the wavelength is a period of the packing, and no smooth dispersion law near them; this affects
+/// crests least, and onsets, which depend on the whole spectrum, most. With these values 54 speeds in two packings of
+/// 2,000 grains are within two standard deviations of those of the frozen network. For the correlation half the value
+/// sufficed there, but not for 18 speeds in two other packings.
 fn correction_error(pick: ArrivalPick) -> f64 {
     match pick {
         ArrivalPick::CrossCorrelation => 0.2,
@@ -123,7 +123,8 @@ pub(crate) fn curve(
     })
 }
 
-/// Phase slowness at each centre frequency from [`Arrivals::slowness`], and the standard deviation of the correction, s/m.
+/// Phase slowness at each centre frequency from [`Arrivals::slowness`], and the standard deviation of the correction,
+/// s/m.
 fn of_crests(
     traces: &[Trace],
     arrivals: &[Arrivals],

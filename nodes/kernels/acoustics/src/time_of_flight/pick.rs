@@ -8,14 +8,14 @@ use std::f64::consts::FRAC_PI_2;
 /// Interpolated samples per period.
 const FINE: f64 = 64.0;
 
-/// Number of standard deviations of the noise by which the envelope of an arrival must exceed it: among a hundred independent
-/// samples of noise the largest does so once in thirty times.
+/// Number of standard deviations of the noise by which the envelope of an arrival must exceed it: among a hundred
+/// independent samples of noise the largest does so once in thirty times.
 const STANDS_OUT: f64 = 4.0;
 
-/// Level of the onset of an envelope, over the maximum at the first receiver; higher where the noise requires it. It is not
-/// relative to each receiver's own maximum, since the front of a wave keeps its height where scattering reduces the peak. And
-/// it is not that of the signal itself, whose first lobe is a sixth of the next, so that dispersion moves it through any
-/// lower threshold.
+/// Level of the onset of an envelope, over the maximum at the first receiver; higher where the noise requires it. It is
+/// not relative to each receiver's own maximum, since the front of a wave keeps its height where scattering reduces the
+/// peak. And it is not that of the signal itself, whose first lobe is a sixth of the next, so that dispersion moves it
+/// through any lower threshold.
 const ONSET: f64 = 0.1;
 
 /// Least level of an onset in standard deviations of the noise, and its greatest level over the peak.
@@ -51,8 +51,9 @@ impl Picker {
         Self { pick, spectrum, band, low, finer, burst: length, period }
     }
 
-    /// The arrival at each receiver, in samples after the first sample. For a correlation: the first receiver's peak plus the
-    /// delay. `noise` is the standard deviation of white noise in the samples. `Err` is the reason why there is no arrival.
+    /// The arrival at each receiver, in samples after the first sample. For a correlation: the first receiver's peak
+    /// plus the delay. `noise` is the standard deviation of white noise in the samples. `Err` is the reason why there
+    /// is no arrival.
     pub(crate) fn times(&self, channels: &[&[f64]], noise: f64) -> Result<Vec<f64>, String> {
         let signals: Vec<Vec<Analytic>> =
             channels.iter().map(|c| self.spectrum.filtered(c, &self.band)).collect();
@@ -83,7 +84,8 @@ impl Picker {
         let cut: Vec<Vec<Analytic>> = signals.iter().zip(peaks).map(cut).collect();
         let mut times = vec![peaks[0]];
         for k in 1..cut.len() {
-            // The correlation of neighbours has one highest crest, since the carrier shifts little relative to the envelope.
+            // The correlation of neighbours has one highest crest, since the carrier shifts little relative to the
+            // envelope.
             let near = self.spectrum.correlation(&cut[k], &cut[k - 1]);
             let step = crest(&near, self.period, None);
             let far = self.spectrum.correlation(&cut[k], &cut[0]);

@@ -30,8 +30,8 @@ impl ArrivalPick {
 /// Settings of the measurement by time of flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Centre frequencies, Hz; `None`: those of waves of about 20, 28 and 40 mean grain diameters, for the speed of a first
-    /// burst.
+    /// Centre frequencies, Hz; `None`: those of waves of about 20, 28 and 40 mean grain diameters, for the speed of a
+    /// first burst.
     pub frequencies: Option<Vec<f64>>,
     /// Periods of a burst, under a Hann window; 1 or more.
     pub cycles: f64,
@@ -49,7 +49,8 @@ pub struct Settings {
     pub amplitude: f64,
     /// The feature that is taken as the arrival.
     pub pick: ArrivalPick,
-    /// Friction; `None`: that of the packing, where contacts at the Coulomb limit slide under any wave; infinite: no sliding.
+    /// Friction; `None`: that of the packing, where contacts at the Coulomb limit slide under any wave; infinite: no
+    /// sliding.
     pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness.
     pub tangential: Tangential,

@@ -17,8 +17,8 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// For signals of so many samples, interpolated to `finer` times as many. They are padded with as many zeros, so that their
-    /// ends do not interact.
+    /// For signals of so many samples, interpolated to `finer` times as many. They are padded with as many zeros, so
+    /// that their ends do not interact.
     pub(crate) fn new(samples: usize, finer: usize) -> Self {
         let padded = (2 * samples).next_power_of_two();
         let mut planner = FftPlanner::new();
@@ -44,8 +44,8 @@ impl Spectrum {
         spectrum
     }
 
-    /// The magnitude of the spectrum of a signal, over its maximum: the zero-phase filter with the best ratio of that signal to
-    /// white noise.
+    /// The magnitude of the spectrum of a signal, over its maximum: the zero-phase filter with the best ratio of that
+    /// signal to white noise.
     pub(crate) fn shape(&self, signal: &[f64]) -> Vec<f64> {
         let magnitude: Vec<f64> =
             self.of(signal).iter().take(self.padded() / 2 + 1).map(|s| s.norm()).collect();

@@ -1,7 +1,7 @@
 //! Crystals of equal springs have dispersion relations in closed form.
 //!
-//! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of inertia I.
-//! Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
+//! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of
+//! inertia I. Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
 
 use grainlab_acoustics::dispersion::{Settings, curves};
 use grainlab_acoustics::{DispersionCurve, Ray};

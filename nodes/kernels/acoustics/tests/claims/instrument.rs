@@ -2,7 +2,7 @@
 
 use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::Instrument;
-use grainlab_acoustics::instrument::{ReceiverSignals, SamplingWindow};
+use grainlab_acoustics::{ReceiverSignals, SamplingWindow};
 use std::f64::consts::TAU;
 
 const FREQUENCY: f64 = 1e5;

@@ -3,9 +3,9 @@
 mod chain;
 mod crystals;
 mod dispersion;
-mod time_of_flight;
 mod instrument;
 mod picks;
-mod supercell;
 mod sample;
 mod standing_wave;
+mod supercell;
+mod time_of_flight;

@@ -2,10 +2,10 @@
 
 use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::Channel;
-use grainlab_acoustics::instrument::{ReceiverSignals, SamplingWindow};
 use grainlab_acoustics::time_of_flight::Arrivals;
 use grainlab_acoustics::time_of_flight::{ArrivalPick, curve};
 use grainlab_acoustics::{Instrument, Trace};
+use grainlab_acoustics::{ReceiverSignals, SamplingWindow};
 use grainlab_core::{Vec3, WaveMethod};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};

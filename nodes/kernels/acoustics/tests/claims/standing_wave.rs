@@ -187,7 +187,7 @@ fn rays_that_are_no_normals_and_packings_without_network_are_refused() {
     }
     let long = Ray { polarizations: vec![Vec3::z() * 2.0], ..good.clone() };
     let error = curves(&packing, &[long], &QUICK, &Instrument::default()).unwrap_err();
-    assert!(matches!(error, AcousticsError::Setting { name: "motion", .. }), "{error}");
+    assert!(matches!(error, AcousticsError::Setting { name: "polarization", .. }), "{error}");
 
     let gas = Packing { contacts: Vec::new(), ..packing };
     let error = curves(&gas, &[good], &QUICK, &Instrument::default()).unwrap_err();

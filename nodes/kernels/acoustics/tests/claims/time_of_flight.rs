@@ -14,8 +14,8 @@ use std::f64::consts::{PI, TAU};
 const DIAMETER: f64 = 2e-4;
 const GRAINS: u32 = 8;
 
-/// A chain of equal grains along e3, alone in its cell, pressed by an overlap of a thousandth; `aside` adds a grain that
-/// touches nothing.
+/// A chain of equal grains along e3, alone in its cell, pressed by an overlap of a thousandth; `aside` adds a grain
+/// that touches nothing.
 fn chain(aside: bool) -> Packing {
     let step = DIAMETER * (1.0 - 1e-3);
     let length = step * f64::from(GRAINS);
@@ -227,7 +227,7 @@ fn rays_that_are_none_are_refused() {
     }
     for polarization in [Vec3::zeros(), Vec3::new(0.0, f64::NAN, 1.0)] {
         let found = sent(Ray { polarizations: vec![polarization], ..good.clone() });
-        assert!(matches!(found, Err(AcousticsError::Setting { name: "motion", .. })), "{found:?}");
+        assert!(matches!(found, Err(AcousticsError::Setting { name: "polarization", .. })), "{found:?}");
     }
 }
 

@@ -75,8 +75,8 @@ impl Calibration {
         &self.isotropic
     }
 
-    /// Eqs. 21 and 22 for these grains: at the same pressure the stiffness of a network of Hertz contacts is proportional to
-    /// E*^⅔.
+    /// Eqs. 21 and 22 for these grains: at the same pressure the stiffness of a network of Hertz contacts is
+    /// proportional to E*^⅔.
     pub fn isotropic_for(&self, material: Option<Material>) -> IsotropicCalibration {
         self.isotropic.scaled(self.stiffer(material))
     }

@@ -21,7 +21,8 @@ pub struct ModelDiscrepancy {
     /// Means of the products of the errors (bias included) of the coordination number, k̂ and ε; zero for k̂ where the
     /// model has none.
     pub mean_square: [[f64; 3]; 3],
-    /// f0 and f1: where ε is inferred, the mean square of its error is multiplied by f0 + f1 ε², which is 1 in the mean.
+    /// f0 and f1: where ε is inferred, the mean square of its error is multiplied by f0 + f1 ε², which is 1 in the
+    /// mean.
     pub by_eps: [f64; 2],
 }
 

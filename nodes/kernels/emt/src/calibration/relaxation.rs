@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 /// freedom per grain. Its response to a change of coordination diverges there.
 pub(crate) const ISOSTATIC: f64 = 4.0;
 
-/// (z − 4)/z below which the scatter is taken as constant: no packing of the calibration is nearer to the isostatic point.
+/// (z − 4)/z below which the scatter is taken as constant: no packing of the calibration is nearer to the isostatic
+/// point.
 const MIN_EXCESS: f64 = 0.1;
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
@@ -88,8 +89,8 @@ impl ScalingLaw {
     }
 }
 
-/// a(z) = a0 + a1 z/(z − 4): the response of a network to the anisotropy of its contacts. The second term: where a modulus
-/// is proportional to (z − 4)/z, more contacts in one direction change it by d ln G/d ln z = 4/(z − 4).
+/// a(z) = a0 + a1 z/(z − 4): the response of a network to the anisotropy of its contacts. The second term: where a
+/// modulus is proportional to (z − 4)/z, more contacts in one direction change it by d ln G/d ln z = 4/(z − 4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct AmplitudeLaw {
@@ -144,8 +145,8 @@ impl RelaxationCalibration {
         Scatter::from_fn(|i, j| self.scatter[i][j]) * (variance_factor / (excess * excess))
     }
 
-    /// Variance of the scatter of samples of this size over that of the packings. It grows as the inverse of the number of
-    /// grains, but does not fall below 1 for larger samples: differences between preparations remain at any size.
+    /// Variance of the scatter of samples of this size over that of the packings. It grows as the inverse of the number
+    /// of grains, but does not fall below 1 for larger samples: differences between preparations remain at any size.
     pub(crate) fn variance_factor(&self, grains: Option<u32>) -> f64 {
         grains.map_or(1.0, |n| (f64::from(self.grains) / f64::from(n.max(1))).max(1.0))
     }

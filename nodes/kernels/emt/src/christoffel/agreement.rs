@@ -2,15 +2,15 @@
 
 use super::chance::is_beyond_chance;
 
-/// Root mean square of the relative scatter of ρ v² up to which it is attributed to the sample. Over the azimuths of packings
-/// of 2,000 grains it is 1 to 4 %, and it is inversely proportional to the root of their number.
+/// Root mean square of the relative scatter of ρ v² up to which it is attributed to the sample. Over the azimuths of
+/// packings of 2,000 grains it is 1 to 4 %, and it is inversely proportional to the root of their number.
 pub(super) const OWN_SCATTER: f64 = 0.05;
 
 /// Number of standard deviations by which a speed must be off to be the outlier where all others agree.
 const STANDS_OUT: f64 = 10.0;
 
-/// Speeds that contradict each other (by chance less than once in a thousand times): they scatter more than those of a packing,
-/// or all but one agree.
+/// Speeds that contradict each other (by chance less than once in a thousand times): they scatter more than those of a
+/// packing, or all but one agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedConflict {
     /// Index of the speed furthest from its prediction by the others.
@@ -19,13 +19,13 @@ pub struct SpeedConflict {
     pub sigma: f64,
 }
 
-/// The scatter of speeds that differ from those of a transversely isotropic medium by more than their errors, as in a sample of
-/// finitely many grains.
+/// The scatter of speeds that differ from those of a transversely isotropic medium by more than their errors, as in a
+/// sample of finitely many grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnisotropyScatter {
-    /// Root mean square of the relative differences of ρ v² that belong to the sample. Half of it is added in quadrature to the
-    /// relative error of every speed, which makes χ² equal to the degrees of freedom (R. C. Paule & J. Mandel, J. Res. Natl.
-    /// Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate speeds.
+    /// Root mean square of the relative differences of ρ v² that belong to the sample. Half of it is added in
+    /// quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R. C. Paule &
+    /// J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate speeds.
     pub scatter: f64,
 }
 

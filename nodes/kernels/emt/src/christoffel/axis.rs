@@ -1,7 +1,8 @@
 //! The axis of symmetry, from the speeds themselves.
 //!
-//! For every axis of a grid on the hemisphere the best medium is fitted linearly; from the best axes, moduli and axis are
-//! refined together. An axis is found if it fits better than isotropy, and better than every other axis, beyond chance.
+//! For every axis of a grid on the hemisphere the best medium is fitted linearly; from the best axes, moduli and axis
+//! are refined together. An axis is found if it fits better than isotropy, and better than every other axis, beyond
+//! chance.
 
 use super::agreement::{Agreement, agreement};
 use super::axis_error::AxisError;
@@ -23,8 +24,8 @@ const FINE: usize = 800;
 const REFINED: usize = 8;
 const APART: f64 = 0.35;
 
-/// Number of standard deviations by which an axis must fit better than isotropy. It is above the usual three because the axis
-/// is chosen among many.
+/// Number of standard deviations by which an axis must fit better than isotropy. It is above the usual three because
+/// the axis is chosen among many.
 const PREFERRED: f64 = 4.0;
 
 /// Number of standard deviations by which an axis must fit better than another.
@@ -44,8 +45,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct AxisEstimate {
     /// The axis: a unit vector with z ≥ 0.
     pub axis: Vec3,
-    /// Covariance of its error, rad², zero along the axis; from the errors of the speeds or from their scatter, whichever is
-    /// larger.
+    /// Covariance of its error, rad², zero along the axis; from the errors of the speeds or from their scatter,
+    /// whichever is larger.
     pub covariance: Mat3,
     /// Number of standard deviations by which the best medium about it fits better than the best isotropic one.
     pub sigma: f64,
@@ -60,9 +61,9 @@ impl AxisEstimate {
 
 /// The axis about which a transversely isotropic medium fits `speeds` best.
 ///
-/// It needs more speeds than unknowns: the combinations of moduli that the speeds determine, and two for the axis; in general
-/// eight speeds. Polarizations must be those of modes, and numbers valid, as for [`super::moduli_from_speeds`]. If no speed has
-/// an uncertainty, equal relative ones are estimated from the scatter.
+/// It needs more speeds than unknowns: the combinations of moduli that the speeds determine, and two for the axis; in
+/// general eight speeds. Polarizations must be those of modes, and numbers valid, as for [`super::moduli_from_speeds`].
+/// If no speed has an uncertainty, equal relative ones are estimated from the scatter.
 ///
 /// ```
 /// use grainlab_emt::christoffel;

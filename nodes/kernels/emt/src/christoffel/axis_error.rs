@@ -17,7 +17,8 @@ pub enum AxisError {
     TooFew {
         /// Number of speeds.
         speeds: usize,
-        /// Number of combinations of moduli that they determine, plus two for the axis, plus one if their error is not known.
+        /// Number of combinations of moduli that they determine, plus two for the axis, plus one if their error is not
+        /// known.
         unknowns: usize,
         /// Whether the error of the speeds is one of the unknowns.
         scatter: bool,

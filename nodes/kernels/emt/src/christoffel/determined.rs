@@ -25,7 +25,8 @@ const ROWS: [[f64; UNKNOWNS]; MODULI] = [
 pub(super) fn moduli(fit: &Fit, density: Measured, unit: Option<f64>) -> (Moduli, Option<ModuliCovariance>) {
     let rows = SMatrix::<f64, MODULI, UNKNOWNS>::from_fn(|i, j| ROWS[i][j]);
     let specific = rows * fit.specific;
-    // An undetermined combination may be wrong by its whole scale; its effect on a modulus that counts as known is small.
+    // An undetermined combination may be wrong by its whole scale; its effect on a modulus that counts as known is
+    // small.
     let open: Vec<SVector<f64, MODULI>> = fit.open.iter().map(|change| rows * change).collect();
     let scale = rows.abs() * fit.scale;
     let known: [bool; MODULI] =

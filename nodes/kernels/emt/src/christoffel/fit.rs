@@ -25,8 +25,8 @@ pub(super) struct Fit {
     pub(super) leverages: Vec<f64>,
     /// Covariance of the specific moduli for errors of one relative weight unit, m⁴/s⁴.
     pub(super) covariance: Square,
-    /// Changes of the specific moduli, m²/s², that the speeds do not determine: one scale along each undetermined direction,
-    /// and the differences to other media that fit as well.
+    /// Changes of the specific moduli, m²/s², that the speeds do not determine: one scale along each undetermined
+    /// direction, and the differences to other media that fit as well.
     pub(super) open: Vec<Column>,
     /// Scale of each specific modulus, m²/s².
     pub(super) scale: Column,

@@ -51,7 +51,8 @@ impl<'a> Speeds<'a> {
         self.measured.iter().zip(self.paired).enumerate().map(ray).collect()
     }
 
-    /// The medium from the linear problem, which takes every polarization for exactly that of a mode, and its sum of squares.
+    /// The medium from the linear problem, which takes every polarization for exactly that of a mode, and its sum of
+    /// squares.
     pub(super) fn linear(&self, axis: &Vec3) -> Option<(Column, f64)> {
         Problem::new(&self.rays(axis).ok()?, self.weights).linear()
     }

@@ -13,12 +13,12 @@ pub(super) type Column = SVector<f64, UNKNOWNS>;
 /// Least cos² of the angle between the measured polarization and that of its mode: 30°.
 const CLEAR: f64 = 0.75;
 
-/// sin² of the angle between direction and axis up to which the two S modes count as degenerate: their ρ v² differ by less than
-/// this fraction of the anisotropy (1.8°).
+/// sin² of the angle between direction and axis up to which the two S modes count as degenerate: their ρ v² differ by
+/// less than this fraction of the anisotropy (1.8°).
 const AXIAL: f64 = 1e-3;
 
-/// One speed, in the frame of the plane of axis and direction. The direction is (sin θ, 0, cos θ) with θ from 0 to a right
-/// angle.
+/// One speed, in the frame of the plane of axis and direction. The direction is (sin θ, 0, cos θ) with θ from 0 to a
+/// right angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     /// v, m/s.
@@ -31,11 +31,12 @@ pub(super) struct Ray {
     motion: [f64; 3],
     /// Whether it is the S mode polarized across the plane.
     horizontal: bool,
-    /// Whether it is one of two S modes, both measured, that are turned from those of the medium. Its v² is then the mean of
-    /// theirs, weighted by the squared components of the polarization: exact to first order for a nearly isotropic medium.
+    /// Whether it is one of two S modes, both measured, that are turned from those of the medium. Its v² is then the
+    /// mean of theirs, weighted by the squared components of the polarization: exact to first order for a nearly
+    /// isotropic medium.
     mixed: bool,
-    /// Whether direction and polarization alone identify the mode: in a packing the modes are close to those of an isotropic
-    /// medium.
+    /// Whether direction and polarization alone identify the mode: in a packing the modes are close to those of an
+    /// isotropic medium.
     pub(super) named: bool,
 }
 
@@ -51,8 +52,8 @@ pub(super) struct Response {
 }
 
 impl Ray {
-    /// Checks one measured speed; `axis` is a unit vector. A polarization between two modes is an error, unless these are the
-    /// S modes and both were measured (`paired`).
+    /// Checks one measured speed; `axis` is a unit vector. A polarization between two modes is an error, unless these
+    /// are the S modes and both were measured (`paired`).
     pub(super) fn new(
         index: usize,
         measured: &WaveSpeed,
@@ -69,8 +70,8 @@ impl Ray {
         }
     }
 
-    /// The same about an axis that may be the wrong one: a polarization between two modes is taken for the nearest. With cos²
-    /// of the angle to the nearest polarization that the direction has in any medium.
+    /// The same about an axis that may be the wrong one: a polarization between two modes is taken for the nearest.
+    /// With cos² of the angle to the nearest polarization that the direction has in any medium.
     pub(super) fn about(
         index: usize,
         measured: &WaveSpeed,
@@ -213,8 +214,8 @@ impl Ray {
     }
 }
 
-/// For each speed, whether both S modes of its direction were measured: with polarizations perpendicular to each other and to
-/// the direction.
+/// For each speed, whether both S modes of its direction were measured: with polarizations perpendicular to each other
+/// and to the direction.
 pub(super) fn paired(speeds: &[WaveSpeed]) -> Vec<bool> {
     const ALIKE: f64 = 1e-3;
     const PERPENDICULAR: f64 = 0.1;

@@ -1,7 +1,7 @@
 //! The search for the medium: damped Gauss-Newton on relative speeds.
 //!
-//! Unknowns are the specific moduli, each divided by a scale of its own (the v² of P or S waves), so that they are of order
-//! one.
+//! Unknowns are the specific moduli, each divided by a scale of its own (the v² of P or S waves), so that they are of
+//! order one.
 
 use super::ray::{Column, Ray, UNKNOWNS};
 use nalgebra::{Const, SMatrix, SymmetricEigen};
@@ -32,8 +32,8 @@ pub(super) struct Problem<'a> {
 #[derive(Clone)]
 pub(super) struct Point {
     pub(super) specific: Column,
-    /// Per ray: measured minus fitted speed over the measured one, and the derivatives of fitted over measured speed with
-    /// respect to each scaled modulus.
+    /// Per ray: measured minus fitted speed over the measured one, and the derivatives of fitted over measured speed
+    /// with respect to each scaled modulus.
     pub(super) rows: Vec<(f64, Column)>,
     /// Per ray: cos² of the angle between the measured polarization and that of the mode.
     pub(super) shares: Vec<f64>,
@@ -64,8 +64,9 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v² is
-    /// linear in the moduli, determine all moduli but C13 (or there are no other rays), and every v² is monotone in C13.
+    /// Whether the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v²
+    /// is linear in the moduli, determine all moduli but C13 (or there are no other rays), and every v² is monotone in
+    /// C13.
     pub(super) fn has_one_minimum(&self) -> bool {
         let plain: Vec<(f64, Column)> =
             self.rays.iter().filter(|r| !r.is_coupled()).map(|r| (0.0, self.row_of_motion(r))).collect();
@@ -79,7 +80,8 @@ impl<'a> Problem<'a> {
         ray.slopes_of_motion().component_mul(&self.scale) / (2.0 * ray.speed * ray.speed)
     }
 
-    /// The best medium if every mode had exactly the measured polarization, a linear problem, and its weighted sum of squares.
+    /// The best medium if every mode had exactly the measured polarization, a linear problem, and its weighted sum of
+    /// squares.
     pub(super) fn linear(&self) -> Option<(Column, f64)> {
         let rows: Vec<(f64, Column)> = (self.rays.iter())
             .map(|ray| {
@@ -104,8 +106,8 @@ impl<'a> Problem<'a> {
         linear.into_iter().chain(shears)
     }
 
-    /// Media at some distance from `point` along the combinations of moduli that the speeds determine least: starting points
-    /// for the search for other media that fit as well.
+    /// Media at some distance from `point` along the combinations of moduli that the speeds determine least: starting
+    /// points for the search for other media that fit as well.
     pub(super) fn around(&self, point: &Point) -> Vec<Column> {
         let Some(eigen) = directions(&point.rows) else { return Vec::new() };
         let weak = (0..UNKNOWNS).filter(|i| eigen.eigenvalues[*i] < WEAK * WEAK);

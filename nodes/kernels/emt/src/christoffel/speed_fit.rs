@@ -26,38 +26,39 @@ pub struct SpeedFit {
     pub degrees_of_freedom: usize,
     /// For each speed, measured minus fitted over measured.
     pub residuals: Vec<f64>,
-    /// Number of speeds without an uncertainty, where others have one. They are given the largest relative one of the others.
+    /// Number of speeds without an uncertainty, where others have one. They are given the largest relative one of the
+    /// others.
     pub assumed: usize,
-    /// Set if the speeds contradict each other beyond their uncertainty and beyond the deviation of a sample of some thousand
-    /// grains from a transversely isotropic medium; with the speed that deviates most.
+    /// Set if the speeds contradict each other beyond their uncertainty and beyond the deviation of a sample of some
+    /// thousand grains from a transversely isotropic medium; with the speed that deviates most.
     pub conflict: Option<SpeedConflict>,
-    /// Set if they differ beyond their uncertainty, but not more than those of such a sample. The covariance is then that of
-    /// their scatter.
+    /// Set if they differ beyond their uncertainty, but not more than those of such a sample. The covariance is then
+    /// that of their scatter.
     pub anisotropy_scatter: Option<AnisotropyScatter>,
 }
 
 impl SpeedFit {
-    /// Root mean square of the relative residuals per degree of freedom: an estimate of the relative error of the speeds from
-    /// their scatter alone; `None` without a degree of freedom.
+    /// Root mean square of the relative residuals per degree of freedom: an estimate of the relative error of the
+    /// speeds from their scatter alone; `None` without a degree of freedom.
     pub fn scatter(&self) -> Option<f64> {
         let sum: f64 = self.residuals.iter().map(|r| r * r).sum();
         (self.degrees_of_freedom > 0).then(|| (sum / self.degrees_of_freedom as f64).sqrt())
     }
 }
 
-/// The moduli of a medium that is isotropic about `axis` from the speeds of its waves, with the density of the mass that
-/// moves with them, kg/m³, in the state `conditions`.
+/// The moduli of a medium that is isotropic about `axis` from the speeds of its waves, with the density of the mass
+/// that moves with them, kg/m³, in the state `conditions`.
 ///
-/// The moduli are those of a frame with the axis as e3. Any set of speeds is valid; [`SpeedFit::undetermined`] lists the moduli
-/// that it does not determine. If no speed has an uncertainty, equal relative errors are taken, and the moduli have none
-/// either. Errors of speeds are independent; the error of the density is common to all moduli. If speeds scatter more than
-/// their errors, but not more than those of a packing, which is never exactly isotropic about an axis, the scatter is added to
-/// the error of every speed ([`SpeedFit::anisotropy_scatter`]).
+/// The moduli are those of a frame with the axis as e3. Any set of speeds is valid; [`SpeedFit::undetermined`] lists
+/// the moduli that it does not determine. If no speed has an uncertainty, equal relative errors are taken, and the
+/// moduli have none either. Errors of speeds are independent; the error of the density is common to all moduli. If
+/// speeds scatter more than their errors, but not more than those of a packing, which is never exactly isotropic about
+/// an axis, the scatter is added to the error of every speed ([`SpeedFit::anisotropy_scatter`]).
 ///
-/// Errors: an unknown axis, vectors that are not of unit length, numbers that are not positive and finite, a polarization more
-/// than 30° from every mode of its direction, and speeds of an unstable medium. If both S waves along a direction were
-/// measured, their polarizations may be any two perpendicular ones: their speeds are nearly equal, so that a small departure
-/// from isotropy about the axis turns them.
+/// Errors: an unknown axis, vectors that are not of unit length, numbers that are not positive and finite, a
+/// polarization more than 30° from every mode of its direction, and speeds of an unstable medium. If both S waves along
+/// a direction were measured, their polarizations may be any two perpendicular ones: their speeds are nearly equal, so
+/// that a small departure from isotropy about the axis turns them.
 ///
 /// ```
 /// use grainlab_emt::{Conditions, Measured, Modulus, christoffel};

@@ -8,8 +8,8 @@ use crate::model::Model;
 use crate::registry::models;
 use crate::structure::Quantity;
 
-/// The errors of every model that does not compute its own, for each γ/Δ and coordination number. Of isotropic packings only
-/// the errors of ε are used, since every model is fitted to the rest.
+/// The errors of every model that does not compute its own, for each γ/Δ and coordination number. Of isotropic packings
+/// only the errors of ε are used, since every model is fitted to the rest.
 pub(super) fn discrepancies(
     isotropic: &[CalibrationSample],
     anisotropic: &[CalibrationSample],
@@ -74,8 +74,8 @@ fn errors(
     (!errors.is_empty() && errors.len() * 10 >= asked.len() * 9).then_some(errors)
 }
 
-/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε², with f0 from isotropic packings and a mean of 1
-/// over anisotropic ones.
+/// How the square of the error of ε grows with the inferred ε: f0 + f1 ε², with f0 from isotropic packings and a mean
+/// of 1 over anisotropic ones.
 fn by_eps(without: &Errors, with: &Errors) -> [f64; 2] {
     let mean = |errors: &Errors, f: fn(f64, f64) -> f64| {
         errors.iter().map(|(eps, e)| f(*eps, e[2])).sum::<f64>() / errors.len() as f64

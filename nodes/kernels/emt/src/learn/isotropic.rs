@@ -7,8 +7,8 @@ use crate::invariants::Invariants;
 use crate::structure::Quantity;
 use std::collections::BTreeSet;
 
-/// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the covariance
-/// counts packings, not states.
+/// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the
+/// covariance counts packings, not states.
 pub(super) fn of_isotropic(
     samples: &[CalibrationSample],
     kind: Quantity,

@@ -1,10 +1,10 @@
 //! Each modulus with its own coordination number: G_ij = α(k·3 m_ij + β) p^⅓, Θ = ρ(k + ζ) p^⅓ with the constants of
 //! Eqs. 21 and 22, and 3 m_ij the fraction of contacts that carry shear in the plane ij, 1 in an isotropic packing.
 //!
-//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies the effect
-//! of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε; with all three, k and ε minimise
-//! the sum of squares of the relative deviations. On the paper's own rows this is the best of the models that use three
-//! moduli; on packings of the calibration `grainlab` the amplification is too large.
+//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies the
+//! effect of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε; with all three, k and ε
+//! minimise the sum of squares of the relative deviations. On the paper's own rows this is the best of the models that
+//! use three moduli; on packings of the calibration `grainlab` the amplification is too large.
 
 use crate::calibration::{Calibration, IsotropicCalibration};
 use crate::checks::outside_fit;
@@ -20,7 +20,7 @@ use nalgebra::{Matrix2x3, Matrix3x2, Vector2, Vector3};
 
 /// Directional coordination numbers: model `directional`.
 #[derive(Clone, Copy, Debug)]
-pub struct Directional;
+pub(crate) struct Directional;
 
 const NAME: &str = "directional";
 
@@ -99,8 +99,8 @@ impl Model for Directional {
     }
 }
 
-/// 3 m12 and 3 m13, the latter from the sum of the compliances of both directions of the plane, and their derivatives with
-/// respect to ε.
+/// 3 m12 and 3 m13, the latter from the sum of the compliances of both directions of the plane, and their derivatives
+/// with respect to ε.
 fn shares_and_slopes(eps: f64) -> [(f64, f64); 2] {
     let (radial, axial) = (1.0 - 0.4 * eps, 1.0 + 0.8 * eps);
     let sum = radial + axial;
@@ -152,7 +152,8 @@ fn start(isotropic: &IsotropicCalibration, pressure: f64, [g12, g13, theta]: [Op
 /// (k, ε), and their changes per relative change of G12, G13 and Θ.
 type Found = (Vector2<f64>, Matrix2x3<f64>);
 
-/// Gauss–Newton with step halving; `None` where it does not converge, or to a negative coordination number or stiffness.
+/// Gauss–Newton with step halving; `None` where it does not converge, or to a negative coordination number or
+/// stiffness.
 fn least_squares(isotropic: &IsotropicCalibration, pressure: f64, given: [Option<f64>; 3]) -> Option<Found> {
     let weight = Vector3::from(given.map(|g| g.map_or(0.0, |g| 1.0 / g)));
     let value = Vector3::from(given.map(|g| g.unwrap_or(0.0)));

@@ -1,12 +1,12 @@
 //! The plain effective medium: absolute moduli, Eqs. 10–15, at the volume strain that gives the pressure.
 //!
-//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of real packings
-//! several times and therefore infers k far too low, which is why there are the ratio models.
+//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of real
+//! packings several times and therefore infers k far too low, which is why there are the ratio models.
 //!
-//! With r = G13/G12 and g, ε follows as in the ratio model; at given pressure the moduli are proportional to k^⅔, so that
-//! G12 gives k (the paper's k_EMT, but with the Δ that gives the pressure). Θ, C11, C33 and C13 would each give another k:
-//! they are not used, and their difference from the prediction is not reported, since it is the known error of the model
-//! and not of the data.
+//! With r = G13/G12 and g, ε follows as in the ratio model; at given pressure the moduli are proportional to k^⅔, so
+//! that G12 gives k (the paper's k_EMT, but with the Δ that gives the pressure). Θ, C11, C33 and C13 would each give
+//! another k: they are not used, and their difference from the prediction is not reported, since it is the known error
+//! of the model and not of the data.
 
 use super::equivalent::MAX_COORDINATION;
 use super::shear_ratio::{ratio_warnings, shear_ratio};
@@ -24,10 +24,10 @@ use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
 use crate::structure::{QUANTITIES, Quantity, Structure};
 
-/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. Of the calibration it uses the material alone, where that of the grains
-/// is not known.
+/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. Of the calibration it uses the material alone, where that of the
+/// grains is not known.
 #[derive(Clone, Copy, Debug)]
-pub struct EffectiveMedium;
+pub(crate) struct EffectiveMedium;
 
 const NAME: &str = "emt";
 

@@ -48,8 +48,8 @@ impl Factors {
         Moduli::paper(self.g12 * shear, self.g13 * shear, self.bulk * bulk)
     }
 
-    /// The structure of contact anisotropy `eps` that has the observed moduli, with warnings. Without Θ its coordination
-    /// numbers stay undetermined.
+    /// The structure of contact anisotropy `eps` that has the observed moduli, with warnings. Without Θ its
+    /// coordination numbers stay undetermined.
     pub(super) fn point_estimate(
         &self,
         eps: f64,
@@ -83,8 +83,8 @@ impl Factors {
     }
 }
 
-/// Domain of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of the shear
-/// modulus, and ε.
+/// Domain of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of the
+/// shear modulus, and ε.
 pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
     let isotropic = calibration.isotropic();
     let mut structure = [None; QUANTITIES];

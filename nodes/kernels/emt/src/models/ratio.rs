@@ -1,8 +1,8 @@
 //! The paper's models: moduli as ratios over those of an equivalent isotropic packing, Eqs. 16–18 with 21 and 22.
 //!
-//! The inversion is closed and unique in every reading. With r = G13/G12 and a = r − 1, ε follows from a and g alone. With
-//! B the bracket of Eq. 16, s = (ρ/α)(G12/Θ) B/(3 m1) = (k̂+β)/(k̂+ζ) gives k̂, and Θ then gives k. In the corrected
-//! reading B/(3 m1) = (4−r)/(3(2−r)): k̂ depends on neither g nor ε.
+//! The inversion is closed and unique in every reading. With r = G13/G12 and a = r − 1, ε follows from a and g alone.
+//! With B the bracket of Eq. 16, s = (ρ/α)(G12/Θ) B/(3 m1) = (k̂+β)/(k̂+ζ) gives k̂, and Θ then gives k. In the
+//! corrected reading B/(3 m1) = (4−r)/(3(2−r)): k̂ depends on neither g nor ε.
 
 use super::equivalent::{Factors, domain};
 use super::shear_ratio::shear_ratio;
@@ -21,7 +21,7 @@ use crate::structure::{Quantity, Structure};
 
 /// The ratio model in one reading of Eqs. 16–18.
 #[derive(Clone, Copy, Debug)]
-pub struct Ratio {
+pub(crate) struct Ratio {
     name: &'static str,
     reading: Eq16Reading,
     /// Power of k/k̂ in Eqs. 16–18.
@@ -29,14 +29,15 @@ pub struct Ratio {
 }
 
 /// Eq. 16 with its missing factor: model `ratio`.
-pub const CORRECTED: Ratio = Ratio { name: "ratio", reading: Eq16Reading::Corrected, power: 1.0 };
+pub(crate) const CORRECTED: Ratio = Ratio { name: "ratio", reading: Eq16Reading::Corrected, power: 1.0 };
 
 /// Eq. 16 as it is printed: model `ratio-as-printed`.
-pub const AS_PRINTED: Ratio = Ratio { name: "ratio-as-printed", reading: Eq16Reading::AsPrinted, power: 1.0 };
+pub(crate) const AS_PRINTED: Ratio =
+    Ratio { name: "ratio-as-printed", reading: Eq16Reading::AsPrinted, power: 1.0 };
 
-/// With moduli ∝ k^⅔ instead of ∝ k, as Hertz contacts have them at the same pressure and volume, which is what the text
-/// of the paper compares: model `ratio-volume`.
-pub const FIXED_VOLUME: Ratio =
+/// With moduli ∝ k^⅔ instead of ∝ k, as Hertz contacts have them at the same pressure and volume, which is what the
+/// text of the paper compares: model `ratio-volume`.
+pub(crate) const FIXED_VOLUME: Ratio =
     Ratio { name: "ratio-volume", reading: Eq16Reading::Corrected, power: 2.0 / 3.0 };
 
 impl Model for Ratio {

@@ -1,10 +1,11 @@
 //! The moduli of a relaxed contact network, without γ/Δ.
 //!
-//! The scalars of the stiffness depend on the coordination number z. Its two deviators are proportional to ε, with factors
-//! that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order fabric and hardly
-//! on ε (see [`crate::Invariants`]). Packings of the same structure still differ; their scatter is known as a covariance of
-//! these five numbers, and the estimate is the generalised least-squares one: for a linear model, the most probable one with
-//! a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z, ε and the residual of the moduli.
+//! The scalars of the stiffness depend on the coordination number z. Its two deviators are proportional to ε, with
+//! factors that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order
+//! fabric and hardly on ε (see [`crate::Invariants`]). Packings of the same structure still differ; their scatter is
+//! known as a covariance of these five numbers, and the estimate is the generalised least-squares one: for a linear
+//! model, the most probable one with a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z,
+//! ε and the residual of the moduli.
 //!
 //! The constants come from packings ([`crate::Calibration`]); only the form is derived.
 

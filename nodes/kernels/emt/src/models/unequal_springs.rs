@@ -1,9 +1,10 @@
 //! The ratio model with different normal and tangential stiffness, K_N ≠ K_T, which Eq. 11 takes as equal.
 //!
-//! Every contact is a spring K_N along its normal and K_T across it, κ = K_N/K_T − 1 = ν/(2(1−ν)): one eighth for glass.
-//! Moduli follow from the moments μ_n = ∫₀¹ [(1−ε) + 3εx²] s(x) xⁿ dx, with the stiffness s(x) linear in g (Eq. 10) or
-//! not. G13/G12 rises with ε at every κ and g, so that its root in [−1/2, 1] is unique; k̂ and k then follow as in the
-//! ratio model. At ν = 0 and with Eq. 10 this is the ratio model; taking K_N as K_T at ν = 0.2 costs 0.004 in an ε of 0.08.
+//! Every contact is a spring K_N along its normal and K_T across it, κ = K_N/K_T − 1 = ν/(2(1−ν)): one eighth for
+//! glass. Moduli follow from the moments μ_n = ∫₀¹ [(1−ε) + 3εx²] s(x) xⁿ dx, with the stiffness s(x) linear in g (Eq.
+//! 10) or not. G13/G12 rises with ε at every κ and g, so that its root in [−1/2, 1] is unique; k̂ and k then follow as
+//! in the ratio model. At ν = 0 and with Eq. 10 this is the ratio model; taking K_N as K_T at ν = 0.2 costs 0.004 in an
+//! ε of 0.08.
 
 use super::equivalent::{Factors, domain};
 use super::shear_ratio::shear_ratio;
@@ -21,17 +22,17 @@ use crate::structure::{Quantity, Structure};
 
 /// The ratio model with K_N ≠ K_T and one overlap law.
 #[derive(Clone, Copy, Debug)]
-pub struct UnequalSprings {
+pub(crate) struct UnequalSprings {
     name: &'static str,
     /// Integrals of the stiffness at this g = γ/Δ; an error where some contacts have no stiffness.
     integrals: fn(f64) -> Result<Integrals, EmtError>,
 }
 
 /// With the overlap law of Eq. 10: model `full`.
-pub const LINEAR: UnequalSprings = UnequalSprings { name: "full", integrals: overlap::linear };
+pub(crate) const LINEAR: UnequalSprings = UnequalSprings { name: "full", integrals: overlap::linear };
 
 /// With the overlap law not linear in g: model `sqrt`.
-pub const NONLINEAR: UnequalSprings = UnequalSprings { name: "sqrt", integrals: overlap::nonlinear };
+pub(crate) const NONLINEAR: UnequalSprings = UnequalSprings { name: "sqrt", integrals: overlap::nonlinear };
 
 /// The ε for which Eq. 6 gives no direction a negative contact density.
 const EPS: [f64; 2] = [-0.5, 1.0];

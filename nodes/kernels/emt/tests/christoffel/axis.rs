@@ -133,8 +133,8 @@ fn too_few_speeds_are_told_how_many_are_missing_and_where() {
     assert!(fault.to_string().contains("6 wave speeds cannot tell"), "{fault}");
 }
 
-/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have them
-/// all, and each has a mirror image.
+/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have
+/// them all, and each has a mirror image.
 #[test]
 fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_true_one() {
     let mut numbers = Numbers::new(6);

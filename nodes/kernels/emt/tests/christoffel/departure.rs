@@ -6,7 +6,8 @@ use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::Matrix6;
 
-/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures it.
+/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures
+/// it.
 #[rustfmt::skip]
 const ANISOTROPIC: [f64; 36] = [
     267.923, 62.331, 65.989, -2.193, -0.769, 2.731,

@@ -84,8 +84,8 @@ fn is_ambiguous(error: &ChristoffelError, at: usize) -> bool {
     matches!(error, ChristoffelError::Ambiguous { index, degrees } if *index == at && *degrees > 30.0)
 }
 
-/// Across the axis the S modes differ by G13/G12, and only equal moduli would make 45° between them a mode's motion: that
-/// is what is to be found out.
+/// Across the axis the S modes differ by G13/G12, and only equal moduli would make 45° between them a mode's motion:
+/// that is what is to be found out.
 #[test]
 fn a_shear_motion_between_the_modes_is_refused_though_the_medium_may_be_isotropic() {
     let error = fault(|s| s[2].polarization = Vec3::new(0.0, 1.0, 1.0).normalize());

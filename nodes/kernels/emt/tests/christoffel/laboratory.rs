@@ -151,7 +151,8 @@ impl Numbers {
         Rotation3::from_axis_angle(&axis, self.between(0.0, 3.0))
     }
 
-    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is positive.
+    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is
+    /// positive.
     /// `anisotropy` in (0, 1].
     pub(crate) fn medium(&mut self, anisotropy: f64) -> TransverseIsotropy {
         loop {

@@ -44,8 +44,8 @@ fn five<const C: usize>(m: &SMatrix<f64, MODULI, C>) -> SMatrix<f64, 5, C> {
     SMatrix::from_fn(|i, j| m[(FIVE[i] as usize, j)])
 }
 
-/// Means over many draws of χ² and of the squared distance of the moduli from the truth by their covariance, and the share
-/// of conflicts.
+/// Means over many draws of χ² and of the squared distance of the moduli from the truth by their covariance, and the
+/// share of conflicts.
 fn scatter(waves: &[Wave], relative: &[f64]) -> [f64; 3] {
     const DRAWS: usize = 3000;
     let (mut numbers, speeds) = (Numbers::new(7), exact(waves));

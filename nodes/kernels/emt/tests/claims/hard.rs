@@ -36,7 +36,8 @@ fn eps_of(name: &str, ratio: f64) -> f64 {
     infer(name, &with_ratio(ratio)).unwrap().structure.eps.unwrap()
 }
 
-/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not move.
+/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not
+/// move.
 #[test]
 fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_eps() {
     for name in PAPER_MODELS {

@@ -69,8 +69,8 @@ fn more_moduli_are_never_worse() {
     assert!(four >= five.stddev(Quantity::Eps).unwrap());
 }
 
-/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they promise,
-/// and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
+/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they
+/// promise, and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
 #[test]
 fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
     let network = ours().network().unwrap();

@@ -32,8 +32,8 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
     }
 }
 
-/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave out
-/// is a thousandth of σ here.
+/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave
+/// out is a thousandth of σ here.
 #[test]
 fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
     let settings = SamplingSettings { draws: DRAWS, seed: 1 };

@@ -3,8 +3,8 @@
 use crate::failure::Failure;
 use crate::output::{Format, Table, json, print, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::Recording;
 use grainlab_recordings::Check;
+use grainlab_recordings::Recording;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -15,7 +15,7 @@ Examples:
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
 of files, and the account of the recorder against what is there. Exit 0 if nothing is wrong, 3 if anything is.";
 
-/// Which recording.
+/// Arguments of `grainlab bag check`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -57,7 +57,7 @@ fn text(check: &Check) -> String {
         lines.push(format!("{}: {what}", path.display()));
     }
     if let Some(lost) = check.lost.filter(|n| *n > 0) {
-        lines.push(format!("by the account, {lost} messages were published and not recorded"));
+        lines.push(format!("according to the ledger, {lost} messages were published and not recorded"));
     }
     if lines.len() == 1 {
         lines.push("every record, checksum, index and account is right".to_owned());

@@ -9,7 +9,7 @@ use grainlab_recordings::{METADATA_RECORD, Recording};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Which recording.
+/// Arguments of `grainlab bag info`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json")]
 pub(crate) struct Args {
@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
-/// What the recording is, and what the recorder knew of its run.
+/// The recording and the recorder's metadata of its run.
 #[derive(Serialize)]
 struct View {
     #[serde(flatten)]

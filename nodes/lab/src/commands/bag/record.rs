@@ -14,7 +14,7 @@ Examples:
 
 Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost on the way.";
 
-/// What to record.
+/// Arguments of `grainlab bag record`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -24,7 +24,7 @@ pub(crate) struct Args {
     /// Topics to record
     #[arg(long, num_args = 1.., value_name = "TOPIC", conflicts_with = "all")]
     topics: Vec<String>,
-    /// Record every topic of the laboratory, which is the default
+    /// Record every topic, which is the default
     #[arg(short, long)]
     all: bool,
     /// Scene to attach: a built-in name or a file

@@ -14,7 +14,7 @@ bytes, times and sequence number, and every file gets its index and its end; the
 it was stays beside it as NAME.mcap.orig: remove it when you trust the new one. Done again, nothing changes. A recording that
 is complete is left alone. Exit 3 if something could not be read; it is named.";
 
-/// Which recording.
+/// Arguments of `grainlab bag recover`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -35,9 +35,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     for file in &done.files {
         let path = file.path.display();
         text += &match &file.original {
-            None => format!("{path}: complete, {} messages; nothing was to be done\n", file.messages),
+            None => format!("{path}: complete, {} messages; nothing to do\n", file.messages),
             Some(original) => {
-                format!("{path}: recovered, {} messages; as it was: {}\n", file.messages, original.display())
+                format!("{path}: recovered, {} messages; original: {}\n", file.messages, original.display())
             }
         };
     }

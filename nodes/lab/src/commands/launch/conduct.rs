@@ -41,7 +41,7 @@ pub(super) fn conduct(
     finish(format, directory, scene, run, supervised)
 }
 
-/// Removes the directory of a run that did not start: it holds nothing but the scene and empty logs. False if there is
+/// Removes the directory of a run that did not start, if it holds only the scene and empty logs. False if there is
 /// more.
 fn remove_if_unused(directory: &Path) -> bool {
     let logs = directory.join("logs");
@@ -77,4 +77,25 @@ fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) ->
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
     runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_directory_of_a_run_that_left_nothing_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        for (file, content, kept) in
+            [("logs/servo.log", "", false), ("logs/servo.log", "why", true), ("a_0.mcap", "", true)]
+        {
+            let run = folder.path().join("run");
+            std::fs::create_dir_all(run.join("logs")).unwrap();
+            std::fs::write(run.join("scene.toml"), "name = 'x'").unwrap();
+            std::fs::write(run.join(file), content).unwrap();
+            remove_if_unused(&run);
+            assert_eq!(run.exists(), kept, "{file} {content:?}");
+            let _ = std::fs::remove_dir_all(&run);
+        }
+    }
 }

@@ -15,7 +15,7 @@ use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use std::path::Path;
 
-/// What the run published and its recording does not hold.
+/// Published results that the recording lacks.
 fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
     let mut missing = Vec::new();
     if let Some(published) = heard.packings.filter(|n| back.packings < *n as usize) {
@@ -99,7 +99,7 @@ pub(super) fn finish(
     Ok(exit)
 }
 
-/// Writes a file whole or not at all.
+/// Writes a file atomically.
 fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
     let partial = path.with_extension("json.part");
     let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));

@@ -1,4 +1,4 @@
-//! What was launched, kept beside the recording so that the run can be resumed as it was begun.
+//! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
 use crate::failure::Failure;
 use crate::launch::plan::{LaunchFile, NodePlan};
@@ -11,14 +11,14 @@ use std::path::Path;
 /// Name of the file in the run directory.
 pub(super) const FILE: &str = "launch.json";
 
-/// A launch file with what its arguments were.
+/// A launch file with its arguments.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     /// Text of the launch file.
     pub(super) launch: String,
-    /// Values given for its arguments, but for scene, seed and out.
+    /// Values given for its arguments, except scene, seed and out.
     pub(super) arguments: BTreeMap<String, String>,
-    /// Seed in force.
+    /// The seed of the run.
     pub(super) seed: u64,
 }
 
@@ -44,7 +44,7 @@ impl Order {
 
     /// The processes to start, for a run in this directory.
     pub(super) fn plans(&self, directory: &Path) -> Result<Vec<NodePlan>, Failure> {
-        // Parameters are YAML: a path with a blank or a colon needs its quotes.
+        // Parameters are YAML: a path with a space or a colon needs quotes.
         let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
         let mut values: BTreeMap<&str, String> =
             self.arguments.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();

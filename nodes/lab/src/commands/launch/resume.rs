@@ -1,7 +1,7 @@
-//! `grainlab launch --resume RUN`: a run goes on from the last packing in its recording.
+//! `grainlab launch --resume RUN`: continues a run from the last packing in its recording.
 //!
-//! What is recorded stays as it is. The recorder goes on in the next file of the recording; what the processes say once
-//! more, with the same bytes, is not recorded again.
+//! Recorded files are unchanged. The recorder continues in the next file of the recording; messages that the processes
+//! repeat with the same bytes are not recorded again.
 
 use super::conduct::{conduct, domain};
 use super::order::Order;
@@ -22,7 +22,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     let mut plans = order.plans(&directory)?;
     // Without a recording the run begins anew, in its own directory.
     if Recording::open(&directory).is_ok() {
-        // The file of a recorder that was killed is finished first, so that other tools read the whole run.
+        // The file of a killed recorder is completed first, so that other tools read the whole run.
         grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
         let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         if is_finished(&recording) {
@@ -50,7 +50,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     conduct(plans, domain, lock, &directory, &scene, format)
 }
 
-/// Whether the loading path was done, and its last packing is there with what was inferred from it.
+/// Whether the loading path was complete and its last packing was measured and inverted.
 fn is_finished(recording: &Recording) -> bool {
     let last = |name: &str| {
         let channels = recording.channels();

@@ -15,9 +15,9 @@ const NO_ROOM: f64 = 1e-6;
 type Square = SMatrix<f64, MODULI, MODULI>;
 type Moduli = SVector<f64, MODULI>;
 
-/// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left out; if
-/// all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known have residual
-/// 0 and variance 1.
+/// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left
+/// out; if all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known
+/// have residual 0 and variance 1.
 pub(super) struct Data {
     value: Moduli,
     covariance: Square,

@@ -2,8 +2,8 @@
 
 use super::process::Kind;
 use super::stranger::Forgery;
-use grainlab_node_kit::Faults;
 use grainlab_node_kit::Dice;
+use grainlab_node_kit::Faults;
 use std::time::Duration;
 
 /// Something that happens at a moment of a run.

@@ -3,8 +3,8 @@
 use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
-use grainlab_node_kit::run_of;
 use grainlab_node_kit::Dice;
+use grainlab_node_kit::run_of;
 use grainlab_node_kit::{
     Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
 };
