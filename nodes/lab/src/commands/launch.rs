@@ -1,17 +1,16 @@
 //! `grainlab launch`: the main job.
 
-use crate::failure::{Failure, worse};
 use crate::launch::Run;
 use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use crate::launch::supervisor::{Heard, Supervised, Supervisor};
-use crate::network::FreeDomain;
-use crate::output::{Format, json, print};
 use crate::results::continuity;
 use crate::results::read_back::{self, ReadBack};
 use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
-use crate::scenes::{self, SceneText};
+use grainlab_console::network::FreeDomain;
+use grainlab_console::scenes::{self, SceneText};
+use grainlab_console::{Failure, Format, json, print, worse};
 use grainlab_msgs::topics;
 use grainlab_node_kit::{Exit, Network, RunId};
 use grainlab_recordings::Recording;
@@ -113,7 +112,7 @@ fn conduct(
 ) -> Result<Exit, Failure> {
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     let run = Run { id: RunId::fresh(), domain };
-    crate::output::say!(
+    grainlab_console::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
         scene.scene.name,
         scene.scene.seed,
@@ -317,8 +316,8 @@ fn finish(
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
-    summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
     // Printed before anything that may fail: the result is not lost with the disk.
     let printed = print(&match format {
@@ -330,7 +329,7 @@ fn finish(
         }
     });
     for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
-        crate::output::say!("grainlab: {failure}");
+        grainlab_console::say!("grainlab: {failure}");
         // A run that lost data because the disk was full has lost data; that its summary is missing, too, is no other fault.
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }

@@ -1,17 +1,16 @@
 //! `grainlab run`: one node as this process.
 
-use crate::failure::Failure;
 use crate::lifeline;
-use crate::output::print;
-use crate::recorder::{self, Recorder};
 use crate::results::last_packing;
-use crate::scenes;
 use grainlab_acoustic_probe::AcousticProbe;
+use grainlab_console::scenes;
+use grainlab_console::{Failure, print};
 use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_node_kit::run::NodeSpec;
 use grainlab_node_kit::{Exit, Node, NodeError, ParameterSpec, RosArgs, Scope, run_node};
+use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::input;
 use grainlab_servo_controller::ServoController;
 use std::path::Path;
@@ -140,7 +139,7 @@ pub(crate) fn record(
     ros: &RosArgs,
     settings: impl FnOnce(&grainlab_node_kit::Parameters) -> Result<recorder::Settings, Failure>,
 ) -> Result<Exit, Failure> {
-    let result = recorder::Result::default();
+    let result = ResultSlot::default();
     let exit = run_node(spec, ros, |bus, parameters| {
         let settings = settings(parameters).map_err(|e| node_error(&e))?;
         Ok(Box::new(Recorder::new(bus, &settings, result.clone())?))
@@ -149,7 +148,7 @@ pub(crate) fn record(
         let (tallies, file) = (finished.ledger.tallies(), finished.file.display());
         print(&format!(
             "{}{file}: {} messages, {} bytes\n",
-            recorder::counts(&tallies),
+            recorder::tallies::counts(&tallies),
             finished.messages,
             finished.bytes
         ))?;

@@ -25,7 +25,7 @@ impl Progress {
 
     /// A line, with the time.
     pub(crate) fn say(&self, text: &str) {
-        crate::output::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+        grainlab_console::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
     }
 
     /// A line, unless there was one for what takes long just now.

@@ -9,7 +9,7 @@ use super::plan::NodePlan;
 use super::progress::Progress;
 use super::stopped::Stopped;
 use super::watch::{Event, Watch};
-use crate::failure::{Failure, worse};
+use grainlab_console::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -152,7 +152,7 @@ impl Supervisor {
             Ok(()) if self.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
-                crate::output::say!("grainlab: {failure}");
+                grainlab_console::say!("grainlab: {failure}");
                 failure.exit
             }
         };
@@ -163,7 +163,7 @@ impl Supervisor {
         if code(RECORDER) != Some(0) {
             // Data loss is in the table; anything else only the recorder can tell.
             if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
-                crate::output::say!("grainlab: {RECORDER} ended with exit code 1:");
+                grainlab_console::say!("grainlab: {RECORDER} ended with exit code 1:");
                 recorder.quote_log(&self.logs);
             }
             exit = worse(exit, Exit::DataLoss);
@@ -171,7 +171,7 @@ impl Supervisor {
         // A simulator that ended with an error fails the run, whatever was heard before.
         let simulator = code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            crate::output::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
+            grainlab_console::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
             exit = simulator;
         }
         if self.foreign_failure {
@@ -218,7 +218,7 @@ impl Supervisor {
                     if let Some(late) = deadline.as_mut()
                         && late.patience.is_over(suspended)
                     {
-                        crate::output::say!("grainlab: {}", late.message);
+                        grainlab_console::say!("grainlab: {}", late.message);
                         return late.exit;
                     }
                     if !self.begun && beginning.is_over(suspended) {
@@ -233,7 +233,7 @@ impl Supervisor {
             match self.debts.standing(step) {
                 Standing::Complete => return self.caught_up().await,
                 Standing::Declined(node) => {
-                    crate::output::say!("grainlab: the last packing has no {}", nothing(node));
+                    grainlab_console::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
@@ -311,10 +311,10 @@ impl Supervisor {
                 });
             }
             Event::Stranger(text) => {
-                crate::output::say!("grainlab: {text} and is not of this run: it is ignored")
+                grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
             }
             Event::Failed(message) => {
-                crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
+                grainlab_console::say!("grainlab: the launcher lost the bus: {message}: the run ends");
                 self.blind = true;
             }
         }
@@ -377,7 +377,7 @@ impl Supervisor {
             _ => Exit::Failure,
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
-        crate::output::say!("grainlab: {name} {how}: {reason}");
+        grainlab_console::say!("grainlab: {name} {how}: {reason}");
         self.children[ended.index].quote_log(&self.logs);
         Some(exit)
     }
@@ -394,7 +394,7 @@ impl Supervisor {
         if child.code == Some(0) {
             self.progress.say(&format!("{} {how}", child.plan.name));
         } else {
-            crate::output::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
+            grainlab_console::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
             self.foreign_failure = true;
         }
         None
@@ -406,7 +406,7 @@ impl Supervisor {
         self.deaths.push(packings);
         // It got no further in three attempts: the next one would not, either.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
-            crate::output::say!(
+            grainlab_console::say!(
                 "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"
             );
             self.children[index].quote_log(&self.logs);
@@ -426,7 +426,7 @@ impl Supervisor {
         let now = Instant::now();
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
-            crate::output::say!(
+            grainlab_console::say!(
                 "grainlab: {name} {how}, {recent} times within {} s: given up",
                 RESTART_WINDOW.as_secs()
             );
@@ -442,7 +442,7 @@ impl Supervisor {
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
-            crate::output::say!("grainlab: {failure}");
+            grainlab_console::say!("grainlab: {failure}");
             failure.exit
         })
     }

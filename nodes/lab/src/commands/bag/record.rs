@@ -1,10 +1,10 @@
 //! `grainlab bag record`.
 
 use crate::commands::run::record;
-use crate::failure::Failure;
-use crate::recorder::{self, Settings};
+use grainlab_console::Failure;
 use grainlab_node_kit::run::NodeSpec;
 use grainlab_node_kit::{Exit, RosArgs, Scope};
+use grainlab_recorder::{self as recorder, Settings};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
         topics: recorder::contract_topics(&args.topics)?,
-        scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
+        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, None)).transpose()?,
         whole_run: false,
         append: false,
     };

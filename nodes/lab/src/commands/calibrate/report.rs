@@ -1,6 +1,6 @@
 //! A calibration for people.
 
-use crate::output::Table;
+use grainlab_console::Table;
 use grainlab_emt::calibration::{Amplitude, Law, Network};
 use grainlab_emt::{Calibration, Isotropic, Quantity, Sample};
 use std::collections::BTreeSet;

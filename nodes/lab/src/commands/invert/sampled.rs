@@ -3,7 +3,7 @@
 use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_emt::sampling::Settings;
 use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Quantity, Samples, sample};
 use rayon::prelude::*;

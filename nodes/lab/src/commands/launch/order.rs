@@ -1,8 +1,7 @@
 //! What was launched, kept beside the recording so that the run can be resumed as it was begun.
 
-use crate::failure::Failure;
 use crate::launch::plan::{LaunchFile, NodePlan};
-use crate::output::json;
+use grainlab_console::{Failure, json};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

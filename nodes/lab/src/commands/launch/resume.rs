@@ -5,10 +5,9 @@
 
 use super::order::Order;
 use super::{conduct, domain};
-use crate::failure::Failure;
-use crate::output::Format;
 use crate::results::last_packing;
-use crate::scenes;
+use grainlab_console::scenes;
+use grainlab_console::{Failure, Format};
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Recording, Selection};
