@@ -4,6 +4,7 @@
 //! - [`commands`]: one module a command; low arguments become checked ones there
 //! - [`results`]: what is printed and stored: states, inferences, tables
 //! - [`launch`]: launch files, processes and their supervision
+//! - [`nodes`]: every node, and how it is started
 //! - [`lifeline`]: ends a node whose launcher died
 //! - [`tape`]: a recording of what a node would publish
 
@@ -11,6 +12,7 @@ mod cli;
 mod commands;
 mod launch;
 mod lifeline;
+mod nodes;
 mod results;
 mod tape;
 

@@ -3,6 +3,7 @@
 use crate::launch::Run;
 use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use crate::launch::supervisor::{Heard, Supervised, Supervisor};
+use crate::nodes::NodeKind;
 use crate::results::continuity;
 use crate::results::read_back::{self, ReadBack};
 use crate::results::state;
@@ -11,7 +12,6 @@ use crate::results::summary_text;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::{self, SceneText};
 use grainlab_console::{Failure, Format, json, print, worse};
-use grainlab_msgs::topics;
 use grainlab_node_kit::{Exit, Network, RunId};
 use grainlab_recordings::Recording;
 use grainlab_recordings::input;
@@ -130,27 +130,13 @@ fn conduct(
     finish(format, directory, scene, run, supervised)
 }
 
-/// A launch file that names a node or a program that does not exist would end in the midst of its start.
+/// A launch file that names a program that does not exist would end in the midst of its start.
 fn refuse_unknown(plans: &[NodePlan]) -> Result<(), Failure> {
-    let known: Vec<&str> = crate::commands::run::nodes().iter().map(|n| n.name).collect();
-    for plan in plans {
-        let name = &plan.name;
-        match plan.node.as_deref() {
-            Some(node) if !known.contains(&node) => {
-                let known = known.join(", ");
-                let message = format!("executable {name}: there is no node {node:?}; there are: {known}");
-                return Err(Failure::usage(message));
-            }
-            None if !is_program(&plan.program) => {
-                let program = &plan.program;
-                let message =
-                    format!("executable {name}: there is no program {program:?}, here or on the PATH");
-                return Err(Failure::usage(message));
-            }
-            _ => {}
-        }
-    }
-    Ok(())
+    let Some(plan) = plans.iter().find(|p| p.node.is_none() && !is_program(&p.program)) else {
+        return Ok(());
+    };
+    let NodePlan { name, program, .. } = plan;
+    Err(Failure::usage(format!("executable {name}: there is no program {program:?}, here or on the PATH")))
 }
 
 /// Whether a command of this name could be started: a path to an executable file, or the name of one on the PATH.
@@ -290,9 +276,9 @@ fn finish(
     if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
         missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
     }
-    let has = |node: &str| supervised.children.iter().any(|c| c.plan.is(node));
-    let unanswered = (has(topics::FABRIC.writer) && back.not_analysed > 0)
-        || (has(topics::MICROSTRUCTURE.writer) && back.not_inverted > 0);
+    let has = |node: NodeKind| supervised.children.iter().any(|c| c.plan.is(node));
+    let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
+        || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
     if !missing.is_empty() || unanswered {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);

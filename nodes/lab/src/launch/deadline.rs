@@ -1,8 +1,8 @@
 //! How long the end of a run waits for what is due.
 
-use super::debts::{INSTRUMENT, Standing};
+use super::debts::{Source, Standing};
 use super::patience::Patience;
-use super::supervisor::{INVERSION, PROBE};
+use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
@@ -30,11 +30,12 @@ impl Deadline {
             }
             Standing::Measured(node) => {
                 let message = format!(
-                    "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
+                    "what {node} measured of the last packing was not inverted: see logs/{}.log",
+                    NodeKind::EmtInversion
                 );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
-            Standing::Open(INSTRUMENT) => {
+            Standing::Open(Source::Instrument) => {
                 let message = "a program that the launch file lists sent wave speeds of other packings, and none of the last";
                 (INSTRUMENT_WITHIN, Exit::DataLoss, message.to_owned())
             }
@@ -49,7 +50,10 @@ impl Deadline {
 }
 
 /// What a node did not find of a packing, and where it says why.
-pub(super) fn nothing(node: &str) -> String {
-    let data = if node == PROBE { "wave speeds" } else { "stiffness" };
-    format!("{data} to invert: see logs/{node}.log")
+pub(super) fn nothing(source: Source) -> String {
+    let data = match source {
+        Source::Node(NodeKind::AcousticProbe) => "wave speeds",
+        _ => "stiffness",
+    };
+    format!("{data} to invert: see logs/{source}.log")
 }

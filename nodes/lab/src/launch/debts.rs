@@ -1,19 +1,36 @@
 //! What the run still owes of its last packing: one microstructure from every kind of data that its nodes measure.
 
 use super::plan::NodePlan;
+use crate::nodes::NodeKind;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
+use std::fmt;
 
-/// Stands for the programs of a launch file that are not ours.
-pub(crate) const INSTRUMENT: &str = "instrument";
+/// Who measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A node of ours.
+    Node(NodeKind),
+    /// The programs of a launch file that are not ours.
+    Instrument,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Node(node) => write!(f, "{node}"),
+            Self::Instrument => f.write_str("instrument"),
+        }
+    }
+}
 
 /// One kind of data, by the topic that carries it.
 #[derive(Debug)]
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Node that writes it.
-    node: &'static str,
+    /// Who writes it.
+    source: Source,
     measured: BTreeSet<u64>,
     /// Step and place of the inversion.
     inverted: BTreeSet<(u64, u8)>,
@@ -21,9 +38,9 @@ struct Kind {
 }
 
 impl Kind {
-    fn new(topic: &'static str, node: &'static str) -> Self {
+    fn new(topic: &'static str, source: Source) -> Self {
         let (measured, inverted, declined) = Default::default();
-        Self { topic, node, measured, inverted, declined }
+        Self { topic, source, measured, inverted, declined }
     }
 }
 
@@ -33,13 +50,13 @@ pub(crate) enum Standing {
     /// Every kind of data is inverted.
     Complete,
     /// Nothing is to come any more, and this node found nothing to invert.
-    Declined(&'static str),
+    Declined(Source),
     /// This node measured a structure, and nothing that could be inverted has come.
-    Bare(&'static str),
+    Bare(Source),
     /// What is there is not inverted yet; this node measured it.
-    Measured(&'static str),
+    Measured(Source),
     /// This node has not measured it yet.
-    Open(&'static str),
+    Open(Source),
 }
 
 /// What is known of every kind of data.
@@ -59,19 +76,14 @@ impl Debts {
     /// Of the nodes that a run has. A microstructure from the moduli is owed even where nobody measures any: who launches
     /// without analyzer and probe gets to know that nothing is inferred.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
-        let kind = |topic: &grainlab_msgs::Topic| Kind::new(topic.name, topic.writer);
-        let has = |node: &str| plans.iter().any(|p| p.is(node));
-        let mut kinds = Vec::new();
-        let (moduli, speeds) = (kind(&topics::MODULI), kind(&topics::WAVE_SPEEDS));
-        let probe = has(speeds.node);
-        if has(moduli.node) || !probe {
-            kinds.push(moduli);
+        let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
+        let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
+        let mut kinds: Vec<Kind> = NodeKind::all().filter(|node| has(*node)).filter_map(kind).collect();
+        if kinds.is_empty() {
+            kinds.extend(kind(NodeKind::FabricAnalyzer));
         }
-        if probe {
-            kinds.push(speeds);
-        }
-        let inversions = plans.iter().filter(|p| p.is(topics::MICROSTRUCTURE.writer)).count().max(1);
-        let instruments = !probe && plans.iter().any(|p| p.node.is_none());
+        let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
+        let instruments = !has(NodeKind::AcousticProbe) && plans.iter().any(|p| p.node.is_none());
         Self { kinds, inversions, instruments, structures: BTreeSet::new() }
     }
 
@@ -85,7 +97,7 @@ impl Debts {
         // Step 0 is of no packing.
         let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
         if instrument && self.of_topic(topic).next().is_none() {
-            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
+            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
         }
         self.of_topic(topic).for_each(|k| {
             k.measured.insert(step);
@@ -119,20 +131,21 @@ impl Debts {
     pub(crate) fn standing(&self, step: u64) -> Standing {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
         // A program that is gone sends nothing more.
-        let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
+        let never =
+            |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.measured.contains(&step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
         let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
         if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
-            return Standing::Open(open.node);
+            return Standing::Open(open.source);
         }
         if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
-            return Standing::Bare(bare.node);
+            return Standing::Bare(bare.source);
         }
         if let Some(measured) = due().next() {
-            return Standing::Measured(measured.node);
+            return Standing::Measured(measured.source);
         }
-        owed().next().map_or(Standing::Complete, |k| Standing::Declined(k.node))
+        owed().next().map_or(Standing::Complete, |k| Standing::Declined(k.source))
     }
 }
 
@@ -140,13 +153,13 @@ impl Debts {
 mod tests {
     use super::*;
 
-    const ANALYZER: &str = "fabric_analyzer";
-    const PROBE: &str = "acoustic_probe";
+    const ANALYZER: Source = Source::Node(NodeKind::FabricAnalyzer);
+    const PROBE: Source = Source::Node(NodeKind::AcousticProbe);
 
-    fn debts(nodes: &[&str]) -> Debts {
-        let plan = |node: &&str| NodePlan {
-            name: (*node).to_owned(),
-            node: Some((*node).to_owned()),
+    fn debts(nodes: &[NodeKind]) -> Debts {
+        let plan = |node: &NodeKind| NodePlan {
+            name: node.to_string(),
+            node: Some(*node),
             program: "grainlab".to_owned(),
             arguments: Vec::new(),
             respawn: false,
@@ -163,7 +176,7 @@ mod tests {
             arguments: Vec::new(),
             respawn: false,
         };
-        let ours = NodePlan { node: Some(ANALYZER.to_owned()), ..foreign.clone() };
+        let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = Debts::of(&[ours, foreign]);
         for step in [7, 9] {
             d.measured("moduli", step);
@@ -172,9 +185,9 @@ mod tests {
         d.measured("wave_speeds", 0);
         assert_eq!(d.standing(9), Standing::Complete, "speeds of no packing");
         d.measured("wave_speeds", 7);
-        assert_eq!(d.standing(9), Standing::Open(INSTRUMENT));
+        assert_eq!(d.standing(9), Standing::Open(Source::Instrument));
         d.measured("wave_speeds", 9);
-        assert_eq!(d.standing(9), Standing::Measured(INSTRUMENT));
+        assert_eq!(d.standing(9), Standing::Measured(Source::Instrument));
         d.inverted("wave_speeds", 9, 2);
         assert_eq!(d.standing(9), Standing::Complete);
         assert_eq!(d.standing(11), Standing::Open(ANALYZER));
@@ -186,7 +199,7 @@ mod tests {
 
     #[test]
     fn with_a_probe_both_kinds_of_data_must_be_inverted() {
-        let mut d = debts(&[ANALYZER, PROBE]);
+        let mut d = debts(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         assert_eq!(d.standing(7), Standing::Open(ANALYZER));
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
@@ -201,20 +214,20 @@ mod tests {
 
     #[test]
     fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
-        let mut d = debts(&[ANALYZER]);
+        let mut d = debts(&[NodeKind::FabricAnalyzer]);
         d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.standing(7), Standing::Open(ANALYZER));
         d.inverted("moduli", 7, 2);
         assert_eq!(d.standing(7), Standing::Complete);
         assert_eq!(debts(&[]).standing(7), Standing::Open(ANALYZER));
-        let mut d = debts(&[PROBE]);
+        let mut d = debts(&[NodeKind::AcousticProbe]);
         d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.standing(7), Standing::Complete);
     }
 
     #[test]
     fn a_probe_that_declines_is_not_waited_for() {
-        let mut d = debts(&[ANALYZER, PROBE]);
+        let mut d = debts(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         d.declined("wave_speeds", 7);
         d.measured("moduli", 7);
         assert_eq!(d.standing(7), Standing::Measured(ANALYZER));
@@ -223,7 +236,7 @@ mod tests {
     }
     #[test]
     fn every_inversion_of_the_run_is_waited_for() {
-        let mut d = debts(&[ANALYZER, "emt_inversion", "emt_inversion"]);
+        let mut d = debts(&[NodeKind::FabricAnalyzer, NodeKind::EmtInversion, NodeKind::EmtInversion]);
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
         d.inverted("moduli", 7, 2);
@@ -234,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
-        let mut d = debts(&[ANALYZER]);
+        let mut d = debts(&[NodeKind::FabricAnalyzer]);
         d.structure(7);
         assert_eq!(d.standing(7), Standing::Bare(ANALYZER));
         d.measured("moduli", 7);

@@ -3,12 +3,13 @@
 use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
-use super::debts::{Debts, Standing};
+use super::debts::{Debts, Source, Standing};
 use super::patience::Patience;
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::stopped::Stopped;
 use super::watch::{Event, Watch};
+use crate::nodes::NodeKind;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;
@@ -40,13 +41,12 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 const SEARCHING: &str = "its processes have not found each other";
 
 /// The node whose end is the end of the record.
-pub(super) const RECORDER: &str = "recorder";
+const RECORDER: NodeKind = NodeKind::Recorder;
 /// The node that goes on from its last packing when it dies.
-const SIMULATOR: &str = "dem_simulator";
-/// The node that sends waves.
-pub(super) const PROBE: &str = "acoustic_probe";
-/// The node that infers.
-pub(super) const INVERSION: &str = "emt_inversion";
+const SIMULATOR: NodeKind = NodeKind::DemSimulator;
+
+/// The last packing is being measured by the probe, or waits for it.
+const PROBED: Standing = Standing::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// A run from its first process to its last.
 pub(crate) struct Supervisor {
@@ -159,7 +159,7 @@ impl Supervisor {
         if self.end_all(exit, &mut events, &watch).await {
             exit = Exit::Interrupted;
         }
-        let code = |node: &str| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
+        let code = |node: NodeKind| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
         if code(RECORDER) != Some(0) {
             // Data loss is in the table; anything else only the recorder can tell.
             if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
@@ -238,7 +238,7 @@ impl Supervisor {
                 }
                 standing => {
                     // Bursts through a long path take as long as they take; who is at work is waited for.
-                    let at_work = std::mem::take(&mut self.probing) && standing == Standing::Open(PROBE);
+                    let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         deadline = Some(Deadline::of(standing));
                     }
@@ -361,13 +361,13 @@ impl Supervisor {
     async fn on_end(&mut self, ended: &Ended) -> Option<Exit> {
         let how = self.note_end(ended);
         let child = &self.children[ended.index];
-        let (name, node, code) = (child.plan.name.clone(), child.plan.node.clone(), child.code);
+        let (name, node, code) = (child.plan.name.clone(), child.plan.node, child.code);
         let meant = code.and_then(Exit::from_code);
         let Some(node) = node else { return self.on_foreign_end(ended.index, &how).await };
         if node == SIMULATOR && self.finished.is_some() && code == Some(0) {
             return None;
         }
-        let exit = match (node.as_str(), meant) {
+        let exit = match (node, meant) {
             (_, Some(Exit::Usage)) => Exit::Usage,
             (RECORDER, _) => Exit::DataLoss,
             (SIMULATOR, Some(Exit::PhysicsInvalid)) => Exit::PhysicsInvalid,

@@ -5,6 +5,7 @@
 
 use super::order::Order;
 use super::{conduct, domain};
+use crate::nodes::NodeKind;
 use crate::results::last_packing;
 use grainlab_console::scenes;
 use grainlab_console::{Failure, Format};
@@ -37,9 +38,11 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
         }
         let path = serde_json::Value::from(directory.to_string_lossy());
         for plan in &mut plans {
-            let given = match plan.node.as_deref() {
-                Some("recorder") => "append:=true".to_owned(),
-                Some("dem_simulator") if last_packing::count(&directory) > 0 => format!("resume:={path}"),
+            let given = match plan.node {
+                Some(NodeKind::Recorder) => "append:=true".to_owned(),
+                Some(NodeKind::DemSimulator) if last_packing::count(&directory) > 0 => {
+                    format!("resume:={path}")
+                }
                 _ => continue,
             };
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
