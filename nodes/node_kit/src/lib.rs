@@ -5,6 +5,7 @@
 //! - [`dds`]: the bus over DDS; [`memory`]: the bus in memory, with virtual time and faults, for tests
 //! - [`identity`]: which run a process belongs to; [`admission`]: whose samples it takes
 //! - [`node`]: a node as a state machine; [`run`]: running it as a process
+//! - [`PackingNode`]: the template of a node that turns packings into results
 //! - [`diagnostics`]: what a process reports of itself; [`peers`]: who lives; [`watchdog`]: whether DDS lives
 //! - [`args`], [`names`], [`parameters`]: the ROS 2 command line, names and remaps, parameters
 //! - [`pingpong`]: the bare exchange, to measure
@@ -22,6 +23,7 @@ pub mod logging;
 pub mod memory;
 pub mod names;
 pub mod node;
+mod packing_node;
 pub mod parameters;
 pub mod peers;
 pub mod pingpong;
@@ -44,6 +46,7 @@ pub use identity::{Identity, RunId, Scope};
 pub use memory::{Faults, Hub, MemoryBus};
 pub use names::Names;
 pub use node::{Health, Level, Next, Node, NodeError};
+pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{ParameterSpec, ParameterValue, Parameters, Range};
 pub use peers::{Life, PeerWatch, Peers};
 pub use run::{NodeSpec, drive, run_node};
