@@ -1,10 +1,11 @@
 //! `grainlab bench lockstep`: what one exchange costs.
 
+mod role;
 mod round;
 
-use clap::ValueEnum;
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_node_kit::Exit;
+use role::Role;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
@@ -33,19 +34,6 @@ pub struct Args {
     /// One process of the measurement
     #[arg(long, value_enum, hide = true)]
     role: Option<Role>,
-}
-
-/// What one process of the measurement does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Role {
-    /// Asks, over our bus.
-    Ping,
-    /// Answers, over our bus.
-    Pong,
-    /// Asks, over bare ros2-client.
-    BarePing,
-    /// Answers, over bare ros2-client.
-    BarePong,
 }
 
 /// Median and 99th percentile of the duration of an exchange.

@@ -1,7 +1,8 @@
 //! The Pareto front as SVG: time against error, both logarithmic.
 
 use super::knobs::Knob;
-use super::report::{Report, Row};
+use super::report::Report;
+use super::row::Row;
 use crate::plot::{AXES, Axis, COLOURS, axes, begin, escaped, text};
 use clap::ValueEnum;
 use std::fmt::Write;

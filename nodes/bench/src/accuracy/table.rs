@@ -1,6 +1,7 @@
 //! Rows as a table for people and as CSV.
 
-use super::report::{Differences, Report, Row};
+use super::report::Report;
+use super::row::{Differences, Row};
 use super::statistics::{Estimate, Observables};
 use grainlab_console::{Table, exact, fixed};
 

@@ -1,6 +1,6 @@
 //! What the rows say about the default, in words.
 
-use super::report::Row;
+use super::row::Row;
 use super::statistics::{Estimate, Observables};
 
 /// CPU times of one run scatter by this much on a shared machine; a smaller gain is none.

@@ -1,7 +1,7 @@
 //! Each way to measure, timed and compared with the stiffness of the frozen network.
 
+use super::args::{Args, Method};
 use super::report::{Error, Row};
-use super::{Args, Method};
 use crate::cpu_time::process_seconds;
 use grainlab_acoustics::flight::{self, Pick};
 use grainlab_acoustics::{AcousticsError, Measurement, Settings, Way, dispersion, measure, standing};

@@ -1,6 +1,6 @@
 //! What noisy speeds tell of a microstructure, beside the analyzer's moduli: both through the inversion as the node does it.
 
-use super::Args;
+use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};

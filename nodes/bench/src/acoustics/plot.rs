@@ -1,6 +1,6 @@
 //! Time against error as SVG: a colour a method, hollow what is only stated.
 
-use super::Method;
+use super::args::Method;
 use super::report::Report;
 use crate::plot::{AXES, Axis, COLOURS, axes, begin, circle, text};
 use clap::ValueEnum;

@@ -1,6 +1,6 @@
 //! Rows as JSON, as a table, as CSV.
 
-use super::Method;
+use super::args::Method;
 use crate::numbers::rounded;
 use grainlab_console::{Table, exact};
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! What a seed makes of a run.
 
+use super::forgery::Forgery;
 use super::process::Kind;
-use super::stranger::Forgery;
 use grainlab_node_kit::Faults;
 use grainlab_node_kit::memory::Dice;
 use std::time::Duration;

@@ -1,51 +1,14 @@
 //! Who is not of the run: publishes what the run publishes, otherwise.
 
+use super::forgery::Forgery;
 use super::plan;
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
-use grainlab_msgs::{Message, Topic, from_cdr, to_cdr, topics};
+use grainlab_msgs::{Message, from_cdr, to_cdr};
 use grainlab_node_kit::identity::run_of;
 use grainlab_node_kit::memory::Dice;
 use grainlab_node_kit::{
     Bus, BusError, Demand, Hub, Identity, MemoryBus, Names, PublisherId, RunId, Sample, SubscriptionId,
 };
-
-/// What is forged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Forgery {
-    StrainRate,
-    Stress,
-    Packing,
-    Moduli,
-    Microstructure,
-    Finished,
-    Failed,
-    Garbage,
-}
-
-impl Forgery {
-    pub(super) const ALL: [Forgery; 8] = [
-        Forgery::StrainRate,
-        Forgery::Stress,
-        Forgery::Packing,
-        Forgery::Moduli,
-        Forgery::Microstructure,
-        Forgery::Finished,
-        Forgery::Failed,
-        Forgery::Garbage,
-    ];
-
-    fn topics(self) -> (Topic, Topic) {
-        match self {
-            Forgery::StrainRate => (topics::STRESS, topics::STRAIN_RATE),
-            Forgery::Stress => (topics::STRESS, topics::STRESS),
-            Forgery::Packing => (topics::PACKING, topics::PACKING),
-            Forgery::Moduli => (topics::MODULI, topics::MODULI),
-            Forgery::Microstructure => (topics::MODULI, topics::MICROSTRUCTURE),
-            Forgery::Finished | Forgery::Failed => (topics::STRESS, topics::RUN_STATE),
-            Forgery::Garbage => (topics::STRESS, topics::STRAIN_RATE),
-        }
-    }
-}
 
 /// One stranger on its bus.
 pub(super) struct Stranger {

@@ -1,6 +1,6 @@
 //! One round: its processes.
 
-use super::Role;
+use super::role::Role;
 use grainlab_console::network::{FreeDomain, bus_in};
 use grainlab_console::{Failure, print};
 use grainlab_node_kit::{Exit, Network, pingpong};

@@ -1,7 +1,7 @@
 //! Every method on one packing.
 
+use super::args::{Args, CONVERGED, Method};
 use super::report::{Error, Row};
-use super::{Args, CONVERGED, Method};
 use crate::cpu_time::thread_seconds;
 use crate::numbers::median;
 use grainlab_console::{Failure, say};

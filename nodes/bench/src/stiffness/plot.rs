@@ -1,6 +1,6 @@
 //! Time against error as SVG: a colour a method, a shape a size.
 
-use super::Method;
+use super::args::Method;
 use super::report::{Report, Row};
 use crate::plot::{AXES, Axis, COLOURS, axes, begin, escaped, text};
 use clap::ValueEnum;
