@@ -1,12 +1,9 @@
 //! What a request asks, and which answers it allows.
 
-use grainlab_core::ComponentControl;
+use grainlab_core::{ComponentControl, SymTensor};
 use grainlab_dem::Request;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
-
-/// Names of the components, in Voigt order.
-const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// Rounding that a servo in another language may add, relative.
 const ROUNDING: f64 = 1e-9;
@@ -46,7 +43,8 @@ impl Question {
     /// rate imposed where one is. Only a component with a stress target is the servo's to choose.
     pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
         let limit = self.rate_limit;
-        for ((component, control), found) in COMPONENTS.into_iter().zip(&self.controls).zip(*rate) {
+        for ((component, control), found) in SymTensor::COMPONENTS.into_iter().zip(&self.controls).zip(*rate)
+        {
             if found.abs() > limit * (1.0 + ROUNDING) {
                 return Err(Violation::Limit { component, found, limit });
             }
