@@ -3,7 +3,7 @@
 //! A bench is one file with an `Args` and a `run`, and a variant of [`Command`].
 //!
 //! - `accuracy`, `acoustics`, `dem`, `faults`, `lockstep`, `stiffness`: the benches
-//! - `packing`: what is measured on; `cpu_time`: by which clock; `numbers`, `plot`, `folder`: reports
+//! - `packing`: what is measured on; `cpu_time`: by which clock; `numbers`, `folder`: reports
 
 mod accuracy;
 mod acoustics;
@@ -14,7 +14,6 @@ mod folder;
 mod lockstep;
 mod numbers;
 mod packing;
-mod plot;
 mod stiffness;
 
 use clap::Subcommand;

@@ -1,115 +1,68 @@
-//! The Pareto front as SVG: time against error, both logarithmic.
+//! The Pareto front: time against error, both logarithmic.
 
 use super::knobs::Knob;
 use super::report::Report;
 use super::row::Row;
-use crate::plot::{AXES, Axis, COLOURS, axes, begin, escaped, text};
 use clap::ValueEnum;
-use std::fmt::Write;
+use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 
-/// A point that can be drawn: a logarithm needs positive numbers.
-struct Point<'a> {
-    row: &'a Row,
-    seconds: f64,
-    error: f64,
+/// What the marks mean.
+const NOTES: [&str; 4] = [
+    "red star: the default",
+    "filled: an error is resolved",
+    "hollow: no more than a bound",
+    "grey line: Pareto front",
+];
+
+/// The plot; each point says in its tooltip what it is.
+pub(crate) fn svg(report: &Report) -> String {
+    let drawn = |row: &&Row| point(row).is_some();
+    let knobs: Vec<Knob> = (Knob::value_variants().iter().copied())
+        .filter(|knob| report.rows.iter().filter(drawn).any(|r| r.knob == *knob))
+        .collect();
+    // The default comes last, on top of its neighbours; one star for all knobs, as it is the same run.
+    let (defaults, others): (Vec<&Row>, Vec<&Row>) = report.rows.iter().partition(|r| r.default);
+    let one = |row: &Row, marker: Marker| Series {
+        colour: Some(row.knob as usize),
+        marker: Some(marker),
+        // Filled where an error is resolved; hollow where the point is but a bound.
+        hollow: marker == Marker::Circle && !row.resolved.array().contains(&Some(true)),
+        line: None,
+        points: point(row).into_iter().collect(),
+    };
+    let mut series = vec![front(report)];
+    series.extend(others.into_iter().map(|row| one(row, Marker::Circle)));
+    series.extend(defaults.into_iter().map(|row| one(row, Marker::Star)));
+    let colour = |knob: &Knob| Entry::Shape(Marker::Circle, Some(*knob as usize), false, knob.name());
+    let notes = NOTES.map(|note| Entry::Note(note.to_owned()));
+    Figure {
+        title: format!("{}: CPU time against error, {} seeds", report.scene, report.seeds.len()),
+        subtitle: "error: five observables over their scatter from seed to seed; 1 is as wrong as one packing is by chance"
+            .into(),
+        x: Axis::log("CPU time of a run, s"),
+        y: Axis::log("combined error"),
+        series,
+        legend: knobs.iter().map(colour).chain([Entry::Gap]).chain(notes).collect(),
+    }
+    .svg(Theme::Light)
 }
 
-/// The plot; each point says in its title what it is.
-pub(crate) fn svg(report: &Report) -> String {
-    let point = |row| -> Option<Point<'_>> {
-        let row: &Row = row;
-        let positive = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
-        Some(Point { row, seconds: positive(row.seconds)?, error: positive(row.combined)? })
-    };
-    let points: Vec<Point<'_>> = report.rows.iter().filter_map(point).collect();
-    let x = Axis::horizontal(points.iter().map(|p| p.seconds));
-    let y = Axis::vertical(points.iter().map(|p| p.error));
-    let mut svg = begin(
-        &format!("{}: CPU time against error, {} seeds", report.scene, report.seeds.len()),
-        "error: five observables over their scatter from seed to seed; 1 is as wrong as one packing is by chance",
-    );
-    axes(&mut svg, (&x, "CPU time of a run, s"), (&y, "combined error"));
-    front_line(&mut svg, &points, &x, &y);
-    // The default comes last, on top of its neighbours.
-    for default in [false, true] {
-        for p in points.iter().filter(|p| p.row.default == default) {
-            marker(&mut svg, p, x.at(p.seconds), y.at(p.error));
-        }
-    }
-    legend(&mut svg, &points);
-    svg += "</svg>\n";
-    svg
+/// `None` without a time and an error.
+fn point(row: &Row) -> Option<Point> {
+    let positive = |v: Option<f64>| v.filter(|v| *v > 0.0 && v.is_finite());
+    let (seconds, error) = (positive(row.seconds)?, positive(row.combined)?);
+    let what = format!("{} = {}: {seconds:.2} s, error {error:.2}", row.knob.name(), row.value);
+    let (tooltip, label) =
+        if row.default { (format!("default ({what})"), None) } else { (what, Some(row.value.to_string())) };
+    Some(Point { tooltip: Some(tooltip), label, ..Point::at(seconds, error) })
 }
 
 /// Steps along the front: between two of its points the faster one is the best there is.
-fn front_line(svg: &mut String, points: &[Point<'_>], x: &Axis, y: &Axis) {
-    let mut on: Vec<&Point<'_>> = points.iter().filter(|p| p.row.on_front).collect();
-    on.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    let Some(first) = on.first() else { return };
-    let mut path = format!("M {:.1} {:.1}", x.at(first.seconds), y.at(first.error));
-    for p in &on[1..] {
-        let _ = write!(path, " H {:.1} V {:.1}", x.at(p.seconds), y.at(p.error));
-    }
-    let _ = writeln!(svg, "<path d=\"{path}\" fill=\"none\" stroke=\"#999\" stroke-width=\"1.5\"/>");
-}
-
-fn marker(svg: &mut String, p: &Point<'_>, x: f64, y: f64) {
-    let row = p.row;
-    let label = escaped(&format!("{} = {}", row.knob.name(), row.value));
-    let title = format!("{label}: {:.2} s, error {:.2}", p.seconds, p.error);
-    if row.default {
-        // One star for all knobs: it is the same run.
-        let corner = |k: usize| {
-            let (angle, r) =
-                (std::f64::consts::PI * k as f64 / 5.0, if k.is_multiple_of(2) { 11.0 } else { 4.5 });
-            format!("{:.1},{:.1}", x + r * angle.sin(), y - r * angle.cos())
-        };
-        let corners: Vec<String> = (0..10).map(corner).collect();
-        let _ = writeln!(
-            svg,
-            "<polygon points=\"{}\" fill=\"#e00\" stroke=\"white\"><title>default ({title})</title></polygon>",
-            corners.join(" ")
-        );
-        return;
-    }
-    // Filled where an error is resolved; hollow where the point is but a bound.
-    let known = row.resolved.array().contains(&Some(true));
-    let colour = COLOURS[row.knob as usize % COLOURS.len()];
-    let fill = if known { colour } else { "white" };
-    let _ = writeln!(
-        svg,
-        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.8\"><title>{title}</title></circle>"
-    );
-    // Near the right edge a label goes to the left of its point, off the legend.
-    let (beside, anchor) = if x < AXES[1] - 100.0 { (x + 8.0, "start") } else { (x - 8.0, "end") };
-    text(
-        svg,
-        beside,
-        y - 6.0,
-        anchor,
-        &format!("font-size=\"10\" fill=\"{colour}\""),
-        &row.value.to_string(),
-    );
-}
-
-fn legend(svg: &mut String, points: &[Point<'_>]) {
-    let (x, mut y) = (AXES[1] + 30.0, AXES[2] + 10.0);
-    for knob in Knob::value_variants().iter().filter(|k| points.iter().any(|p| p.row.knob == **k)) {
-        let colour = COLOURS[*knob as usize % COLOURS.len()];
-        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{colour}\"/>", y - 4.0);
-        text(svg, x + 14.0, y, "start", "", &knob.name());
-        y += 20.0;
-    }
-    let explained = [
-        "red star: the default",
-        "filled: an error is resolved",
-        "hollow: no more than a bound",
-        "grey line: Pareto front",
-    ];
-    for explanation in explained {
-        y += 18.0;
-        text(svg, x - 5.0, y, "start", "fill=\"#555\"", explanation);
-    }
+fn front(report: &Report) -> Series {
+    let on = report.rows.iter().filter(|r| r.on_front).filter_map(point);
+    let mut points: Vec<Point> = on.map(|p| Point::at(p.x, p.y)).collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    Series { line: Some(Line::Steps), points, ..Series::default() }
 }
 
 #[cfg(test)]
@@ -118,10 +71,6 @@ mod tests {
 
     #[test]
     fn every_knob_has_a_colour_of_its_own() {
-        let mut colours: Vec<&str> =
-            Knob::value_variants().iter().map(|k| COLOURS[*k as usize % COLOURS.len()]).collect();
-        colours.sort_unstable();
-        colours.dedup();
-        assert_eq!(colours.len(), Knob::value_variants().len());
+        assert!(Knob::value_variants().len() <= Series::COLOURS);
     }
 }

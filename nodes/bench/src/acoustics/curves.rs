@@ -1,9 +1,9 @@
 //! Dispersion as SVG: how much slower than long waves the shorter ones are, and the law of the extrapolation.
 
-use crate::plot::{AXES, Axis, COLOURS, axes, begin, circle, line, text};
 use grainlab_acoustics::curve::Point;
 use grainlab_acoustics::{Curve, Modes, Ray, Survey, dispersion, standing};
 use grainlab_console::Failure;
+use grainlab_console::plot::{self, Axis, Entry, Figure, Line, Marker, Series, Theme};
 use grainlab_core::{Packing, Vec3};
 use grainlab_node_kit::Exit;
 use std::f64::consts::TAU;
@@ -45,38 +45,37 @@ fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<Point>> {
 }
 
 fn draw(laws: &[Curve], seen: &[Vec<Point>], rung: &[Curve], diameter: f64) -> String {
-    let slower = |law: &Curve, points: &[Point]| -> Vec<[f64; 2]> {
-        let of = |p: &Point| [TAU / (p.wavenumber * diameter), 1.0 - (p.speed / law.speed).powi(2)];
-        points.iter().map(of).filter(|[_, y]| *y > 0.0).collect()
-    };
-    let points: Vec<_> = laws.iter().zip(seen).map(|(law, seen)| slower(law, seen)).collect();
-    let rings: Vec<_> = laws.iter().zip(rung).map(|(law, rung)| slower(law, &rung.points)).collect();
-    let all = || points.iter().chain(&rings).flatten();
-    let (x, y) = (Axis::horizontal(all().map(|p| p[0])), Axis::vertical(all().map(|p| p[1])));
-    let mut svg = begin(
-        "Dispersion of a packing: how much slower shorter waves are",
-        "full: modes of the frozen network; hollow: standing waves of moving grains; lines: b q^2, taken from 160 to 320 diameters",
-    );
-    axes(&mut svg, (&x, "wavelength, mean grain diameters"), (&y, "1 - v^2/v0^2"));
-    let ends = [SHOWN[0], SHOWN[SHOWN.len() - 1]];
+    let (mut series, mut legend) = (Vec::new(), Vec::new());
     for (k, law) in laws.iter().enumerate() {
-        let colour = COLOURS[k % COLOURS.len()];
-        let bent = |wavelength: f64| law.bend * (TAU / (wavelength * diameter)).powi(2);
-        if law.bend > 0.0 {
-            let [from, to] = ends.map(|w| [x.at(w), y.at(bent(w))]);
-            line(&mut svg, [from[0], from[1], to[0], to[1]], colour);
-        }
         let name = NAMES.get(k).copied().unwrap_or("mode");
-        for (set, fill) in [(&points[k], colour), (rings.get(k).unwrap_or(&points[k]), "white")] {
-            for [wavelength, slower] in set {
-                let title = format!("{name}: {wavelength:.1} diameters, {slower:.2e}");
-                circle(&mut svg, [x.at(*wavelength), y.at(*slower)], (colour, fill), &title);
-            }
-        }
-        let at = AXES[2] + 10.0 + 20.0 * k as f64;
-        circle(&mut svg, [AXES[1] + 36.0, at - 4.0], (colour, colour), "");
+        let slower = |points: &[Point], hollow: bool| {
+            let of = |p: &Point| {
+                let wavelength = TAU / (p.wavenumber * diameter);
+                let slower = 1.0 - (p.speed / law.speed).powi(2);
+                let tooltip = format!("{name}: {wavelength:.1} diameters, {slower:.2e}");
+                plot::Point { tooltip: Some(tooltip), ..plot::Point::at(wavelength, slower) }
+            };
+            let points = points.iter().map(of).collect();
+            Series { colour: Some(k), marker: Some(Marker::Circle), hollow, line: None, points }
+        };
+        let bent =
+            |wavelength: f64| plot::Point::at(wavelength, law.bend * (TAU / (wavelength * diameter)).powi(2));
+        let points = [SHOWN[0], SHOWN[SHOWN.len() - 1]].map(bent).into();
+        series.push(Series { colour: Some(k), line: Some(Line::Straight), points, ..Series::default() });
+        series.extend(seen.get(k).map(|seen| slower(seen, false)));
+        series.extend(rung.get(k).map(|rung| slower(&rung.points, true)));
         let bend = law.bend / (diameter * diameter);
-        text(&mut svg, AXES[1] + 50.0, at, "start", "", &format!("{name}: b = {bend:.2} D^2"));
+        legend.push(Entry::Shape(Marker::Circle, Some(k), false, format!("{name}: b = {bend:.2} D^2")));
     }
-    svg + "</svg>\n"
+    Figure {
+        title: "Dispersion of a packing: how much slower shorter waves are".into(),
+        subtitle:
+            "full: modes of the frozen network; hollow: standing waves of moving grains; lines: b q^2, taken from 160 to 320 diameters"
+                .into(),
+        x: Axis::log("wavelength, mean grain diameters"),
+        y: Axis::log("1 - v^2/v0^2"),
+        series,
+        legend,
+    }
+    .svg(Theme::Light)
 }

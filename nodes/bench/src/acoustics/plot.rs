@@ -1,40 +1,54 @@
-//! Time against error as SVG: a colour a method, hollow what is only stated.
+//! Time against error: a colour for each method, hollow what is only stated.
 
 use super::args::Method;
-use super::report::Report;
-use crate::plot::{AXES, Axis, COLOURS, axes, begin, circle, text};
+use super::report::{Report, Row};
 use clap::ValueEnum;
+use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series, Theme};
 
-/// The plot; each point says in its title what it is.
+/// The plot; each point says in its tooltip what it is.
 pub(super) fn svg(report: &Report) -> String {
-    let drawn: Vec<_> = report.rows.iter().filter_map(|r| Some((r, r.error.rms?, r.error.stated?))).collect();
-    let x = Axis::horizontal(drawn.iter().map(|(r, ..)| r.seconds));
-    let y = Axis::vertical(drawn.iter().flat_map(|(_, rms, stated)| [*rms, *stated]));
-    let mut svg = begin(
-        "Wave speeds of a packing: CPU time against error",
-        "error of rho v^2 against the frozen network: found, root mean square (full), and stated (hollow)",
+    let methods: Vec<Method> = (Method::value_variants().iter().copied())
+        .filter(|m| report.rows.iter().any(|r| r.method == *m && errors(r).is_some()))
+        .collect();
+    let series = |method: &Method, stated: bool| {
+        let rows = report.rows.iter().filter(|r| r.method == *method);
+        Series {
+            colour: Some(*method as usize),
+            marker: Some(Marker::Circle),
+            hollow: stated,
+            line: None,
+            points: rows.filter_map(|row| point(row, stated)).collect(),
+        }
+    };
+    Figure {
+        title: "Wave speeds of a packing: CPU time against error".into(),
+        subtitle:
+            "error of rho v^2 against the frozen network: found, root mean square (full), and stated (hollow)"
+                .into(),
+        x: Axis::log("CPU time of all speeds, s"),
+        y: Axis::log("relative error of rho v^2"),
+        series: methods.iter().flat_map(|m| [true, false].map(|stated| series(m, stated))).collect(),
+        legend: (methods.iter())
+            .map(|m| Entry::Shape(Marker::Circle, Some(*m as usize), false, m.name().to_owned()))
+            .collect(),
+    }
+    .svg(Theme::Light)
+}
+
+/// Found and stated, where both are known.
+fn errors(row: &Row) -> Option<(f64, f64)> {
+    Some((row.error.rms?, row.error.stated?))
+}
+
+fn point(row: &Row, stated: bool) -> Option<Point> {
+    let (rms, of_method) = errors(row)?;
+    let (what, error) = if stated { ("stated", of_method) } else { ("found", rms) };
+    let value = row.value.map_or(String::new(), |v| format!(" {v:e}"));
+    let tooltip = format!(
+        "{}{value}, {} speeds: {:.2} s, {what} {error:.1e}",
+        row.method.name(),
+        row.speeds,
+        row.seconds
     );
-    axes(&mut svg, (&x, "CPU time of all speeds, s"), (&y, "relative error of rho v^2"));
-    for (row, rms, stated) in &drawn {
-        let colour = COLOURS[row.method as usize];
-        let value = row.value.map_or(String::new(), |v| format!(" {v:e}"));
-        let title = |what: &str, error: f64| {
-            format!(
-                "{}{value}, {} speeds: {:.2} s, {what} {error:.1e}",
-                row.method.name(),
-                row.speeds,
-                row.seconds
-            )
-        };
-        circle(&mut svg, [x.at(row.seconds), y.at(*stated)], (colour, "white"), &title("stated", *stated));
-        circle(&mut svg, [x.at(row.seconds), y.at(*rms)], (colour, colour), &title("found", *rms));
-    }
-    let mut at = AXES[2] + 10.0;
-    for method in Method::value_variants().iter().filter(|m| drawn.iter().any(|(r, ..)| r.method == **m)) {
-        let colour = COLOURS[*method as usize];
-        circle(&mut svg, [AXES[1] + 36.0, at - 4.0], (colour, colour), "");
-        text(&mut svg, AXES[1] + 50.0, at, "start", "", method.name());
-        at += 20.0;
-    }
-    svg + "</svg>\n"
+    Some(Point { tooltip: Some(tooltip), ..Point::at(row.seconds, error) })
 }
