@@ -90,7 +90,7 @@ struct Row {
     operations_per_contact: f64,
     /// What the contacts need of what the cores in use could do of independent additions and multiplications.
     share_of_peak: Option<f64>,
-    /// Memory that the engine holds; null where the system does not tell.
+    /// Memory that the engine holds; null where the system does not report it.
     bytes_per_grain: Option<f64>,
 }
 

@@ -5,7 +5,7 @@
 //! undisturbed run, or to an error. A seed decides everything, so that a run that fails can be looked at again.
 //!
 //! - `plan`: what a seed makes of a run; `laboratory`: the processes and who restarts them
-//! - `process`: one process; `recorder`: what is recorded; `stranger`, `forgery`: who is not of the run, and what it says
+//! - `process`: one process; `recorder`: what is recorded; `stranger`, `forgery`: a process that is not part of the run, and what it forges
 
 mod forgery;
 mod laboratory;

@@ -9,7 +9,7 @@ pub(super) fn ready(folder: Option<&Path>) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::failed(format!("{}: {e}", folder.display())))
 }
 
-/// Writes one of its files, and says so.
+/// Writes one of its files and reports its path on stderr.
 pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
     let path = folder.join(name);
     std::fs::write(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;

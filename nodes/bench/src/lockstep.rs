@@ -114,7 +114,7 @@ fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
     }
 }
 
-/// Nearest ranks. Not a number without a measurement, which is printed as none.
+/// Nearest ranks; NaN without a measurement, which is printed as missing.
 fn percentiles(micros: &[f64]) -> Microseconds {
     let mut sorted = micros.to_vec();
     sorted.sort_by(f64::total_cmp);

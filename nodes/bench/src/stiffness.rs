@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 /// Copies of the packing along each axis. Contacts are those of the overlaps.
 fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
     let (cell, centres) =
-        repeated(packing, copies).ok_or_else(|| Failure::failed("the repeated cell is none"))?;
+        repeated(packing, copies).ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;
     let largest = packing.radii.iter().copied().fold(0.0, f64::max);
     let setting = Setting {
         friction: packing.friction,

@@ -30,7 +30,7 @@ pub fn bus_as(domain: u16, name: &str, identity: Identity) -> Result<DdsBus, Fai
     DdsBus::join(network, names, identity).map_err(Failure::failed)
 }
 
-/// A DDS domain that nobody on this host used when it was taken, kept from other launchers as long as this lives.
+/// A DDS domain without participants on this host, locked against other launchers until this is dropped.
 #[derive(Debug)]
 pub struct FreeDomain {
     /// Its id.

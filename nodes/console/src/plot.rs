@@ -1,5 +1,5 @@
 //! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
-//! dark. Each point can say in a tooltip what it is.
+//! dark. Points can have tooltips.
 //!
 //! - [`Figure`]: what is drawn; [`Theme`]: on which paper
 //! - `axis`: from values to places, and the marks of an axis

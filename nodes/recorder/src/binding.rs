@@ -15,7 +15,7 @@ const COUNTED: usize = 64;
 const OF_SIMULATOR: [Topic; 5] =
     [topics::STRESS, topics::PACKING, topics::RUN_STATE, topics::CLOCK, topics::TF_STATIC];
 
-/// Topics of which anyone's messages are kept: they tell of processes and not of the run.
+/// Topics of which the messages of every process are kept: they are about processes and not about the run.
 const OF_ANYONE: [Topic; 2] = [topics::DIAGNOSTICS, topics::ROSOUT];
 
 fn is_among(topic: &Topic, list: &[Topic]) -> bool {
@@ -43,7 +43,7 @@ pub(crate) struct Binding {
 }
 
 impl Binding {
-    /// Whether a message belongs to the run; `present` tells the writers of a topic that are there.
+    /// Whether a message belongs to the run; `present` gives the writers of a topic that are present.
     pub(crate) fn takes(
         &mut self,
         topic: &Topic,

@@ -46,7 +46,7 @@ const STALLED: Duration = Duration::from_secs(2);
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
 
-/// Where the recorder leaves what it finished, for whoever started it.
+/// The recording that a recorder finished, for the code that started it.
 pub type ResultSlot = Rc<RefCell<Option<Finished>>>;
 
 type Participant = [u8; 12];
@@ -327,13 +327,13 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
     let mut goodbye = false;
     for report in Report::from_message(&message) {
-        // A replayed report speaks of writers that are not there.
+        // A replayed report is about writers that do not exist.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
         goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
-            // Topics that are not recorded owe nothing.
+            // Of topics that are not recorded nothing is missing.
             if recorded.contains(&published.topic) {
                 writer.ledger_mut().report(&published.topic, guid, published.count);
             }
@@ -365,7 +365,7 @@ impl Node for Recorder {
             .with("missing", lost)
     }
 
-    /// Finishes the file. What this process itself says after that, it cannot record.
+    /// Finishes the file. What this process publishes after that is not recorded.
     fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
         self.last_call(bus)?;
         let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));

@@ -6,8 +6,10 @@ use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Keys of the metadata record of a recording.
+/// Key of the metadata record of a recording under which the processes beside the run stand.
 pub const STRANGERS: &str = "strangers";
+
+/// Key of the metadata record of a recording under which the writers of the results stand.
 pub const AUTHORS: &str = "authors";
 
 /// A process whose messages were left out of a run.

@@ -61,7 +61,7 @@ pub(crate) struct Setting {
     pub(crate) scene: Scene,
 }
 
-/// What the end of a run says about its servo: what the gain of Eq. 1 has to be chosen from.
+/// The state of the servo at the end of a run, from which the gain of Eq. 1 is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Servoed {
     /// Tangent stiffness of a normal component, Pa.

@@ -14,7 +14,7 @@ const NOTES: [&str; 4] = [
     "grey line: Pareto front",
 ];
 
-/// The plot; each point says in its tooltip what it is.
+/// The plot as SVG; each point has a tooltip.
 pub(crate) fn svg(report: &Report) -> String {
     let drawn = |row: &&Row| point(row).is_some();
     let knobs: Vec<Knob> = (Knob::value_variants().iter().copied())

@@ -16,7 +16,7 @@ pub(crate) struct Report {
     pub(crate) seeds: Vec<u64>,
     pub(crate) reference: Reference,
     pub(crate) rows: Vec<Row>,
-    /// What the rows say about the default.
+    /// The conclusions about the default.
     pub(crate) verdict: Vec<String>,
     pub(crate) notes: [&'static str; 4],
 }

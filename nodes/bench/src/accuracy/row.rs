@@ -32,15 +32,15 @@ pub(crate) struct Row {
     /// Seeds at which the run came to its end.
     pub(crate) runs: usize,
     pub(crate) warnings: Vec<String>,
-    /// The errors with what they are known to.
+    /// The errors with their standard errors.
     #[serde(skip)]
     pub(crate) errors: Differences,
-    /// The changes from the default with what they are known to.
+    /// The changes from the default with their standard errors.
     #[serde(skip)]
     pub(crate) changes: Differences,
 }
 
-/// Five differences, or none where too few runs ended.
+/// Five differences; `None` where too few runs ended.
 pub(crate) type Differences = Option<Observables<Estimate>>;
 
 impl Row {
@@ -78,7 +78,7 @@ fn of<T: Copy>(differences: Differences, part: impl Fn(Estimate) -> T) -> Observ
     differences.map_or(Observables::from_array([None; 5]), |d| d.map(|e| Some(part(e))))
 }
 
-/// What the runs that came to their end led to.
+/// A value of each run that ended without an error.
 pub(crate) fn finished<T>(sample: &Sample, part: impl Fn(&Outcome) -> T) -> Vec<T> {
     sample.iter().filter_map(|r| r.as_ref().ok()).map(part).collect()
 }

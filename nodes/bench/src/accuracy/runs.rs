@@ -14,7 +14,7 @@ pub(crate) struct Job<'a> {
 }
 
 /// What each job led to, in the order of the jobs. A run never leaves the thread it began on, so that the thread's CPU
-/// time is the run's. `done` hears of each run that ended.
+/// time is the run's. `done` is called after each run.
 pub(crate) fn all(jobs: &[Job<'_>], threads: usize, done: impl Fn() + Sync) -> Vec<Result<Outcome, String>> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<Result<Outcome, String>>>> =

@@ -1,8 +1,7 @@
-//! What differences over seeds say, and what they do not.
+//! Differences between settings, averaged over seeds, with their standard errors.
 //!
-//! Packings diverge from any perturbation, however small, so that one run with a setting changed tells the setting's
-//! effect and the luck of the run together. The mean over seeds of the differences tells them apart, to within its
-//! standard error.
+//! Packings diverge after any perturbation, however small, so the difference between two single runs contains the effect of
+//! the setting and chance. The mean of the differences over seeds has the effect alone, to within its standard error.
 
 use serde::Serialize;
 

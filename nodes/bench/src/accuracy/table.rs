@@ -8,7 +8,7 @@ use grainlab_console::{Table, exact, fixed};
 /// Digits behind the point of k, eps, phi, g12, theta.
 const DIGITS: [usize; 5] = [3, 4, 5, 4, 4];
 
-/// Two tables, errors and changes, with what they mean and what they say.
+/// Two tables, errors and changes, with their notes and the conclusions.
 pub(crate) fn text(report: &Report) -> String {
     let r = &report.reference;
     let mut text = format!(

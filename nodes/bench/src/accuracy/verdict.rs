@@ -1,9 +1,9 @@
-//! What the rows say about the default, in words.
+//! The conclusions about the default, in words.
 
 use super::row::Row;
 use super::statistics::{Estimate, Observables};
 
-/// CPU times of one run scatter by this much on a shared machine; a smaller gain is none.
+/// Relative scatter of the CPU time of a run on a shared machine; smaller gains do not count.
 const TIME_NOISE: f64 = 0.05;
 
 /// The default's place, what could replace it, and one sentence for each setting that changes something for sure or

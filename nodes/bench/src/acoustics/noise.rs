@@ -1,4 +1,4 @@
-//! What noisy speeds tell of a microstructure, beside the analyzer's moduli: both through the inversion as the node does it.
+//! Microstructure inferred from noisy speeds and from the analyzer's moduli, both by the inversion of the node.
 
 use super::args::Args;
 use crate::packing::load_all;
@@ -13,7 +13,7 @@ use grainlab_node_kit::Exit;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The model that is asked: the one that needs no γ/Δ and knows what packings scatter by.
+/// The model of the inversion: it needs no γ/Δ and includes the scatter between packings.
 const MODEL: &str = "relaxed";
 
 /// Half the width of a 95 % interval, standard deviations.

@@ -5,7 +5,7 @@ use super::report::{Report, Row};
 use clap::ValueEnum;
 use grainlab_console::plot::{Axis, Entry, Figure, Marker, Point, Series, Theme};
 
-/// The plot; each point says in its tooltip what it is.
+/// The plot as SVG; each point has a tooltip.
 pub(super) fn svg(report: &Report) -> String {
     let methods: Vec<Method> = (Method::value_variants().iter().copied())
         .filter(|m| report.rows.iter().any(|r| r.method == *m && errors(r).is_some()))

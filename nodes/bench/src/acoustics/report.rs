@@ -33,7 +33,7 @@ pub(super) struct Row {
     pub(super) seconds: f64,
     pub(super) wall_seconds: f64,
     pub(super) error: Error,
-    /// Why there is no result, or what is to be known of it.
+    /// Why there is no result, or the warnings of the measurement.
     pub(super) failure: Option<String>,
 }
 

@@ -65,7 +65,7 @@ fn processor(cpuinfo: &str) -> String {
     model.and_then(|l| Some(l.split_once(':')?.1.trim().to_owned())).unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// Memory of this process in use, bytes; `None` where the system does not tell.
+/// Memory of this process in use, bytes; `None` where the system does not report it.
 pub(crate) fn resident_bytes() -> Option<f64> {
     #[cfg(target_env = "gnu")]
     // SAFETY: no pointers are involved; what is freed already goes back to the system.

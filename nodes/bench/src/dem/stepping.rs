@@ -180,7 +180,7 @@ pub(crate) fn run(packings: &Packings, case: &Case) -> Result<Loop, Failure> {
     let packing = packings.of(case.features);
     let compute = Compute::new(case.simd, case.threads as usize).map_err(Failure::usage)?;
     let (cell, centres) =
-        repeated(packing, case.copies).ok_or_else(|| Failure::failed("the repeated cell is none"))?;
+        repeated(packing, case.copies).ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;
     let radii = packing.radii.repeat((case.copies as usize).pow(3));
     let before = super::machine::resident_bytes();
     let mut engine = Engine::new(cell, packing.material, radii, &centres, setting(case.features, packing));

@@ -16,10 +16,10 @@ const LIMIT: Duration = Duration::from_secs(3600);
 /// Steps of processes within which it has to.
 const STEPS: u64 = 2_000_000;
 
-/// What still arrives belongs to the record.
+/// Time for messages on their way to arrive.
 const LAST_CALL: Duration = Duration::from_secs(2);
 
-/// Restarts of the simulator after one packing. One crash more ends the run, as in the launcher.
+/// Restarts of the simulator after one packing. The next crash ends the run, as in the launcher.
 const DEATHS: usize = 3;
 
 /// What a run came to.
@@ -27,9 +27,9 @@ const DEATHS: usize = 3;
 pub(super) enum Outcome {
     /// The path is done, and its last packing is inverted.
     Finished(Box<Record>),
-    /// It ended with an error, which a user is told.
+    /// It ended with an error that is reported to the user.
     Failed(String),
-    /// Nothing moves any more, or for ever.
+    /// No process has anything left to do, or the run does not end.
     Stuck(String),
 }
 

@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Something that happens at a moment of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
-    /// A process dies, and is there again after this time where somebody restarts it.
+    /// A process crashes, and is started again after this time.
     Crash(Kind, Duration),
     /// A process is stopped for this time, while messages for it arrive.
     Stop(Kind, Duration),
@@ -24,9 +24,9 @@ pub(super) enum Event {
 pub(super) struct Stranger {
     /// What it forges.
     pub(super) forgery: Forgery,
-    /// It says that it belongs to another run; else to none.
+    /// It claims to belong to another run; else to no run.
     pub(super) of_a_run: bool,
-    /// Share of the messages heard that it forges.
+    /// Share of the messages received that it forges.
     pub(super) share: f64,
 }
 

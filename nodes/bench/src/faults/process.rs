@@ -1,4 +1,4 @@
-//! One process of the run, which may die and be there again.
+//! One process of the run, which may crash and be started again.
 
 use super::recorder::{MemoryRecorder, Record};
 use grainlab_dem_simulator::DemSimulator;
@@ -45,13 +45,13 @@ impl Kind {
 /// A node at work on its bus.
 pub(super) struct Process {
     pub(super) kind: Kind,
-    /// `None` while it is dead.
+    /// `None` between a crash and the restart.
     pub(super) alive: Option<(Box<dyn Node>, MemoryBus)>,
     /// When it wants its next step at the latest.
     pub(super) due: Duration,
     /// It takes no step before this time.
     pub(super) stopped_until: Duration,
-    /// When it is started again, if it is dead and somebody does that.
+    /// When it is started again after a crash.
     pub(super) restart_at: Option<Duration>,
     pub(super) ended: Option<Exit>,
 }
@@ -78,7 +78,7 @@ impl Process {
         Ok(process)
     }
 
-    /// Starts its node, anew where it was there before. A simulator goes on from the last packing recorded.
+    /// Starts its node, also again. A simulator continues from the last packing recorded.
     pub(super) fn begin(&mut self, with: &Start) -> Result<(), NodeError> {
         let names = Names::new(self.kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
         let mut bus = with.hub.bus_as(names, Identity::member_of(with.run, self.kind.member()));

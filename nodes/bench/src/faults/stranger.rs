@@ -1,4 +1,4 @@
-//! Who is not of the run: publishes what the run publishes, otherwise.
+//! A process that is not part of the run and publishes forged messages on its topics.
 
 use super::forgery::Forgery;
 use super::plan;
@@ -50,7 +50,7 @@ impl Stranger {
         self.bus.publish_about(self.output, body, about).map(drop)
     }
 
-    /// Forges a share of what it heard; true if it heard anything.
+    /// Forges a share of the messages received; true if any arrived.
     pub(super) fn step(&mut self) -> Result<bool, BusError> {
         let mut heard = false;
         while let Some(sample) = self.bus.take(self.input)? {

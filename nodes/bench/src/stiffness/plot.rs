@@ -8,7 +8,7 @@ use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, T
 /// Errors below are rounding, and drawn here.
 const ROUNDING: f64 = 1e-16;
 
-/// The plot; each point says in its tooltip what it is.
+/// The plot as SVG; each point has a tooltip.
 pub(super) fn svg(report: &Report) -> String {
     let sizes = sizes(report);
     let series = |size: &(bool, usize), method: &Method| {

@@ -1,4 +1,4 @@
-//! Rows and what they say about growth, as JSON, as a table, as CSV.
+//! Rows and the exponents of the CPU time, as JSON, as a table, as CSV.
 
 use super::args::Method;
 use crate::numbers::rounded;

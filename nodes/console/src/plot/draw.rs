@@ -115,8 +115,8 @@ impl Drawing {
 
     /// A point, with what its tooltip says.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
-        let colour = if key.marker == Marker::Star { "star" } else { &class(key.colour) };
-        let class = if key.hollow { format!("{colour} hollow") } else { format!("{colour} full") };
+        let colour = if key.marker == Marker::Star { "star".to_owned() } else { class(key.colour) };
+        let fill = if key.hollow { "hollow" } else { "full" };
         let title =
             if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
         let (element, shape) = match corners(key.marker) {
@@ -127,7 +127,7 @@ impl Drawing {
                 ("polygon", format!("points=\"{}\"", all.join(" ")))
             }
         };
-        let _ = writeln!(self.0, "<{element} {shape} class=\"{class}\">{title}</{element}>");
+        let _ = writeln!(self.0, "<{element} {shape} class=\"{colour} {fill}\">{title}</{element}>");
     }
 
     /// A small text whose left and bottom end is given.
