@@ -8,7 +8,6 @@ use syn::{Attribute, Item, ItemMod};
 pub type ModulePath = Vec<String>;
 
 /// One module: a file, or the root.
-#[derive(Debug)]
 pub struct Module {
     /// Its source file.
     pub file: PathBuf,
