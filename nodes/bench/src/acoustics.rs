@@ -7,7 +7,7 @@ mod noise;
 mod plot;
 mod report;
 
-pub use args::Args;
+pub(crate) use args::Args;
 
 use super::folder;
 use super::packing::load;

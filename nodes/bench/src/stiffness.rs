@@ -5,7 +5,7 @@ mod measure;
 mod plot;
 mod report;
 
-pub use args::Args;
+pub(crate) use args::Args;
 
 use super::folder;
 use super::packing::{copies, load, repeated};
