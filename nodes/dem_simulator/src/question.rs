@@ -1,14 +1,11 @@
 //! A request, and the answers that it allows.
 
-use grainlab_core::ComponentControl;
+use grainlab_core::{ComponentControl, SymTensor};
 use grainlab_dem::Request;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
 
-/// Names of the components, in Voigt order.
-const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
-
-/// Relative rounding error that a servo in another language may have.
+/// Rounding that a servo in another language may add, relative.
 const ROUNDING: f64 = 1e-9;
 
 /// The part of a request against which its answer is checked.
@@ -46,7 +43,8 @@ impl Question {
     /// rate. The servo chooses only the rates of components with a stress target.
     pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
         let limit = self.rate_limit;
-        for ((component, control), found) in COMPONENTS.into_iter().zip(&self.controls).zip(*rate) {
+        for ((component, control), found) in SymTensor::COMPONENTS.into_iter().zip(&self.controls).zip(*rate)
+        {
             if found.abs() > limit * (1.0 + ROUNDING) {
                 return Err(Violation::Limit { component, found, limit });
             }

@@ -1,8 +1,9 @@
 //! The command line, as typed.
 
-use crate::commands::{analyze, bag, bench, calibrate, invert, launch, probe, run};
-use crate::failure::Failure;
+use crate::commands::{analyze, bag, calibrate, invert, launch, probe, run};
 use clap::{Parser, Subcommand};
+use grainlab_bench as bench;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use std::process::ExitCode;
 
@@ -64,7 +65,7 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn report(failure: &Failure) -> Exit {
-    crate::output::say!("grainlab: {failure}");
+    grainlab_console::say!("grainlab: {failure}");
     failure.exit
 }
 

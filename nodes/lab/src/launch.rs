@@ -1,6 +1,5 @@
 //! The launcher: starts the processes of a launch file and supervises them until the run is done.
 //!
-//! - [`plan`]: launch files, the YAML form of ROS 2 launch; [`names`]: nodes that are treated specially
 //! - [`child`]: one process, which ends with the launcher
 //! - [`progress`]: a line for each phase
 //! - [`pending_results`]: results of the last packing that are still to come; [`deadline`]: how long they may take
@@ -11,7 +10,6 @@
 pub(crate) mod child;
 mod deadline;
 mod ending;
-mod names;
 mod patience;
 mod pending_results;
 pub(crate) mod plan;

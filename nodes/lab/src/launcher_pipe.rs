@@ -28,6 +28,6 @@ pub(crate) fn watch() {
     };
     // Without the thread the node runs without this protection.
     if let Err(error) = std::thread::Builder::new().name("launcher pipe".into()).spawn(wait) {
-        crate::output::say!("grainlab: no thread to watch the launcher: {error}");
+        grainlab_console::say!("grainlab: no thread to watch the launcher: {error}");
     }
 }

@@ -7,6 +7,7 @@
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
 //! - `identity`: the run of a process; `admission`: which samples a process accepts
 //! - `node`: a node as a state machine; `health`: its health; `run`: running it as a process
+//! - [`PackingNode`]: the template of nodes that turn packings into results
 //! - `diagnostics`: the heartbeat of a process; `peers`: which processes are alive; [`watchdog`]: whether DDS works
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
@@ -27,6 +28,7 @@ mod logging;
 mod memory;
 mod names;
 mod node;
+mod packing_node;
 mod parameters;
 mod peers;
 pub mod pingpong;
@@ -54,6 +56,7 @@ pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
 pub use names::{NameError, Names};
 pub use node::{Next, Node, NodeError};
+pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range};
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};

@@ -10,9 +10,8 @@ mod outlet;
 
 use super::packings::import::{self, in_range};
 use super::packings::{files, printer::Printer};
-use crate::failure::Failure;
-use crate::output::{Format, print};
 use crate::tape::Tape;
+use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;

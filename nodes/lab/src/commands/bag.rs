@@ -6,8 +6,8 @@ mod play;
 mod record;
 mod recover;
 
-use crate::failure::Failure;
 use clap::Subcommand;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
 /// Commands for recordings.

@@ -1,9 +1,8 @@
 //! `grainlab launch`: the main job.
 
-use crate::failure::Failure;
 use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
-use crate::output::Format;
-use crate::scenes::{self, SceneText};
+use grainlab_console::scenes::{self, SceneText};
+use grainlab_console::{Failure, Format};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::input;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
@@ -95,27 +94,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     conduct(plans, domain, lock, &directory, &scene, args.format)
 }
 
-/// Refuses a launch file that names an unknown node or program, before anything is started.
+/// Refuses a launch file that names an unknown program, before anything is started.
 fn refuse_unknown(plans: &[NodePlan]) -> Result<(), Failure> {
-    let known: Vec<&str> = crate::commands::run::nodes().iter().map(|n| n.name).collect();
-    for plan in plans {
-        let name = &plan.name;
-        match plan.node.as_deref() {
-            Some(node) if !known.contains(&node) => {
-                let known = known.join(", ");
-                let message = format!("executable {name}: there is no node {node:?}; there are: {known}");
-                return Err(Failure::usage(message));
-            }
-            None if !is_program(&plan.program) => {
-                let program = &plan.program;
-                let message =
-                    format!("executable {name}: there is no program {program:?}, here or on the PATH");
-                return Err(Failure::usage(message));
-            }
-            _ => {}
-        }
-    }
-    Ok(())
+    let Some(plan) = plans.iter().find(|p| p.node.is_none() && !is_program(&p.program)) else {
+        return Ok(());
+    };
+    let NodePlan { name, program, .. } = plan;
+    Err(Failure::usage(format!("executable {name}: there is no program {program:?}, here or on the PATH")))
 }
 
 /// Whether a command of this name could be started: a path to an executable file, or the name of one on the PATH.

@@ -2,7 +2,6 @@
 
 pub(crate) mod analyze;
 pub(crate) mod bag;
-pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod invert;
 pub(crate) mod launch;

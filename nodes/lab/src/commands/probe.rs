@@ -8,10 +8,9 @@ mod measure;
 mod outlet;
 
 use super::packings::{files, import, printer::Printer};
-use crate::failure::Failure;
-use crate::output::Format;
 use crate::tape::Tape;
 use flags::Flags;
+use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use measure::Probe;

@@ -2,8 +2,8 @@
 
 use super::Run;
 use super::plan::NodePlan;
-use crate::failure::Failure;
 use crate::launcher_pipe::VARIABLE;
+use grainlab_console::Failure;
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -109,7 +109,7 @@ impl Child {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
         let errors: Vec<&str> =
             text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
-        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| crate::output::say!("  {l}"));
+        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| grainlab_console::say!("  {l}"));
     }
 
     /// Sends `signal` if it runs.

@@ -1,8 +1,8 @@
 //! Time limits at the end of a run for its pending results.
 
-use super::names::{INSTRUMENT, INVERSION, PROBE};
 use super::patience::Patience;
-use super::pending_results::ResultState;
+use super::pending_results::{ResultState, Source};
+use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
@@ -31,11 +31,12 @@ impl Deadline {
             }
             ResultState::Measured(node) => {
                 let message = format!(
-                    "the result of {node} for the last packing was not inverted: see logs/{INVERSION}.log"
+                    "what {node} measured of the last packing was not inverted: see logs/{}.log",
+                    NodeKind::EmtInversion
                 );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
-            ResultState::Open(INSTRUMENT) => {
+            ResultState::Open(Source::Instrument) => {
                 let message = "a program that the launch file lists sent wave speeds of other packings, and none of the last";
                 (INSTRUMENT_WITHIN, Exit::DataLoss, message.to_owned())
             }
@@ -49,8 +50,11 @@ impl Deadline {
     }
 }
 
-/// Message about missing data of a node, with its log.
-pub(super) fn nothing(node: &str) -> String {
-    let data = if node == PROBE { "wave speeds" } else { "stiffness" };
-    format!("{data} to invert: see logs/{node}.log")
+/// What a node did not find of a packing, and where it says why.
+pub(super) fn nothing(source: Source) -> String {
+    let data = match source {
+        Source::Node(NodeKind::AcousticProbe) => "wave speeds",
+        _ => "stiffness",
+    };
+    format!("{data} to invert: see logs/{source}.log")
 }

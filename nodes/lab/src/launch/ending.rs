@@ -1,9 +1,9 @@
 //! Ends the processes of a run in order.
 
 use super::child::{Child, Ended};
-use super::names::RECORDER;
 use super::supervisor::Supervisor;
 use super::watch::{Event, Watch};
+use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
@@ -68,7 +68,7 @@ impl Supervisor {
 
     /// Whether an end still waits for this child.
     fn awaits(&self, child: &Child, ending: Ending) -> bool {
-        let recorder = child.plan.is(RECORDER);
+        let recorder = child.plan.is(NodeKind::Recorder);
         match (ending, child.pid) {
             (_, None) => false,
             (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),

@@ -1,17 +1,36 @@
 //! The pending results of the last packing: one microstructure for every kind of data that the run's nodes measure.
 
-use super::names::INSTRUMENT;
 use super::plan::NodePlan;
+use crate::nodes::NodeKind;
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
+use std::fmt;
 
-/// One kind of data, by its topic.
+/// Who measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A node of ours.
+    Node(NodeKind),
+    /// The programs of a launch file that are not ours.
+    Instrument,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Node(node) => write!(f, "{node}"),
+            Self::Instrument => f.write_str("instrument"),
+        }
+    }
+}
+
+/// One kind of data, by the topic that carries it.
 #[derive(Debug)]
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Node that publishes it.
-    node: &'static str,
+    /// Who writes it.
+    source: Source,
     measured: BTreeSet<u64>,
     /// Step of the packing, and member number of the inversion.
     inverted: BTreeSet<(u64, u8)>,
@@ -19,9 +38,9 @@ struct Kind {
 }
 
 impl Kind {
-    fn new(topic: &'static str, node: &'static str) -> Self {
+    fn new(topic: &'static str, source: Source) -> Self {
         let (measured, inverted, declined) = Default::default();
-        Self { topic, node, measured, inverted, declined }
+        Self { topic, source, measured, inverted, declined }
     }
 }
 
@@ -30,14 +49,14 @@ impl Kind {
 pub(crate) enum ResultState {
     /// Every kind of data is inverted.
     Complete,
-    /// No further result will come, and this node found nothing to invert.
-    Declined(&'static str),
-    /// This node measured a structure, and no data to invert have arrived.
-    Bare(&'static str),
-    /// The data of this node are not inverted yet.
-    Measured(&'static str),
-    /// This node has not measured the packing yet.
-    Open(&'static str),
+    /// Nothing is to come any more, and this node found nothing to invert.
+    Declined(Source),
+    /// This node measured a structure, and nothing that could be inverted has come.
+    Bare(Source),
+    /// What is there is not inverted yet; this node measured it.
+    Measured(Source),
+    /// This node has not measured it yet.
+    Open(Source),
 }
 
 /// The known results of every kind of data.
@@ -58,19 +77,14 @@ impl PendingResults {
     /// For the nodes of a run. A microstructure from the moduli is expected even without an analyzer: a user who
     /// launches without analyzer and probe is informed that nothing is inferred.
     pub(crate) fn of(plans: &[NodePlan]) -> Self {
-        let kind = |topic: &grainlab_msgs::Topic| Kind::new(topic.name, topic.writer);
-        let has = |node: &str| plans.iter().any(|p| p.is(node));
-        let mut kinds = Vec::new();
-        let (moduli, speeds) = (kind(&topics::MODULI), kind(&topics::WAVE_SPEEDS));
-        let probe = has(speeds.node);
-        if has(moduli.node) || !probe {
-            kinds.push(moduli);
+        let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
+        let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
+        let mut kinds: Vec<Kind> = NodeKind::all().filter(|node| has(*node)).filter_map(kind).collect();
+        if kinds.is_empty() {
+            kinds.extend(kind(NodeKind::FabricAnalyzer));
         }
-        if probe {
-            kinds.push(speeds);
-        }
-        let inversions = plans.iter().filter(|p| p.is(topics::MICROSTRUCTURE.writer)).count().max(1);
-        let instruments = !probe && plans.iter().any(|p| p.node.is_none());
+        let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
+        let instruments = !has(NodeKind::AcousticProbe) && plans.iter().any(|p| p.node.is_none());
         Self { kinds, inversions, instruments, structures: BTreeSet::new() }
     }
 
@@ -84,7 +98,7 @@ impl PendingResults {
         // Step 0 stands for no packing.
         let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
         if instrument && self.of_topic(topic).next().is_none() {
-            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, INSTRUMENT));
+            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
         }
         self.of_topic(topic).for_each(|k| {
             k.measured.insert(step);
@@ -117,21 +131,22 @@ impl PendingResults {
     /// The state of the results of the packing of `step`: that of the slowest one.
     pub(crate) fn state_of(&self, step: u64) -> ResultState {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
-        // A program that has ended publishes nothing more.
-        let never = |k: &Kind| k.node == INSTRUMENT && !self.instruments && !k.measured.contains(&step);
+        // A program that is gone sends nothing more.
+        let never =
+            |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.measured.contains(&step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
         let due = || owed().filter(|k| !k.declined.contains(&step));
         let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
         if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
-            return ResultState::Open(open.node);
+            return ResultState::Open(open.source);
         }
         if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
-            return ResultState::Bare(bare.node);
+            return ResultState::Bare(bare.source);
         }
         if let Some(measured) = due().next() {
-            return ResultState::Measured(measured.node);
+            return ResultState::Measured(measured.source);
         }
-        owed().next().map_or(ResultState::Complete, |k| ResultState::Declined(k.node))
+        owed().next().map_or(ResultState::Complete, |k| ResultState::Declined(k.source))
     }
 }
 
@@ -139,13 +154,13 @@ impl PendingResults {
 mod tests {
     use super::*;
 
-    const ANALYZER: &str = "fabric_analyzer";
-    const PROBE: &str = "acoustic_probe";
+    const ANALYZER: Source = Source::Node(NodeKind::FabricAnalyzer);
+    const PROBE: Source = Source::Node(NodeKind::AcousticProbe);
 
-    fn pending(nodes: &[&str]) -> PendingResults {
-        let plan = |node: &&str| NodePlan {
-            name: (*node).to_owned(),
-            node: Some((*node).to_owned()),
+    fn pending(nodes: &[NodeKind]) -> PendingResults {
+        let plan = |node: &NodeKind| NodePlan {
+            name: node.to_string(),
+            node: Some(*node),
             program: "grainlab".to_owned(),
             arguments: Vec::new(),
             respawn: false,
@@ -162,7 +177,7 @@ mod tests {
             arguments: Vec::new(),
             respawn: false,
         };
-        let ours = NodePlan { node: Some(ANALYZER.to_owned()), ..foreign.clone() };
+        let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
         let mut d = PendingResults::of(&[ours, foreign]);
         for step in [7, 9] {
             d.measured("moduli", step);
@@ -171,9 +186,9 @@ mod tests {
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
         d.measured("wave_speeds", 7);
-        assert_eq!(d.state_of(9), ResultState::Open(INSTRUMENT));
+        assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 9);
-        assert_eq!(d.state_of(9), ResultState::Measured(INSTRUMENT));
+        assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
         d.inverted("wave_speeds", 9, 2);
         assert_eq!(d.state_of(9), ResultState::Complete);
         assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
@@ -185,7 +200,7 @@ mod tests {
 
     #[test]
     fn with_a_probe_both_kinds_of_data_must_be_inverted() {
-        let mut d = pending(&[ANALYZER, PROBE]);
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
@@ -200,20 +215,20 @@ mod tests {
 
     #[test]
     fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
-        let mut d = pending(&[ANALYZER]);
+        let mut d = pending(&[NodeKind::FabricAnalyzer]);
         d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
         d.inverted("moduli", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Complete);
         assert_eq!(pending(&[]).state_of(7), ResultState::Open(ANALYZER));
-        let mut d = pending(&[PROBE]);
+        let mut d = pending(&[NodeKind::AcousticProbe]);
         d.inverted("wave_speeds", 7, 2);
         assert_eq!(d.state_of(7), ResultState::Complete);
     }
 
     #[test]
     fn a_probe_that_declines_is_not_waited_for() {
-        let mut d = pending(&[ANALYZER, PROBE]);
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
         d.declined("wave_speeds", 7);
         d.measured("moduli", 7);
         assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
@@ -222,7 +237,7 @@ mod tests {
     }
     #[test]
     fn every_inversion_of_the_run_is_waited_for() {
-        let mut d = pending(&[ANALYZER, "emt_inversion", "emt_inversion"]);
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::EmtInversion, NodeKind::EmtInversion]);
         d.measured("moduli", 7);
         d.inverted("moduli", 7, 2);
         d.inverted("moduli", 7, 2);
@@ -233,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
-        let mut d = pending(&[ANALYZER]);
+        let mut d = pending(&[NodeKind::FabricAnalyzer]);
         d.structure(7);
         assert_eq!(d.state_of(7), ResultState::Bare(ANALYZER));
         d.measured("moduli", 7);

@@ -1,5 +1,6 @@
 //! Launch files: the part of the YAML form of ROS 2 launch that starts processes: our nodes and other programs.
 
+use crate::nodes::{NodeKind, UnknownNode};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,6 +19,9 @@ pub(crate) enum PlanError {
     /// A `grainlab` command that does not run a node, or no command.
     #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
     Command { cmd: String },
+    /// A node that there is not.
+    #[error("executable {name}: there is {unknown}")]
+    Node { name: String, unknown: UnknownNode },
     /// A substitution other than `$(var NAME)`.
     #[error("`{text}`: only $(var NAME) is supported of the substitutions of ROS 2 launch")]
     Substitution { text: String },
@@ -41,8 +45,8 @@ pub(crate) enum PlanError {
     Twice(String),
     /// A required node is missing, or a node occurs too often.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
-    Count { node: &'static str, count: usize, allowed: &'static str },
-    /// More processes than member numbers.
+    Count { node: NodeKind, count: usize, allowed: &'static str },
+    /// More than a run has places for.
     #[error("the launch file starts {count} processes; a run has at most {most}")]
     Many { count: usize, most: usize },
 }
@@ -81,23 +85,14 @@ struct Executable {
 /// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
 
-/// Allowed numbers of each node in a run: two simulators, for example, would contradict each other.
-const COUNTS: [(&str, std::ops::RangeInclusive<usize>, &str); 5] = [
-    ("recorder", 1..=1, "one"),
-    ("dem_simulator", 1..=1, "one"),
-    ("servo_controller", 0..=1, "at most one"),
-    ("fabric_analyzer", 0..=1, "at most one"),
-    ("acoustic_probe", 0..=1, "at most one"),
-];
-
 /// One process to start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NodePlan {
     /// Name of the process and of its log.
     pub(crate) name: String,
-    /// The node; `None` for a third-party program.
-    pub(crate) node: Option<String>,
-    /// The program; for a node, this `grainlab`.
+    /// Which of our nodes; `None` for a program that is not ours.
+    pub(crate) node: Option<NodeKind>,
+    /// The program; of a node of ours, whatever `grainlab` this is.
     pub(crate) program: String,
     /// Its arguments; for a node: `run`, the node, its ROS arguments.
     pub(crate) arguments: Vec<String>,
@@ -106,15 +101,15 @@ pub(crate) struct NodePlan {
 }
 
 impl NodePlan {
-    /// Whether it is this node.
-    pub(crate) fn is(&self, node: &str) -> bool {
-        self.node.as_deref() == Some(node)
+    /// Whether it is this node of ours.
+    pub(crate) fn is(&self, node: NodeKind) -> bool {
+        self.node == Some(node)
     }
 
     /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
     pub(crate) fn do_not_look_around(&mut self) {
-        if self.is("dem_simulator") {
-            // After `run NODE`: a value of the launch file comes later and overrides it.
+        if self.is(NodeKind::DemSimulator) {
+            // Behind `run NODE`: a value of the launch file comes later and wins.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
         }
@@ -174,7 +169,8 @@ impl LaunchFile {
         if nodes.len() > PLACES {
             return Err(PlanError::Many { count: nodes.len(), most: PLACES });
         }
-        for (node, counts, allowed) in COUNTS {
+        for node in NodeKind::all() {
+            let (counts, allowed) = node.per_run();
             let count = nodes.iter().filter(|n| n.is(node)).count();
             if !counts.contains(&count) {
                 return Err(PlanError::Count { node, count, allowed });
@@ -188,8 +184,8 @@ impl Executable {
     fn plan(&self, variables: &BTreeMap<&str, String>) -> Result<NodePlan, PlanError> {
         let command = || PlanError::Command { cmd: self.cmd.clone() };
         let words = words(&self.cmd).ok_or_else(command)?;
-        let node = match words.as_slice() {
-            [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.clone()),
+        let named = match words.as_slice() {
+            [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.as_str()),
             [program, ..] if program != "grainlab" && !program.is_empty() => None,
             _ => return Err(command()),
         };
@@ -198,7 +194,7 @@ impl Executable {
             // Parameters of nodes are YAML, in which a path is quoted; a third-party program gets the plain path.
             let plain =
                 || serde_json::from_str(value).unwrap_or_else(|_| value.trim_matches('\'').to_owned());
-            Some(if node.is_some() { value.clone() } else { plain() })
+            Some(if named.is_some() { value.clone() } else { plain() })
         };
         let known = || variables.keys().copied().collect::<Vec<_>>().join(", ");
         let words: Vec<String> =
@@ -210,7 +206,7 @@ impl Executable {
             let stem = file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned());
             stem.to_ascii_lowercase().chars().map(|c| if plain(c) { c } else { '_' }).collect()
         };
-        let name = self.name.clone().or_else(|| node.clone()).unwrap_or_else(by_itself);
+        let name = self.name.clone().or_else(|| named.map(str::to_owned)).unwrap_or_else(by_itself);
         if name.is_empty() || !name.chars().all(plain) {
             return Err(PlanError::Name(name));
         }
@@ -229,6 +225,8 @@ impl Executable {
             Some("false" | "False") => false,
             Some(other) => return Err(refuse("respawn", other, "true or false")),
         };
+        let node = named.map(str::parse).transpose();
+        let node = node.map_err(|unknown| PlanError::Node { name: name.clone(), unknown })?;
         Ok(NodePlan { node, program, arguments, respawn, name })
     }
 }

@@ -25,7 +25,7 @@ impl Progress {
 
     /// Prints a line with the time.
     pub(crate) fn say(&self, text: &str) {
-        crate::output::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+        grainlab_console::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
     }
 
     /// Prints a line, at most once per interval.

@@ -3,14 +3,15 @@
 use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
-use super::names::{PROBE, RECORDER, SIMULATOR};
 use super::patience::Patience;
 use super::pending_results::{PendingResults, ResultState};
+use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::stopped::Stopped;
 use super::watch::{Event, Watch};
-use crate::failure::{Failure, worse};
+use crate::nodes::NodeKind;
+use grainlab_console::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -39,6 +40,14 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 
 /// The message while the simulator has published nothing.
 const SEARCHING: &str = "its processes have not found each other";
+
+/// The node whose end is the end of the record.
+const RECORDER: NodeKind = NodeKind::Recorder;
+/// The node that goes on from its last packing when it dies.
+const SIMULATOR: NodeKind = NodeKind::DemSimulator;
+
+/// The last packing is being measured by the probe, or waits for it.
+const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// A run from its first process to its last.
 pub(crate) struct Supervisor {
@@ -144,18 +153,18 @@ impl Supervisor {
             Ok(()) if self.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
-                crate::output::say!("grainlab: {failure}");
+                grainlab_console::say!("grainlab: {failure}");
                 failure.exit
             }
         };
         if self.end_all(exit, &mut events, &watch).await {
             exit = Exit::Interrupted;
         }
-        let code = |node: &str| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
+        let code = |node: NodeKind| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
         if code(RECORDER) != Some(0) {
             // Data loss is in the table; other errors are only in the recorder's log.
             if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
-                crate::output::say!("grainlab: {RECORDER} ended with exit code 1:");
+                grainlab_console::say!("grainlab: {RECORDER} ended with exit code 1:");
                 recorder.quote_log(&self.logs);
             }
             exit = worse(exit, Exit::DataLoss);
@@ -163,7 +172,7 @@ impl Supervisor {
         // A simulator that ended with an error fails the run, whatever was received before.
         let simulator = code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            crate::output::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
+            grainlab_console::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
             exit = simulator;
         }
         if self.foreign_failure {
@@ -210,7 +219,7 @@ impl Supervisor {
                     if let Some(late) = deadline.as_mut()
                         && late.patience.is_over(suspended)
                     {
-                        crate::output::say!("grainlab: {}", late.message);
+                        grainlab_console::say!("grainlab: {}", late.message);
                         return late.exit;
                     }
                     if !self.begun && beginning.is_over(suspended) {
@@ -222,15 +231,15 @@ impl Supervisor {
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
             let Some(step) = last else { return self.caught_up().await };
-            match self.pending.state_of(step) {
+            match self.debts.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
                 ResultState::Declined(node) => {
-                    crate::output::say!("grainlab: the last packing has no {}", nothing(node));
+                    grainlab_console::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
-                    // Waves through a long path may take long; a working probe is waited for.
-                    let at_work = std::mem::take(&mut self.probing) && standing == ResultState::Open(PROBE);
+                    // Bursts through a long path take as long as they take; who is at work is waited for.
+                    let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         deadline = Some(Deadline::of(standing));
                     }
@@ -303,10 +312,10 @@ impl Supervisor {
                 });
             }
             Event::Stranger(text) => {
-                crate::output::say!("grainlab: {text} and is not of this run: it is ignored")
+                grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
             }
             Event::Failed(message) => {
-                crate::output::say!("grainlab: the launcher lost the bus: {message}: the run ends");
+                grainlab_console::say!("grainlab: the launcher lost the bus: {message}: the run ends");
                 self.blind = true;
             }
         }
@@ -353,13 +362,13 @@ impl Supervisor {
     async fn on_end(&mut self, ended: &Ended) -> Option<Exit> {
         let how = self.note_end(ended);
         let child = &self.children[ended.index];
-        let (name, node, code) = (child.plan.name.clone(), child.plan.node.clone(), child.code);
+        let (name, node, code) = (child.plan.name.clone(), child.plan.node, child.code);
         let meant = code.and_then(Exit::from_code);
         let Some(node) = node else { return self.on_foreign_end(ended.index, &how).await };
         if node == SIMULATOR && self.finished.is_some() && code == Some(0) {
             return None;
         }
-        let exit = match (node.as_str(), meant) {
+        let exit = match (node, meant) {
             (_, Some(Exit::Usage)) => Exit::Usage,
             (RECORDER, _) => Exit::DataLoss,
             (SIMULATOR, Some(Exit::PhysicsInvalid)) => Exit::PhysicsInvalid,
@@ -369,7 +378,7 @@ impl Supervisor {
             _ => Exit::Failure,
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
-        crate::output::say!("grainlab: {name} {how}: {reason}");
+        grainlab_console::say!("grainlab: {name} {how}: {reason}");
         self.children[ended.index].quote_log(&self.logs);
         Some(exit)
     }
@@ -386,7 +395,7 @@ impl Supervisor {
         if child.code == Some(0) {
             self.progress.say(&format!("{} {how}", child.plan.name));
         } else {
-            crate::output::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
+            grainlab_console::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
             self.foreign_failure = true;
         }
         None
@@ -398,7 +407,7 @@ impl Supervisor {
         self.deaths.push(packings);
         // Three attempts ended at the same packing: the next one would, too.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
-            crate::output::say!(
+            grainlab_console::say!(
                 "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"
             );
             self.children[index].quote_log(&self.logs);
@@ -418,7 +427,7 @@ impl Supervisor {
         let now = Instant::now();
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
-            crate::output::say!(
+            grainlab_console::say!(
                 "grainlab: {name} {how}, {recent} times within {} s: given up",
                 RESTART_WINDOW.as_secs()
             );
@@ -434,7 +443,7 @@ impl Supervisor {
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
-            crate::output::say!("grainlab: {failure}");
+            grainlab_console::say!("grainlab: {failure}");
             failure.exit
         })
     }

@@ -1,16 +1,16 @@
 //! Passes the run's messages over DDS to the supervisor.
 
 use super::Run;
-use crate::failure::Failure;
-use crate::network::bus_as;
-use crate::results::strangers::name;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
+use grainlab_console::Failure;
+use grainlab_console::network::bus_as;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::member_of;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Identity, Report, Stranger, Subscription, watchdog};
+use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -3,7 +3,7 @@
 use super::acoustic::AcousticView;
 use super::state::State;
 use super::state_text::indented;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_core::{Stiffness, Vec3};
 
 /// What the speeds are, in a few words: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.

@@ -1,7 +1,7 @@
 //! What the models infer, as cells of a table or of a CSV.
 
 use super::inference::Inference;
-use crate::output::{Table, exact, fixed};
+use grainlab_console::{Table, exact, fixed};
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].

@@ -12,7 +12,6 @@ pub(crate) mod probed;
 pub(crate) mod read_back;
 pub(crate) mod state;
 pub(crate) mod state_text;
-pub(crate) mod strangers;
 pub(crate) mod structure;
 pub(crate) mod structure_csv;
 pub(crate) mod summary;

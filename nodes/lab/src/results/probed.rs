@@ -4,7 +4,7 @@ use super::acoustic::{self, AcousticView};
 use super::state::State;
 use super::state_text;
 use crate::commands::packings::printer::Printed;
-use crate::output::{Table, exact};
+use grainlab_console::{Table, exact};
 use serde::Serialize;
 
 /// What was measured on one packing.

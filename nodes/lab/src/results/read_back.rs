@@ -3,12 +3,12 @@
 use super::acoustic::AcousticView;
 use super::inference::Inference;
 use super::state::State;
-use super::strangers::{self, Authors, StrangerView};
 use grainlab_core::{Fabric, Moduli, Packing};
 use grainlab_msgs::boundary::{MicrostructureReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::Report;
+use grainlab_recorder::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};

@@ -4,7 +4,7 @@ use super::probe::{ProbeView, ScanView};
 use super::structure::StructureView;
 use super::structure_csv::{STRUCTURE, SYMMETRY, structure_cells, symmetry_cells};
 use super::symmetry::SymmetryView;
-use crate::output::{Table, exact};
+use grainlab_console::{Table, exact};
 use grainlab_core::{Anisotropy, Fabric, Moduli, Packing, Stiffness, SymTensor, Vec3};
 use grainlab_msgs::boundary::ModuliMethod;
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use super::state::State;
 use super::structure::StructureView;
 use super::symmetry::SymmetryView;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 
 /// The block of one state: structure in two lines, then the moduli, affine beside relaxed.
 pub(crate) fn text(s: &State) -> String {

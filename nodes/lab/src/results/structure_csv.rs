@@ -2,7 +2,7 @@
 
 use super::structure::StructureView;
 use super::symmetry::SymmetryView;
-use crate::output::exact;
+use grainlab_console::exact;
 
 /// Columns of the structure: what is one number.
 pub(crate) const STRUCTURE: [&str; 29] = [

@@ -1,8 +1,8 @@
 //! What a launched run came to, with the stable keys of `summary.json`.
 
 use super::read_back::{InvertedState, ReadBack};
-use super::strangers::StrangerView;
 use grainlab_node_kit::{Exit, Report};
+use grainlab_recorder::strangers::StrangerView;
 use grainlab_recordings::TopicTally;
 use serde::Serialize;
 

@@ -5,7 +5,7 @@ use super::inference::{Inference, warning_lines};
 use super::read_back::InvertedState;
 use super::state_text::{self, indented};
 use super::summary::Summary;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 

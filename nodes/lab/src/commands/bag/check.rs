@@ -1,7 +1,6 @@
 //! `grainlab bag check`.
 
-use crate::failure::Failure;
-use crate::output::{Format, Table, json, print, say};
+use grainlab_console::{Failure, Format, Table, json, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Check;
 use grainlab_recordings::Recording;

@@ -1,9 +1,8 @@
 //! `grainlab bag info`.
 
-use crate::failure::Failure;
-use crate::output::{Format, Table, json, print};
-use crate::results::strangers::{self, StrangerView};
+use grainlab_console::{Failure, Format, Table, json, print};
 use grainlab_node_kit::Exit;
+use grainlab_recorder::strangers::{self, StrangerView};
 use grainlab_recordings::Info;
 use grainlab_recordings::{METADATA_RECORD, Recording};
 use serde::Serialize;
@@ -35,7 +34,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     print(&text)?;
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 

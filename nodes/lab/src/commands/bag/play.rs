@@ -1,7 +1,7 @@
 //! `grainlab bag play`.
 
-use crate::failure::Failure;
-use crate::network::tool_bus;
+use grainlab_console::Failure;
+use grainlab_console::network::tool_bus;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, Exit, PublisherId, Wake};
 use grainlab_recordings::{Play, PlayOptions, Player, Recording};
@@ -118,7 +118,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
                 publishers.insert(name, publisher);
             }
             Err(reason) => {
-                crate::output::say!("grainlab: {name} is left out: {reason}");
+                grainlab_console::say!("grainlab: {name} is left out: {reason}");
                 options.exclude.push(name);
             }
         }
@@ -134,17 +134,17 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let acknowledged = bus.flush(FAREWELL);
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     if player.slipped() > Duration::from_millis(100) {
-        crate::output::say!(
+        grainlab_console::say!(
             "grainlab: the readers are slower than the recording: {:.1} s late in total",
             player.slipped().as_secs_f64()
         );
     }
     let Some(sent) = sent else { return Ok(Exit::Interrupted) };
-    crate::output::say!("grainlab: {sent} messages sent");
+    grainlab_console::say!("grainlab: {sent} messages sent");
     if !acknowledged {
-        crate::output::say!("grainlab: a reader has not acknowledged the last messages");
+        grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
     }
     Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
@@ -203,7 +203,7 @@ fn wait_for_readers(bus: &mut DdsBus, publishers: &Outlets, needed: usize, patie
             let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n < needed);
             let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
             if !lonely.is_empty() && !patience.is_zero() {
-                crate::output::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
+                grainlab_console::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
             }
             return true;
         }

@@ -1,10 +1,11 @@
 //! `grainlab bag record`.
 
-use crate::commands::run::record;
-use crate::failure::Failure;
-use crate::recorder::{self, Settings};
+use crate::commands::run::print_recorded;
+use crate::nodes::NodeKind;
+use grainlab_console::Failure;
 use grainlab_node_kit::NodeSpec;
-use grainlab_node_kit::{Exit, RosArgs, Scope};
+use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
+use grainlab_recorder::{Recorder, ResultSlot, Settings, contract_topics};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -38,13 +39,13 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
-        topics: recorder::contract_topics(&args.topics)?,
-        scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
+        topics: contract_topics(&args.topics)?,
+        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, None)).transpose()?,
         whole_run: false,
         append: false,
     };
     let spec = NodeSpec {
-        name: "recorder",
+        name: NodeKind::Recorder.name(),
         summary: "records topics to MCAP",
         scope: Scope::Everyone,
         parameters: Vec::new(),
@@ -53,5 +54,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(stranger) = plain.first() {
         return Err(Failure::usage(format!("unexpected argument {stranger:?}")));
     }
-    record(&spec, &ros, |_| Ok(settings))
+    let recorded = ResultSlot::default();
+    let exit = run_node(&spec, &ros, |bus, _| Ok(Box::new(Recorder::new(bus, &settings, recorded.clone())?)));
+    print_recorded(&recorded)?;
+    Ok(exit)
 }

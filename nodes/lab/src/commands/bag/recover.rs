@@ -1,7 +1,6 @@
 //! `grainlab bag recover`.
 
-use crate::failure::Failure;
-use crate::output::{print, say};
+use grainlab_console::{Failure, print, say};
 use grainlab_node_kit::Exit;
 use std::path::PathBuf;
 

@@ -1,8 +1,7 @@
 //! From the rows of a table to the packings that a calibration is learned from.
 
 use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
-use crate::failure::Failure;
-use crate::output::say;
+use grainlab_console::{Failure, say};
 use grainlab_core::Material;
 use grainlab_emt::{CalibrationSample, Modulus};
 use std::path::Path;

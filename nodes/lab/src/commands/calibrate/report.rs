@@ -1,6 +1,6 @@
 //! A calibration for people.
 
-use crate::output::Table;
+use grainlab_console::Table;
 use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
 use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Quantity};
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! Calibrations by name.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model};
 use grainlab_recordings::input;
 use std::path::Path;

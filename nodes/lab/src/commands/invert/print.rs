@@ -3,9 +3,8 @@
 use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
-use crate::failure::Failure;
-use crate::output::{Table, exact, json, push_csv};
 use crate::results::inference::{self, Inference};
+use grainlab_console::{Failure, Table, exact, json, push_csv};
 
 /// What turns answers into text.
 pub(super) struct Printer<'a> {

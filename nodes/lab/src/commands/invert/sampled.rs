@@ -3,8 +3,9 @@
 use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
-use crate::output::{Table, fixed};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, MonteCarlo, Quantity, SamplingSettings, monte_carlo};
+use grainlab_console::{Table, fixed};
+use grainlab_emt::SamplingSettings;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, MonteCarlo, Quantity, monte_carlo};
 use rayon::prelude::*;
 use serde::Serialize;
 

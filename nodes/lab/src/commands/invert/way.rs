@@ -1,7 +1,7 @@
 //! The ways in which each state is inverted: a model, its constants, and the γ/Δ that it is fed with.
 
 use super::calibrations::Choice;
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model, StrainRatioSource};
 use std::sync::Arc;
 

@@ -2,13 +2,13 @@
 
 use super::finish::finish;
 use super::order;
-use crate::failure::Failure;
 use crate::launch::Run;
 use crate::launch::plan::NodePlan;
 use crate::launch::supervisor::{Supervised, Supervisor};
-use crate::network::FreeDomain;
-use crate::output::Format;
-use crate::scenes::SceneText;
+use grainlab_console::Failure;
+use grainlab_console::Format;
+use grainlab_console::network::FreeDomain;
+use grainlab_console::scenes::SceneText;
 use grainlab_node_kit::{Exit, Network, RunId};
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub(super) fn conduct(
 ) -> Result<Exit, Failure> {
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     let run = Run { id: RunId::fresh(), domain };
-    crate::output::say!(
+    grainlab_console::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
         scene.scene.name,
         scene.scene.seed,

@@ -1,16 +1,16 @@
 //! The result of a run, read back from its recording.
 
-use crate::failure::{Failure, worse};
 use crate::launch::Run;
 use crate::launch::supervisor::{Heard, Supervised};
-use crate::output::{Format, json, print};
+use crate::nodes::NodeKind;
 use crate::results::continuity;
 use crate::results::read_back::{self, ReadBack};
 use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
-use crate::scenes::SceneText;
-use grainlab_msgs::topics;
+use grainlab_console::scenes::SceneText;
+use grainlab_console::{Failure, worse};
+use grainlab_console::{Format, json, print};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use std::path::Path;
@@ -53,9 +53,9 @@ pub(super) fn finish(
     if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
         missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
     }
-    let has = |node: &str| supervised.children.iter().any(|c| c.plan.is(node));
-    let unanswered = (has(topics::FABRIC.writer) && back.not_analysed > 0)
-        || (has(topics::MICROSTRUCTURE.writer) && back.not_inverted > 0);
+    let has = |node: NodeKind| supervised.children.iter().any(|c| c.plan.is(node));
+    let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
+        || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
     if !missing.is_empty() || unanswered {
         exit = worse(exit, Exit::DataLoss);
         back.complaints.extend(missing);
@@ -79,8 +79,8 @@ pub(super) fn finish(
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
-    summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
     // Printed before writing, so that a full disk does not lose the result.
     let printed = print(&match format {
@@ -92,7 +92,7 @@ pub(super) fn finish(
         }
     });
     for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
-        crate::output::say!("grainlab: {failure}");
+        grainlab_console::say!("grainlab: {failure}");
         // With a full disk the exit stays that of the data loss.
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }
@@ -110,5 +110,4 @@ fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 #[cfg(test)]
-#[path = "finish_tests.rs"]
 mod tests;

@@ -1,8 +1,7 @@
 //! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
-use crate::failure::Failure;
 use crate::launch::plan::{LaunchFile, NodePlan};
-use crate::output::json;
+use grainlab_console::{Failure, json};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -60,6 +59,7 @@ impl Order {
 mod tests {
     use super::*;
     use crate::launch::plan::BUILT_IN;
+    use crate::nodes::NodeKind;
 
     #[test]
     fn what_was_launched_is_read_back_as_it_was() {
@@ -70,7 +70,7 @@ mod tests {
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);
         let plans = known.plans(directory.path()).unwrap();
-        let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
+        let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).unwrap();
         assert!(
             simulator.arguments.contains(&"simd:=scalar".to_owned())
                 && simulator.arguments.contains(&"seed:=7".to_owned())

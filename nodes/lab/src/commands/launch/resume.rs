@@ -5,10 +5,11 @@
 
 use super::conduct::{conduct, domain};
 use super::order::Order;
-use crate::failure::Failure;
-use crate::output::Format;
+use super::{conduct, domain};
+use crate::nodes::NodeKind;
 use crate::results::last_packing;
-use crate::scenes;
+use grainlab_console::scenes;
+use grainlab_console::{Failure, Format};
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Recording, Selection};
@@ -38,9 +39,11 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
         }
         let path = serde_json::Value::from(directory.to_string_lossy());
         for plan in &mut plans {
-            let given = match plan.node.as_deref() {
-                Some("recorder") => "append:=true".to_owned(),
-                Some("dem_simulator") if last_packing::count(&directory) > 0 => format!("resume:={path}"),
+            let given = match plan.node {
+                Some(NodeKind::Recorder) => "append:=true".to_owned(),
+                Some(NodeKind::DemSimulator) if last_packing::count(&directory) > 0 => {
+                    format!("resume:={path}")
+                }
                 _ => continue,
             };
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);

@@ -1,6 +1,6 @@
 //! What files do not say, as flags.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_core::{Mat3, Vec3};
 use grainlab_recordings::import::ImportOptions;
 use std::path::PathBuf;

@@ -1,11 +1,12 @@
 //! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
 
-use crate::failure::Failure;
+use crate::nodes::NodeKind;
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use grainlab_acoustic_probe::{Settings, parameters};
+use grainlab_console::Failure;
 use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
 
-const NODE: &str = "acoustic_probe";
+const NODE: NodeKind = NodeKind::AcousticProbe;
 
 /// What was given, by the name of the parameter.
 #[derive(Clone, Debug, Default)]
@@ -21,8 +22,8 @@ impl Flags {
             words.extend(["-p".to_owned(), format!("{name}:={}", yaml(spec, text))]);
         }
         let (ros, _) = RosArgs::parse(&words).map_err(Failure::usage)?;
-        let names = Names::new(NODE).map_err(Failure::usage)?;
-        let parameters = Parameters::resolve(&specs, NODE, &names, &ros);
+        let names = Names::new(NODE.name()).map_err(Failure::usage)?;
+        let parameters = Parameters::resolve(&specs, NODE.name(), &names, &ros);
         // Whoever typed a flag did not type -p.
         let named = |e: &dyn std::fmt::Display| Failure::usage(e.to_string().replacen("-p: ", "", 1));
         Settings::try_from(&parameters.map_err(|e| named(&e))?).map_err(|e| named(&e))
