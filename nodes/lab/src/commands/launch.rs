@@ -86,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let file = read_file(path)?;
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
-    let scene = scenes::load(name, seed)?;
+    let scene = scenes::load(name, &[], seed)?;
     let order = |given: BTreeMap<&str, String>| Order {
         launch: file.text().to_owned(),
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),

@@ -104,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             "dem_simulator" => {
                 let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
                 let name: String = parameters.get("scene");
-                let scene = scenes::load(&name, seed).map_err(|e| node_error(&e))?.scene;
+                let scene = scenes::load(&name, &[], seed).map_err(|e| node_error(&e))?.scene;
                 let recording: String = parameters.get("resume");
                 let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
                 let from = from.transpose().map_err(|e| node_error(&e))?;

@@ -55,7 +55,7 @@ impl Settings {
         Ok(Self {
             output: text("output").map(PathBuf::from),
             topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
-            scene: text("scene").map(|s| scenes::load(&s, seed)).transpose()?,
+            scene: text("scene").map(|s| scenes::load(&s, &[], seed)).transpose()?,
             whole_run: true,
             append: parameters.get("append"),
         })

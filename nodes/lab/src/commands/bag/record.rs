@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
         topics: recorder::contract_topics(&args.topics)?,
-        scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
+        scene: args.scene.as_deref().map(|s| crate::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
     };
