@@ -1,7 +1,7 @@
 //! Scenes by name or path, with their bases and what is set beside them.
 
 use crate::failure::Failure;
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, ParameterSpec};
 use grainlab_recordings::input;
 use grainlab_scene::{BUILT_IN, Draft, Scene, Source, assignment, built_in};
 use std::path::Path;
@@ -13,6 +13,12 @@ pub(crate) struct SceneText {
     pub(crate) text: String,
     /// The same, parsed.
     pub(crate) scene: Scene,
+}
+
+/// The parameter of nodes that sets keys of the scene.
+pub(crate) fn set_parameter() -> ParameterSpec {
+    let meaning = "keys of the scene to set, as in [grains.count=500, friction=0.2]";
+    ParameterSpec::new("set", Vec::<String>::new(), meaning)
 }
 
 /// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` goes over the one that it

@@ -26,6 +26,7 @@ pub(crate) fn nodes() -> Vec<NodeSpec> {
     };
     let mut simulator = vec![
         ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
+        scenes::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
         ParameterSpec::new(
             "resume",
@@ -104,7 +105,8 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
             "dem_simulator" => {
                 let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
                 let name: String = parameters.get("scene");
-                let scene = scenes::load(&name, &[], seed).map_err(|e| node_error(&e))?.scene;
+                let sets: Vec<String> = parameters.get("set");
+                let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?.scene;
                 let recording: String = parameters.get("resume");
                 let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
                 let from = from.transpose().map_err(|e| node_error(&e))?;
