@@ -23,7 +23,9 @@ mod parse;
 mod path;
 mod phases;
 mod reader;
+mod reference;
 mod servo;
+mod template;
 mod until;
 
 pub use assignment::assignment;
@@ -35,3 +37,5 @@ pub use keys::KEYS;
 pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene, Tangential};
 pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};
+pub use reference::reference;
+pub use template::template;

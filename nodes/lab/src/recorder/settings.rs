@@ -56,7 +56,9 @@ impl Settings {
         Ok(Self {
             output: text("output").map(PathBuf::from),
             topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
-            scene: text("scene").map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed)).transpose()?,
+            scene: text("scene")
+                .map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed))
+                .transpose()?,
             whole_run: true,
             append: parameters.get("append"),
         })
