@@ -6,6 +6,7 @@
 
 use crate::built_in::built_in;
 use crate::fault::{Fault, SceneError};
+use crate::model::Scene;
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
 use toml::{Table, Value};
@@ -27,6 +28,18 @@ pub type Library<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     table: Table,
+}
+
+impl Scene {
+    /// Parses a scene; every fault of the text is in the error. Its base, if it has one, is built in.
+    ///
+    /// ```
+    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
+    /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
+    /// ```
+    pub fn parse(text: &str) -> Result<Scene, SceneError> {
+        Ok(Draft::of_text(text)?.resolve()?.scene)
+    }
 }
 
 impl Draft {
