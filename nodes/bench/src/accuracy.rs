@@ -107,7 +107,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn scene(args: &Args) -> Result<Scene, Failure> {
     let scene = match &args.scene {
-        Some(name) => grainlab_console::scenes::load(name, None)?.scene,
+        Some(name) => grainlab_console::scenes::load(name, &[], None)?.scene,
         None => Scene::parse(PRESS).map_err(Failure::failed)?,
     };
     Ok(scene)

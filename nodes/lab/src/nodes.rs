@@ -171,6 +171,7 @@ impl FromStr for NodeKind {
 fn simulator_parameters() -> Vec<ParameterSpec> {
     let mut all = vec![
         ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
+        scenes::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
         ParameterSpec::new(
             "resume",
@@ -185,7 +186,8 @@ fn simulator_parameters() -> Vec<ParameterSpec> {
 fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator, NodeError> {
     let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
     let name: String = parameters.get("scene");
-    let scene = scenes::load(&name, seed).map_err(|e| node_error(&e))?.scene;
+    let sets: Vec<String> = parameters.get("set");
+    let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?.scene;
     let recording: String = parameters.get("resume");
     let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
     let from = from.transpose().map_err(|e| node_error(&e))?;

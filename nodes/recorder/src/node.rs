@@ -7,11 +7,11 @@ use crate::strangers::{self, Authors, StrangerView};
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Topic, from_cdr, topics};
-use grainlab_node_kit::{Published, member_of, run_of};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
     SubscriptionId, WriterId,
 };
+use grainlab_node_kit::{Published, member_of, run_of};
 use grainlab_recordings::Finished;
 use grainlab_recordings::Guid;
 use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, WriterOptions};

@@ -42,6 +42,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
             "",
             "scene of the run, a built-in name or a file, attached to the recording",
         ),
+        scenes::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
         ParameterSpec::new("append", false, "go on with the recording in output, in its next file"),
     ]
@@ -55,7 +56,9 @@ impl Settings {
         Ok(Self {
             output: text("output").map(PathBuf::from),
             topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
-            scene: text("scene").map(|s| scenes::load(&s, seed)).transpose()?,
+            scene: text("scene")
+                .map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed))
+                .transpose()?,
             whole_run: true,
             append: parameters.get("append"),
         })

@@ -21,6 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab                                  the demo scene
   grainlab launch --scene s2 --seed 3       a scene of the paper
+  grainlab launch --scene s2 --set grains.count=500 --set friction=0.2 --set phase.rest.drag=1e3
   grainlab launch acoustic                  the same, with wave speeds measured and inverted beside the moduli
   grainlab launch acoustic method:=standing_wave speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
@@ -41,6 +42,10 @@ pub(crate) struct Args {
     /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
+    /// Sets a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; repeat it for more. `grainlab scene keys`
+    /// lists the keys
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Seed of every random choice [default: the one of the scene]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -49,7 +54,7 @@ pub(crate) struct Args {
     out: PathBuf,
     /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed;
     /// the result is the same to the last byte as without the interruption
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "seed", "out"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out"])]
     resume: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
@@ -61,6 +66,7 @@ impl Default for Args {
         Self {
             words: Vec::new(),
             scene: None,
+            set: Vec::new(),
             seed: None,
             out: RUNS.into(),
             resume: None,
@@ -78,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let file = read_file(path)?;
     let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
     let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
-    let scene = scenes::load(name, seed)?;
+    let scene = scenes::load(name, &args.set, seed)?;
     let order = |given: BTreeMap<&str, String>| Order {
         launch: file.text().to_owned(),
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),

@@ -8,3 +8,4 @@ pub(crate) mod launch;
 pub(crate) mod packings;
 pub(crate) mod probe;
 pub(crate) mod run;
+pub(crate) mod scene;

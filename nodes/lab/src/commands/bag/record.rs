@@ -40,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
         topics: contract_topics(&args.topics)?,
-        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, None)).transpose()?,
+        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
     };

@@ -19,7 +19,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let order = Order::read(&directory)?;
-    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), Some(order.seed))?;
+    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
     // Without a recording the run begins anew, in its own directory.
     if Recording::open(&directory).is_ok() {
