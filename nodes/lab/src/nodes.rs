@@ -10,7 +10,7 @@ use grainlab_dem_simulator::DemSimulator;
 use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::run::NodeSpec;
+use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Bus, Exit, Node, NodeError, ParameterSpec, Parameters, Scope};
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::input;

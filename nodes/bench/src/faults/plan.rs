@@ -2,7 +2,7 @@
 
 use super::forgery::Forgery;
 use super::process::Kind;
-use grainlab_node_kit::Faults;
+use grainlab_node_kit::{Dice, Faults};
 use std::time::Duration;
 
 /// Something that happens at a moment of a run.

@@ -4,7 +4,6 @@ use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
 use super::patience::Patience;
-use super::pending_results::{PendingResults, ResultState};
 use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
@@ -231,7 +230,7 @@ impl Supervisor {
             }
             let Some(last) = self.finished.as_ref().map(|s| s.last_packing_step) else { continue };
             let Some(step) = last else { return self.caught_up().await };
-            match self.debts.state_of(step) {
+            match self.pending.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
                 ResultState::Declined(node) => {
                     grainlab_console::say!("grainlab: the last packing has no {}", nothing(node));

@@ -5,7 +5,6 @@
 
 use super::conduct::{conduct, domain};
 use super::order::Order;
-use super::{conduct, domain};
 use crate::nodes::NodeKind;
 use crate::results::last_packing;
 use grainlab_console::scenes;
