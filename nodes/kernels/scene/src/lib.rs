@@ -14,5 +14,5 @@ mod phases;
 mod table;
 
 pub use fault::{Fault, SceneError};
-pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene, Tangential};
+pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene};
 pub use path::{Observation, PathError, PathEvent, PathState};

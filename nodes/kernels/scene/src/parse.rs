@@ -1,10 +1,10 @@
 //! Text (TOML) to [`Scene`], with every fault reported at once.
 
 use crate::fault::{Fault, SceneError};
-use crate::model::{Numerics, Scene, Tangential};
+use crate::model::{Numerics, Scene};
 use crate::phases;
 use crate::table::Reader;
-use grainlab_core::Material;
+use grainlab_core::{Material, TangentialLaw};
 
 impl Scene {
     /// Parses a scene; every fault of the text is in the error.
@@ -73,7 +73,7 @@ fn read_material(r: &mut Reader<'_>) -> Material {
 
 fn read_numerics(r: &mut Reader<'_>) -> Numerics {
     let d = Numerics::default();
-    let tangential = [("rescaled", Tangential::Rescaled), ("incremental", Tangential::Incremental)];
+    let tangential = [("rescaled", TangentialLaw::Rescaled), ("incremental", TangentialLaw::Incremental)];
     Numerics {
         time_step_safety: r.number(
             "time_step_safety",
