@@ -51,7 +51,8 @@ impl Simulation {
         let gas = random_sequential_addition(scene.grains, scene.diameter, fraction, speed, scene.seed)?;
         let radii = vec![0.5 * scene.diameter; scene.grains as usize];
         let settings = phase_settings(&scene, &scene.phases[0]);
-        let mut engine = Engine::new(gas.cell, scene.material, radii, &gas.positions, settings);
+        let mut engine =
+            Engine::new(gas.cell, scene.material, radii, &gas.positions, settings).with_law(scene.law);
         engine.set_velocities(&gas.velocities);
         engine.initialise()?;
         let observables = engine.observables()?;
@@ -158,7 +159,7 @@ impl Simulation {
     /// Strains at `rate` (Voigt order, 1/s) for one control period. On failure the run returns to a copy of its state, at most
     /// a hundred steps and one control period ago.
     pub fn advance(&mut self, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
-        let none = StepOutcome { ended: None, packing_due: false, finished: self.finished() };
+        let none = StepOutcome { ended: None, packing_due: false, finished: self.finished(), energy: None };
         let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };
         let period = phase.control_period;
         // Saved with the rate that its forces were evaluated with.
@@ -187,14 +188,15 @@ impl Simulation {
             unbalanced: self.observables.unbalanced,
             speed: self.engine.speed(),
         };
+        let energy = self.engine.energy();
         let before = self.path.phase;
         match self.path.observe(&self.scene, &input)? {
-            PathEvent::Stay => Ok(StepOutcome { ended: None, packing_due: false, finished: false }),
+            PathEvent::Stay => Ok(StepOutcome { ended: None, packing_due: false, finished: false, energy }),
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
                 self.packings += u64::from(publish);
                 let ended = Some(self.scene.phases[before].name.clone());
-                Ok(StepOutcome { ended, packing_due: publish, finished })
+                Ok(StepOutcome { ended, packing_due: publish, finished, energy })
             }
         }
     }
@@ -275,6 +277,7 @@ impl Simulation {
             self.engine.sort_spatially();
             self.engine.initialise()?;
             self.engine.update_time_step();
+            self.engine.measure_energy(self.scene.numerics.energy_balance);
         }
         self.observables = self.engine.observables()?;
         Ok(())

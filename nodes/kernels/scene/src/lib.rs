@@ -6,6 +6,7 @@
 //!
 //! A scene is data: the same text and seed always mean the same run.
 
+mod contact;
 pub mod fault;
 pub mod model;
 pub mod parse;

@@ -1,10 +1,12 @@
 //! Text (TOML) to [`Scene`], with every fault reported at once.
 
+use crate::contact;
 use crate::fault::{Fault, SceneError};
 use crate::model::{Numerics, Scene};
 use crate::phases;
 use crate::table::Reader;
-use grainlab_core::{Material, TangentialLaw};
+use grainlab_core::Material;
+use grainlab_core::contact::TangentialLaw;
 
 impl Scene {
     /// Parses a scene; every fault of the text is in the error.
@@ -49,9 +51,10 @@ fn read_scene(r: &mut Reader<'_>) -> Scene {
             (1, 1.0)
         });
     let material = r.sub("material", read_material).unwrap_or(Material::GLASS);
+    let law = r.sub("contact", contact::read).unwrap_or_default();
     let numerics = r.sub("numerics", read_numerics).unwrap_or_default();
     let phases = phases::read(r, phases::spin_drag(&material, diameter));
-    Scene { name, description, seed, grains, diameter, material, numerics, phases }
+    Scene { name, description, seed, grains, diameter, material, law, numerics, phases }
 }
 
 fn read_material(r: &mut Reader<'_>) -> Material {
@@ -85,5 +88,6 @@ fn read_numerics(r: &mut Reader<'_>) -> Numerics {
             v > 0.0 && v <= 1.0
         }),
         tangential: r.choice("tangential", d.tangential, &tangential),
+        energy_balance: r.boolean("energy_balance", d.energy_balance),
     }
 }
