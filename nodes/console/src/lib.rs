@@ -11,6 +11,7 @@ pub mod network;
 mod output;
 pub mod plot;
 pub mod scenes;
+mod start;
 
 pub use failure::{Failure, worse};
 pub use output::{Format, Table, exact, fixed, json, print, push_csv};

@@ -8,7 +8,7 @@ use crate::partner::AnswerSource;
 use crate::question::Question;
 use crate::settings::Mode;
 use crate::speculative_step::SpeculativeStep;
-use grainlab_dem::{Advanced, DemError, Request};
+use grainlab_experiment::{ExperimentError, ServoRequest, StepOutcome};
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::{to_cdr, topics};
@@ -91,7 +91,7 @@ impl DemSimulator {
             Err(error) => return self.fail(bus, &error.to_string()),
         };
         // The servo would refuse the request and every repetition of it.
-        let (law, tangent) = (&request.law, &request.snapshot.tangent);
+        let (law, tangent) = (&request.law, &request.observables.tangent);
         if let Err(error) =
             grainlab_servo::check_stability(law, tangent, &request.controls, request.control_interval)
         {
@@ -114,14 +114,14 @@ impl DemSimulator {
     }
 
     /// Computes a speculative step while the answer is in transit; false if speculation is off.
-    fn speculate(&mut self, bus: &dyn Bus, request: &Request) -> bool {
+    fn speculate(&mut self, bus: &dyn Bus, request: &ServoRequest) -> bool {
         let step = self.speculates.then(|| SpeculativeStep::of(&self.run, request, || bus.now()));
         self.speculative = step.flatten();
         self.speculative.as_ref().inspect(|step| self.lockstep.computed(step.took)).is_some()
     }
 
     /// Advances the run with an answer, or takes the speculative step.
-    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<Advanced, DemError> {
+    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
         let sequence = self.lockstep.sequence();
         match self.speculative.take() {
             Some(step) if step.matches(sequence, rate) => {
@@ -139,7 +139,7 @@ impl DemSimulator {
             None => {}
         }
         let began = bus.now();
-        let result = self.run.answer(rate);
+        let result = self.run.advance(rate);
         self.computing += bus.now().saturating_sub(began);
         result
     }
@@ -169,7 +169,7 @@ impl DemSimulator {
         Ok(Next::Wait(self.lockstep.patience(now)))
     }
 
-    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &Advanced) -> Result<Next, NodeError> {
+    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &StepOutcome) -> Result<Next, NodeError> {
         let now = bus.now();
         self.wall = now.saturating_sub(self.began);
         if advanced.packing_due
@@ -179,9 +179,14 @@ impl DemSimulator {
         }
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
+            if let Some(energy) = &advanced.energy {
+                log::info!("energy balance of phase {phase}, J: {energy:?}");
+            }
             if !advanced.finished {
                 self.next_beat = now + BEAT;
-                self.publish_run_state(RunState::RUNNING, "");
+                let left_out = self.run.left_out();
+                log::info!("the next phase is {left_out}");
+                self.publish_run_state(RunState::RUNNING, &left_out);
             }
         }
         self.go_on(bus, now)

@@ -7,7 +7,8 @@ use crate::partner::Partner;
 use crate::send_queue::SendQueue;
 use crate::settings::{Mode, Settings};
 use crate::speculative_step::{self, SpeculativeStep};
-use grainlab_dem::{ComputeError, DemError, Simulation};
+use grainlab_dem::ComputeError;
+use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
@@ -37,7 +38,7 @@ const FAREWELL: Duration = Duration::from_secs(2);
 pub enum SimulatorError {
     /// The scene is invalid, or the packing is not a state of it.
     #[error(transparent)]
-    Dem(#[from] DemError),
+    Run(#[from] ExperimentError),
     /// The processor does not support the compute settings.
     #[error(transparent)]
     Compute(#[from] ComputeError),
@@ -92,7 +93,8 @@ pub struct DemSimulator {
 }
 
 impl DemSimulator {
-    /// A simulator at the beginning of `scene`, or at the state of `resume`: a packing and its run state.
+    /// A simulator at the beginning of `scene`, or at the state of `resume`: a packing and its run state. A scene that
+    /// starts from a packing begins with `resume`, whose run state is then empty.
     pub fn new(
         bus: &mut dyn Bus,
         scene: Scene,
@@ -100,6 +102,9 @@ impl DemSimulator {
         settings: Settings,
     ) -> Result<Self, SimulatorError> {
         let (mut run, packings) = match &resume {
+            Some((packing, state)) if state.is_empty() && scene.start.is_some() => {
+                (Simulation::from_packing(scene, packing)?, Packings { last_step: 0, count: 1 })
+            }
             Some((packing, state)) => {
                 let run = Simulation::resume(scene, packing, state)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
@@ -175,7 +180,8 @@ impl DemSimulator {
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
             let state = if self.stage == Stage::Finished { RunState::FINISHED } else { RunState::RUNNING };
-            self.publish_run_state(state, if self.stage == Stage::Starting { "starting" } else { "" });
+            let left_out = self.run.left_out();
+            self.publish_run_state(state, &left_out);
         }
         Ok(())
     }

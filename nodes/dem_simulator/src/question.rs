@@ -1,7 +1,7 @@
 //! A request, and the answers that it allows.
 
 use grainlab_core::{ComponentControl, SymTensor};
-use grainlab_dem::Request;
+use grainlab_experiment::ServoRequest;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
 
@@ -30,7 +30,7 @@ pub(crate) enum Violation {
 
 impl Question {
     /// Of a request.
-    pub(crate) fn of(request: &Request) -> Self {
+    pub(crate) fn of(request: &ServoRequest) -> Self {
         Self {
             sequence: request.sequence,
             stamp: stamp(request.time),

@@ -5,7 +5,7 @@
 //! if not, the copy is dropped and the run is advanced with the answer. Nothing of the copy is published before that:
 //! all messages are the same as without it.
 
-use grainlab_dem::{Advanced, DemError, Request, Simulation};
+use grainlab_experiment::{ExperimentError, ServoRequest, Simulation, StepOutcome};
 use std::time::Duration;
 
 /// Number of grains up to which a copy (about 25 ns per grain) costs less than the wait that it saves (0.1 ms or more).
@@ -18,7 +18,7 @@ pub(crate) struct SpeculativeStep {
     /// The advanced run.
     pub(crate) run: Simulation,
     /// Its outcome.
-    pub(crate) result: Result<Advanced, DemError>,
+    pub(crate) result: Result<StepOutcome, ExperimentError>,
     /// Computing time.
     pub(crate) took: Duration,
 }
@@ -26,12 +26,12 @@ pub(crate) struct SpeculativeStep {
 impl SpeculativeStep {
     /// Advances a copy of `run` with the answer of the law to `request`; `now` reads a clock. `None` if the law has no
     /// answer.
-    pub(crate) fn of(run: &Simulation, request: &Request, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = grainlab_servo::control(&request.question());
+    pub(crate) fn of(run: &Simulation, request: &ServoRequest, now: impl Fn() -> Duration) -> Option<Self> {
+        let answer = grainlab_servo::control(&request.servo_input());
         let rate = answer.ok()?.rate;
         let began = now();
         let mut run = run.clone();
-        let result = run.answer(&rate);
+        let result = run.advance(&rate);
         Some(Self { sequence: request.sequence, rate, run, result, took: now().saturating_sub(began) })
     }
 

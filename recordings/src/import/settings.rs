@@ -1,5 +1,6 @@
 //! Properties of a packing that a file may lack.
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
@@ -18,6 +19,8 @@ pub struct ImportOptions {
     pub density: Option<f64>,
     /// Friction coefficient; may be infinite.
     pub friction: Option<f64>,
+    /// Contact law; Hertz–Mindlin if not given.
+    pub law: Option<ContactLaw>,
     /// Radius of every grain, m, for files that have none.
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
@@ -37,6 +40,7 @@ pub(super) struct Known {
     pub(super) shear_modulus: Option<f64>,
     pub(super) poisson_ratio: Option<f64>,
     pub(super) density: Option<f64>,
+    pub(super) law: Option<ContactLaw>,
     pub(super) friction: Option<f64>,
 }
 
@@ -45,6 +49,7 @@ pub(super) struct Known {
 pub(super) struct Settings {
     pub(super) cell: Cell,
     pub(super) material: Material,
+    pub(super) law: ContactLaw,
     pub(super) friction: f64,
 }
 
@@ -72,6 +77,7 @@ impl Known {
         };
         let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
         let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
-        Ok(Settings { cell, material: Material { shear_modulus, poisson_ratio, density }, friction })
+        let material = Material { shear_modulus, poisson_ratio, density };
+        Ok(Settings { cell, material, law: options.law.or(self.law).unwrap_or_default(), friction })
     }
 }

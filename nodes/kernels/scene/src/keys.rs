@@ -35,15 +35,25 @@ keys! {
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that names none, but for a gas");
 
-    GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Required, "number of grains");
-    DIAMETER = number("grains.diameter", "m", Interval::POSITIVE, Required, "diameter of every grain");
+    START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: the run goes on from a packing");
+    START_PACKING = text("start.packing", Required, "file whose packing the run starts from, by its path from this file: a recording, CSV, LAMMPS or YADE; then there is no [grains] and no gas");
+    START_STEP = whole("start.step", 0, u64::MAX >> 1, Words("the last one"), "solver step of the packing in a recording or a dump");
+
+    GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: how many, and how large");
+    GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
+    DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "of every grain, or a law: uniform, lognormal (spread: standard deviation of the logarithm, cut at 3), or several sizes") };
 
     SHEAR_MODULUS = number("material.shear_modulus", "Pa", Interval::POSITIVE, DefaultValue::Number(GLASS.shear_modulus), "shear modulus of the grains");
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
     DENSITY = number("material.density", "kg/m3", Interval::POSITIVE, DefaultValue::Number(GLASS.density), "density of the grains");
 
+    CONTACT_LAW = choice("contact.law", &["hertz_mindlin", "linear"], "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
+    NORMAL_STIFFNESS = number("contact.normal_stiffness", "N/m", Interval::POSITIVE, Required, "normal stiffness k_n; law linear");
+    STIFFNESS_RATIO = number("contact.stiffness_ratio", "", Interval::POSITIVE, DefaultValue::Number(0.5), "k_t/k_n; law linear");
+
     TIME_STEP_SAFETY = number("numerics.time_step_safety", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.8), "time step over its stability bound");
     SKIN = number("numerics.skin", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.05), "Verlet skin over grain diameter");
+    ENERGY_BALANCE = flag("numerics.energy_balance", "whether the energy balance of each phase is summed, which makes steps several times slower");
     TANGENTIAL = choice("numerics.tangential", &["rescaled", "incremental"], "rescaled", "tangential force on unloading: scaled down with the tangential stiffness, so that no closed cycle creates energy, or kept, as in LAMMPS's mindlin/force");
 
     PHASE = form("phase", "an array of tables, one per phase", Required, "phases of the path, in order: [[phase]]; over a base, [phase.NAME] changes the phase of that name");
@@ -56,6 +66,11 @@ keys! {
     CONTROL_PERIOD = Key { kinds: STEPS, ..whole("phase.control_period", 1, 100_000, Words("10; 20 for an event-driven gas, 200 for a soft one"), "solver steps between two exchanges with the servo; a step of an event-driven gas is a mean free time") };
     REFERENCE = Key { kinds: STEPS, ..flag("phase.reference", "whether the state at the end is the reference of strains from then on") };
     PUBLISH = Key { kinds: STEPS, ..flag("phase.publish", "whether the packing at the end is published") };
+
+    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published; the run is the same with and without") };
+    EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of so many solver steps of the run") };
+    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much strain in the phase, to and fro alike") };
+    EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much simulated time in the phase") };
 
     METHOD = Key { kinds: GAS, ..choice("phase.method", &["event_driven", "soft"], "event_driven", "how the grains collide: as hard, elastic, frictionless spheres, or by the contact law") };
     INITIAL_SOLID_FRACTION = Key { kinds: GAS, ..number("phase.initial_solid_fraction", "", Interval::from_to(0.001, 0.35), DefaultValue::Number(0.3), "solid fraction at which the grains are placed") };

@@ -13,7 +13,9 @@ mod assignment;
 mod built_in;
 mod canonical;
 mod compose;
+mod contact;
 mod fault;
+mod grains;
 mod key;
 mod keys;
 mod model;
@@ -23,19 +25,26 @@ mod parse;
 mod path;
 mod phases;
 mod reader;
+mod record;
 mod reference;
 mod servo;
+mod sizes;
+mod start;
 mod template;
 mod until;
 
 pub use assignment::assignment;
 pub use built_in::{BUILT_IN, built_in};
-pub use compose::{Draft, Library, Source};
+pub use compose::{Draft, Library, Source, StartFile};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;
-pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene, Tangential};
+pub use model::{
+    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start,
+};
 pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};
+pub use record::Travelled;
 pub use reference::reference;
+pub use sizes::{Sizes, Species};
 pub use template::template;

@@ -1,12 +1,17 @@
 //! A scene's table to [`Scene`], with every fault reported at once.
 
 use crate::canonical;
+use crate::contact;
 use crate::fault::SceneError;
+use crate::grains;
 use crate::keys;
-use crate::model::{Numerics, Scene, Tangential};
+use crate::model::{Numerics, Scene};
 use crate::phases::{self, Inherited};
 use crate::reader::Reader;
-use grainlab_core::Material;
+use crate::sizes::Sizes;
+use crate::start;
+use grainlab_core::contact::{ContactLaw, TangentialLaw};
+use grainlab_core::{Material, Packing};
 use toml::Table;
 
 /// A scene that holds, as a value and as text.
@@ -20,9 +25,9 @@ pub struct Resolved {
 }
 
 /// Reads a table without base.
-pub(crate) fn read(table: &Table) -> Result<Resolved, SceneError> {
+pub(crate) fn read(table: &Table, packing: Option<&Packing>) -> Result<Resolved, SceneError> {
     let mut r = Reader::new("", table);
-    let scene = read_scene(&mut r);
+    let scene = read_scene(&mut r, packing);
     let (entries, faults) = r.finish();
     if faults.is_empty() {
         Ok(Resolved { scene, toml: canonical::write(&entries) })
@@ -31,7 +36,7 @@ pub(crate) fn read(table: &Table) -> Result<Resolved, SceneError> {
     }
 }
 
-fn read_scene(r: &mut Reader<'_>) -> Scene {
+fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
     for key in [&keys::BASE, &keys::REMOVE, &keys::APPEND] {
         if r.get(key).is_some() {
             r.fault(key.name(), "changes a base, and this scene has none");
@@ -46,34 +51,55 @@ fn read_scene(r: &mut Reader<'_>) -> Scene {
     let description = r.text(&keys::DESCRIPTION);
     let seed = r.whole(&keys::SEED);
     let friction = r.optional(&keys::FRICTION);
-    let (grains, diameter) =
-        r.section("grains", |r| (r.whole(&keys::GRAIN_COUNT) as u32, r.number(&keys::DIAMETER)));
-    let material = r.section("material", read_material);
+    let start = start::read(r);
+    if start.is_some() && packing.is_none() {
+        r.fault("start", "names a packing, which has not been read");
+    }
+    let packing = packing.filter(|_| start.is_some());
+    let (grains, sizes) = match packing {
+        Some(packing) => start::grains(r, packing),
+        None if start.is_some() => (1, Sizes::Equal(1.0)),
+        None => r.section("grains", grains::read),
+    };
+    let default = packing.map_or(Material::GLASS, |p| p.material);
+    let material = r.section("material", |r| read_material(r, &default));
+    if let Some(packing) = packing {
+        r.adopt(start::differing(&material, packing));
+    }
+    let law = packing.map_or_else(ContactLaw::default, |p| p.law);
+    let law = r.section("contact", |r| contact::read(r, &law));
+    if let Some(message) = packing.and_then(|p| start::other_law(&law, p)) {
+        r.fault("contact", message);
+    }
     let numerics = r.section("numerics", read_numerics);
     let mut inherited =
-        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, diameter) };
-    let phases = phases::read(r, &mut inherited);
+        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };
+    let phases = phases::read(r, &mut inherited, start.is_none());
+    if let (Some(packing), Some(first)) = (packing, phases.first()) {
+        start::refused(first, packing).into_iter().for_each(|m| r.fault("phase", m));
+    }
     if friction.is_some() && !inherited.taken && !phases.is_empty() {
         let message =
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);
     }
-    Scene { name, description, seed, grains, diameter, material, numerics, phases }
+    Scene { name, description, seed, start, grains, sizes, material, law, numerics, phases }
 }
 
-fn read_material(r: &mut Reader<'_>) -> Material {
+fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
     Material {
-        shear_modulus: r.number(&keys::SHEAR_MODULUS),
-        poisson_ratio: r.number(&keys::POISSON_RATIO),
-        density: r.number(&keys::DENSITY),
+        shear_modulus: r.number_or(&keys::SHEAR_MODULUS, Some(default.shear_modulus)),
+        poisson_ratio: r.number_or(&keys::POISSON_RATIO, Some(default.poisson_ratio)),
+        density: r.number_or(&keys::DENSITY, Some(default.density)),
     }
 }
 
 fn read_numerics(r: &mut Reader<'_>) -> Numerics {
-    let tangential = [("rescaled", Tangential::Rescaled), ("incremental", Tangential::Incremental)];
+    let tangential = [("rescaled", TangentialLaw::Rescaled), ("incremental", TangentialLaw::Incremental)];
     Numerics {
         time_step_safety: r.number(&keys::TIME_STEP_SAFETY),
         skin: r.number(&keys::SKIN),
         tangential: r.choice(&keys::TANGENTIAL, "rescaled", &tangential),
+        energy_balance: r.flag(&keys::ENERGY_BALANCE),
     }
 }

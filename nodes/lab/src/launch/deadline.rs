@@ -24,6 +24,18 @@ pub(super) struct Deadline {
 }
 
 impl Deadline {
+    /// For a last packing that was published within a phase: it need not have anything to measure.
+    pub(super) fn within_a_phase(standing: ResultState) -> Self {
+        let whole = Self::of(standing);
+        match standing {
+            ResultState::Measured(_) => whole,
+            ResultState::Open(_) => {
+                Self { patience: Patience::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
+            }
+            _ => Self { exit: Exit::Done, ..whole },
+        }
+    }
+
     pub(super) fn of(standing: ResultState) -> Self {
         let (time, exit, message) = match standing {
             ResultState::Bare(node) => {

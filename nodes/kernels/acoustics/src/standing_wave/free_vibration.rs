@@ -8,7 +8,7 @@ use crate::contact_changes::ContactChanges;
 use crate::error::AcousticsError;
 use crate::supercell::Supercell;
 use grainlab_core::Vec3;
-use grainlab_dem::{Engine, Setting};
+use grainlab_dem::{Engine, EngineSettings};
 
 /// Initial velocities and sampling.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +17,8 @@ pub(super) struct Excitation<'a> {
     pub(super) supercell: &'a Supercell,
     /// Mass of each grain of one copy, kg; 0 for rattlers.
     pub(super) mass: &'a [f64],
-    /// Setting of the engine, with a fixed time step.
-    pub(super) setting: Setting,
+    /// EngineSettings of the engine, with a fixed time step.
+    pub(super) setting: EngineSettings,
     /// Unit polarization.
     pub(super) polarization: Vec3,
     /// Two perpendicular polarizations of waves of another kind, unit vectors or zero.
@@ -64,8 +64,8 @@ impl<'a> FreeVibration<'a> {
         let velocities: Vec<Vec3> =
             (0..supercell.along.len()).map(|g| excitation.polarization * velocity(g)).collect();
         let mut engine = Engine::from_packing(&supercell.packing, excitation.setting);
-        engine.renew_time_step();
-        engine.prepare()?;
+        engine.update_time_step();
+        engine.initialise()?;
         let changes = ContactChanges::since(&engine);
         engine.set_velocities(&velocities);
         let channels = vec![Vec::new(); excitation.waves as usize];

@@ -1,7 +1,7 @@
 //! Settings of the measurement by standing waves.
 
 use crate::error::AcousticsError;
-use grainlab_scene::Tangential;
+use grainlab_core::contact::TangentialLaw;
 
 /// Least number of repetitions of the packing: two wavelengths fit in, from which to extrapolate.
 pub const MIN_COPIES: u32 = 5;
@@ -22,12 +22,12 @@ pub struct Settings {
     /// which makes it slower than in the frozen network by a few per cent; a very high friction prevents that.
     pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { copies: 8, periods: 4.0, amplitude: 1e-9, friction: None, tangential: Tangential::Incremental }
+        Self { copies: 8, periods: 4.0, amplitude: 1e-9, friction: None, tangential: TangentialLaw::Incremental }
     }
 }
 

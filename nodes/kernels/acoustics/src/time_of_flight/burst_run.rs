@@ -7,7 +7,7 @@ use crate::error::AcousticsError;
 use crate::instrument::ReceiverSignals;
 use crate::supercell::Supercell;
 use grainlab_core::Vec3;
-use grainlab_dem::{Engine, Setting};
+use grainlab_dem::{Engine, EngineSettings};
 
 /// Number of looks at the contacts.
 const LOOKS: usize = 8;
@@ -22,8 +22,8 @@ pub(crate) struct BurstRun<'a> {
     pub(crate) supercell: &'a Supercell,
     /// For each grain of one copy, whether it carries force.
     pub(crate) present: &'a [bool],
-    /// Setting of the engine, with a fixed time step.
-    pub(crate) setting: Setting,
+    /// EngineSettings of the engine, with a fixed time step.
+    pub(crate) setting: EngineSettings,
     /// Unit polarization.
     pub(crate) polarization: Vec3,
     /// Signal of the source.
@@ -61,8 +61,8 @@ impl BurstRun<'_> {
         let source = self.slab(0.0)?;
         let receivers: Vec<Slab> = self.receivers.iter().map(|d| self.slab(*d)).collect::<Result<_, _>>()?;
         let mut engine = Engine::from_packing(&self.supercell.packing, self.setting);
-        engine.renew_time_step();
-        engine.prepare()?;
+        engine.update_time_step();
+        engine.initialise()?;
         let step = engine.time_step();
         let mut changes = ContactChanges::since(&engine);
 
@@ -79,7 +79,7 @@ impl BurstRun<'_> {
                 for k in 0..stride {
                     let time = elapsed + f64::from(k) * step;
                     let by = self.polarization * (acceleration * step * self.burst.at(time));
-                    engine.kick(source.kicks(by));
+                    engine.add_velocities(source.kicks(by));
                     engine.step()?;
                 }
             } else {

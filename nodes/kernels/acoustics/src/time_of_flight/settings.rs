@@ -2,7 +2,7 @@
 
 use crate::error::AcousticsError;
 use grainlab_core::WaveMethod;
-use grainlab_scene::Tangential;
+use grainlab_core::contact::TangentialLaw;
 
 /// The feature of a trace that is taken as the arrival.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub struct Settings {
     /// sliding.
     pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Settings {
@@ -69,7 +69,7 @@ impl Default for Settings {
             amplitude: 1e-8,
             pick: ArrivalPick::default(),
             friction: None,
-            tangential: Tangential::Incremental,
+            tangential: TangentialLaw::Incremental,
         }
     }
 }

@@ -10,6 +10,7 @@ use grainlab_console::Format;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
 use grainlab_node_kit::{Exit, Network, RunId};
+use grainlab_scene::Scene;
 use std::path::Path;
 
 /// Starts the processes, follows the run to its end, and reports it.
@@ -31,7 +32,7 @@ pub(super) fn conduct(
         run.id,
         directory.display()
     );
-    let supervised = supervise(plans, run, directory, scene.scene.phases.len());
+    let supervised = supervise(plans, run, directory, &scene.scene);
     drop(lock);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
     let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
@@ -73,10 +74,13 @@ pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
     Ok((free.id, Some(free)))
 }
 
-fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Supervised, Failure> {
+fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) -> Result<Supervised, Failure> {
+    let phases = scene.phases.len();
+    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
+    let ends_within = last.is_some_and(|p| !p.publish);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
+    runtime.block_on(async { Supervisor::new(plans, run, directory, phases, ends_within)?.run().await })
 }
 
 #[cfg(test)]
