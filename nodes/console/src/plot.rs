@@ -31,6 +31,9 @@ impl Figure {
             let drawn: Vec<&Point> = series.points.iter().filter(drawable).collect();
             let places: Vec<[f64; 2]> = drawn.iter().map(|p| [x.at(p.x), y.at(p.y)]).collect();
             drawing.line(series, &places);
+            if series.line == Some(Line::Steps) {
+                taken.extend(labels::along_steps(&places));
+            }
             for (point, at) in drawn.iter().zip(&places) {
                 if let Some(error) = point.error {
                     let end = |value: f64| if y.has(value) { y.at(value) } else { draw::VERTICAL[0] };

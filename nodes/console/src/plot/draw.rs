@@ -95,7 +95,11 @@ impl Drawing {
                 Line::Steps => write!(path, " H {x:.1} V {y:.1}"),
             };
         }
-        let opacity = if line == Line::Faint { " stroke-opacity=\"0.35\"" } else { "" };
+        let opacity = match line {
+            Line::Straight => "",
+            Line::Faint => " stroke-opacity=\"0.35\"",
+            Line::Steps => " stroke-opacity=\"0.6\" stroke-width=\"1.5\"",
+        };
         let class = class(series.colour);
         let _ = writeln!(
             self.0,
@@ -115,8 +119,11 @@ impl Drawing {
 
     /// A point, with what its tooltip says.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
-        let colour = if key.marker == Marker::Star { "star".to_owned() } else { class(key.colour) };
-        let fill = if key.hollow { "hollow" } else { "full" };
+        let class = match (key.marker, key.hollow) {
+            (Marker::Star, _) => "star".to_owned(),
+            (_, true) => format!("{} hollow", class(key.colour)),
+            (_, false) => format!("{} full", class(key.colour)),
+        };
         let title =
             if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
         let (element, shape) = match corners(key.marker) {
@@ -127,7 +134,7 @@ impl Drawing {
                 ("polygon", format!("points=\"{}\"", all.join(" ")))
             }
         };
-        let _ = writeln!(self.0, "<{element} {shape} class=\"{colour} {fill}\">{title}</{element}>");
+        let _ = writeln!(self.0, "<{element} {shape} class=\"{class}\">{title}</{element}>");
     }
 
     /// A small text whose left and bottom end is given.
@@ -215,7 +222,7 @@ fn style(theme: Theme) -> String {
         let mut css = format!(
             ".paper{{fill:{paper}}}.ink{{fill:{ink}}}.faint{{fill:{faint}}}.axis{{stroke:{ink}}}.grid{{stroke:{grid}}}\
              .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
-             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{color:#e00000}}"
+             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{fill:#e00000;stroke:{paper}}}"
         );
         for (n, colour) in colours.iter().enumerate() {
             let _ = write!(css, ".c{n}{{color:{colour}}}");

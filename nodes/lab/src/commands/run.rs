@@ -10,11 +10,16 @@ use grainlab_recorder::{ResultSlot, tallies};
 #[derive(Debug, clap::Args)]
 #[command(after_help = help(), override_usage = "grainlab run NODE [--ros-args -p NAME:=VALUE -r FROM:=TO ...]")]
 pub(crate) struct Args {
-    #[arg(value_name = "NODE", help = format!("One of {}", NodeKind::names()))]
+    #[arg(value_name = "NODE", help = one_of(&NodeKind::names()))]
     node: String,
     /// ROS 2 arguments: --ros-args -p, -r, --params-file, --log-level
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
     rest: Vec<String>,
+}
+
+/// The last comma of a list as "or".
+fn one_of(names: &str) -> String {
+    names.rsplit_once(", ").map_or_else(|| names.to_owned(), |(all, last)| format!("{all} or {last}"))
 }
 
 fn help() -> String {
