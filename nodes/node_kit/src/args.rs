@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn node_prefixes_are_split_off_but_schemes_are_not() {
         let (ros, _) =
-            parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p grainlab_servo:gain.xx:=3").unwrap();
+            parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
         assert_eq!(ros.remaps[0], Remap { node: Some("dem".into()), from: "__ns".into(), to: "/x".into() });
         assert_eq!(ros.remaps[1], Remap { node: None, from: "stress".into(), to: "p".into() });
         assert_eq!(ros.parameters[0].node.as_deref(), Some("servo"));

@@ -1,6 +1,7 @@
 //! `grainlab bag`: commands for recordings, as `ros2 bag`.
 
 mod check;
+mod export;
 mod info;
 mod play;
 mod record;
@@ -21,6 +22,8 @@ pub(crate) enum Command {
     Info(info::Args),
     /// Read every record of a recording and list all faults.
     Check(check::Args),
+    /// Write the packings of a recording as LAMMPS dump or CSV files.
+    Export(export::Args),
     /// Complete the recording of a recorder that was killed, so that other tools read it.
     Recover(recover::Args),
 }
@@ -32,6 +35,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Play(args) => play::run(args),
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
+        Command::Export(args) => export::run(args),
         Command::Recover(args) => recover::run(args),
     }
 }

@@ -130,7 +130,7 @@ fn too_few_speeds_are_told_how_many_are_missing_and_where() {
     speeds.iter_mut().for_each(|s| s.stddev = None);
     let fault = christoffel::find_axis(&speeds).unwrap_err();
     assert!(matches!(fault, AxisError::TooFew { scatter: true, unknowns: more, .. } if more == unknowns + 1));
-    assert!(fault.to_string().contains("6 wave speeds cannot tell"), "{fault}");
+    assert!(fault.to_string().contains("6 wave speeds cannot determine"), "{fault}");
 }
 
 /// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have

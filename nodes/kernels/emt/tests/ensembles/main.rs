@@ -35,6 +35,11 @@ fn the_built_in_calibration_is_what_the_kept_ensembles_teach() {
     }
 }
 
+#[test]
+fn the_built_in_file_is_what_is_written() {
+    assert_eq!(ours().to_toml().unwrap(), include_str!("../../src/calibration/grainlab.toml"));
+}
+
 /// Errors of one quantity over samples.
 struct Errors {
     rms: f64,

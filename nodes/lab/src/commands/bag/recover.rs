@@ -8,10 +8,10 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab bag recover recordings/runs/demo-1-1
 
-Finishes the recording of a recorder that was killed, so that other tools read it: every message that can be read keeps its
-bytes, times and sequence number, and every file gets its index and its end; the directory gets a metadata.yaml. The file as
-it was stays beside it as NAME.mcap.orig: remove it when you trust the new one. Done again, nothing changes. A recording that
-is complete is left alone. Exit 3 if something could not be read; it is named.";
+Completes the recording of a recorder that was killed, so that other tools read it: every readable message keeps its
+bytes, times and sequence number, and every file gets its index and its end; the directory gets a metadata.yaml. The original
+is kept as NAME.mcap.orig: remove it when you trust the new one. A second call changes nothing. A recording that
+is complete is not changed. Exit 3 if a part could not be read, with a message.";
 
 /// Arguments of `grainlab bag recover`.
 #[derive(Debug, clap::Args)]
