@@ -12,8 +12,10 @@ pub(crate) enum Entry {
     Value(String),
     /// A table.
     Table(Entries),
-    /// An array of tables.
+    /// An array of tables, each under a heading of its own.
     Tables(Vec<Entries>),
+    /// An array of tables in a line.
+    Inline(Vec<Entries>),
 }
 
 /// A number, in as many digits as it takes to read the same bits again.
@@ -44,6 +46,7 @@ fn body(entries: &Entries, path: &str, top: bool, out: &mut String) {
         match entry {
             Entry::Value(value) => *out += &format!("{name} = {value}\n"),
             Entry::Table(table) if !top => *out += &format!("{name} = {}\n", inline(table)),
+            Entry::Inline(tables) => *out += &format!("{name} = {}\n", row(tables)),
             _ => {}
         }
     }
@@ -68,9 +71,13 @@ fn inline(entries: &Entries) -> String {
     let value = |entry: &Entry| match entry {
         Entry::Value(value) => value.clone(),
         Entry::Table(table) => inline(table),
-        Entry::Tables(tables) => format!("[{}]", tables.iter().map(inline).collect::<Vec<_>>().join(", ")),
+        Entry::Tables(tables) | Entry::Inline(tables) => row(tables),
     };
     let items: Vec<String> =
         entries.iter().map(|(name, entry)| format!("{name} = {}", value(entry))).collect();
     if items.is_empty() { "{}".into() } else { format!("{{ {} }}", items.join(", ")) }
+}
+
+fn row(tables: &[Entries]) -> String {
+    format!("[{}]", tables.iter().map(inline).collect::<Vec<_>>().join(", "))
 }

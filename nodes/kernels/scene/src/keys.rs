@@ -35,8 +35,8 @@ keys! {
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that names none, but for a gas");
 
-    GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Required, "number of grains");
-    DIAMETER = number("grains.diameter", "m", Interval::POSITIVE, Required, "diameter of every grain");
+    GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
+    DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "diameter of every grain, or a law: uniform, lognormal (spread is the standard deviation of the logarithm, cut at 3), or several sizes, by share or count of grains") };
 
     SHEAR_MODULUS = number("material.shear_modulus", "Pa", Interval::POSITIVE, DefaultValue::Number(GLASS.shear_modulus), "shear modulus of the grains");
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
@@ -56,6 +56,11 @@ keys! {
     CONTROL_PERIOD = Key { kinds: STEPS, ..whole("phase.control_period", 1, 100_000, Words("10; 20 for an event-driven gas, 200 for a soft one"), "solver steps between two exchanges with the servo; a step of an event-driven gas is a mean free time") };
     REFERENCE = Key { kinds: STEPS, ..flag("phase.reference", "whether the state at the end is the reference of strains from then on") };
     PUBLISH = Key { kinds: STEPS, ..flag("phase.publish", "whether the packing at the end is published") };
+
+    RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published; the run is the same with and without") };
+    EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of so many solver steps of the run") };
+    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much strain in the phase, to and fro alike") };
+    EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much simulated time in the phase") };
 
     METHOD = Key { kinds: GAS, ..choice("phase.method", &["event_driven", "soft"], "event_driven", "how the grains collide: as hard, elastic, frictionless spheres, or by the contact law") };
     INITIAL_SOLID_FRACTION = Key { kinds: GAS, ..number("phase.initial_solid_fraction", "", Interval::from_to(0.001, 0.35), DefaultValue::Number(0.3), "solid fraction at which the grains are placed") };

@@ -14,6 +14,7 @@ mod built_in;
 mod canonical;
 mod compose;
 mod fault;
+mod grains;
 mod key;
 mod keys;
 mod model;
@@ -23,8 +24,10 @@ mod parse;
 mod path;
 mod phases;
 mod reader;
+mod record;
 mod reference;
 mod servo;
+mod sizes;
 mod template;
 mod until;
 
@@ -34,8 +37,12 @@ pub use compose::{Draft, Library, Source};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;
-pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene, Tangential};
+pub use model::{
+    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Tangential,
+};
 pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};
+pub use record::Travelled;
 pub use reference::reference;
+pub use sizes::{Sizes, Species};
 pub use template::template;

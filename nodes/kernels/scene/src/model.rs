@@ -1,5 +1,6 @@
 //! The scene as a value.
 
+use crate::sizes::Sizes;
 use grainlab_core::{ComponentControl, Material, ServoLaw};
 
 /// A whole experiment: what is simulated and along which loading path.
@@ -13,8 +14,8 @@ pub struct Scene {
     pub seed: u64,
     /// Number of grains.
     pub grains: u32,
-    /// Diameter of every grain, m.
-    pub diameter: f64,
+    /// Their sizes.
+    pub sizes: Sizes,
     /// Material of every grain.
     pub material: Material,
     /// Numerical settings.
@@ -72,8 +73,21 @@ pub struct Phase {
     pub reference: bool,
     /// Publish the packing at the end.
     pub publish: bool,
+    /// How often a packing within the phase is published; never at its end, which is what `publish` is for.
+    pub record: Option<Record>,
     /// When the phase is over.
     pub until: Conditions,
+}
+
+/// How often a packing is published.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Record {
+    /// Solver steps of the run.
+    EverySteps(u64),
+    /// Strain since the phase began.
+    EveryStrain(f64),
+    /// Simulated time since the phase began, s.
+    EveryTime(f64),
 }
 
 /// What drives the cell during a phase.

@@ -3,6 +3,7 @@
 use crate::canonical;
 use crate::compose::Draft;
 use crate::fault::SceneError;
+use crate::grains;
 use crate::keys;
 use crate::model::{Numerics, Scene, Tangential};
 use crate::phases::{self, Inherited};
@@ -59,19 +60,18 @@ fn read_scene(r: &mut Reader<'_>) -> Scene {
     let description = r.text(&keys::DESCRIPTION);
     let seed = r.whole(&keys::SEED);
     let friction = r.optional(&keys::FRICTION);
-    let (grains, diameter) =
-        r.section("grains", |r| (r.whole(&keys::GRAIN_COUNT) as u32, r.number(&keys::DIAMETER)));
+    let (grains, sizes) = r.section("grains", grains::read);
     let material = r.section("material", read_material);
     let numerics = r.section("numerics", read_numerics);
     let mut inherited =
-        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, diameter) };
+        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };
     let phases = phases::read(r, &mut inherited);
     if friction.is_some() && !inherited.taken && !phases.is_empty() {
         let message =
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);
     }
-    Scene { name, description, seed, grains, diameter, material, numerics, phases }
+    Scene { name, description, seed, grains, sizes, material, numerics, phases }
 }
 
 fn read_material(r: &mut Reader<'_>) -> Material {

@@ -6,7 +6,7 @@ use crate::key::Key;
 use crate::keys;
 use crate::model::{Condition, GasMethod, Measure, Phase, PhaseKind};
 use crate::reader::{Reader, as_number, kind};
-use crate::{servo, until};
+use crate::{record, servo, until};
 use grainlab_core::Material;
 use toml::{Table, Value};
 
@@ -162,6 +162,7 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited) -> Phase {
         control_period: r.whole_or(&keys::CONTROL_PERIOD, Some(period)) as u32,
         reference: r.flag(&keys::REFERENCE),
         publish: r.flag(&keys::PUBLISH),
+        record: record::read(r),
         until: until::read(r, matches!(kind, PhaseKind::Servo { .. })),
         kind,
     };

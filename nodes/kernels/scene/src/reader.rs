@@ -55,6 +55,11 @@ impl<'a> Reader<'a> {
         self.table.get(key.name())
     }
 
+    /// A value that is looked at before it is read.
+    pub(crate) fn peek(&self, key: &Key) -> Option<&'a Value> {
+        self.table.get(key.name())
+    }
+
     /// The same for a key that is no row of the table of keys: a component.
     pub(crate) fn get_named(&mut self, name: &'static str) -> Option<&'a Value> {
         self.asked.push(name);

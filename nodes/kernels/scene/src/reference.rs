@@ -22,7 +22,7 @@ const KINDS: [(&str, &str); 6] = [
 pub fn reference() -> String {
     let mut page = format!("{INTRODUCTION}\n## Keys\n");
     let of_phase = |k: &Key| k.path.starts_with("phase.");
-    let of_until = |k: &Key| k.path.starts_with("phase.until.");
+    let of_part = |k: &Key| k.path.matches('.').count() > 1;
     let top = |k: &Key| !k.path.contains('.');
     page += &section("The scene", |k| top(k));
     for (table, title) in [
@@ -37,9 +37,15 @@ pub fn reference() -> String {
             [only] => *only == kind,
             _ => kind.is_empty(),
         };
-        page += &section(title, |k| of_phase(k) && !of_until(k) && own(k));
+        page += &section(title, |k| of_phase(k) && !of_part(k) && own(k));
     }
-    page + &section("`until`: the conditions that end a phase", of_until)
+    for (table, title) in [
+        ("phase.record.", "`record`: packings within a phase"),
+        ("phase.until.", "`until`: the conditions that end a phase"),
+    ] {
+        page += &section(title, |k| k.path.starts_with(table));
+    }
+    page
 }
 
 /// A table of the keys that belong here, under a title; the title alone where there are none.
