@@ -8,6 +8,8 @@ use crate::built_in::built_in;
 use crate::fault::{Fault, SceneError};
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
+use crate::reader::as_number;
+use grainlab_core::Packing;
 use toml::{Table, Value};
 
 /// A text that a base names.
@@ -27,6 +29,19 @@ pub type Library<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     table: Table,
+    /// The source that names the packing to start from.
+    start_from: Option<String>,
+}
+
+/// The packing that a scene starts from, as its text names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StartFile {
+    /// A path, seen from the source that names it.
+    pub path: String,
+    /// That source; none where it was set beside the scene.
+    pub from: Option<String>,
+    /// Solver step of the packing in a recording; the last one if there is none.
+    pub step: Option<u64>,
 }
 
 impl Draft {
@@ -57,26 +72,52 @@ impl Draft {
                 }
                 next = Some(found);
             }
-            layers.push(table);
+            layers.push((source.name, table));
         }
-        let mut table = layers.pop().unwrap_or_default();
+        let start_from = layers.iter().find(|(_, table)| names_start(table)).map(|(name, _)| name.clone());
+        let mut table = layers.pop().unwrap_or_default().1;
         let mut faults = Vec::new();
-        for layer in layers.into_iter().rev() {
+        for (_, layer) in layers.into_iter().rev() {
             faults.extend(overlay(&mut table, layer));
         }
-        if faults.is_empty() { Ok(Draft { table }) } else { Err(SceneError { faults }) }
+        if faults.is_empty() { Ok(Draft { table, start_from }) } else { Err(SceneError { faults }) }
     }
 
     /// Lays keys over the scene, as [`crate::assignment`] reads them.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
+        if names_start(&keys) {
+            self.start_from = None;
+        }
         let faults = overlay(&mut self.table, keys);
         if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
     }
 
-    /// The scene, if all its values hold.
-    pub fn resolve(&self) -> Result<Resolved, SceneError> {
-        read(&self.table)
+    /// The packing that the scene starts from, if it does: to be read, and given to [`Draft::resolve_from`].
+    pub fn start(&self) -> Option<StartFile> {
+        let start = self.table.get("start")?.as_table()?;
+        let path = start.get("packing")?.as_str()?.to_owned();
+        let step = start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok());
+        Some(StartFile { path, from: self.start_from.clone(), step })
     }
+
+    /// A value given under `[material]`: what a file of a packing may not say.
+    pub fn material(&self, key: &str) -> Option<f64> {
+        as_number(self.table.get("material")?.as_table()?.get(key)?)
+    }
+
+    /// The scene, if all its values hold. One that starts from a packing needs it: see [`Draft::resolve_from`].
+    pub fn resolve(&self) -> Result<Resolved, SceneError> {
+        read(&self.table, None)
+    }
+
+    /// A scene that starts from this packing.
+    pub fn resolve_from(&self, packing: &Packing) -> Result<Resolved, SceneError> {
+        read(&self.table, Some(packing))
+    }
+}
+
+fn names_start(table: &Table) -> bool {
+    table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key("packing"))
 }
 
 fn fault(place: &str, message: impl Into<String>) -> SceneError {

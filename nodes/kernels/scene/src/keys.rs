@@ -35,6 +35,11 @@ keys! {
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that names none, but for a gas");
 
+    START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: the run goes on from a packing");
+    START_PACKING = text("start.packing", Required, "file whose packing the run starts from, by its path from this file: a recording, CSV, LAMMPS or YADE; then there is no [grains] and no gas");
+    START_STEP = whole("start.step", 0, u64::MAX >> 1, Words("the last one"), "solver step of the packing in a recording or a dump");
+
+    GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: how many, and how large");
     GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
     DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "diameter of every grain, or a law: uniform, lognormal (spread is the standard deviation of the logarithm, cut at 3), or several sizes, by share or count of grains") };
 

@@ -28,17 +28,18 @@ mod record;
 mod reference;
 mod servo;
 mod sizes;
+mod start;
 mod template;
 mod until;
 
 pub use assignment::assignment;
 pub use built_in::{BUILT_IN, built_in};
-pub use compose::{Draft, Library, Source};
+pub use compose::{Draft, Library, Source, StartFile};
 pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;
 pub use model::{
-    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Tangential,
+    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start, Tangential,
 };
 pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};

@@ -12,6 +12,8 @@ pub struct Scene {
     pub description: String,
     /// Seed of every random choice.
     pub seed: u64,
+    /// The packing that the run starts from; `None` for a gas.
+    pub start: Option<Start>,
     /// Number of grains.
     pub grains: u32,
     /// Their sizes.
@@ -77,6 +79,15 @@ pub struct Phase {
     pub record: Option<Record>,
     /// When the phase is over.
     pub until: Conditions,
+}
+
+/// A packing to start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Path of its file.
+    pub packing: String,
+    /// Its solver step.
+    pub step: Option<u64>,
 }
 
 /// How often a packing is published.

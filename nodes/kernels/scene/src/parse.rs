@@ -8,7 +8,8 @@ use crate::keys;
 use crate::model::{Numerics, Scene, Tangential};
 use crate::phases::{self, Inherited};
 use crate::reader::Reader;
-use grainlab_core::Material;
+use crate::start;
+use grainlab_core::{Material, Packing};
 use toml::Table;
 
 /// A scene that holds, as a value and as text.
@@ -34,9 +35,9 @@ impl Scene {
 }
 
 /// Reads a table without base.
-pub(crate) fn read(table: &Table) -> Result<Resolved, SceneError> {
+pub(crate) fn read(table: &Table, packing: Option<&Packing>) -> Result<Resolved, SceneError> {
     let mut r = Reader::new("", table);
-    let scene = read_scene(&mut r);
+    let scene = read_scene(&mut r, packing);
     let (entries, faults) = r.finish();
     if faults.is_empty() {
         Ok(Resolved { scene, toml: canonical::write(&entries) })
@@ -45,7 +46,7 @@ pub(crate) fn read(table: &Table) -> Result<Resolved, SceneError> {
     }
 }
 
-fn read_scene(r: &mut Reader<'_>) -> Scene {
+fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
     for key in [&keys::BASE, &keys::REMOVE, &keys::APPEND] {
         if r.get(key).is_some() {
             r.fault(key.name(), "changes a base, and this scene has none");
@@ -60,25 +61,40 @@ fn read_scene(r: &mut Reader<'_>) -> Scene {
     let description = r.text(&keys::DESCRIPTION);
     let seed = r.whole(&keys::SEED);
     let friction = r.optional(&keys::FRICTION);
-    let (grains, sizes) = r.section("grains", grains::read);
-    let material = r.section("material", read_material);
+    let start = start::read(r);
+    if start.is_some() && packing.is_none() {
+        r.fault("start", "names a packing, which has not been read");
+    }
+    let packing = packing.filter(|_| start.is_some());
+    let (grains, sizes) = match packing {
+        Some(packing) => start::grains(r, packing),
+        None => r.section("grains", grains::read),
+    };
+    let default = packing.map_or(Material::GLASS, |p| p.material);
+    let material = r.section("material", |r| read_material(r, &default));
+    if let Some(packing) = packing {
+        r.adopt(start::differing(&material, packing));
+    }
     let numerics = r.section("numerics", read_numerics);
     let mut inherited =
         Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };
-    let phases = phases::read(r, &mut inherited);
+    let phases = phases::read(r, &mut inherited, start.is_none());
+    if let (Some(packing), Some(first)) = (packing, phases.first()) {
+        start::refused(first, packing).into_iter().for_each(|m| r.fault("phase", m));
+    }
     if friction.is_some() && !inherited.taken && !phases.is_empty() {
         let message =
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);
     }
-    Scene { name, description, seed, grains, sizes, material, numerics, phases }
+    Scene { name, description, seed, start, grains, sizes, material, numerics, phases }
 }
 
-fn read_material(r: &mut Reader<'_>) -> Material {
+fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
     Material {
-        shear_modulus: r.number(&keys::SHEAR_MODULUS),
-        poisson_ratio: r.number(&keys::POISSON_RATIO),
-        density: r.number(&keys::DENSITY),
+        shear_modulus: r.number_or(&keys::SHEAR_MODULUS, Some(default.shear_modulus)),
+        poisson_ratio: r.number_or(&keys::POISSON_RATIO, Some(default.poisson_ratio)),
+        density: r.number_or(&keys::DENSITY, Some(default.density)),
     }
 }
 

@@ -40,8 +40,8 @@ pub(crate) fn spin_drag(material: &Material, diameter: f64) -> f64 {
     (material.shear_modulus / material.density).sqrt() / (SPIN_CROSSINGS * diameter)
 }
 
-/// The phases of a scene.
-pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited) -> Vec<Phase> {
+/// The phases of a scene, which begins with a gas or with none.
+pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited, begins_with_gas: bool) -> Vec<Phase> {
     let mut phases = Vec::new();
     list(r, &keys::PHASE, "phase", inherited, &mut phases);
     if phases.len() > MAX_PHASES {
@@ -58,10 +58,13 @@ pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited) -> Vec<Phase> 
         }
     }
     for (i, phase) in phases.iter().enumerate() {
-        if matches!(phase.kind, PhaseKind::Gas { .. }) != (i == 0) {
-            let message =
-                format!("phase {i} ({}): a path begins with one gas phase and has no other", phase.name);
-            r.fault("phase", message);
+        if matches!(phase.kind, PhaseKind::Gas { .. }) != (begins_with_gas && i == 0) {
+            let rule = if begins_with_gas {
+                "a path begins with one gas phase and has no other"
+            } else {
+                "a path that starts from a packing has no gas phase"
+            };
+            r.fault("phase", format!("phase {i} ({}): {rule}", phase.name));
         }
     }
     phases
