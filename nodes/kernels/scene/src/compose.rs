@@ -6,6 +6,7 @@
 
 use crate::built_in::built_in;
 use crate::fault::{Fault, SceneError};
+use crate::model::Scene;
 use crate::overlay::overlay;
 use crate::parse::{Resolved, read};
 use crate::reader::as_number;
@@ -42,6 +43,18 @@ pub struct StartFile {
     pub from: Option<String>,
     /// Solver step of the packing in a recording; the last one if there is none.
     pub step: Option<u64>,
+}
+
+impl Scene {
+    /// Parses a scene; every fault of the text is in the error. Its base, if it has one, is built in.
+    ///
+    /// ```
+    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
+    /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
+    /// ```
+    pub fn parse(text: &str) -> Result<Scene, SceneError> {
+        Ok(Draft::of_text(text)?.resolve()?.scene)
+    }
 }
 
 impl Draft {

@@ -1,7 +1,6 @@
 //! A scene's table to [`Scene`], with every fault reported at once.
 
 use crate::canonical;
-use crate::compose::Draft;
 use crate::fault::SceneError;
 use crate::grains;
 use crate::keys;
@@ -20,18 +19,6 @@ pub struct Resolved {
     /// The same as TOML that needs no other file: bases and overrides applied, every default written out. Its own
     /// resolution is the same text.
     pub toml: String,
-}
-
-impl Scene {
-    /// Parses a scene; every fault of the text is in the error. Its base, if it has one, is built in.
-    ///
-    /// ```
-    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
-    /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
-    /// ```
-    pub fn parse(text: &str) -> Result<Scene, SceneError> {
-        Ok(Draft::of_text(text)?.resolve()?.scene)
-    }
 }
 
 /// Reads a table without base.
