@@ -5,7 +5,7 @@
 //! the copy is dropped, and the run obeys. Nothing of the copy is published before that, so that requests, answers and
 //! every other message are what they are without it.
 
-use grainlab_dem::{Advanced, DemError, Request, Simulation};
+use grainlab_experiment::{ExperimentError, ServoRequest, Simulation, StepOutcome};
 use std::time::Duration;
 
 /// Grains up to which a copy (some 25 ns a grain) costs less than the wait that it saves (0.1 ms and more).
@@ -18,7 +18,7 @@ pub(crate) struct Ahead {
     /// The run after it.
     pub(crate) run: Simulation,
     /// What it led to.
-    pub(crate) result: Result<Advanced, DemError>,
+    pub(crate) result: Result<StepOutcome, ExperimentError>,
     /// Time that it took to compute.
     pub(crate) took: Duration,
 }
@@ -27,12 +27,12 @@ impl Ahead {
     /// Advances a copy of `run` with the answer that the law gives to `request`; `now` reads a clock.
     ///
     /// `None` where the law gives none.
-    pub(crate) fn of(run: &Simulation, request: &Request, now: impl Fn() -> Duration) -> Option<Self> {
-        let answer = grainlab_servo::answer(&request.question());
+    pub(crate) fn of(run: &Simulation, request: &ServoRequest, now: impl Fn() -> Duration) -> Option<Self> {
+        let answer = grainlab_servo::answer(&request.servo_input());
         let rate = answer.ok()?.rate;
         let began = now();
         let mut run = run.clone();
-        let result = run.answer(&rate);
+        let result = run.advance(&rate);
         Some(Self { sequence: request.sequence, rate, run, result, took: now().saturating_sub(began) })
     }
 

@@ -8,7 +8,7 @@ use crate::node::{BEAT, HOLD, NOTICE_PERIOD, Stage};
 use crate::partner::Whose;
 use crate::question::Question;
 use crate::settings::Mode;
-use grainlab_dem::{Advanced, DemError, Request};
+use grainlab_experiment::{ExperimentError, ServoRequest, StepOutcome};
 use grainlab_msgs::boundary::StrainRateAnswer;
 use grainlab_msgs::msg::RunState;
 use grainlab_msgs::{to_cdr, topics};
@@ -93,7 +93,7 @@ impl DemSimulator {
             Err(error) => return self.fail(bus, &error.to_string()),
         };
         // The servo would refuse it, and every repetition, for ever.
-        let (law, tangent) = (&request.law, &request.snapshot.tangent);
+        let (law, tangent) = (&request.law, &request.observables.tangent);
         if let Err(error) =
             grainlab_servo::check_stability(law, tangent, &request.controls, request.control_interval)
         {
@@ -116,14 +116,14 @@ impl DemSimulator {
     }
 
     /// Computes on while the answer is on its way; false if it does not.
-    fn look_ahead(&mut self, bus: &dyn Bus, request: &Request) -> bool {
+    fn look_ahead(&mut self, bus: &dyn Bus, request: &ServoRequest) -> bool {
         let ahead = self.looks_ahead.then(|| Ahead::of(&self.run, request, || bus.now()));
         self.ahead = ahead.flatten();
         self.ahead.as_ref().inspect(|ahead| self.barrier.computed(ahead.took)).is_some()
     }
 
     /// Obeys an answer, which may have been done already.
-    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<Advanced, DemError> {
+    fn obey(&mut self, bus: &dyn Bus, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
         let sequence = self.barrier.sequence();
         match self.ahead.take() {
             Some(ahead) if ahead.obeyed(sequence, rate) => {
@@ -141,7 +141,7 @@ impl DemSimulator {
             None => {}
         }
         let began = bus.now();
-        let result = self.run.answer(rate);
+        let result = self.run.advance(rate);
         self.computing += bus.now().saturating_sub(began);
         result
     }
@@ -171,7 +171,7 @@ impl DemSimulator {
         Ok(Next::Wait(self.barrier.patience(now)))
     }
 
-    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &Advanced) -> Result<Next, NodeError> {
+    fn advanced(&mut self, bus: &mut dyn Bus, advanced: &StepOutcome) -> Result<Next, NodeError> {
         let now = bus.now();
         self.wall = now.saturating_sub(self.began);
         if advanced.packing_due

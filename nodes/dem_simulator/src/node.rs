@@ -7,7 +7,8 @@ use crate::outbox::Outbox;
 use crate::partner::Partner;
 use crate::rivals::Rivals;
 use crate::settings::{Mode, Settings};
-use grainlab_dem::{ComputeError, DemError, Simulation};
+use grainlab_dem::ComputeError;
+use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
@@ -37,7 +38,7 @@ const FAREWELL: Duration = Duration::from_secs(2);
 pub enum SimulatorError {
     /// The scene cannot be set up, or the packing is no state of it.
     #[error(transparent)]
-    Dem(#[from] DemError),
+    Run(#[from] ExperimentError),
     /// The processor cannot do what it was told to.
     #[error(transparent)]
     Compute(#[from] ComputeError),

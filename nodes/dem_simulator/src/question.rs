@@ -1,7 +1,7 @@
 //! What a request asks, and which answers it allows.
 
 use grainlab_core::ComponentControl;
-use grainlab_dem::Request;
+use grainlab_experiment::ServoRequest;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
 
@@ -33,7 +33,7 @@ pub(crate) enum Violation {
 
 impl Question {
     /// What `request` asks.
-    pub(crate) fn of(request: &Request) -> Self {
+    pub(crate) fn of(request: &ServoRequest) -> Self {
         Self {
             sequence: request.sequence,
             stamp: stamp(request.time),

@@ -122,7 +122,7 @@ impl Settings {
     /// What a run of so many grains is computed with.
     pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let threads = self.threads.map_or(Compute::threads_that_pay(grains, cores), NonZeroUsize::get);
+        let threads = self.threads.map_or(Compute::useful_threads(grains, cores), NonZeroUsize::get);
         Compute::new(self.simd.unwrap_or_else(Simd::best), threads)
     }
 }

@@ -29,8 +29,7 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::planes;
 use crate::trace::Trace;
-use grainlab_core::{Packing, WaveMethod};
-use grainlab_scene::Tangential;
+use grainlab_core::{Packing, TangentialLaw, WaveMethod};
 use rayon::prelude::*;
 
 /// What is taken as the arrival.
@@ -81,7 +80,7 @@ pub struct Settings {
     /// Friction; `None`: that of the packing, whose contacts at the limit slide under any wave; infinite: none do.
     pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Settings {
@@ -97,7 +96,7 @@ impl Default for Settings {
             amplitude: 1e-8,
             pick: Pick::default(),
             friction: None,
-            tangential: Tangential::Incremental,
+            tangential: TangentialLaw::Incremental,
         }
     }
 }

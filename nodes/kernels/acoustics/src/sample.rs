@@ -1,13 +1,12 @@
 //! A packing made ready for waves: at rest, with its time step and a first idea of their speed.
 
 use crate::error::AcousticsError;
-use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_core::{Mat3, Packing, TangentialLaw, Vec3};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::NoNetwork;
 use grainlab_micromechanics::balance::unbalanced;
 use grainlab_micromechanics::rattlers::{contacts_needed, participating};
 use grainlab_micromechanics::relax::Relaxation;
-use grainlab_scene::Tangential;
 
 /// Share of the stability bound that the time step takes: contacts hardly stiffen.
 const SAFETY: f64 = 0.8;
@@ -31,7 +30,7 @@ pub(crate) struct Sample {
     /// Which grains carry force.
     pub(crate) present: Vec<bool>,
     /// The engine's setting: nothing damps, fixed time step.
-    pub(crate) setting: Setting,
+    pub(crate) setting: EngineSettings,
     /// Mean diameter, m.
     pub(crate) diameter: f64,
     /// Unbalanced force ratio, where the packing did not come to rest.
@@ -43,7 +42,7 @@ impl Sample {
     pub(crate) fn new(
         packing: &Packing,
         friction: Option<f64>,
-        tangential: Tangential,
+        tangential: TangentialLaw,
     ) -> Result<Self, AcousticsError> {
         let friction = friction.unwrap_or(packing.friction);
         if friction.is_nan() || friction < 0.0 {
@@ -62,21 +61,21 @@ impl Sample {
         packing.velocities.fill(Vec3::zeros());
         packing.spins.fill(Vec3::zeros());
         let diameter = 2.0 * packing.radii.iter().sum::<f64>() / grains as f64;
-        let setting = Setting {
+        let setting = EngineSettings {
             friction,
             damping: 0.0,
             drag: 0.0,
             spin_drag: 0.0,
             tangential,
-            time_step: TimeStep::Safety(SAFETY),
+            time_step: TimeStep::FractionOfStable(SAFETY),
             skin: SKIN * diameter,
-            speed_cap: None,
+            thermostat_speed: None,
         };
         let mut engine = Engine::from_packing(&packing, setting);
-        engine.prepare()?;
-        engine.renew_time_step();
-        let setting = Setting { time_step: TimeStep::Fixed(engine.time_step()), ..setting };
-        engine.set(setting);
+        engine.initialise()?;
+        engine.update_time_step();
+        let setting = EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting };
+        engine.set_settings(setting);
         let mut rest = Relaxation::new(vec![engine]);
         let unrest = |rest: &Relaxation| {
             let now = rest.engines()[0].packing(Mat3::identity());

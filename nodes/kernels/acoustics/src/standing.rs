@@ -22,8 +22,7 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::resonance::{Found, Resonance};
 use crate::trace::Trace;
-use grainlab_core::{Packing, Vec3};
-use grainlab_scene::Tangential;
+use grainlab_core::{Packing, TangentialLaw, Vec3};
 use rayon::prelude::*;
 
 /// Repetitions of a packing that have room for two wavelengths, to extrapolate from.
@@ -45,12 +44,18 @@ pub struct Settings {
     /// make it slower than the frozen network's by a few per cent; a high friction ("set very high") holds them.
     pub friction: Option<f64>,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { copies: 8, periods: 4.0, amplitude: 1e-9, friction: None, tangential: Tangential::Incremental }
+        Self {
+            copies: 8,
+            periods: 4.0,
+            amplitude: 1e-9,
+            friction: None,
+            tangential: TangentialLaw::Incremental,
+        }
     }
 }
 

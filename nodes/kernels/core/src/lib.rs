@@ -7,6 +7,7 @@
 //! - [`tensor`]: small vectors and tensors
 //! - [`cell`]: the periodic cell
 //! - [`material`]: the grain's material and the contact stiffnesses that follow from it (Eqs. 8 and 9)
+//! - [`TangentialLaw`]: how a tangential spring follows the normal stiffness
 //! - [`packing`]: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`stress`]: the one definition of stress
@@ -19,6 +20,7 @@
 
 pub mod cell;
 mod consistency;
+mod contact;
 pub mod control;
 pub mod material;
 pub mod packing;
@@ -31,6 +33,7 @@ pub mod tensor;
 pub mod waves;
 
 pub use cell::Cell;
+pub use contact::tangential::TangentialLaw;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::Material;
 pub use packing::{Contact, Packing, PackingError};

@@ -2,38 +2,42 @@
 
 use grainlab_core::material::effective_radius;
 use grainlab_core::{Material, Vec3};
-use grainlab_dem::lanes::V3;
-use grainlab_dem::law::{Law, Touch};
+use grainlab_dem::{ContactKinematics, HertzMindlin, LaneVec3};
 use nalgebra::{Rotation3, Unit};
 
 const RADIUS: f64 = 1e-4;
 const GLASS: Material = Material::GLASS;
 const DT: f64 = 1e-8;
 
-/// Two spheres moved by hand: positions and spins in, forces out, the history carried along.
+/// Two spheres moved by hand: positions and spins in, forces out, the history kept.
 struct Pair {
-    law: Law,
+    law: HertzMindlin,
     history: Vec3,
-    root: f64,
+    contact_radius: f64,
     branch: Vec3,
 }
 
-fn lanes(v: Vec3) -> V3<f64> {
-    V3::new(v.x, v.y, v.z)
+fn lanes(v: Vec3) -> LaneVec3<f64> {
+    LaneVec3::new(v.x, v.y, v.z)
 }
 
-fn vector(v: V3<f64>) -> Vec3 {
+fn vector(v: LaneVec3<f64>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-fn root(overlap: f64) -> f64 {
+fn contact_radius(overlap: f64) -> f64 {
     (effective_radius(RADIUS, RADIUS) * overlap).sqrt()
 }
 
 impl Pair {
     fn new(friction: f64, overlap: f64) -> Self {
         let branch = Vec3::z() * (2.0 * RADIUS - overlap);
-        Self { law: Law::new(&GLASS, friction, 0.0), history: Vec3::zeros(), root: root(overlap), branch }
+        Self {
+            law: HertzMindlin::new(&GLASS, friction, 0.0),
+            history: Vec3::zeros(),
+            contact_radius: contact_radius(overlap),
+            branch,
+        }
     }
 
     /// Moves `j` to `branch` with both grains spinning at `spin`; returns (F_n, F_t on i).
@@ -41,19 +45,20 @@ impl Pair {
         let distance = branch.norm();
         let overlap = 2.0 * RADIUS - distance;
         let normal = branch / distance;
-        let touch = Touch {
+        let kinematics = ContactKinematics {
             normal: lanes(normal),
             inverse_distance: 1.0 / distance,
             overlap,
-            root: root(overlap),
-            unloading: (root(overlap) / self.root).min(1.0),
+            contact_radius: contact_radius(overlap),
+            unloading: (contact_radius(overlap) / self.contact_radius).min(1.0),
             m_eff: 1.0,
-            relative: lanes((branch - self.branch) / DT),
-            rolling: lanes(spin * distance),
-            spin: lanes(2.0 * spin),
+            relative_velocity: lanes((branch - self.branch) / DT),
+            spin_velocity: lanes(spin * distance),
+            spin_sum: lanes(2.0 * spin),
         };
-        let f = self.law.frictional::<f64, true, true, RESCALED>(&touch, lanes(self.history), DT);
-        (self.history, self.root, self.branch) = (vector(f.history), touch.root, branch);
+        let f = self.law.full_force::<f64, true, true, RESCALED>(&kinematics, lanes(self.history), DT);
+        (self.history, self.contact_radius) = (vector(f.history), kinematics.contact_radius);
+        self.branch = branch;
         (f.normal, vector(f.tangential))
     }
 

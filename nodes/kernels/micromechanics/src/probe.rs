@@ -14,9 +14,8 @@ use crate::column::{Calm, Column, LOOK, strained};
 use crate::error::{NoNetwork, ProbeError};
 use crate::rattlers::{contacts_needed, participating};
 use crate::relax::Relaxation;
-use grainlab_core::{Packing, Stiffness, Vec3};
-use grainlab_dem::{Engine, Setting, TimeStep};
-use grainlab_scene::Tangential;
+use grainlab_core::{Packing, Stiffness, TangentialLaw, Vec3};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// The packing relaxes, before it is strained, to this share of the unbalanced force that ends a relaxation afterwards.
 const REST: f64 = 0.25;
@@ -39,9 +38,9 @@ pub struct Probe {
     /// Friction while probing: infinite ("set very high") sticks every contact, 0 takes tangential springs away, what
     /// is between lets contacts slide.
     pub friction: f64,
-    /// How the tangential force follows a change of normal stiffness. [`Tangential::Incremental`] has the frozen
+    /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the frozen
     /// network as its linear limit; the other law depends on the direction of the strain however small.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Probe {
@@ -52,7 +51,7 @@ impl Default for Probe {
             tolerance: 1e-5,
             max_steps: 50_000,
             friction: f64::INFINITY,
-            tangential: Tangential::Incremental,
+            tangential: TangentialLaw::Incremental,
         }
     }
 }
@@ -147,26 +146,26 @@ fn strain_load(packing: &Packing, settings: &Probe) -> Result<f64, ProbeError> {
 /// An engine with the packing relaxed, and the steps that took.
 fn at_rest(packing: &Packing, settings: &Probe, load: f64) -> Result<(Engine, u32), ProbeError> {
     let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let setting = Setting {
+    let setting = EngineSettings {
         friction: settings.friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
         tangential: settings.tangential,
-        time_step: TimeStep::Safety(1.0),
+        time_step: TimeStep::FractionOfStable(1.0),
         skin: SKIN * 2.0 * smallest,
-        speed_cap: None,
+        thermostat_speed: None,
     };
     let still = vec![Vec3::zeros(); packing.grains()];
     // Without a time step of its own the engine takes the longest stable one.
     let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting);
-    engine.set(setting);
+    engine.set_settings(setting);
     engine.set_velocities(&still);
     engine.set_spins(&still);
-    engine.prepare()?;
-    engine.set(Setting { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    engine.initialise()?;
+    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
     let target = REST * settings.tolerance * load;
-    let mut unbalanced = engine.snapshot()?.unbalanced;
+    let mut unbalanced = engine.observables()?.unbalanced;
     let mut relaxation = Relaxation::new(vec![engine]);
     let mut steps = 0;
     while unbalanced > target {
@@ -177,7 +176,7 @@ fn at_rest(packing: &Packing, settings: &Probe, load: f64) -> Result<(Engine, u3
             relaxation.step()?;
         }
         steps += LOOK;
-        unbalanced = relaxation.engines()[0].snapshot()?.unbalanced;
+        unbalanced = relaxation.engines()[0].observables()?.unbalanced;
     }
     let mut engine = relaxation.engines()[0].clone();
     engine.set_velocities(&still);

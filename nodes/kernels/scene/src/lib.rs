@@ -39,7 +39,7 @@ pub use fault::{Fault, SceneError};
 pub use key::{DefaultValue, Domain, Interval, Key};
 pub use keys::KEYS;
 pub use model::{
-    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start, Tangential,
+    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start,
 };
 pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};

@@ -1,7 +1,7 @@
 //! The scene as a value.
 
 use crate::sizes::Sizes;
-use grainlab_core::{ComponentControl, Material, ServoLaw};
+use grainlab_core::{ComponentControl, Material, ServoLaw, TangentialLaw};
 
 /// A whole experiment: what is simulated and along which loading path.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,22 +35,13 @@ pub struct Numerics {
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { time_step_safety: 0.8, skin: 0.05, tangential: Tangential::Rescaled }
+        Self { time_step_safety: 0.8, skin: 0.05, tangential: TangentialLaw::Rescaled }
     }
-}
-
-/// How the tangential force follows a change of normal stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tangential {
-    /// Scaled down with the tangential stiffness on unloading: a closed cycle never creates energy.
-    Rescaled,
-    /// Kept on unloading: the increments of the stuck network, and LAMMPS's `mindlin/force`.
-    Incremental,
 }
 
 /// One phase of the loading path.

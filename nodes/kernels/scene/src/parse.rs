@@ -4,11 +4,11 @@ use crate::canonical;
 use crate::fault::SceneError;
 use crate::grains;
 use crate::keys;
-use crate::model::{Numerics, Scene, Tangential};
+use crate::model::{Numerics, Scene};
 use crate::phases::{self, Inherited};
 use crate::reader::Reader;
 use crate::start;
-use grainlab_core::{Material, Packing};
+use grainlab_core::{Material, Packing, TangentialLaw};
 use toml::Table;
 
 /// A scene that holds, as a value and as text.
@@ -86,7 +86,7 @@ fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
 }
 
 fn read_numerics(r: &mut Reader<'_>) -> Numerics {
-    let tangential = [("rescaled", Tangential::Rescaled), ("incremental", Tangential::Incremental)];
+    let tangential = [("rescaled", TangentialLaw::Rescaled), ("incremental", TangentialLaw::Incremental)];
     Numerics {
         time_step_safety: r.number(&keys::TIME_STEP_SAFETY),
         skin: r.number(&keys::SKIN),

@@ -6,7 +6,7 @@ use crate::flight::slab::Slab;
 use crate::instrument::Heard;
 use crate::repeat::Repeated;
 use grainlab_core::{Contact, Mat3, Vec3};
-use grainlab_dem::{Engine, Setting};
+use grainlab_dem::{Engine, EngineSettings};
 use std::collections::BTreeSet;
 
 /// Looks at the contacts on the way.
@@ -23,7 +23,7 @@ pub(crate) struct Shot<'a> {
     /// Which grains of one copy carry force.
     pub(crate) present: &'a [bool],
     /// Setting of the engine, its time step fixed.
-    pub(crate) setting: Setting,
+    pub(crate) setting: EngineSettings,
     /// Unit particle motion.
     pub(crate) motion: Vec3,
     /// What the source does.
@@ -61,8 +61,8 @@ impl Shot<'_> {
         let source = self.slab(0.0)?;
         let receivers: Vec<Slab> = self.receivers.iter().map(|d| self.slab(*d)).collect::<Result<_, _>>()?;
         let mut engine = Engine::from_packing(&self.repeated.packing, self.setting);
-        engine.renew_time_step();
-        engine.prepare()?;
+        engine.update_time_step();
+        engine.initialise()?;
         let step = engine.time_step();
         let mut changes = Changes::since(&engine);
 
@@ -79,7 +79,7 @@ impl Shot<'_> {
                 for k in 0..stride {
                     let time = elapsed + f64::from(k) * step;
                     let by = self.motion * (acceleration * step * self.burst.at(time));
-                    engine.kick(source.kicks(by));
+                    engine.add_velocities(source.kicks(by));
                     engine.step()?;
                 }
             } else {

@@ -7,7 +7,7 @@
 use crate::error::AcousticsError;
 use crate::repeat::Repeated;
 use grainlab_core::{Contact, Mat3, Vec3};
-use grainlab_dem::{Engine, Setting};
+use grainlab_dem::{Engine, EngineSettings};
 use std::collections::BTreeSet;
 
 /// What is struck.
@@ -18,7 +18,7 @@ pub(crate) struct Strike<'a> {
     /// Mass of each grain of one copy, kg; 0 if it carries no force.
     pub(crate) mass: &'a [f64],
     /// Setting of the engine, its time step fixed.
-    pub(crate) setting: Setting,
+    pub(crate) setting: EngineSettings,
     /// Unit particle motion.
     pub(crate) motion: Vec3,
     /// Two perpendicular motions, unit or zero, that a wave of another kind would have.
@@ -67,8 +67,8 @@ impl<'a> Ringing<'a> {
         let velocity = |g: usize| shapes.iter().map(|s| s[g]).sum::<f64>() * strike.velocity;
         let velocities: Vec<Vec3> = (0..repeated.along.len()).map(|g| strike.motion * velocity(g)).collect();
         let mut engine = Engine::from_packing(&repeated.packing, strike.setting);
-        engine.renew_time_step();
-        engine.prepare()?;
+        engine.update_time_step();
+        engine.initialise()?;
         let quiet = keys(&engine);
         engine.set_velocities(&velocities);
         let mut ringing = Self {

@@ -2,9 +2,8 @@
 
 use crate::sample;
 use grainlab_acoustics::{AcousticsError, Ray, repeated};
-use grainlab_core::{Cell, Mat3, Packing, Vec3, stress::stress};
-use grainlab_dem::{Engine, Setting, TimeStep};
-use grainlab_scene::Tangential;
+use grainlab_core::{Cell, Mat3, Packing, TangentialLaw, Vec3, stress::stress};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 const PLANES: [[i32; 3]; 6] = [[0, 0, 1], [1, 0, 0], [1, 0, 1], [1, -1, 0], [1, 1, 1], [2, -1, 3]];
 
@@ -80,8 +79,8 @@ fn the_engine_finds_the_same_contacts_and_forces_in_it() {
     let packing = sample::isotropic();
     let look = |packing: &Packing| {
         let mut engine = Engine::from_packing(packing, quiet(packing));
-        engine.prepare().unwrap();
-        engine.snapshot().unwrap()
+        engine.initialise().unwrap();
+        engine.observables().unwrap()
     };
     let one = look(&packing);
     for indices in PLANES {
@@ -93,16 +92,16 @@ fn the_engine_finds_the_same_contacts_and_forces_in_it() {
     }
 }
 
-fn quiet(packing: &Packing) -> Setting {
-    Setting {
+fn quiet(packing: &Packing) -> EngineSettings {
+    EngineSettings {
         friction: packing.friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: Tangential::Incremental,
-        time_step: TimeStep::Safety(0.8),
+        tangential: TangentialLaw::Incremental,
+        time_step: TimeStep::FractionOfStable(0.8),
         skin: 0.01 * 2.0 * packing.radii[0],
-        speed_cap: None,
+        thermostat_speed: None,
     }
 }
 

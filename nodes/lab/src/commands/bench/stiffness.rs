@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::output::{Format, json, print};
 use clap::ValueEnum;
 use grainlab_core::{Mat3, Packing};
-use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -161,19 +161,19 @@ fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
     let (cell, centres) =
         repeated(packing, copies).ok_or_else(|| Failure::failed("the repeated cell is none"))?;
     let largest = packing.radii.iter().copied().fold(0.0, f64::max);
-    let setting = Setting {
+    let setting = EngineSettings {
         friction: packing.friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: grainlab_scene::Tangential::Rescaled,
+        tangential: grainlab_core::TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(1e-9),
         skin: 0.01 * largest,
-        speed_cap: None,
+        thermostat_speed: None,
     };
     let radii = packing.radii.repeat((copies as usize).pow(3));
     let mut engine = Engine::new(cell, packing.material, radii, &centres, setting);
-    engine.sort();
-    engine.prepare().map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
+    engine.sort_spatially();
+    engine.initialise().map_err(|e| Failure::new(Exit::PhysicsInvalid, e))?;
     Ok(engine.packing(Mat3::identity()))
 }

@@ -4,7 +4,7 @@ use super::knobs::Servoed;
 use super::statistics::Observables;
 use crate::commands::bench::cpu_time::thread_seconds;
 use grainlab_core::{ComponentControl, ServoLaw};
-use grainlab_dem::Simulation;
+use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 
 /// What a run cost and where it ended.
@@ -42,11 +42,11 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
                     "a control interval of {interval:.1e} s is not below twice the response time"
                 ));
             }
-            let tangent = r.snapshot.tangent[..3].iter().copied().fold(0.0, f64::max);
+            let tangent = r.observables.tangent[..3].iter().copied().fold(0.0, f64::max);
             servoed = Some(Servoed { tangent, interval: r.control_interval });
         }
-        let answer = grainlab_servo::answer(&r.question()).map_err(|e| e.to_string())?;
-        run.answer(&answer.rate).map_err(|e| e.to_string())?;
+        let answer = grainlab_servo::answer(&r.servo_input()).map_err(|e| e.to_string())?;
+        run.advance(&answer.rate).map_err(|e| e.to_string())?;
     }
     let seconds = clock()? - begin;
     Ok(Outcome { observables: observe(&run)?, seconds, steps: run.engine().steps(), servoed })

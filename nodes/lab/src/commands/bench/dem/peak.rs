@@ -15,7 +15,7 @@ pub(crate) fn peak(set: Simd) -> Result<f64, Failure> {
     let mut best = 0.0f64;
     for _ in 0..MEASUREMENTS {
         let begin = thread_seconds()?;
-        let (operations, _) = black_box(roofline::independent_operations(set, black_box(ROUNDS)));
+        let (operations, _) = black_box(roofline::peak_flops(set, black_box(ROUNDS)));
         best = best.max(operations as f64 / (thread_seconds()? - begin));
     }
     Ok(best)

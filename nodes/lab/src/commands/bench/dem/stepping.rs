@@ -4,10 +4,9 @@ use super::super::packing::repeated;
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
 use clap::ValueEnum;
-use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
-use grainlab_dem::{Compute, Engine, Setting, Simd, TimeStep, roofline};
+use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor, TangentialLaw};
+use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, roofline};
 use grainlab_node_kit::Exit;
-use grainlab_scene::Tangential;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -110,17 +109,17 @@ impl Packings {
     }
 }
 
-fn setting(features: Features, packing: &Packing) -> Setting {
+fn setting(features: Features, packing: &Packing) -> EngineSettings {
     let diameter = 2.0 * packing.radii.iter().copied().fold(0.0, f64::max);
-    Setting {
+    EngineSettings {
         friction: features.friction(),
         damping: DAMPING,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: Tangential::Rescaled,
+        tangential: TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(TIME_STEP),
         skin: SKIN * diameter,
-        speed_cap: None,
+        thermostat_speed: None,
     }
 }
 
@@ -135,10 +134,10 @@ fn invalid(error: grainlab_dem::DemError) -> Failure {
 
 fn pressed_without_friction(packing: &Packing, pressure: f64) -> Result<Packing, Failure> {
     let mut engine = Engine::from_packing(packing, setting(Features::Frictionless, packing));
-    engine.prepare().map_err(invalid)?;
+    engine.initialise().map_err(invalid)?;
     while engine.steps() - packing.step < u64::from(PRESS_STEPS) {
         engine.run(PERIOD).map_err(invalid)?;
-        let seen = engine.snapshot().map_err(invalid)?;
+        let seen = engine.observables().map_err(invalid)?;
         let stress = seen.stress.tensor;
         if (stress.mean() / pressure - 1.0).abs() < 0.01 && seen.unbalanced < 0.05 {
             return Ok(engine.packing(Mat3::identity()));
@@ -185,16 +184,16 @@ pub(crate) fn run(packings: &Packings, case: &Case) -> Result<Loop, Failure> {
     let before = super::machine::resident_bytes();
     let mut engine = Engine::new(cell, packing.material, radii, &centres, setting(case.features, packing));
     engine.set_compute(compute.clone());
-    engine.sort();
-    engine.prepare().map_err(invalid)?;
+    engine.sort_spatially();
+    engine.initialise().map_err(invalid)?;
     advance(&mut engine, &compute, case, packings.pressure, case.steps.div_ceil(10))?;
     let bytes = before.zip(super::machine::resident_bytes()).map(|(b, a)| (a - b).max(0.0));
 
-    let contacts = f64::from(engine.snapshot().map_err(invalid)?.contacts);
+    let contacts = f64::from(engine.observables().map_err(invalid)?.contacts);
     let (wall, cpu) = (Instant::now(), process_seconds()?);
     advance(&mut engine, &compute, case, packings.pressure, case.steps)?;
     let (wall_seconds, cpu_seconds) = (wall.elapsed().as_secs_f64(), process_seconds()? - cpu);
-    let seen = engine.snapshot().map_err(invalid)?;
+    let seen = engine.observables().map_err(invalid)?;
     let contacts = 0.5 * (contacts + f64::from(seen.contacts));
     Ok(Loop { wall_seconds, cpu_seconds, contacts, pressure: seen.stress.tensor.mean(), bytes })
 }
@@ -215,11 +214,11 @@ fn advance(
         });
     }
     // The stiffness hardly changes on the way: one look is enough for the law to be scaled by.
-    let tangent = engine.snapshot().map_err(invalid)?.tangent;
+    let tangent = engine.observables().map_err(invalid)?.tangent;
     compute.within(|| {
         for _ in 0..steps {
             let mut stress = SymTensor::isotropic(0.0);
-            engine.run_measured(1, |s| stress = s).map_err(invalid)?;
+            engine.run_with_stress(1, |s| stress = s).map_err(invalid)?;
             let rate = answered(stress, pressure, engine.rate(), 1.0, tangent, TIME_STEP)?;
             engine.set_rate(&rate).map_err(invalid)?;
         }

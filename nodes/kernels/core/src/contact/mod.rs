@@ -1,0 +1,3 @@
+//! Contact laws.
+
+pub(crate) mod tangential;

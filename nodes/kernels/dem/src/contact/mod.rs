@@ -1,0 +1,3 @@
+//! The contact law.
+
+pub(crate) mod hertz_mindlin;
