@@ -13,4 +13,5 @@ mod simulation;
 
 pub use error::ExperimentError;
 pub use request::{ServoRequest, StepOutcome};
+pub use run_state::is_within_a_phase;
 pub use simulation::Simulation;

@@ -13,5 +13,6 @@ pub(crate) struct Rollback {
     pub(crate) friction: f64,
     pub(crate) deformation: Mat3,
     pub(crate) phase_deformation: Mat3,
+    pub(crate) phase_strain: f64,
     pub(crate) observables: Observables,
 }

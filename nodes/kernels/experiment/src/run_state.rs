@@ -5,7 +5,7 @@ use crate::error::ExperimentError;
 use grainlab_core::Mat3;
 use grainlab_scene::PathState;
 
-const VERSION: u64 = 2;
+const VERSION: u64 = 3;
 
 /// Everything beside the packing that a run needs to continue bit for bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub(crate) struct RunState {
     pub(crate) rate: [f64; 6],
     /// Deformation gradient since the start of the phase.
     pub(crate) phase_deformation: Mat3,
+    /// Integral over time of the largest component of the strain rate since the start of the phase.
+    pub(crate) phase_strain: f64,
     pub(crate) has_reference: bool,
     /// Fingerprint of the scene: a state can be resumed only in the scene that it came from.
     pub(crate) scene: u64,
@@ -39,6 +41,7 @@ impl RunState {
         ];
         words.extend(self.rate.iter().map(|r| r.to_bits()));
         words.extend(self.phase_deformation.iter().map(|r| r.to_bits()));
+        words.push(self.phase_strain.to_bits());
         words.iter().flat_map(|w| w.to_le_bytes()).collect()
     }
 
@@ -59,13 +62,13 @@ impl RunState {
                 return Err(resume(format!("run state version {v}, this program knows version {VERSION}")));
             }
         }
-        if words.len() != 25 || !bytes.len().is_multiple_of(8) {
-            return Err(resume(format!("the run state has {} bytes, 200 expected", bytes.len())));
+        if words.len() != 26 || !bytes.len().is_multiple_of(8) {
+            return Err(resume(format!("the run state has {} bytes, 208 expected", bytes.len())));
         }
         let real = |k: usize| f64::from_bits(words[k]);
         let rate: [f64; 6] = std::array::from_fn(|k| real(10 + k));
         let phase_deformation = Mat3::from_fn(|r, c| real(16 + 3 * c + r));
-        if ![4, 6, 7].iter().all(|k| real(*k).is_finite())
+        if ![4, 6, 7, 25].iter().all(|k| real(*k).is_finite())
             || !rate.iter().chain(phase_deformation.iter()).all(|v| v.is_finite())
         {
             return Err(resume("the run state holds numbers that are not finite".into()));
@@ -83,8 +86,15 @@ impl RunState {
             time,
             rate,
             phase_deformation,
+            phase_strain: real(25),
             has_reference: words[8] != 0,
             scene,
         })
     }
+}
+
+/// Whether a packing with this run state was published within a phase, and not where one ended: between two states at rest,
+/// or where a run was interrupted. A packing without a run state was not.
+pub fn is_within_a_phase(run_state: &[u8]) -> bool {
+    RunState::decode(run_state).is_ok_and(|state| state.time != state.path.began)
 }

@@ -5,10 +5,10 @@ use crate::request::{ServoRequest, StepOutcome};
 use crate::rollback::Rollback;
 use crate::run_state::RunState;
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
-use grainlab_dem::gas::{HardSpheres, mean_free_time, random_sequential_addition};
+use grainlab_dem::gas::{HardSpheres, mean_free_time, random_placement};
 use grainlab_dem::{Compute, DemError, Engine, EngineSettings, Observables, TimeStep};
 use grainlab_scene::{
-    Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene,
+    Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene, Travelled,
 };
 
 /// Solver steps between two copies of the state that a failing run returns to.
@@ -27,6 +27,8 @@ pub struct Simulation {
     /// Deformation gradient since the reference state; the identity before the reference state.
     deformation: Mat3,
     phase_deformation: Mat3,
+    /// Integral over time of the largest component of the strain rate since the phase began.
+    phase_strain: f64,
     has_reference: bool,
     observables: Observables,
     rollback: Option<Rollback>,
@@ -48,15 +50,33 @@ impl Simulation {
             Some(PhaseKind::Gas { initial_solid_fraction, speed, .. }) => (*initial_solid_fraction, *speed),
             _ => return Err(ExperimentError::Resume("the path does not begin with a gas phase".into())),
         };
-        let gas = random_sequential_addition(scene.grains, scene.diameter, fraction, speed, scene.seed)?;
-        let radii = vec![0.5 * scene.diameter; scene.grains as usize];
+        let radii: Vec<f64> = scene.sizes.diameters(scene.grains).iter().map(|d| 0.5 * d).collect();
+        let gas = random_placement(&radii, fraction, speed, scene.seed)?;
         let settings = phase_settings(&scene, &scene.phases[0]);
         let mut engine = Engine::new(gas.cell, scene.material, radii, &gas.positions, settings);
         engine.set_velocities(&gas.velocities);
+        let friction = engine.settings().friction;
+        Self::begin(scene, engine, friction)
+    }
+
+    /// The start of a scene whose path begins with this packing. Its clock is set to 0.
+    pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
+        let phase = scene.phases.first();
+        let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
+        // The time step of the packing was chosen under other settings.
+        let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
+        let engine = Engine::from_packing(&start, phase_settings(&scene, phase));
+        let mut run = Self::begin(scene, engine, packing.friction)?;
+        // It is published before the first request.
+        run.packings = 1;
+        Ok(run)
+    }
+
+    fn begin(scene: Scene, mut engine: Engine, friction: f64) -> Result<Self, ExperimentError> {
         engine.initialise()?;
         let observables = engine.observables()?;
         Ok(Self {
-            friction: engine.settings().friction,
+            friction,
             scene,
             engine,
             path: PathState::START,
@@ -64,6 +84,7 @@ impl Simulation {
             packings: 0,
             deformation: Mat3::identity(),
             phase_deformation: Mat3::identity(),
+            phase_strain: 0.0,
             has_reference: false,
             observables,
             rollback: None,
@@ -91,6 +112,7 @@ impl Simulation {
             packings: saved.packings,
             deformation: packing.deformation,
             phase_deformation: saved.phase_deformation,
+            phase_strain: saved.phase_strain,
             has_reference: saved.has_reference,
             observables,
             rollback: None,
@@ -170,12 +192,13 @@ impl Simulation {
     }
 
     fn run_period(&mut self, period: u32) -> Result<StepOutcome, ExperimentError> {
+        let (before, time) = (self.travelled(), self.engine.time());
         let gas = self.path.phase(&self.scene).and_then(|phase| self.event_driven(phase));
         let deformation = match gas {
             Some(gas) => self.run_event_driven(gas, period)?,
             None => self.engine.run(period)?,
         };
-        self.accumulate(&deformation);
+        self.accumulate(&deformation, self.engine.time() - time);
         self.engine.gather();
         self.observables = self.engine.observables()?;
         self.sequence += 1;
@@ -187,19 +210,36 @@ impl Simulation {
             unbalanced: self.observables.unbalanced,
             speed: self.engine.speed(),
         };
-        let before = self.path.phase;
+        let index = self.path.phase;
         match self.path.observe(&self.scene, &input)? {
-            PathEvent::Stay => Ok(StepOutcome { ended: None, packing_due: false, finished: false }),
+            PathEvent::Stay => {
+                let record = self.scene.phases[index].record;
+                let packing_due = record.is_some_and(|r| r.is_due(&before, &self.travelled()));
+                if packing_due {
+                    self.packings += 1;
+                    // A failing run does not return beyond a packing that was published.
+                    self.rollback = None;
+                }
+                Ok(StepOutcome { ended: None, packing_due, finished: false })
+            }
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
                 self.packings += u64::from(publish);
-                let ended = Some(self.scene.phases[before].name.clone());
+                let ended = Some(self.scene.phases[index].name.clone());
                 Ok(StepOutcome { ended, packing_due: publish, finished })
             }
         }
     }
 
-    fn accumulate(&mut self, deformation: &Mat3) {
+    /// How far the phase has come.
+    fn travelled(&self) -> Travelled {
+        let (steps, time) = (self.engine.steps(), self.engine.time() - self.path.began);
+        Travelled { steps, time, strain: self.phase_strain }
+    }
+
+    /// Adds a deformation that took `interval` (s).
+    fn accumulate(&mut self, deformation: &Mat3, interval: f64) {
+        self.phase_strain += interval * self.engine.rate().iter().fold(0.0f64, |a, r| a.max(r.abs()));
         self.phase_deformation = deformation * self.phase_deformation;
         if self.has_reference {
             self.deformation = deformation * self.deformation;
@@ -215,7 +255,7 @@ impl Simulation {
             return None;
         };
         let present = self.observables.solid_fraction;
-        let mut step = mean_free_time(present, self.scene.diameter, speed);
+        let mut step = mean_free_time(present, self.scene.sizes.mean(), speed);
         for condition in &phase.until.all {
             if let Condition::AtLeast(Measure::SolidFraction, wanted) = condition
                 && *wanted > present
@@ -264,7 +304,7 @@ impl Simulation {
     fn begin_phase(&mut self, reference: bool) -> Result<(), DemError> {
         // A failing phase does not return beyond its start, where a packing may have been published.
         self.rollback = None;
-        self.phase_deformation = Mat3::identity();
+        (self.phase_deformation, self.phase_strain) = (Mat3::identity(), 0.0);
         if reference {
             self.has_reference = true;
             self.deformation = Mat3::identity();
@@ -294,6 +334,7 @@ impl Simulation {
             time: self.engine.time(),
             rate: self.engine.rate(),
             phase_deformation: self.phase_deformation,
+            phase_strain: self.phase_strain,
             has_reference: self.has_reference,
             scene: fingerprint(&self.scene),
         }
@@ -310,6 +351,7 @@ impl Simulation {
                 friction: self.friction,
                 deformation: self.deformation,
                 phase_deformation: self.phase_deformation,
+                phase_strain: self.phase_strain,
                 observables: self.observables,
             });
         }
@@ -320,6 +362,7 @@ impl Simulation {
             self.engine.restore(saved.engine);
             (self.path, self.sequence, self.friction) = (saved.path, saved.sequence, saved.friction);
             (self.deformation, self.phase_deformation) = (saved.deformation, saved.phase_deformation);
+            self.phase_strain = saved.phase_strain;
             self.observables = saved.observables;
             // The forces of this state were valid when it was saved. If they fail now, the state is restored all the same.
             let _ = self.engine.initialise();
@@ -336,7 +379,7 @@ fn phase_settings(scene: &Scene, phase: &Phase) -> EngineSettings {
         spin_drag: phase.spin_drag,
         tangential: scene.numerics.tangential,
         time_step: TimeStep::FractionOfStable(scene.numerics.time_step_safety),
-        skin: scene.numerics.skin * scene.diameter,
+        skin: scene.numerics.skin * scene.sizes.mean(),
         thermostat_speed: match phase.kind {
             PhaseKind::Gas { speed, .. } => Some(speed),
             _ => None,

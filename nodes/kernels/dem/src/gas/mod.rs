@@ -7,4 +7,4 @@ mod event_driven;
 mod placement;
 
 pub use event_driven::spheres::{Collisions, HardSpheres, mean_free_time};
-pub use placement::{Gas, random_sequential_addition};
+pub use placement::{Gas, random_placement, random_sequential_addition};
