@@ -33,12 +33,7 @@ pub fn random_sequential_addition(
 /// Places spheres of these radii (m) one after the other at random without overlap (random sequential addition), which is
 /// possible up to a solid fraction of about 0.38 where they are of one size, and gives them random velocities of root mean
 /// square `speed` (m/s), of equal mean energy and without momentum. Large spheres should come first.
-pub fn random_placement(
-    radii: &[f64],
-    solid_fraction: f64,
-    speed: f64,
-    seed: u64,
-) -> Result<Gas, DemError> {
+pub fn random_placement(radii: &[f64], solid_fraction: f64, speed: f64, seed: u64) -> Result<Gas, DemError> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let grains = u32::try_from(radii.len()).unwrap_or(u32::MAX);
     let edge = (solid_volume(radii) / solid_fraction).cbrt();
@@ -125,7 +120,8 @@ impl Bins {
     fn any_near(&self, x: &Vec3, meets: impl Fn(usize) -> bool) -> bool {
         let own = self.bin_of(x);
         // Where there are fewer than three bins, those on both sides are the same.
-        let beside = |k: usize| (0..self.along.min(3)).map(move |d| (own[k] + self.along + d - 1) % self.along);
+        let beside =
+            |k: usize| (0..self.along.min(3)).map(move |d| (own[k] + self.along + d - 1) % self.along);
         let near = |index: usize| self.members[index].iter().any(|other| meets(*other as usize));
         beside(0).any(|a| beside(1).any(|b| beside(2).any(|c| near(self.index([a, b, c])))))
     }
