@@ -38,7 +38,7 @@ fn counts(value: &Value) -> Option<u64> {
     counts
         .collect::<Option<Vec<_>>>()
         .filter(|c| !c.is_empty())
-        .map(|c| c.iter().fold(0, |a, b| a.saturating_add(*b)))
+        .map(|c| c.iter().fold(0u64, |a, b| a.saturating_add(*b)))
 }
 
 fn sizes(r: &mut Reader<'_>) -> Sizes {

@@ -41,7 +41,7 @@ keys! {
 
     GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: how many, and how large");
     GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
-    DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "diameter of every grain, or a law: uniform, lognormal (spread is the standard deviation of the logarithm, cut at 3), or several sizes, by share or count of grains") };
+    DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "of every grain, or a law: uniform, lognormal (spread: standard deviation of the logarithm, cut at 3), or several sizes") };
 
     SHEAR_MODULUS = number("material.shear_modulus", "Pa", Interval::POSITIVE, DefaultValue::Number(GLASS.shear_modulus), "shear modulus of the grains");
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");

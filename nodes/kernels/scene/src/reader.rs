@@ -93,15 +93,20 @@ impl<'a> Reader<'a> {
             self.refuse(key, None);
             return f64::NAN;
         }
-        let value = self.optional(key).or(default).unwrap_or(f64::NAN);
-        if !self.has(key) {
-            self.keep(key, number(value));
-        }
+        let value = self.found(key).flatten().or(default).unwrap_or(f64::NAN);
+        self.keep(key, number(value));
         value
     }
 
     /// A number, if it is there; a wrong one is a fault, and 1.
     pub(crate) fn optional(&mut self, key: &'static Key) -> Option<f64> {
+        let value = self.found(key)?.unwrap_or(1.0);
+        self.keep(key, number(value));
+        Some(value)
+    }
+
+    /// A number, if there is something; nothing within, and a fault, if it is wrong.
+    fn found(&mut self, key: &'static Key) -> Option<Option<f64>> {
         let value = self.get(key)?;
         let found = as_number(value).filter(|v| match key.domain {
             Domain::Number(range) => range.contains(*v),
@@ -110,8 +115,6 @@ impl<'a> Reader<'a> {
         if found.is_none() {
             self.refuse(key, Some(value));
         }
-        let found = found.unwrap_or(1.0);
-        self.keep(key, number(found));
         Some(found)
     }
 

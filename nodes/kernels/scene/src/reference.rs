@@ -23,7 +23,7 @@ pub fn reference() -> String {
     let mut page = format!("{INTRODUCTION}\n## Keys\n");
     let of_phase = |k: &Key| k.path.starts_with("phase.");
     let of_part = |k: &Key| k.path.matches('.').count() > 1;
-    let top = |k: &Key| !k.path.contains('.') && !["grains", "start"].contains(&k.path);
+    let top = |k: &Key| !k.path.contains('.');
     page += &section("The scene", |k| top(k));
     for (table, title) in [
         ("start.", "`[start]`: from a packing instead of a gas"),

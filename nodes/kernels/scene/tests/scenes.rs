@@ -247,7 +247,7 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     let packing = pair();
     let of = |text: &str| Draft::of_text(text).unwrap().resolve_from(&packing);
     let scene = of(&format!("{head}{rest}")).unwrap().scene;
-    assert_eq!((scene.grains, scene.sizes), (2, Sizes::OfPacking { mean: 3e-4 }));
+    assert!(scene.grains == 2 && (scene.sizes.mean() - 3e-4).abs() < 1e-18);
     assert_eq!((scene.material, scene.start.unwrap().packing.as_str()), (packing.material, "p.csv"));
     let gas = "[[phase]]\nkind = 'gas'\nrate = -1\nuntil = { elapsed = 1e-6 }\n";
     for (text, expected) in [
