@@ -50,14 +50,14 @@ impl TryFrom<&Parameters> for Settings {
         let axis = direction.ok_or(SettingsError(axis))?;
         let method: String = parameters.get("method");
         let amplitude = parameters.get("amplitude");
-        let probe = grainlab_micromechanics::Probe { amplitude, ..micro::Probe::default() };
+        let probe = grainlab_micromechanics::Probe { amplitude, ..grainlab_micromechanics::Probe::default() };
         Ok(Self(grainlab_micromechanics::Settings {
             tolerance: parameters.get("tolerance"),
             axis,
             tangential: method != "prestressed",
             prestress: method == "prestressed",
             probe: (method == "probe").then_some(probe),
-            ..micro::Settings::default()
+            ..grainlab_micromechanics::Settings::default()
         }))
     }
 }

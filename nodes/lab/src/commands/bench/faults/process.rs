@@ -98,7 +98,7 @@ impl Process {
                 let settings = grainlab_dem_simulator::Settings {
                     look_around: Duration::ZERO,
                     threads: std::num::NonZeroUsize::new(1),
-                    ..dem_simulator::Settings::default()
+                    ..grainlab_dem_simulator::Settings::default()
                 };
                 let resume = with.record.borrow().last_packing();
                 let simulator = DemSimulator::new(&mut bus, with.scene.clone(), resume, settings);

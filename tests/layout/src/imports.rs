@@ -1,0 +1,135 @@
+//! Which module uses which. A name that a module only passes on leads to the module that defines it, so that importing
+//! through a re-export is not an import of the module that re-exports.
+
+use crate::modules::{Module, ModulePath};
+use std::collections::{BTreeMap, BTreeSet};
+use syn::visit::Visit;
+use syn::{Item, UseTree};
+
+type Modules = BTreeMap<ModulePath, Module>;
+
+/// For each module those that it uses, without itself.
+pub fn imports(modules: &Modules) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+    let aliases: BTreeMap<&ModulePath, Aliases> =
+        modules.iter().map(|(path, module)| (path, Aliases::of(path, module, modules))).collect();
+    let used_by = |path: &ModulePath, module: &Module| {
+        let mut paths = Paths { module: path, modules, found: Vec::new() };
+        module.items.iter().for_each(|item| paths.visit_item(item));
+        let mut used: BTreeSet<ModulePath> =
+            paths.found.iter().filter_map(|target| defining(target, modules, &aliases)).collect();
+        used.remove(path);
+        used
+    };
+    modules.iter().map(|(path, module)| (path.clone(), used_by(path, module))).collect()
+}
+
+/// Names that a module imports, each with its path from the crate root.
+struct Aliases(BTreeMap<String, Vec<String>>);
+
+impl Aliases {
+    fn of(path: &ModulePath, module: &Module, modules: &Modules) -> Self {
+        let mut names = BTreeMap::new();
+        for item in &module.items {
+            let Item::Use(item) = item else { continue };
+            for (target, name) in leaves(&item.tree, Vec::new()) {
+                if let (Some(target), Some(name)) = (absolute(path, &target, modules), name) {
+                    names.insert(name, target);
+                }
+            }
+        }
+        Self(names)
+    }
+}
+
+/// The module that defines what `target`, a path from the crate root, names.
+fn defining(
+    target: &[String],
+    modules: &Modules,
+    aliases: &BTreeMap<&ModulePath, Aliases>,
+) -> Option<ModulePath> {
+    let mut target = target.to_vec();
+    // A chain of re-exports is never longer than this.
+    for _ in 0..16 {
+        let depth = (0..=target.len()).rev().find(|d| modules.contains_key(&target[..*d]))?;
+        let (module, rest) = (target[..depth].to_vec(), &target[depth..]);
+        let passed_on = rest.first().and_then(|name| aliases.get(&module)?.0.get(name));
+        match passed_on {
+            Some(origin) => target = [origin.as_slice(), &rest[1..]].concat(),
+            None => return Some(module),
+        }
+    }
+    None
+}
+
+/// Every path in a module that leads into its crate, from the crate root.
+struct Paths<'a> {
+    module: &'a ModulePath,
+    modules: &'a Modules,
+    found: Vec<Vec<String>>,
+}
+
+impl<'ast> Visit<'ast> for Paths<'_> {
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        for (target, _) in leaves(&item.tree, Vec::new()) {
+            self.found.extend(absolute(self.module, &target, self.modules));
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let segments: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        if segments.len() > 1 {
+            self.found.extend(absolute(self.module, &segments, self.modules));
+        }
+        syn::visit::visit_path(self, path);
+    }
+
+    // What a module written inline imports by `super` means another place; such modules hold tests and constants.
+    fn visit_item_mod(&mut self, _: &'ast syn::ItemMod) {}
+}
+
+/// A path as written in `module`, from the crate root; `None` if it leads elsewhere.
+fn absolute(module: &ModulePath, path: &[String], modules: &Modules) -> Option<Vec<String>> {
+    let (first, rest) = path.split_first()?;
+    match first.as_str() {
+        "crate" => Some(rest.to_vec()),
+        "self" => Some([module.as_slice(), rest].concat()),
+        "super" => {
+            let parent = module.split_last()?.1.to_vec();
+            match rest.first().map(String::as_str) {
+                Some("super") => absolute(&parent, rest, modules),
+                _ => Some([parent.as_slice(), rest].concat()),
+            }
+        }
+        child => {
+            let inner = [module.as_slice(), &[child.to_owned()]].concat();
+            modules.contains_key(&inner).then(|| [module.as_slice(), path].concat())
+        }
+    }
+}
+
+/// The paths of a tree of imports with the names they get; a glob has none.
+fn leaves(tree: &UseTree, mut prefix: Vec<String>) -> Vec<(Vec<String>, Option<String>)> {
+    let joined = |mut prefix: Vec<String>, name: String| {
+        // `x::{self}` names x.
+        if name != "self" || prefix.is_empty() {
+            prefix.push(name);
+        }
+        prefix
+    };
+    match tree {
+        UseTree::Path(path) => {
+            prefix.push(path.ident.to_string());
+            leaves(&path.tree, prefix)
+        }
+        UseTree::Name(name) => {
+            let target = joined(prefix, name.ident.to_string());
+            let last = target.last().cloned();
+            vec![(target, last)]
+        }
+        UseTree::Rename(renamed) => {
+            vec![(joined(prefix, renamed.ident.to_string()), Some(renamed.rename.to_string()))]
+        }
+        UseTree::Glob(_) => vec![(prefix, None)],
+        UseTree::Group(group) => group.items.iter().flat_map(|t| leaves(t, prefix.clone())).collect(),
+    }
+}

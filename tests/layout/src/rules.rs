@@ -1,0 +1,65 @@
+//! What breaks a rule, in words.
+
+use crate::imports::imports;
+use crate::modules::{Module, ModulePath, declaration};
+use petgraph::algo::tarjan_scc;
+use petgraph::graphmap::DiGraphMap;
+use std::collections::{BTreeMap, BTreeSet};
+use syn::{Item, UseTree, Visibility};
+
+/// Longest file, lines.
+pub const MAX_LINES: usize = 500;
+
+/// Groups of modules each of which uses all others of its group, if by way of others.
+pub fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+    let imports = imports(modules);
+    let number: BTreeMap<&ModulePath, usize> =
+        imports.keys().enumerate().map(|(i, path)| (path, i)).collect();
+    let names: Vec<String> = imports.keys().map(|path| name(path)).collect();
+    let edges = imports.iter().flat_map(|(from, used)| used.iter().map(|to| (number[from], number[to])));
+    let graph = DiGraphMap::<usize, ()>::from_edges(edges);
+    let in_words = |circle: Vec<usize>| {
+        let members: BTreeSet<usize> = circle.into_iter().collect();
+        let arrows = graph.all_edges().filter(|(a, b, ())| members.contains(a) && members.contains(b));
+        arrows.map(|(a, b, ())| format!("{} -> {}", names[a], names[b])).collect::<Vec<_>>().join(", ")
+    };
+    tarjan_scc(&graph).into_iter().filter(|group| group.len() > 1).map(in_words).collect()
+}
+
+/// Items that have two paths: re-exported by a module in which the module that defines them is public, too.
+pub fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+    let mut found = Vec::new();
+    for (path, module) in modules {
+        let public: BTreeSet<String> = (module.items.iter().filter_map(declaration))
+            .filter(|m| matches!(m.vis, Visibility::Public(_)))
+            .map(|m| m.ident.to_string())
+            .collect();
+        for item in &module.items {
+            let Item::Use(item) = item else { continue };
+            let Some(child) = first_child(&item.tree) else { continue };
+            if matches!(item.vis, Visibility::Public(_)) && public.contains(&child) {
+                found.push(format!("{}: `{child}` is public and re-exported", name(path)));
+            }
+        }
+    }
+    found
+}
+
+/// Files longer than [`MAX_LINES`].
+pub fn long_files(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+    let long = modules.values().filter(|m| m.lines > MAX_LINES);
+    long.map(|m| format!("{}: {} lines", m.file.display(), m.lines)).collect()
+}
+
+/// The first name of an import that is not `self` or `crate`.
+fn first_child(tree: &UseTree) -> Option<String> {
+    let UseTree::Path(path) = tree else { return None };
+    match path.ident.to_string().as_str() {
+        "self" | "crate" => first_child(&path.tree),
+        child => Some(child.to_owned()),
+    }
+}
+
+fn name(path: &ModulePath) -> String {
+    if path.is_empty() { "the root".to_owned() } else { path.join("::") }
+}

@@ -1,0 +1,80 @@
+//! The rules find what breaks them, in small crates made for it.
+
+use layout::modules::modules;
+use layout::rules::{circles, doubled, long_files};
+use std::path::PathBuf;
+
+/// A crate of these files, removed when dropped.
+struct Sample(tempfile::TempDir);
+
+impl Sample {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        Self(folder)
+    }
+
+    fn root(&self) -> PathBuf {
+        self.0.path().join("lib.rs")
+    }
+}
+
+#[test]
+fn two_files_that_use_each_other_are_a_circle() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a; mod b;"),
+        ("a.rs", "use crate::b::B; pub struct A(B);"),
+        ("b.rs", "pub struct B; fn f() { super::a::A; }"),
+    ]);
+    assert_eq!(circles(&modules(&sample.root())), ["a -> b, b -> a"]);
+}
+
+#[test]
+fn a_parent_and_a_child_that_use_each_other_are_a_circle() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a;"),
+        ("a.rs", "mod inner; use inner::Inner; pub struct Settings; fn f(_: Inner) {}"),
+        ("a/inner.rs", "use super::Settings; pub struct Inner(Settings);"),
+    ]);
+    assert_eq!(circles(&modules(&sample.root())), ["a -> a::inner, a::inner -> a"]);
+}
+
+#[test]
+fn a_name_taken_through_the_root_leads_to_the_file_that_defines_it() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a; mod b; pub use a::A; pub use b::B;"),
+        ("a.rs", "pub struct A;"),
+        ("b.rs", "use crate::A; pub struct B(A);"),
+    ]);
+    assert!(circles(&modules(&sample.root())).is_empty());
+}
+
+#[test]
+fn what_tests_import_does_not_count() {
+    let sample = Sample::new(&[
+        ("lib.rs", "mod a; mod b;"),
+        ("a.rs", "use crate::b::B; pub struct A(B);"),
+        ("b.rs", "pub struct B; #[cfg(test)] mod tests { use crate::a::A; }"),
+    ]);
+    assert!(circles(&modules(&sample.root())).is_empty());
+}
+
+#[test]
+fn a_public_module_whose_items_are_re_exported_has_two_paths() {
+    let sample = Sample::new(&[
+        ("lib.rs", "pub mod a; mod b; pub use a::A; pub use b::B;"),
+        ("a.rs", "pub struct A;"),
+        ("b.rs", "pub struct B;"),
+    ]);
+    assert_eq!(doubled(&modules(&sample.root())), ["the root: `a` is public and re-exported"]);
+}
+
+#[test]
+fn a_file_of_501_lines_is_too_long() {
+    let sample = Sample::new(&[("lib.rs", &"\n".repeat(501))]);
+    assert_eq!(long_files(&modules(&sample.root())).len(), 1);
+}
