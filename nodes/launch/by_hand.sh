@@ -14,7 +14,7 @@ directory=${3:-}
 # One run: its processes ignore everybody else in the domain, and their recorder leaves everybody else out.
 export GRAINLAB_RUN="${GRAINLAB_RUN:-by_hand_$$}" GRAINLAB_RUN_ROOT=$$
 
-GRAINLAB_MEMBER=1 setsid "$grainlab" run recorder --ros-args -p grainlab_scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
+GRAINLAB_MEMBER=1 setsid "$grainlab" run recorder --ros-args -p scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
 recorder=$!
 GRAINLAB_MEMBER=2 setsid "$grainlab" run emt_inversion &
 others=$!
@@ -22,7 +22,7 @@ GRAINLAB_MEMBER=3 setsid "$grainlab" run fabric_analyzer &
 others="$others $!"
 GRAINLAB_MEMBER=4 setsid "$grainlab" run servo_controller --ros-args -p min_readers:=2 &
 others="$others $!"
-GRAINLAB_MEMBER=5 setsid "$grainlab" run dem_simulator --ros-args -p grainlab_scene:="$scene" -p seed:="$seed" \
+GRAINLAB_MEMBER=5 setsid "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
     -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &
 simulator=$!
 

@@ -146,7 +146,7 @@ pub(crate) fn strained(
 }
 
 fn looks(relaxation: &Relaxation) -> Result<Vec<Observables>, DemError> {
-    relaxation.engines().iter().map(Engine::snapshot).collect()
+    relaxation.engines().iter().map(Engine::observables).collect()
 }
 
 fn stress(snapshot: &Observables) -> [f64; 6] {

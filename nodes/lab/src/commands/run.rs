@@ -79,7 +79,7 @@ fn help() -> String {
         text += &format!("\n  {}: {}\n", node.name, node.summary);
         node.parameters.iter().for_each(|p| text += &format!("    {p}\n"));
     }
-    text + "\nExamples:\n  grainlab run dem_simulator --ros-args -p grainlab_scene:=s2 -p seed:=3 -r __ns:=/left\n  \
+    text + "\nExamples:\n  grainlab run dem_simulator --ros-args -p scene:=s2 -p seed:=3 -r __ns:=/left\n  \
             grainlab run fabric_analyzer --ros-args -p tolerance:=1e-10 --log-level debug"
 }
 
