@@ -183,7 +183,9 @@ impl DemSimulator {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
             if !advanced.finished {
                 self.next_beat = now + BEAT;
-                self.post_run_state(RunState::RUNNING, "");
+                let left_out = self.run.left_out();
+                log::info!("the next phase is {left_out}");
+                self.post_run_state(RunState::RUNNING, &left_out);
             }
         }
         self.go_on(bus, now)

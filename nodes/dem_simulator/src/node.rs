@@ -93,7 +93,8 @@ pub struct DemSimulator {
 }
 
 impl DemSimulator {
-    /// A simulator at the beginning of `scene`, or where `resume` was published: a packing and the run state in it.
+    /// A simulator at the beginning of `scene`, or where `resume` was published: a packing and the run state in it. A scene
+    /// that starts from a packing begins with `resume`, whose run state is then empty.
     pub fn new(
         bus: &mut dyn Bus,
         scene: Scene,
@@ -101,6 +102,9 @@ impl DemSimulator {
         settings: Settings,
     ) -> Result<Self, SimulatorError> {
         let (mut run, packings) = match &resume {
+            Some((packing, state)) if state.is_empty() && scene.start.is_some() => {
+                (Simulation::from_packing(scene, packing)?, Packings { last_step: 0, count: 1 })
+            }
             Some((packing, state)) => {
                 let run = Simulation::resume(scene, packing, state)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
@@ -175,7 +179,8 @@ impl DemSimulator {
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
             let state = if self.stage == Stage::Finished { RunState::FINISHED } else { RunState::RUNNING };
-            self.post_run_state(state, if self.stage == Stage::Starting { "starting" } else { "" });
+            let left_out = self.run.left_out();
+            self.post_run_state(state, &left_out);
         }
         Ok(())
     }

@@ -21,6 +21,7 @@ mod output;
 mod recorder;
 mod results;
 mod scenes;
+mod start;
 mod tape;
 
 fn main() -> std::process::ExitCode {

@@ -1,6 +1,8 @@
 //! Scenes by name or path, with their bases and what is set beside them.
 
 use crate::failure::Failure;
+use crate::start;
+use grainlab_core::Packing;
 use grainlab_node_kit::{Exit, ParameterSpec};
 use grainlab_recordings::input;
 use grainlab_scene::{BUILT_IN, Draft, Scene, Source, assignment, built_in};
@@ -13,6 +15,8 @@ pub(crate) struct SceneText {
     pub(crate) text: String,
     /// The same, parsed.
     pub(crate) scene: Scene,
+    /// The packing that it starts from, if it does.
+    pub(crate) start: Option<Packing>,
 }
 
 /// The parameter of nodes that sets keys of the scene.
@@ -39,8 +43,17 @@ pub(crate) fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Re
     for set in sets.iter().chain(&seed) {
         draft.set(assignment(set).map_err(refused)?).map_err(refused)?;
     }
-    let resolved = draft.resolve().map_err(refused)?;
-    Ok(SceneText { text: resolved.toml, scene: resolved.scene })
+    let start = draft.start().map(|file| start::read(&draft, &file)).transpose()?;
+    let resolved = match &start {
+        None => draft.resolve(),
+        Some(found) => {
+            // The whole path: the scene is read again from the directory of its run.
+            draft.start_at(&found.path.to_string_lossy(), found.step);
+            draft.resolve_from(&found.packing)
+        }
+    };
+    let resolved = resolved.map_err(refused)?;
+    Ok(SceneText { text: resolved.toml, scene: resolved.scene, start: start.map(|found| found.packing) })
 }
 
 /// A built-in scene or a file; one that is named in the file `from` is looked for beside it.

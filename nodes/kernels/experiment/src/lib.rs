@@ -6,6 +6,8 @@
 //! A packing and the run state published with it are a checkpoint: a run resumed from them goes on bit for bit.
 
 mod error;
+mod left_out;
+mod phase_settings;
 mod request;
 mod rollback;
 mod run_state;
@@ -13,5 +15,5 @@ mod simulation;
 
 pub use error::ExperimentError;
 pub use request::{ServoRequest, StepOutcome};
-pub use run_state::is_within_a_phase;
+pub use run_state::is_frame;
 pub use simulation::Simulation;

@@ -20,6 +20,8 @@ pub(crate) struct RunState {
     /// Integral over time of the largest component of the strain rate since the start of the phase.
     pub(crate) phase_strain: f64,
     pub(crate) has_reference: bool,
+    /// The packing was recorded within a phase.
+    pub(crate) is_frame: bool,
     /// Fingerprint of the scene: a state can be resumed only in the scene that it came from.
     pub(crate) scene: u64,
 }
@@ -36,7 +38,7 @@ impl RunState {
             u64::from(p.holding_since.is_some()),
             p.holding_since.unwrap_or(0.0).to_bits(),
             self.time.to_bits(),
-            u64::from(self.has_reference),
+            u64::from(self.has_reference) | u64::from(self.is_frame) << 1,
             self.scene,
         ];
         words.extend(self.rate.iter().map(|r| r.to_bits()));
@@ -87,14 +89,14 @@ impl RunState {
             rate,
             phase_deformation,
             phase_strain: real(25),
-            has_reference: words[8] != 0,
+            has_reference: words[8] & 1 != 0,
+            is_frame: words[8] & 2 != 0,
             scene,
         })
     }
 }
 
-/// Whether a packing with this run state was published within a phase, and not where one ended: between two states at rest,
-/// or where a run was interrupted. A packing without a run state was not.
-pub fn is_within_a_phase(run_state: &[u8]) -> bool {
-    RunState::decode(run_state).is_ok_and(|state| state.time != state.path.began)
+/// Whether a packing with this run state was recorded within a phase, on the way from one state to the next.
+pub fn is_frame(run_state: &[u8]) -> bool {
+    RunState::decode(run_state).is_ok_and(|state| state.is_frame)
 }

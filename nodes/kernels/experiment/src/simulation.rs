@@ -1,12 +1,14 @@
 //! A scene run along its loading path.
 
 use crate::error::ExperimentError;
+use crate::left_out::left_out;
+use crate::phase_settings::phase_settings;
 use crate::request::{ServoRequest, StepOutcome};
 use crate::rollback::Rollback;
 use crate::run_state::RunState;
 use grainlab_core::{Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::gas::{HardSpheres, mean_free_time, random_placement};
-use grainlab_dem::{Compute, DemError, Engine, EngineSettings, Observables, TimeStep};
+use grainlab_dem::{Compute, DemError, Engine, Observables};
 use grainlab_scene::{
     Condition, GasMethod, Measure, Observation, PathEvent, PathState, Phase, PhaseKind, Scene, Travelled,
 };
@@ -30,6 +32,8 @@ pub struct Simulation {
     /// Integral over time of the largest component of the strain rate since the phase began.
     phase_strain: f64,
     has_reference: bool,
+    /// The present packing was due within a phase.
+    is_frame: bool,
     observables: Observables,
     rollback: Option<Rollback>,
 }
@@ -86,6 +90,7 @@ impl Simulation {
             phase_deformation: Mat3::identity(),
             phase_strain: 0.0,
             has_reference: false,
+            is_frame: false,
             observables,
             rollback: None,
         })
@@ -114,6 +119,7 @@ impl Simulation {
             phase_deformation: saved.phase_deformation,
             phase_strain: saved.phase_strain,
             has_reference: saved.has_reference,
+            is_frame: saved.is_frame,
             observables,
             rollback: None,
             scene,
@@ -148,6 +154,12 @@ impl Simulation {
     /// The engine.
     pub fn engine(&self) -> &Engine {
         &self.engine
+    }
+
+    /// What the present phase leaves out of the model, and what that saves, in a line; empty once the path is done.
+    pub fn left_out(&self) -> String {
+        let phase = self.path.phase(&self.scene);
+        phase.map_or_else(String::new, |phase| left_out(&self.scene, phase, self.engine.equal_sized()))
     }
 
     /// The present request; `None` once the path is done.
@@ -215,6 +227,7 @@ impl Simulation {
             PathEvent::Stay => {
                 let record = self.scene.phases[index].record;
                 let packing_due = record.is_some_and(|r| r.is_due(&before, &self.travelled()));
+                self.is_frame = packing_due;
                 if packing_due {
                     self.packings += 1;
                     // A failing run does not return beyond a packing that was published.
@@ -224,6 +237,7 @@ impl Simulation {
             }
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
+                self.is_frame = false;
                 self.packings += u64::from(publish);
                 let ended = Some(self.scene.phases[index].name.clone());
                 Ok(StepOutcome { ended, packing_due: publish, finished })
@@ -336,6 +350,7 @@ impl Simulation {
             phase_deformation: self.phase_deformation,
             phase_strain: self.phase_strain,
             has_reference: self.has_reference,
+            is_frame: self.is_frame,
             scene: fingerprint(&self.scene),
         }
         .encode()
@@ -362,28 +377,11 @@ impl Simulation {
             self.engine.restore(saved.engine);
             (self.path, self.sequence, self.friction) = (saved.path, saved.sequence, saved.friction);
             (self.deformation, self.phase_deformation) = (saved.deformation, saved.phase_deformation);
-            self.phase_strain = saved.phase_strain;
+            (self.phase_strain, self.is_frame) = (saved.phase_strain, false);
             self.observables = saved.observables;
             // The forces of this state were valid when it was saved. If they fail now, the state is restored all the same.
             let _ = self.engine.initialise();
         }
-    }
-}
-
-/// The settings of the engine in a phase.
-fn phase_settings(scene: &Scene, phase: &Phase) -> EngineSettings {
-    EngineSettings {
-        friction: phase.friction,
-        damping: phase.damping,
-        drag: phase.drag,
-        spin_drag: phase.spin_drag,
-        tangential: scene.numerics.tangential,
-        time_step: TimeStep::FractionOfStable(scene.numerics.time_step_safety),
-        skin: scene.numerics.skin * scene.sizes.mean(),
-        thermostat_speed: match phase.kind {
-            PhaseKind::Gas { speed, .. } => Some(speed),
-            _ => None,
-        },
     }
 }
 

@@ -113,6 +113,20 @@ impl Draft {
         Some(StartFile { path, from: self.start_from.clone(), step })
     }
 
+    /// Names the packing to start from by the whole path of its file and its solver step.
+    pub fn start_at(&mut self, path: &str, step: u64) {
+        let entries = [("packing", Value::from(path)), ("step", Value::from(step as i64))];
+        let start = entries.map(|(key, value)| (key.to_owned(), value));
+        self.table.insert("start".into(), Value::Table(Table::from_iter(start)));
+        self.start_from = None;
+    }
+
+    /// The friction of the first phase: its own, or that of the scene.
+    pub fn first_friction(&self) -> Option<f64> {
+        let first = self.table.get("phase").and_then(|phases| phases.get(0)?.get("friction"));
+        as_number(first.or_else(|| self.table.get("friction"))?)
+    }
+
     /// A value given under `[material]`: what a file of a packing may not say.
     pub fn material(&self, key: &str) -> Option<f64> {
         as_number(self.table.get("material")?.as_table()?.get(key)?)

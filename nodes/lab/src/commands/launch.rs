@@ -17,6 +17,7 @@ use grainlab_node_kit::{Exit, Network, RunId};
 use grainlab_recordings::Recording;
 use grainlab_recordings::input;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
+use grainlab_scene::Scene;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -127,7 +128,7 @@ fn conduct(
         run.id,
         directory.display()
     );
-    let supervised = supervise(plans, run, directory, scene.scene.phases.len());
+    let supervised = supervise(plans, run, directory, &scene.scene);
     drop(lock);
     let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
     let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
@@ -253,10 +254,13 @@ fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     Ok(directory)
 }
 
-fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, phases: usize) -> Result<Supervised, Failure> {
+fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) -> Result<Supervised, Failure> {
+    let phases = scene.phases.len();
+    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
+    let ends_within = last.is_some_and(|p| !p.publish);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime.block_on(async { Supervisor::new(plans, run, directory, phases)?.run().await })
+    runtime.block_on(async { Supervisor::new(plans, run, directory, phases, ends_within)?.run().await })
 }
 
 /// What the run published and its recording does not hold.

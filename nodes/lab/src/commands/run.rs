@@ -106,11 +106,12 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
                 let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
                 let name: String = parameters.get("scene");
                 let sets: Vec<String> = parameters.get("set");
-                let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?.scene;
+                let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?;
                 let recording: String = parameters.get("resume");
                 let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
                 let from = from.transpose().map_err(|e| node_error(&e))?;
-                let simulator = DemSimulator::new(bus, scene, from, parameters.into());
+                let from = from.or(scene.start.map(|packing| (packing, Vec::new())));
+                let simulator = DemSimulator::new(bus, scene.scene, from, parameters.into());
                 Box::new(simulator.map_err(|e| NodeError::new(Exit::Failure, e.to_string()))?)
             }
             "servo_controller" => Box::new(ServoController::new(bus, parameters.into())?),

@@ -23,6 +23,18 @@ pub(super) struct Deadline {
 }
 
 impl Deadline {
+    /// The last packing was published within a phase: it need not have anything to measure.
+    pub(super) fn within_a_phase(standing: Standing) -> Self {
+        let whole = Self::of(standing);
+        match standing {
+            Standing::Measured(_) => whole,
+            Standing::Open(_) => {
+                Self { patience: Patience::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
+            }
+            _ => Self { exit: Exit::Done, ..whole },
+        }
+    }
+
     pub(super) fn of(standing: Standing) -> Self {
         let (time, exit, message) = match standing {
             Standing::Bare(node) => {

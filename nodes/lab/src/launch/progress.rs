@@ -54,6 +54,11 @@ impl Progress {
         self.phase = Some(state.phase);
         self.said = Instant::now();
         let (number, of) = (state.phase + 1, self.phases);
-        self.say(&format!("phase {number} of {of}, {} {verb} step {step}", state.phase_name));
+        let left_out = if verb == "from" && !state.message.is_empty() {
+            format!(", {}", state.message)
+        } else {
+            String::new()
+        };
+        self.say(&format!("phase {number} of {of}, {} {verb} step {step}{left_out}", state.phase_name));
     }
 }

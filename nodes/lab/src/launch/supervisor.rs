@@ -60,6 +60,8 @@ pub(crate) struct Supervisor {
     pub(super) terminate: Signal,
     hangup: Signal,
     pub(super) progress: Progress,
+    /// The last packing is recorded within a phase: it need not have anything to measure.
+    ends_within: bool,
     begun: bool,
     /// The step that the run began or went on at.
     first_step: Option<u64>,
@@ -110,6 +112,7 @@ impl Supervisor {
         run: Run,
         directory: &Path,
         phases: usize,
+        ends_within: bool,
     ) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
@@ -125,6 +128,7 @@ impl Supervisor {
             terminate: handler(SignalKind::terminate())?,
             hangup: handler(SignalKind::hangup())?,
             progress: Progress::new(phases),
+            ends_within,
             begun: false,
             first_step: None,
             finished: None,
@@ -232,6 +236,7 @@ impl Supervisor {
             let Some(step) = last else { return self.caught_up().await };
             match self.debts.standing(step) {
                 Standing::Complete => return self.caught_up().await,
+                Standing::Declined(_) if self.ends_within => return self.caught_up().await,
                 Standing::Declined(node) => {
                     crate::output::say!("grainlab: the last packing has no {}", nothing(node));
                     return Exit::PhysicsInvalid;
@@ -240,7 +245,8 @@ impl Supervisor {
                     // Bursts through a long path take as long as they take; who is at work is waited for.
                     let at_work = std::mem::take(&mut self.probing) && standing == Standing::Open(PROBE);
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
-                        deadline = Some(Deadline::of(standing));
+                        let of = if self.ends_within { Deadline::within_a_phase } else { Deadline::of };
+                        deadline = Some(of(standing));
                     }
                 }
             }

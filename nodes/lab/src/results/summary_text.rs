@@ -2,7 +2,7 @@
 
 use super::acoustic;
 use super::inference::{Inference, warning_lines};
-use super::read_back::InvertedState;
+use super::read_back::{Film, InvertedState};
 use super::state_text::{self, indented};
 use super::summary::Summary;
 use crate::output::{Table, fixed};
@@ -21,6 +21,13 @@ pub(crate) fn text(s: &Summary) -> String {
         }
         text += &inferred(state);
         text.push('\n');
+    }
+    if s.film.packings > 0 {
+        let Film { packings, structures, moduli } = s.film;
+        text += &format!(
+            "Within phases: {packings} packings recorded, {structures} with a structure, {moduli} with moduli: \
+             grainlab analyze RECORDING --format csv\n\n"
+        );
     }
     text += "Run\n";
     text += &format!("  wall time {:.2} s", s.wall_seconds);

@@ -152,6 +152,11 @@ impl Engine {
         SymTensor::symmetric_part(&self.state.rate).voigt()
     }
 
+    /// Whether all grains are of one size.
+    pub fn equal_sized(&self) -> bool {
+        self.state.is_monodisperse()
+    }
+
     /// Solver steps done.
     pub fn steps(&self) -> u64 {
         self.state.step

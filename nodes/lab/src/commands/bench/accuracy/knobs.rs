@@ -213,7 +213,7 @@ pub(crate) fn inertial_number(scene: &Scene) -> Option<f64> {
         }
         _ => None,
     })?;
-    Some(largest_rate(scene)? * scene.diameter * (scene.material.density / pressure).sqrt())
+    Some(largest_rate(scene)? * scene.sizes.mean() * (scene.material.density / pressure).sqrt())
 }
 
 fn law(scene: &Scene) -> Option<ServoLaw> {
