@@ -181,6 +181,9 @@ impl DemSimulator {
         }
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
+            if let Some(energy) = &advanced.energy {
+                log::info!("energy balance of phase {phase}, J: {energy:?}");
+            }
             if !advanced.finished {
                 self.next_beat = now + BEAT;
                 let left_out = self.run.left_out();

@@ -45,6 +45,8 @@ pub fn sidecar(packing: &Packing) -> String {
         "G": packing.material.shear_modulus,
         "nu": packing.material.poisson_ratio,
         "density": packing.material.density,
+        "contact_law": packing.law.name(),
+        "contact_law_parameters": packing.law.parameters(),
         "mu_prep": friction,
         "cell": rows(packing.cell.matrix()),
         "step": packing.step,

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
@@ -160,11 +161,13 @@ pub(super) fn packing(
         spins: grains.spins,
         contacts: Vec::new(),
         material: settings.material,
+        law: settings.law,
         friction: settings.friction,
         time_step: state.time_step,
     }
     .validated()?;
-    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material);
+    let normal_force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
+    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, normal_force);
     let id = |k: usize| packing.ids[k];
     let found = found.map_err(|e| match e {
         SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
@@ -280,16 +283,24 @@ fn listed_contact(
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
 }
 
-/// Says where listed forces are not those of Hertz: the stiffness that is measured would be of other contacts.
+/// A note where listed forces are not those of the contact law: the stiffness would be that of other contacts.
 fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
-    let hertz = |c: &Contact| packing.material.normal_force(packing.effective_radius(c), c.overlap.max(0.0));
-    let expected: f64 = listed.iter().map(hertz).sum();
-    let difference: f64 = listed.iter().map(|c| (c.normal_force - hertz(c)).abs()).sum();
+    let force = |c: &Contact| {
+        packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap.max(0.0))
+    };
+    let name = match packing.law {
+        ContactLaw::HertzMindlin => ["Hertz's law", "Hertz-Mindlin"],
+        ContactLaw::Linear(_) => ["linear springs", "linear"],
+    };
+    let expected: f64 = listed.iter().map(force).sum();
+    let difference: f64 = listed.iter().map(|c| (c.normal_force - force(c)).abs()).sum();
     (difference > 0.01 * expected).then(|| {
         format!(
-            "normal forces differ from Hertz's law by {:.1} % on average: of another contact law, another material, or in \
-             motion; the stiffness is that of Hertz-Mindlin contacts of this material",
-            100.0 * difference / expected
+            "normal forces differ from {} by {:.1} % on average: of another contact law, another material, or in motion; the \
+             stiffness is that of {} contacts of this material",
+            name[0],
+            100.0 * difference / expected,
+            name[1]
         )
     })
 }

@@ -2,7 +2,7 @@
 //! shape of the cell.
 
 use grainlab_core::material::effective_radius;
-use grainlab_core::{Cell, Contact, Material, Vec3};
+use grainlab_core::{Cell, Contact, Vec3};
 
 mod grid;
 
@@ -53,7 +53,7 @@ pub enum SearchError {
 /// ```
 /// use grainlab_core::{Cell, Material, Vec3};
 /// let (cell, r) = (Cell::cube(1.0).unwrap(), [0.11, 0.11]);
-/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, &Material::GLASS);
+/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, |r, d| Material::GLASS.normal_force(r, d));
 /// let found = found.unwrap();
 /// assert_eq!((found.len(), found[0].image), (1, [0, 0, -1]));
 /// assert!((found[0].overlap - 0.02).abs() < 1e-15);
@@ -62,7 +62,7 @@ pub fn find(
     cell: &Cell,
     positions: &[Vec3],
     radii: &[f64],
-    material: &Material,
+    normal_force: impl Fn(f64, f64) -> f64,
 ) -> Result<Vec<Contact>, SearchError> {
     let grid = Grid::new(cell, positions, radii)?;
     let mut contacts = Vec::new();
@@ -99,7 +99,7 @@ pub fn find(
                 image: [a, b, c],
                 overlap,
                 normal: branch / distance,
-                normal_force: material.normal_force(r_eff, overlap),
+                normal_force: normal_force(r_eff, overlap),
                 tangential_force: Vec3::zeros(),
             });
             Ok(())

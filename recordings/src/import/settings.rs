@@ -1,5 +1,6 @@
 //! What a file does not say about a packing.
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
@@ -17,6 +18,8 @@ pub struct ImportOptions {
     pub density: Option<f64>,
     /// Friction coefficient; may be infinite.
     pub friction: Option<f64>,
+    /// Contact law; Hertz–Mindlin if not given.
+    pub law: Option<ContactLaw>,
     /// Radius of every grain, m, for files that have none.
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
@@ -79,6 +82,7 @@ pub(super) struct Known {
     pub(super) shear_modulus: Option<f64>,
     pub(super) poisson_ratio: Option<f64>,
     pub(super) density: Option<f64>,
+    pub(super) law: Option<ContactLaw>,
     pub(super) friction: Option<f64>,
 }
 
@@ -87,6 +91,7 @@ pub(super) struct Known {
 pub(super) struct Settings {
     pub(super) cell: Cell,
     pub(super) material: Material,
+    pub(super) law: ContactLaw,
     pub(super) friction: f64,
 }
 
@@ -114,6 +119,7 @@ impl Known {
         };
         let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
         let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
-        Ok(Settings { cell, material: Material { shear_modulus, poisson_ratio, density }, friction })
+        let material = Material { shear_modulus, poisson_ratio, density };
+        Ok(Settings { cell, material, law: options.law.or(self.law).unwrap_or_default(), friction })
     }
 }

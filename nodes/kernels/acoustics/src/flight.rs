@@ -29,7 +29,8 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::planes;
 use crate::trace::Trace;
-use grainlab_core::{Packing, TangentialLaw, WaveMethod};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Packing, WaveMethod};
 use rayon::prelude::*;
 
 /// What is taken as the arrival.

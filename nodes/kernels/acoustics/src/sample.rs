@@ -1,7 +1,8 @@
 //! A packing made ready for waves: at rest, with its time step and a first idea of their speed.
 
 use crate::error::AcousticsError;
-use grainlab_core::{Mat3, Packing, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::NoNetwork;
 use grainlab_micromechanics::balance::unbalanced;

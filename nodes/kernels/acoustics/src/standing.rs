@@ -22,7 +22,8 @@ use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::standing::resonance::{Found, Resonance};
 use crate::trace::Trace;
-use grainlab_core::{Packing, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Packing, Vec3};
 use rayon::prelude::*;
 
 /// Repetitions of a packing that have room for two wavelengths, to extrapolate from.

@@ -6,8 +6,8 @@
 //!
 //! - [`tensor`]: small vectors and tensors
 //! - [`cell`]: the periodic cell
-//! - [`material`]: the grain's material and the contact stiffnesses that follow from it (Eqs. 8 and 9)
-//! - [`TangentialLaw`]: how a tangential spring follows the normal stiffness
+//! - [`material`]: the grain's material
+//! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
 //! - [`packing`]: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`stress`]: the one definition of stress
@@ -20,8 +20,9 @@
 
 pub mod cell;
 mod consistency;
-mod contact;
+pub mod contact;
 pub mod control;
+pub mod lanes;
 pub mod material;
 pub mod packing;
 pub mod results;
@@ -33,7 +34,6 @@ pub mod tensor;
 pub mod waves;
 
 pub use cell::Cell;
-pub use contact::tangential::TangentialLaw;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::Material;
 pub use packing::{Contact, Packing, PackingError};

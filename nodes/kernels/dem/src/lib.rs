@@ -5,10 +5,9 @@
 //! - `simd`: arithmetic in one, four or eight lanes
 //! - `domain`: grains, and how they are divided among threads
 //! - `pairs`: neighbours, and the blocks of pairs that may touch
-//! - `contact`: the contact law, written once for any number of lanes
-//! - `force`: the force kernel, and the stress that forces carry
+//! - `force`: the force kernel, compiled for each contact law, and the stress that forces carry
 //! - `step`: forces and motion of one step, and the stable time step
-//! - `observe`: stress, tangent stiffness and force balance of the present contacts
+//! - `observe`: stress, tangent stiffness and force balance of the present contacts; the running energy balance
 //! - `engine`: steps with checks, thermostat and upkeep of the lists of pairs
 //!
 //! Beside the engine: [`gas`] places grains at random and moves hard spheres from collision to collision; [`roofline`] counts
@@ -18,7 +17,6 @@
 //! follow from the number of grains. So nothing depends on when neighbours were found, on the instruction set or on the number
 //! of threads, and a state saved and loaded goes on bit for bit.
 
-mod contact;
 mod domain;
 mod engine;
 mod error;
@@ -31,12 +29,11 @@ mod settings;
 mod simd;
 mod step;
 
-pub use contact::hertz_mindlin::{ContactForces, ContactKinematics, HertzMindlin};
 pub use domain::compute::{Compute, ComputeError};
 pub use engine::checkpoint::Checkpoint;
 pub use engine::engine::Engine;
 pub use error::DemError;
+pub use observe::energy::EnergyBalance;
 pub use observe::observables::Observables;
 pub use settings::{EngineSettings, Features, TimeStep};
 pub use simd::instruction_set::{Simd, UnknownSimd};
-pub use simd::lanes::{LaneVec3, Lanes};

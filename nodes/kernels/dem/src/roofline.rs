@@ -1,14 +1,15 @@
 //! Floating-point operations per contact, and the peak rate of the processor: for benchmarks.
 
 use crate::engine::engine::Engine;
+use crate::force::geometry::ForceInput;
 use crate::force::kernel::{FrictionalKernel, FrictionlessKernel};
 use crate::settings::{EngineSettings, Features, TimeStep};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
-use crate::simd::lanes::{LaneVec3, Lanes};
 use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
-use crate::step::pass;
-use grainlab_core::{Cell, Material, TangentialLaw, Vec3};
+use grainlab_core::contact::{ContactLaw, ContactSprings, LawVisitor, TangentialLaw};
+use grainlab_core::lanes::{LaneVec3, Lanes};
+use grainlab_core::{Cell, Material, Vec3};
 use std::cell::Cell as Counter;
 use std::hint::black_box;
 use std::ops::{Add, Div, Mul, Sub};
@@ -133,42 +134,58 @@ impl SimdF64 for Counted {
 
 /// Floating-point operations (additions, multiplications, divisions, square roots, comparisons; one each) of the force kernel
 /// per sliding contact of grains of one size, counted by running the kernel itself.
-pub fn operations_per_contact(settings: &EngineSettings) -> f64 {
+pub fn operations_per_contact(law: ContactLaw, settings: &EngineSettings) -> f64 {
     // A row of grains with one full block of contacts, sheared hard enough to slide.
     let (radius, grains) = (1e-4, BLOCK_SIZE + 1);
     let along = |k: usize| Vec3::x() * (1.99 * radius * k as f64);
     let positions: Vec<Vec3> = (0..grains).map(along).collect();
     let Some(cell) = Cell::cube(4.0 * radius * grains as f64) else { return 0.0 };
     let settings = EngineSettings { time_step: TimeStep::Fixed(1e-8), skin: 0.1 * radius, ..*settings };
-    let mut engine = Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, settings);
+    let mut engine =
+        Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, settings).with_law(law);
     let sideways = |k: usize| Vec3::y() * (100.0 * k as f64);
     engine.set_velocities(&(0..grains).map(sideways).collect::<Vec<_>>());
     if engine.initialise().is_err() {
         return 0.0;
     }
-    let contacts = &mut engine.contacts;
-    let input = pass::force_input(&engine.state, contacts.images.offsets(), &settings);
-    let Some(pairs) = contacts.subdomains.first_mut() else { return 0.0 };
-    let mut part = pairs.part_mut(0);
-    let (chunk, with_virial) = (part.chunk(0), false);
-    let rescaled = settings.tangential == TangentialLaw::Rescaled;
-    OPERATIONS.set(0);
-    macro_rules! frictional {
-        ($sliding:literal, $rescaled:literal) => {
-            FrictionalKernel::<true, $sliding, $rescaled, false> { input, chunk, with_virial }
-                .run::<Counted>()
-        };
-    }
-    match (settings.features(), rescaled) {
-        (Features::Frictionless, _) => {
-            FrictionlessKernel::<false> { input, chunk, with_virial }.run::<Counted>()
+    let (law, material) = (engine.state.law, engine.state.material);
+    law.visit(&material, CountOperations { engine: &mut engine, settings: &settings })
+}
+
+struct CountOperations<'a> {
+    engine: &'a mut Engine,
+    settings: &'a EngineSettings,
+}
+
+impl LawVisitor for CountOperations<'_> {
+    type Output = f64;
+
+    fn visit<P: ContactSprings>(self, springs: P) -> f64 {
+        let Self { engine, settings } = self;
+        let contacts = &mut engine.contacts;
+        let input = ForceInput::new(&engine.state, contacts.images.offsets(), settings, springs);
+        let Some(pairs) = contacts.subdomains.first_mut() else { return 0.0 };
+        let mut part = pairs.part_mut(0);
+        let (chunk, with_virial) = (part.chunk(0), false);
+        let rescaled = settings.tangential == TangentialLaw::Rescaled;
+        OPERATIONS.set(0);
+        macro_rules! frictional {
+            ($sliding:literal, $rescaled:literal) => {
+                FrictionalKernel::<P, true, $sliding, $rescaled, false> { input, chunk, with_virial }
+                    .run::<Counted>()
+            };
         }
-        (Features::Sliding, true) => frictional!(true, true),
-        (Features::Sliding, false) => frictional!(true, false),
-        (Features::NoSlip, true) => frictional!(false, true),
-        (Features::NoSlip, false) => frictional!(false, false),
-    };
-    OPERATIONS.get() as f64 / BLOCK_SIZE as f64
+        match (settings.features(), rescaled) {
+            (Features::Frictionless, _) => {
+                FrictionlessKernel::<P, false> { input, chunk, with_virial }.run::<Counted>()
+            }
+            (Features::Sliding, true) => frictional!(true, true),
+            (Features::Sliding, false) => frictional!(true, false),
+            (Features::NoSlip, true) => frictional!(false, true),
+            (Features::NoSlip, false) => frictional!(false, false),
+        };
+        OPERATIONS.get() as f64 / BLOCK_SIZE as f64
+    }
 }
 
 /// Runs independent chains of fused multiply-adds (two operations each) for `rounds`, to measure the peak rate of the
@@ -214,7 +231,10 @@ mod tests {
     #[test]
     fn a_contact_with_more_physics_takes_more_operations() {
         let of = |friction: f64| {
-            operations_per_contact(&EngineSettings { friction, damping: 0.3, ..EngineSettings::default() })
+            operations_per_contact(
+                ContactLaw::HertzMindlin,
+                &EngineSettings { friction, damping: 0.3, ..EngineSettings::default() },
+            )
         };
         assert!(of(0.0) > 30.0);
         assert!(of(f64::INFINITY) > 2.0 * of(0.0));

@@ -1,6 +1,6 @@
 //! What the engine is set to during a phase.
 
-use grainlab_core::TangentialLaw;
+use grainlab_core::contact::TangentialLaw;
 
 /// The parts of the contact law that a phase needs. The force kernel is compiled for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! Grains in motion: collisions, the deforming cell, its periodic images, and what is refused.
 
-use grainlab_core::{Cell, Mat3, Material, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, Mat3, Material, Vec3};
 use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 use nalgebra::Rotation3;
 

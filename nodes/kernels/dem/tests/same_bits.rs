@@ -1,6 +1,7 @@
 //! Results do not depend on instruction set, threads, or how steps are grouped.
 
-use grainlab_core::{Mat3, Material, Packing, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Mat3, Material, Packing, Vec3};
 use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, gas};
 
 const RADIUS: f64 = 1e-4;
@@ -51,7 +52,7 @@ fn bits(p: &Packing) -> Vec<u64> {
 
 fn end(mut engine: Engine, steps: u32) -> Vec<u64> {
     let compute = engine.compute().clone();
-    compute.within(|| engine.run(steps)).unwrap();
+    compute.install(|| engine.run(steps)).unwrap();
     let packing = engine.packing(Mat3::identity());
     assert!(packing.contacts.len() > 50, "{} contacts", packing.contacts.len());
     bits(&packing)
@@ -115,7 +116,7 @@ fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
         let steps = if leg % 3 == 0 { 1 } else { 211 };
         let pool = engine.compute().clone();
         let run = || engine.run_with_stress(steps, |s| seen.extend(s.voigt().map(f64::to_bits)));
-        pool.within(run).unwrap();
+        pool.install(run).unwrap();
         let look = engine.observables().unwrap();
         seen.extend(look.stress.tensor.voigt().iter().chain(&look.tangent).map(|v| v.to_bits()));
         seen.extend([look.unbalanced.to_bits(), engine.speed().to_bits()]);

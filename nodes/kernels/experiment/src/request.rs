@@ -1,7 +1,7 @@
 //! Requests of a run to its servo, and outcomes of the strain rates that answer them.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_dem::Observables;
+use grainlab_dem::{EnergyBalance, Observables};
 
 /// A request for a strain rate, with all that a servo needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,4 +54,6 @@ pub struct StepOutcome {
     pub packing_due: bool,
     /// The path is done.
     pub finished: bool,
+    /// Energy balance since the start of the phase, if the scene asks for it.
+    pub energy: Option<EnergyBalance>,
 }

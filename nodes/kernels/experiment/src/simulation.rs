@@ -57,7 +57,8 @@ impl Simulation {
         let radii: Vec<f64> = scene.sizes.diameters(scene.grains).iter().map(|d| 0.5 * d).collect();
         let gas = random_placement(&radii, fraction, speed, scene.seed)?;
         let settings = phase_settings(&scene, &scene.phases[0]);
-        let mut engine = Engine::new(gas.cell, scene.material, radii, &gas.positions, settings);
+        let mut engine =
+            Engine::new(gas.cell, scene.material, radii, &gas.positions, settings).with_law(scene.law);
         engine.set_velocities(&gas.velocities);
         let friction = engine.settings().friction;
         Self::begin(scene, engine, friction)
@@ -71,6 +72,7 @@ impl Simulation {
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
         let engine = Engine::from_packing(&start, phase_settings(&scene, phase));
         let mut run = Self::begin(scene, engine, packing.friction)?;
+        run.engine.measure_energy(run.scene.numerics.energy_balance);
         // It is published before the first request.
         run.packings = 1;
         Ok(run)
@@ -192,7 +194,7 @@ impl Simulation {
     /// Strains at `rate` (Voigt order, 1/s) for one control period. On failure the run returns to a copy of its state, at most
     /// a hundred steps and one control period ago.
     pub fn advance(&mut self, rate: &[f64; 6]) -> Result<StepOutcome, ExperimentError> {
-        let none = StepOutcome { ended: None, packing_due: false, finished: self.finished() };
+        let none = StepOutcome { ended: None, packing_due: false, finished: self.finished(), energy: None };
         let Some(phase) = self.path.phase(&self.scene) else { return Ok(none) };
         let period = phase.control_period;
         // Saved with the rate that its forces were evaluated with.
@@ -222,6 +224,7 @@ impl Simulation {
             unbalanced: self.observables.unbalanced,
             speed: self.engine.speed(),
         };
+        let energy = self.engine.energy();
         let index = self.path.phase;
         match self.path.observe(&self.scene, &input)? {
             PathEvent::Stay => {
@@ -233,14 +236,14 @@ impl Simulation {
                     // A failing run does not return beyond a packing that was published.
                     self.rollback = None;
                 }
-                Ok(StepOutcome { ended: None, packing_due, finished: false })
+                Ok(StepOutcome { ended: None, packing_due, finished: false, energy })
             }
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
                 self.is_frame = false;
                 self.packings += u64::from(publish);
                 let ended = Some(self.scene.phases[index].name.clone());
-                Ok(StepOutcome { ended, packing_due: publish, finished })
+                Ok(StepOutcome { ended, packing_due: publish, finished, energy })
             }
         }
     }
@@ -329,6 +332,7 @@ impl Simulation {
             self.engine.sort_spatially();
             self.engine.initialise()?;
             self.engine.update_time_step();
+            self.engine.measure_energy(self.scene.numerics.energy_balance);
         }
         self.observables = self.engine.observables()?;
         Ok(())

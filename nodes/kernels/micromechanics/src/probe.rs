@@ -14,7 +14,8 @@ use crate::column::{Calm, Column, LOOK, strained};
 use crate::error::{NoNetwork, ProbeError};
 use crate::rattlers::{contacts_needed, participating};
 use crate::relax::Relaxation;
-use grainlab_core::{Packing, Stiffness, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Packing, Stiffness, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// The packing relaxes, before it is strained, to this share of the unbalanced force that ends a relaxation afterwards.

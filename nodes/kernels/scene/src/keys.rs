@@ -47,8 +47,13 @@ keys! {
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
     DENSITY = number("material.density", "kg/m3", Interval::POSITIVE, DefaultValue::Number(GLASS.density), "density of the grains");
 
+    CONTACT_LAW = choice("contact.law", &["hertz_mindlin", "linear"], "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
+    NORMAL_STIFFNESS = number("contact.normal_stiffness", "N/m", Interval::POSITIVE, Required, "normal stiffness k_n; law linear");
+    STIFFNESS_RATIO = number("contact.stiffness_ratio", "", Interval::POSITIVE, DefaultValue::Number(0.5), "k_t/k_n; law linear");
+
     TIME_STEP_SAFETY = number("numerics.time_step_safety", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.8), "time step over its stability bound");
     SKIN = number("numerics.skin", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.05), "Verlet skin over grain diameter");
+    ENERGY_BALANCE = flag("numerics.energy_balance", "whether the energy balance of each phase is summed, which makes steps several times slower");
     TANGENTIAL = choice("numerics.tangential", &["rescaled", "incremental"], "rescaled", "tangential force on unloading: scaled down with the tangential stiffness, so that no closed cycle creates energy, or kept, as in LAMMPS's mindlin/force");
 
     PHASE = form("phase", "an array of tables, one per phase", Required, "phases of the path, in order: [[phase]]; over a base, [phase.NAME] changes the phase of that name");

@@ -13,6 +13,7 @@ mod assignment;
 mod built_in;
 mod canonical;
 mod compose;
+mod contact;
 mod fault;
 mod grains;
 mod key;

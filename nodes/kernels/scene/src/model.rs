@@ -1,7 +1,8 @@
 //! The scene as a value.
 
 use crate::sizes::Sizes;
-use grainlab_core::{ComponentControl, Material, ServoLaw, TangentialLaw};
+use grainlab_core::contact::{ContactLaw, TangentialLaw};
+use grainlab_core::{ComponentControl, Material, ServoLaw};
 
 /// A whole experiment: what is simulated and along which loading path.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Scene {
     pub sizes: Sizes,
     /// Material of every grain.
     pub material: Material,
+    /// Contact law.
+    pub law: ContactLaw,
     /// Numerical settings.
     pub numerics: Numerics,
     /// Phases in the order they run; cycles are already unrolled.
@@ -36,11 +39,13 @@ pub struct Numerics {
     pub skin: f64,
     /// How the tangential force follows a change of normal stiffness.
     pub tangential: TangentialLaw,
+    /// Whether the energy balance of each phase is summed, which makes steps several times slower.
+    pub energy_balance: bool,
 }
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { time_step_safety: 0.8, skin: 0.05, tangential: TangentialLaw::Rescaled }
+        Self { time_step_safety: 0.8, skin: 0.05, tangential: TangentialLaw::Rescaled, energy_balance: false }
     }
 }
 

@@ -1,14 +1,17 @@
 //! A scene's table to [`Scene`], with every fault reported at once.
 
 use crate::canonical;
+use crate::contact;
 use crate::fault::SceneError;
 use crate::grains;
 use crate::keys;
 use crate::model::{Numerics, Scene};
 use crate::phases::{self, Inherited};
 use crate::reader::Reader;
+use crate::sizes::Sizes;
 use crate::start;
-use grainlab_core::{Material, Packing, TangentialLaw};
+use grainlab_core::contact::{ContactLaw, TangentialLaw};
+use grainlab_core::{Material, Packing};
 use toml::Table;
 
 /// A scene that holds, as a value and as text.
@@ -55,12 +58,18 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
     let packing = packing.filter(|_| start.is_some());
     let (grains, sizes) = match packing {
         Some(packing) => start::grains(r, packing),
+        None if start.is_some() => (1, Sizes::Equal(1.0)),
         None => r.section("grains", grains::read),
     };
     let default = packing.map_or(Material::GLASS, |p| p.material);
     let material = r.section("material", |r| read_material(r, &default));
     if let Some(packing) = packing {
         r.adopt(start::differing(&material, packing));
+    }
+    let law = packing.map_or_else(ContactLaw::default, |p| p.law);
+    let law = r.section("contact", |r| contact::read(r, &law));
+    if let Some(message) = packing.and_then(|p| start::other_law(&law, p)) {
+        r.fault("contact", message);
     }
     let numerics = r.section("numerics", read_numerics);
     let mut inherited =
@@ -74,7 +83,7 @@ fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
             "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
         r.fault("friction", message);
     }
-    Scene { name, description, seed, start, grains, sizes, material, numerics, phases }
+    Scene { name, description, seed, start, grains, sizes, material, law, numerics, phases }
 }
 
 fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
@@ -91,5 +100,6 @@ fn read_numerics(r: &mut Reader<'_>) -> Numerics {
         time_step_safety: r.number(&keys::TIME_STEP_SAFETY),
         skin: r.number(&keys::SKIN),
         tangential: r.choice(&keys::TANGENTIAL, "rescaled", &tangential),
+        energy_balance: r.flag(&keys::ENERGY_BALANCE),
     }
 }

@@ -29,6 +29,7 @@ pub fn reference() -> String {
         ("start.", "`[start]`: from a packing instead of a gas"),
         ("grains.", "`[grains]`"),
         ("material.", "`[material]`, glass unless it says otherwise"),
+        ("contact.", "`[contact]`: the contact law"),
         ("numerics.", "`[numerics]`"),
     ] {
         page += &section(title, |k| k.path.starts_with(table));

@@ -5,6 +5,7 @@ use crate::keys;
 use crate::model::{Phase, Start};
 use crate::reader::Reader;
 use crate::sizes::Sizes;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Material, Packing};
 
 /// Two numbers are the same if they differ by less than this share: a file may have six digits.
@@ -49,6 +50,14 @@ pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
         message: format!("is {own}, but the packing that the run starts from has {of}"),
     };
     differing.map(fault).collect()
+}
+
+/// Why the contact law cannot be that of the scene, if it cannot.
+pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
+    let of = &packing.law;
+    (own != of).then(|| {
+        format!("is {own:?}, but the forces of the packing that the run starts from are those of {of:?}")
+    })
 }
 
 /// Why the first phase cannot take the packing up, if it cannot.

@@ -1,5 +1,6 @@
 //! Scenes as their authors write them, right and wrong.
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
     Condition, Draft, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Record,
@@ -290,6 +291,7 @@ fn pair() -> Packing {
         spins: vec![Vec3::zeros(); 2],
         contacts: vec![contact],
         material: Material { density: 2000.0, ..Material::GLASS },
+        law: ContactLaw::default(),
         friction: 0.3,
         time_step: 0.0,
     }

@@ -99,6 +99,7 @@ mod tests {
             spins: vec![Vec3::zeros()],
             contacts: [2, 1, 0].map(contact).to_vec(),
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.3,
             time_step: 0.0,
         }

@@ -264,6 +264,7 @@ mod tests {
             spins: vec![Vec3::zeros()],
             contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.3,
             time_step: 0.0,
         }

@@ -35,6 +35,7 @@ fn chain(grains: u32) -> Packing {
         spins: vec![Vec3::zeros(); n],
         contacts,
         material,
+        law: Default::default(),
         friction: 0.3,
         time_step: 0.0,
     };

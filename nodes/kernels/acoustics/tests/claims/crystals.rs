@@ -27,6 +27,7 @@ fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
         spins: vec![Vec3::zeros(); n],
         contacts: Vec::new(),
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 0.0,
     };

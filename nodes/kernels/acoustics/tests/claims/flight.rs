@@ -49,6 +49,7 @@ fn chain(aside: bool) -> Packing {
         positions,
         contacts,
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.5,
         time_step: 0.0,
     };

@@ -2,7 +2,8 @@
 
 use crate::sample;
 use grainlab_acoustics::{AcousticsError, Ray, repeated};
-use grainlab_core::{Cell, Mat3, Packing, TangentialLaw, Vec3, stress::stress};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, Mat3, Packing, Vec3, stress::stress};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 const PLANES: [[i32; 3]; 6] = [[0, 0, 1], [1, 0, 0], [1, 0, 1], [1, -1, 0], [1, 1, 1], [2, -1, 3]];

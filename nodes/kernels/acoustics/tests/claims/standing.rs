@@ -19,7 +19,7 @@ const QUICK: Settings = Settings {
     periods: 2.0,
     amplitude: 1e-9,
     friction: None,
-    tangential: grainlab_core::TangentialLaw::Incremental,
+    tangential: grainlab_core::contact::TangentialLaw::Incremental,
 };
 
 fn quick(packing: &Packing, motion: usize, settings: &Settings) -> (Curve, Vec<Warning>) {

@@ -1,6 +1,7 @@
 //! Grains and cell.
 
 use crate::simd::simd_f64::{F64x4, F64x8};
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Vec3};
 
 /// A vector as a row of a table.
@@ -33,6 +34,7 @@ pub(crate) struct State {
     /// Strain rate in force, 1/s, symmetric.
     pub(crate) rate: Mat3,
     pub(crate) material: Material,
+    pub(crate) law: ContactLaw,
     pub(crate) ids: Vec<u32>,
     pub(crate) radius: Vec<f64>,
     pub(crate) inverse_mass: Vec<f64>,
@@ -63,6 +65,7 @@ impl State {
             cell,
             rate: Mat3::zeros(),
             material,
+            law: ContactLaw::default(),
             ids,
             inverse_mass: radius.iter().map(|r| 1.0 / mass(r)).collect(),
             inverse_inertia: radius.iter().map(|r| 1.0 / (0.4 * mass(r) * r * r)).collect(),

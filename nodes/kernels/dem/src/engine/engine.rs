@@ -6,12 +6,13 @@ use crate::domain::compute::Compute;
 use crate::domain::distributed_state::DistributedState;
 use crate::domain::state::{State, twist, vector};
 use crate::error::DemError;
+use crate::observe::energy::{EnergyBalance, EnergyMeter};
 use crate::observe::observables::{self, Observables};
 use crate::pairs::contacts::Contacts;
 use crate::pairs::displacement_bound::DisplacementBound;
 use crate::pairs::neighbours::Neighbours;
 use crate::settings::{EngineSettings, Features};
-use crate::step::pass;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
 use std::borrow::Cow;
 
@@ -31,10 +32,12 @@ pub struct Engine {
     pub(super) has_neighbours: bool,
     /// Whether the forces are those of the present state.
     pub(super) has_forces: bool,
+    /// Sums the energy balance, if it is switched on.
+    pub(super) energy: Option<Box<EnergyMeter>>,
 }
 
 impl Engine {
-    /// Grains at rest at `positions` (m), without contact history.
+    /// Grains at rest at `positions` (m), without contact history. Their contact law is the default, Hertz–Mindlin.
     pub fn new(
         cell: Cell,
         material: Material,
@@ -48,7 +51,13 @@ impl Engine {
         Self::from_state(state, contacts, settings)
     }
 
-    /// Grains as they are in `packing`, contact history included.
+    /// The same grains under another contact law. Call it before the first step.
+    pub fn with_law(mut self, law: ContactLaw) -> Self {
+        self.state.law = law;
+        self
+    }
+
+    /// Grains as they are in `packing`, contact law and history included.
     pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Self {
         let mut state = State::new(
             packing.cell,
@@ -58,6 +67,7 @@ impl Engine {
             &packing.positions,
         );
         state.twist = packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect();
+        state.law = packing.law;
         state.step = packing.step;
         state.time = packing.time;
         state.time_step = packing.time_step;
@@ -77,6 +87,7 @@ impl Engine {
             since_pruning: DisplacementBound::new(settings.skin),
             has_neighbours: false,
             has_forces: false,
+            energy: None,
         };
         engine.set_settings(settings);
         engine
@@ -212,18 +223,32 @@ impl Engine {
         Checkpoint::new(&self.current_state(), &self.contacts)
     }
 
-    /// Returns to a checkpoint. Call [`Engine::initialise`] before the next step.
+    /// Returns to a checkpoint, with the energy balance off. Call [`Engine::initialise`] before the next step.
     pub fn restore(&mut self, checkpoint: Checkpoint) {
         self.reclaim_state();
         self.contacts = checkpoint.restore(&mut self.state);
+        self.energy = None;
         (self.has_neighbours, self.has_forces) = (false, false);
     }
 
     /// Stress, tangent stiffness and force balance of the present contacts.
     pub fn observables(&self) -> Result<Observables, DemError> {
         let state = self.current_state();
-        let input = pass::force_input(&state, self.contacts.images.offsets(), &self.settings);
-        observables::observe(&state, &self.contacts, input, &self.compute)
+        observables::observe(&state, &self.contacts, &self.settings, &self.compute)
+    }
+
+    /// Switches the energy balance on, from the present state, or off. It changes no result; steps with it are several times
+    /// slower. Forces must have been evaluated ([`Engine::initialise`]).
+    pub fn measure_energy(&mut self, on: bool) {
+        self.gather();
+        let new = || Box::new(EnergyMeter::new(&self.state, &self.contacts, &self.settings));
+        self.energy = on.then(new);
+    }
+
+    /// The energy balance since it was switched on; `None` if it is off.
+    pub fn energy(&self) -> Option<EnergyBalance> {
+        let meter = self.energy.as_ref()?;
+        Some(meter.balance(&self.current_state(), &self.contacts, &self.settings))
     }
 
     /// Root mean square speed relative to the affine motion, m/s.
@@ -246,6 +271,7 @@ impl Engine {
             spins: s.spins().collect(),
             contacts: self.contacts.to_contacts(s),
             material: s.material,
+            law: s.law,
             friction: self.settings.friction,
             time_step: s.time_step,
         }

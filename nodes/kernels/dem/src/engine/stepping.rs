@@ -60,15 +60,15 @@ impl Engine {
         // Speeds of a motion that was done together with the forces of the step before.
         let mut moved: Option<SpeedStats> = None;
         for left in (0..steps).rev() {
-            let stats = moved.take().unwrap_or_else(|| self.pass(PassKind::Motion, false).1);
+            let stats = moved.take().unwrap_or_else(|| self.move_grains());
             let deformation = integrate::deformation(&self.state);
             total = deformation * total;
             self.finish_motion(&stats, &deformation)?;
             // The next motion must wait for the caller after the last step, and for a new time step.
             let new_time_step = self.state.step.is_multiple_of(TIME_STEP_INTERVAL);
-            let wait = left == 0 || new_time_step;
+            let wait = left == 0 || new_time_step || self.energy.is_some();
             let kind = if wait { PassKind::Forces } else { PassKind::ForcesAndMotion };
-            let (virial, stats) = self.pass(kind, each.is_some());
+            let (virial, stats) = self.evaluate_forces(kind, each.is_some());
             moved = (!wait).then_some(stats);
             if let Some(each) = &mut each {
                 each(virial.stress(self.state.cell.volume()));
@@ -78,6 +78,34 @@ impl Engine {
             }
         }
         Ok(total)
+    }
+
+    /// Moves all grains, with the work of the kick added to the energy balance.
+    fn move_grains(&mut self) -> SpeedStats {
+        if self.energy.is_some() {
+            self.gather();
+        }
+        let Self { state, contacts, settings, energy, .. } = self;
+        if let Some(meter) = energy {
+            meter.add_kick(state, contacts, settings);
+        }
+        self.pass(PassKind::Motion, false).1
+    }
+
+    /// Evaluates forces, with the losses of tangential springs added to the energy balance.
+    fn evaluate_forces(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
+        if let Some(meter) = &mut self.energy {
+            meter.save_history(&self.contacts);
+        }
+        let results = self.pass(kind, with_virial);
+        if self.energy.is_some() {
+            self.gather();
+        }
+        let Self { state, contacts, settings, energy, .. } = self;
+        if let Some(meter) = energy {
+            meter.add_history(state, contacts, settings);
+        }
+        results
     }
 
     fn pass(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
@@ -105,6 +133,12 @@ impl Engine {
     }
 
     fn scale_velocities(&mut self, factor: f64) {
+        if self.energy.is_some() {
+            self.gather();
+        }
+        if let Some(meter) = &mut self.energy {
+            meter.add_thermostat(&self.state, factor);
+        }
         if self.copies.is_authoritative() {
             self.copies.scale_velocities(factor);
         } else {

@@ -1,22 +1,41 @@
 //! Where pairs are and whether they touch.
 
-use crate::contact::hertz_mindlin::HertzMindlin;
+use crate::domain::state::State;
 use crate::pairs::types::{PairBlock, PairSizes};
-use crate::simd::lanes::{LaneVec3, Lanes};
+use crate::settings::EngineSettings;
 use crate::simd::simd_f64::{BLOCK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
+use grainlab_core::contact::{ContactSprings, SpringDashpotSlider};
+use grainlab_core::lanes::LaneVec3;
+use grainlab_core::material::effective_radius;
 
 /// What the force kernel reads of the state and the settings.
 #[derive(Clone, Copy)]
-pub(crate) struct ForceInput<'a> {
+pub(crate) struct ForceInput<'a, S> {
     pub(crate) position: &'a [F64x4],
     pub(crate) twist: &'a [F64x8],
     /// Offset of each periodic image, m.
     pub(crate) offset: &'a [F64x4],
     /// Columns of the strain rate, 1/s.
     pub(crate) rate: [[f64; 3]; 3],
-    pub(crate) law: HertzMindlin,
+    pub(crate) law: SpringDashpotSlider<S>,
     pub(crate) dt: f64,
     pub(crate) common: CommonSize,
+}
+
+impl<'a, S: ContactSprings> ForceInput<'a, S> {
+    pub(crate) fn new(state: &'a State, offset: &'a [F64x4], settings: &EngineSettings, springs: S) -> Self {
+        let radius = state.largest_radius;
+        let m_eff = state.inverse_mass.first().map_or(0.0, |inverse| 1.0 / (inverse + inverse));
+        Self {
+            position: &state.position,
+            twist: &state.twist,
+            offset,
+            rate: state.rate.into(),
+            law: SpringDashpotSlider { springs, friction: settings.friction, damping: settings.damping },
+            dt: state.time_step,
+            common: CommonSize { radius, r_eff: effective_radius(radius, radius), m_eff },
+        }
+    }
 }
 
 /// The size of every pair, where grains are of one size.
@@ -36,8 +55,8 @@ pub(crate) struct GrainIndices<'a, L> {
 
 impl<'a, L: SimdF64> GrainIndices<'a, L> {
     #[inline(always)]
-    pub(crate) fn new(
-        input: &ForceInput<'_>,
+    pub(crate) fn new<S>(
+        input: &ForceInput<'_, S>,
         i: &'a [u32; BLOCK_SIZE],
         j: &'a [u32; BLOCK_SIZE],
         lane: usize,
@@ -62,8 +81,8 @@ pub(crate) struct Geometry<L: SimdF64> {
 impl<L: SimdF64> Geometry<L> {
     /// `None` where no lane touches.
     #[inline(always)]
-    pub(crate) fn new<const SIZES: bool>(
-        input: &ForceInput<'_>,
+    pub(crate) fn new<S, const SIZES: bool>(
+        input: &ForceInput<'_, S>,
         block: &PairBlock,
         sizes: Option<&PairSizes>,
         lane: usize,

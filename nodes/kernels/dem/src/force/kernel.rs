@@ -5,11 +5,11 @@
 
 use super::geometry::{ForceInput, Geometry, GrainIndices};
 use super::virial::{self, Virial};
-use crate::contact::hertz_mindlin::ContactKinematics;
 use crate::pairs::types::{PairBlock, PairChunk, PairSizes};
 use crate::simd::kernel::Kernel;
-use crate::simd::lanes::{LaneVec3, Lanes};
 use crate::simd::simd_f64::{BLOCK_SIZE, CheckedIndices, F64x8, SimdF64, load_vector, store_vector};
+use grainlab_core::contact::{ContactKinematics, ContactSprings};
+use grainlab_core::lanes::{LaneVec3, Lanes};
 
 /// Packings with more grains than this prefetch the rows of second grains: smaller ones stay in the cache.
 const PREFETCH_MIN_GRAINS: usize = 8000;
@@ -18,22 +18,24 @@ const PREFETCH_MIN_GRAINS: usize = 8000;
 const PREFETCH_DISTANCE: usize = 6;
 
 /// Contacts without friction: no spins, no tangential springs.
-pub(crate) struct FrictionlessKernel<'a, const SIZES: bool> {
-    pub(crate) input: ForceInput<'a>,
+pub(crate) struct FrictionlessKernel<'a, P, const SIZES: bool> {
+    pub(crate) input: ForceInput<'a, P>,
     pub(crate) chunk: PairChunk<'a>,
     /// Whether to sum the virial of periodic pairs.
     pub(crate) with_virial: bool,
 }
 
-/// Contacts with friction; see [`crate::HertzMindlin::full_force`] for the switches. `SIZES`: grains differ in size.
+/// Contacts with friction; see [`full_force`](grainlab_core::contact::SpringDashpotSlider::full_force) for the switches.
+/// `SIZES`: grains differ in size.
 pub(crate) struct FrictionalKernel<
     'a,
+    P,
     const ADVANCE: bool,
     const SLIDING: bool,
     const RESCALED: bool,
     const SIZES: bool,
 > {
-    pub(crate) input: ForceInput<'a>,
+    pub(crate) input: ForceInput<'a, P>,
     pub(crate) chunk: PairChunk<'a>,
     /// Whether to sum the virial of periodic pairs.
     pub(crate) with_virial: bool,
@@ -76,10 +78,12 @@ trait LawStage {
     const MOMENTS: bool;
     /// Whether grains differ in size.
     const SIZES: bool;
+    /// The springs of the contact law.
+    type Springs: ContactSprings;
 
     /// Second stage: forces of some lanes of a block.
     fn law<L: SimdF64>(
-        input: &ForceInput<'_>,
+        input: &ForceInput<'_, Self::Springs>,
         block: &mut PairBlock,
         sizes: Option<&PairSizes>,
         scratch: &mut BlockScratch,
@@ -90,7 +94,7 @@ trait LawStage {
 /// All pairs of a chunk.
 #[inline(always)]
 fn run_stages<S: LawStage, L: SimdF64>(
-    input: &ForceInput<'_>,
+    input: &ForceInput<'_, S::Springs>,
     chunk: PairChunk<'_>,
     with_virial: bool,
 ) -> Virial {
@@ -136,7 +140,7 @@ fn run_stages<S: LawStage, L: SimdF64>(
 /// First stage: geometry of the pairs of unit `u`. Returns whether any touch. If none does, their history is cleared.
 #[inline(always)]
 fn geometry<S: LawStage, L: SimdF64>(
-    input: &ForceInput<'_>,
+    input: &ForceInput<'_, S::Springs>,
     blocks: &mut [PairBlock],
     sizes: &[PairSizes],
     scratch: &mut [BlockScratch; 2],
@@ -146,9 +150,9 @@ fn geometry<S: LawStage, L: SimdF64>(
     let (b, lane) = (u / units_per_block, u % units_per_block * L::WIDTH);
     let (block, scratch) = (&mut blocks[b], &mut scratch[b % 2]);
     let geometry = if S::SIZES {
-        Geometry::<L>::new::<true>(input, block, sizes.get(b), lane)
+        Geometry::<L>::new::<_, true>(input, block, sizes.get(b), lane)
     } else {
-        Geometry::<L>::new::<false>(input, block, None, lane)
+        Geometry::<L>::new::<_, false>(input, block, None, lane)
     };
     match geometry {
         Some(g) => {
@@ -194,8 +198,8 @@ fn scatter<S: LawStage, L: SimdF64>(
 
 /// Radii, R* and effective mass of some lanes of a block.
 #[inline(always)]
-fn sizes_of<L: SimdF64, const SIZES: bool>(
-    input: &ForceInput<'_>,
+fn sizes_of<P, L: SimdF64, const SIZES: bool>(
+    input: &ForceInput<'_, P>,
     sizes: Option<&PairSizes>,
     lane: usize,
 ) -> ([L; 2], L, L) {
@@ -213,7 +217,7 @@ fn sizes_of<L: SimdF64, const SIZES: bool>(
 
 /// Relative velocity of the ends of a branch vector that follow the affine motion, m/s.
 #[inline(always)]
-fn affine_velocity<L: Lanes>(input: &ForceInput<'_>, l: LaneVec3<L>) -> LaneVec3<L> {
+fn affine_velocity<P, L: Lanes>(input: &ForceInput<'_, P>, l: LaneVec3<L>) -> LaneVec3<L> {
     let [x, y, z] = &input.rate;
     LaneVec3::splat_vector(x)
         .scale(l.x)
@@ -221,19 +225,20 @@ fn affine_velocity<L: Lanes>(input: &ForceInput<'_>, l: LaneVec3<L>) -> LaneVec3
         .add_scaled(LaneVec3::splat_vector(z), l.z)
 }
 
-impl<const SIZES: bool> LawStage for FrictionlessKernel<'_, SIZES> {
+impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P, SIZES> {
     const MOMENTS: bool = false;
     const SIZES: bool = SIZES;
+    type Springs = P;
 
     #[inline(always)]
     fn law<L: SimdF64>(
-        input: &ForceInput<'_>,
+        input: &ForceInput<'_, P>,
         block: &mut PairBlock,
         sizes: Option<&PairSizes>,
         scratch: &mut BlockScratch,
         lane: usize,
     ) {
-        let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(input, sizes, lane);
+        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
         let grains = GrainIndices::<L>::new(input, &block.i, &block.j, lane);
         let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
         let contact_radius = (r_eff * overlap).sqrt();
@@ -249,7 +254,7 @@ impl<const SIZES: bool> LawStage for FrictionlessKernel<'_, SIZES> {
     }
 }
 
-impl<const SIZES: bool> Kernel for FrictionlessKernel<'_, SIZES> {
+impl<P: ContactSprings, const SIZES: bool> Kernel for FrictionlessKernel<'_, P, SIZES> {
     type Output = Virial;
 
     #[inline(always)]
@@ -258,22 +263,23 @@ impl<const SIZES: bool> Kernel for FrictionlessKernel<'_, SIZES> {
     }
 }
 
-impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool> LawStage
-    for FrictionalKernel<'_, ADVANCE, SLIDING, RESCALED, SIZES>
+impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>
+    LawStage for FrictionalKernel<'_, P, ADVANCE, SLIDING, RESCALED, SIZES>
 {
     const MOMENTS: bool = true;
     const SIZES: bool = SIZES;
+    type Springs = P;
 
     #[inline(always)]
     fn law<L: SimdF64>(
-        input: &ForceInput<'_>,
+        input: &ForceInput<'_, P>,
         block: &mut PairBlock,
         sizes: Option<&PairSizes>,
         scratch: &mut BlockScratch,
         lane: usize,
     ) {
         let (half, zero) = (L::splat(0.5), LaneVec3::splat(0.0));
-        let (radius, r_eff, m_eff) = sizes_of::<L, SIZES>(input, sizes, lane);
+        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
         let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
         let (contact_radius, before) = ((r_eff * overlap).sqrt(), L::load(&block.contact_radius, lane));
         let lever = [half.neg_mul_add(overlap, radius[0]), half.neg_mul_add(overlap, radius[1])];
@@ -291,7 +297,7 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
             inverse_distance: L::load(&scratch.inverse_distance, lane),
             overlap,
             contact_radius,
-            unloading: L::select(before.gt(contact_radius), contact_radius / before, L::splat(1.0)),
+            contact_radius_before: before,
             m_eff,
             relative_velocity: velocity + affine_velocity(input, normal.scale(distance)),
             spin_velocity,
@@ -318,8 +324,8 @@ impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES
     }
 }
 
-impl<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool> Kernel
-    for FrictionalKernel<'_, ADVANCE, SLIDING, RESCALED, SIZES>
+impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>
+    Kernel for FrictionalKernel<'_, P, ADVANCE, SLIDING, RESCALED, SIZES>
 {
     type Output = Virial;
 

@@ -4,15 +4,16 @@ use crate::force::geometry::{ForceInput, Geometry};
 use crate::pairs::types::{PairBlock, PairSizes};
 use crate::simd::instruction_set::Simd;
 use crate::simd::kernel::Kernel;
-use crate::simd::lanes::{LaneVec3, Lanes};
 use crate::simd::simd_f64::{BLOCK_SIZE, SimdF64, load_vector, store_vector};
+use grainlab_core::contact::ContactSprings;
+use grainlab_core::lanes::{LaneVec3, Lanes};
 
 /// A contact that overlaps by more than this fraction of the smaller diameter is outside Hertz's law.
 const OVERLAP_LIMIT: f64 = 0.1;
 
 /// The contacts of one chunk.
-pub(super) struct ChunkContacts<'a> {
-    pub(super) input: ForceInput<'a>,
+pub(super) struct ChunkContacts<'a, S> {
+    pub(super) input: ForceInput<'a, S>,
     pub(super) blocks: &'a [PairBlock],
     pub(super) sizes: &'a [PairSizes],
     /// Output: the elastic force on the second grain of each slot, N.
@@ -41,19 +42,19 @@ impl ContactSums {
 }
 
 /// Sums over the contacts of one chunk.
-pub(super) fn sum_chunk(chunk: ChunkContacts<'_>, simd: Simd) -> ContactSums {
+pub(super) fn sum_chunk<S: ContactSprings>(chunk: ChunkContacts<'_, S>, simd: Simd) -> ContactSums {
     if chunk.sizes.is_empty() {
-        simd.run(SumKernel::<false> { chunk })
+        simd.run(SumKernel::<S, false> { chunk })
     } else {
-        simd.run(SumKernel::<true> { chunk })
+        simd.run(SumKernel::<S, true> { chunk })
     }
 }
 
-struct SumKernel<'a, const SIZES: bool> {
-    chunk: ChunkContacts<'a>,
+struct SumKernel<'a, S, const SIZES: bool> {
+    chunk: ChunkContacts<'a, S>,
 }
 
-impl<const SIZES: bool> Kernel for SumKernel<'_, SIZES> {
+impl<S: ContactSprings, const SIZES: bool> Kernel for SumKernel<'_, S, SIZES> {
     type Output = ContactSums;
 
     #[inline(always)]
@@ -65,7 +66,7 @@ impl<const SIZES: bool> Kernel for SumKernel<'_, SIZES> {
         for (b, block) in blocks.iter().enumerate() {
             let mut lane = 0;
             while lane < BLOCK_SIZE {
-                if let Some(g) = Geometry::<L>::new::<SIZES>(&input, block, sizes.get(b), lane) {
+                if let Some(g) = Geometry::<L>::new::<S, SIZES>(&input, block, sizes.get(b), lane) {
                     // The smaller of two is the larger of their negatives.
                     let smaller = zero - (zero - g.radius[0]).max(zero - g.radius[1]);
                     too_deep |= L::any(g.overlap.gt(smaller * L::splat(2.0 * OVERLAP_LIMIT)));
@@ -74,8 +75,8 @@ impl<const SIZES: bool> Kernel for SumKernel<'_, SIZES> {
                         _ => L::splat(input.common.r_eff),
                     };
                     let contact_radius = (r_eff * g.overlap).sqrt();
-                    let k_n = L::splat(input.law.normal) * contact_radius;
-                    let elastic = L::splat(2.0 / 3.0) * k_n * g.overlap;
+                    let k_n = input.law.springs.normal_stiffness(contact_radius);
+                    let elastic = input.law.springs.normal_force(k_n, g.overlap);
                     let f = g.normal.scale(elastic) - load_vector(&block.history, lane);
                     let f = LaneVec3::select(g.touching, f, LaneVec3::splat(0.0));
                     store_vector(f, &mut force[b], lane);
@@ -84,7 +85,7 @@ impl<const SIZES: bool> Kernel for SumKernel<'_, SIZES> {
                     let square = L::select(g.touching, g.distance * g.distance, zero);
                     let normal = k_n * square;
                     let tangential = if friction {
-                        L::splat(input.law.tangential) * contact_radius * square
+                        input.law.springs.tangential_stiffness(contact_radius, 1.0) * square
                     } else {
                         zero
                     };

@@ -9,8 +9,10 @@ use crate::force::geometry::ForceInput;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::subdomain_pairs::SubdomainPairs;
 use crate::pairs::types::Pair;
+use crate::settings::EngineSettings;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::Mat3;
+use grainlab_core::contact::{ContactSprings, LawVisitor};
 use grainlab_core::material::effective_radius;
 use grainlab_core::stress::Stress;
 
@@ -35,19 +37,14 @@ pub struct Observables {
 pub(crate) fn observe(
     state: &State,
     contacts: &Contacts,
-    input: ForceInput<'_>,
+    settings: &EngineSettings,
     compute: &Compute,
 ) -> Result<Observables, DemError> {
-    let friction = input.law.friction > 0.0;
+    let friction = settings.friction > 0.0;
     let mut forces: Vec<SlotForces> = vec![[[0.0; BLOCK_SIZE]; 3]; contacts.blocks().count()];
-    let mut total = ContactSums::default();
-    let mut rest = forces.as_mut_slice();
-    let chunks = contacts.subdomains.iter().flat_map(SubdomainPairs::owned_chunks).map(|(blocks, sizes)| {
-        let (force, after) = std::mem::take(&mut rest).split_at_mut(blocks.len());
-        rest = after;
-        ChunkContacts { input, blocks, sizes, force, friction }
-    });
-    compute.map_join(chunks, |chunk| sum_chunk(chunk, compute.simd()), |sums| total.add(&sums));
+    let total = state
+        .law
+        .visit(&state.material, SumContacts { state, contacts, settings, compute, forces: &mut forces });
     if total.too_deep {
         return Err(overlap_error(state, contacts));
     }
@@ -65,6 +62,34 @@ pub(crate) fn observe(
         coordination: 2.0 * f64::from(net_forces.contacts) / state.len() as f64,
         unbalanced: net_forces.mean().map_or(1.0, |f| f / mean_force),
     })
+}
+
+/// The sums over all contacts, compiled for each contact law.
+struct SumContacts<'a> {
+    state: &'a State,
+    contacts: &'a Contacts,
+    settings: &'a EngineSettings,
+    compute: &'a Compute,
+    forces: &'a mut [SlotForces],
+}
+
+impl LawVisitor for SumContacts<'_> {
+    type Output = ContactSums;
+
+    fn visit<S: ContactSprings>(self, springs: S) -> ContactSums {
+        let Self { state, contacts, settings, compute, forces } = self;
+        let input = ForceInput::new(state, contacts.images.offsets(), settings, springs);
+        let mut total = ContactSums::default();
+        let mut rest = forces;
+        let chunks =
+            contacts.subdomains.iter().flat_map(SubdomainPairs::owned_chunks).map(|(blocks, sizes)| {
+                let (force, after) = std::mem::take(&mut rest).split_at_mut(blocks.len());
+                rest = after;
+                ChunkContacts { input, blocks, sizes, force, friction: settings.friction > 0.0 }
+            });
+        compute.map_join(chunks, |chunk| sum_chunk(chunk, compute.simd()), |sums| total.add(&sums));
+        total
+    }
 }
 
 /// Names the contact with the largest overlap relative to its smaller grain.

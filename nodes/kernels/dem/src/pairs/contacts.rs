@@ -5,8 +5,8 @@ use super::subdomain_pairs::{PairsBuilder, SubdomainPairs};
 use super::types::{Pair, PairBlock, SavedContact};
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::{State, vector};
-use crate::simd::lanes::LaneVec3;
 use crate::simd::simd_f64::BLOCK_SIZE;
+use grainlab_core::lanes::LaneVec3;
 use grainlab_core::material::effective_radius;
 use grainlab_core::{Contact, Packing, Vec3};
 
@@ -93,7 +93,7 @@ impl Contacts {
                 image: self.images.number(p.image),
                 overlap,
                 normal: branch / distance,
-                normal_force: state.material.normal_force(r_eff, overlap),
+                normal_force: state.law.normal_force(&state.material, r_eff, overlap),
                 tangential_force: p.history,
             })
         };

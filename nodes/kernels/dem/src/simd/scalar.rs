@@ -1,7 +1,7 @@
 //! One lane, on any processor: the reference that the other widths agree with bit for bit.
 
-use super::lanes::{LaneVec3, Lanes};
 use super::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64, SimdRow};
+use grainlab_core::lanes::{LaneVec3, Lanes};
 
 impl SimdRow for F64x4 {
     #[inline(always)]

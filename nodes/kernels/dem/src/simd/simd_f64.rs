@@ -1,6 +1,6 @@
 //! Lanes that load from, gather from and add to the engine's tables.
 
-use super::lanes::{LaneVec3, Lanes};
+use grainlab_core::lanes::{LaneVec3, Lanes};
 use std::marker::PhantomData;
 
 /// Pairs per block.
@@ -15,11 +15,11 @@ pub(crate) type F64x4 = [f64; 4];
 /// A row of two vectors, each with padding: force and torque, or velocity and spin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
-pub struct F64x8(pub(crate) [f64; 8]);
+pub(crate) struct F64x8(pub(crate) [f64; 8]);
 
 /// Row indices of one block. Those of lanes `lane..lane + WIDTH` were checked to be below a bound.
 #[derive(Clone, Copy)]
-pub struct CheckedIndices<'a, L> {
+pub(crate) struct CheckedIndices<'a, L> {
     indices: &'a [u32; BLOCK_SIZE],
     bound: usize,
     lane: usize,
@@ -52,7 +52,7 @@ impl<'a, L: SimdF64> CheckedIndices<'a, L> {
 }
 
 /// [`Lanes`] with access to blocks of pairs and tables of grains.
-pub trait SimdF64: Lanes {
+pub(crate) trait SimdF64: Lanes {
     /// Lanes in one value; divides [`BLOCK_SIZE`].
     const WIDTH: usize;
     /// A row of a table: four numbers, whatever the width.
@@ -115,7 +115,7 @@ pub trait SimdF64: Lanes {
 }
 
 /// Four numbers of one grain.
-pub trait SimdRow: Copy {
+pub(crate) trait SimdRow: Copy {
     /// The same number four times.
     fn splat(value: f64) -> Self;
     /// Numbers `at..at + 4`.

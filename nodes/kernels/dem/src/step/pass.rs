@@ -6,12 +6,11 @@
 //! same.
 
 use super::integrate::{self, Motion, SpeedStats};
-use crate::contact::hertz_mindlin::HertzMindlin;
 use crate::domain::accumulator::ChunkForces;
 use crate::domain::compute::Compute;
 use crate::domain::distributed_state::{DistributedState, SubdomainView};
 use crate::domain::state::State;
-use crate::force::geometry::{CommonSize, ForceInput};
+use crate::force::geometry::ForceInput;
 use crate::force::kernel::{FrictionalKernel, FrictionlessKernel};
 use crate::force::virial::{self, Virial};
 use crate::pairs::contacts::Contacts;
@@ -20,8 +19,7 @@ use crate::pairs::types::PairChunk;
 use crate::settings::{EngineSettings, Features};
 use crate::simd::instruction_set::Simd;
 use crate::simd::simd_f64::{CHUNK_SIZE, F64x4};
-use grainlab_core::TangentialLaw;
-use grainlab_core::material::effective_radius;
+use grainlab_core::contact::{ContactSprings, LawVisitor, TangentialLaw};
 
 /// What a pass does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,25 +34,6 @@ pub(crate) enum PassKind {
     ForcesAndMotion,
 }
 
-/// The input of the force kernel.
-pub(crate) fn force_input<'a>(
-    state: &'a State,
-    offset: &'a [F64x4],
-    settings: &EngineSettings,
-) -> ForceInput<'a> {
-    let radius = state.largest_radius;
-    let m_eff = state.inverse_mass.first().map_or(0.0, |inverse| 1.0 / (inverse + inverse));
-    ForceInput {
-        position: &state.position,
-        twist: &state.twist,
-        offset,
-        rate: state.rate.into(),
-        law: HertzMindlin::new(&state.material, settings.friction, settings.damping),
-        dt: state.time_step,
-        common: CommonSize { radius, r_eff: effective_radius(radius, radius), m_eff },
-    }
-}
-
 /// The data of a pass.
 pub(crate) struct Pass<'a> {
     pub(crate) state: &'a mut State,
@@ -67,20 +46,36 @@ pub(crate) struct Pass<'a> {
 impl Pass<'_> {
     /// Runs over all grains. The virial is summed if `with_virial`, where forces are evaluated.
     pub(crate) fn run(self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
-        let Self { state, copies, contacts, settings, compute } = self;
-        let kernel = force_kernel(settings, kind, !state.is_monodisperse());
+        let (law, material) = (self.state.law, self.state.material);
+        law.visit(&material, LawPass { pass: self, kind, with_virial })
+    }
+}
+
+/// A pass, compiled for each contact law.
+struct LawPass<'a> {
+    pass: Pass<'a>,
+    kind: PassKind,
+    with_virial: bool,
+}
+
+impl LawVisitor for LawPass<'_> {
+    type Output = (Virial, SpeedStats);
+
+    fn visit<S: ContactSprings>(self, springs: S) -> Self::Output {
+        let Self { pass: Pass { state, copies, contacts, settings, compute }, kind, with_virial } = self;
+        let kernel = force_kernel::<S>(settings, kind, !state.is_monodisperse());
         let over = SubdomainPass { kind, kernel, simd: compute.simd(), with_virial };
         if let [pairs] = &mut contacts.subdomains[..] {
             copies.clear();
             let offset = contacts.images.offsets();
-            return join([over.run(pairs, &mut WholeState { state, offset, settings })]);
+            return join([over.run(pairs, &mut WholeState { state, offset, settings, springs })]);
         }
         if !copies.is_current() {
             let subdomains: Vec<_> =
                 contacts.subdomains.iter().map(|p| (p.subdomain(), p.ghosts())).collect();
             copies.scatter(state, &subdomains, compute);
         }
-        let input = force_input(state, contacts.images.offsets(), settings);
+        let input = ForceInput::new(state, contacts.images.offsets(), settings, springs);
         let motion = Motion::of(state, settings);
         let work = |(mut view, pairs): (SubdomainView<'_>, &mut SubdomainPairs)| {
             view.receive_halo();
@@ -113,24 +108,25 @@ fn join(subdomains: impl IntoIterator<Item = PartResults>) -> (Virial, SpeedStat
 }
 
 /// Where the grains of a subdomain are stored.
-trait GrainStorage {
+trait GrainStorage<S> {
     /// The input of the force kernel.
-    fn force_input(&self) -> ForceInput<'_>;
+    fn force_input(&self) -> ForceInput<'_, S>;
 
     /// Moves the grains of a chunk.
     fn advance(&mut self, chunk: usize, forces: impl ChunkForces, simd: Simd) -> SpeedStats;
 }
 
 /// In the state itself.
-struct WholeState<'a> {
+struct WholeState<'a, S> {
     state: &'a mut State,
     offset: &'a [F64x4],
     settings: &'a EngineSettings,
+    springs: S,
 }
 
-impl GrainStorage for WholeState<'_> {
-    fn force_input(&self) -> ForceInput<'_> {
-        force_input(self.state, self.offset, self.settings)
+impl<S: ContactSprings> GrainStorage<S> for WholeState<'_, S> {
+    fn force_input(&self) -> ForceInput<'_, S> {
+        ForceInput::new(self.state, self.offset, self.settings, self.springs)
     }
 
     fn advance(&mut self, chunk: usize, forces: impl ChunkForces, simd: Simd) -> SpeedStats {
@@ -140,15 +136,15 @@ impl GrainStorage for WholeState<'_> {
 }
 
 /// In the copy of the subdomain.
-struct SubdomainCopy<'a> {
+struct SubdomainCopy<'a, S> {
     view: SubdomainView<'a>,
     /// The input with the grains of the state.
-    input: ForceInput<'a>,
+    input: ForceInput<'a, S>,
     motion: Motion<'a>,
 }
 
-impl GrainStorage for SubdomainCopy<'_> {
-    fn force_input(&self) -> ForceInput<'_> {
+impl<S: ContactSprings> GrainStorage<S> for SubdomainCopy<'_, S> {
+    fn force_input(&self) -> ForceInput<'_, S> {
         ForceInput { position: self.view.positions(), twist: self.view.twists(), ..self.input }
     }
 
@@ -159,21 +155,20 @@ impl GrainStorage for SubdomainCopy<'_> {
 }
 
 /// A pass over one subdomain.
-#[derive(Clone, Copy)]
-struct SubdomainPass {
+struct SubdomainPass<S> {
     kind: PassKind,
-    kernel: ForceKernel,
+    kernel: ForceKernel<S>,
     simd: Simd,
     with_virial: bool,
 }
 
-impl SubdomainPass {
+impl<S: ContactSprings> SubdomainPass<S> {
     fn moves(&self) -> bool {
         matches!(self.kind, PassKind::Motion | PassKind::ForcesAndMotion)
     }
 
     /// Virial and speeds of each owned part.
-    fn run(&self, pairs: &mut SubdomainPairs, grains: &mut impl GrainStorage) -> PartResults {
+    fn run(&self, pairs: &mut SubdomainPairs, grains: &mut impl GrainStorage<S>) -> PartResults {
         if self.kind == PassKind::Motion {
             return self.motion(pairs, grains);
         }
@@ -184,7 +179,7 @@ impl SubdomainPass {
         owned.map(|part| self.owned_part(pairs, part, grains)).collect()
     }
 
-    fn motion(&self, pairs: &SubdomainPairs, grains: &mut impl GrainStorage) -> PartResults {
+    fn motion(&self, pairs: &SubdomainPairs, grains: &mut impl GrainStorage<S>) -> PartResults {
         let subdomain = pairs.subdomain();
         let mut parts = vec![(Virial::default(), SpeedStats::default()); subdomain.parts().len()];
         for (chunk, forces) in subdomain.chunks().zip(pairs.stored_forces()) {
@@ -195,7 +190,7 @@ impl SubdomainPass {
     }
 
     /// Pairs of an earlier subdomain that act on owned grains. Their virial is summed there.
-    fn earlier_part(&self, pairs: &mut SubdomainPairs, part: usize, grains: &impl GrainStorage) {
+    fn earlier_part(&self, pairs: &mut SubdomainPairs, part: usize, grains: &impl GrainStorage<S>) {
         let mut pairs = pairs.part_mut(part);
         pairs.accumulator.begin();
         for c in 0..pairs.chunks() {
@@ -208,7 +203,7 @@ impl SubdomainPass {
         &self,
         pairs: &mut SubdomainPairs,
         part: usize,
-        grains: &mut impl GrainStorage,
+        grains: &mut impl GrainStorage<S>,
     ) -> (Virial, SpeedStats) {
         let first = pairs.subdomain().chunks_of(part).start;
         let mut pairs = pairs.part_mut(part);
@@ -238,41 +233,50 @@ impl SubdomainPass {
     }
 }
 
-type ForceKernel = fn(Simd, ForceInput<'_>, PairChunk<'_>, bool) -> Virial;
+type ForceKernel<S> = fn(Simd, ForceInput<'_, S>, PairChunk<'_>, bool) -> Virial;
 
 /// The force kernel compiled for these features.
-fn force_kernel(settings: &EngineSettings, kind: PassKind, sizes: bool) -> ForceKernel {
+fn force_kernel<S: ContactSprings>(settings: &EngineSettings, kind: PassKind, sizes: bool) -> ForceKernel<S> {
     let as_saved = kind == PassKind::ForcesAsSaved;
-    if sizes { kernel_for::<true>(settings, as_saved) } else { kernel_for::<false>(settings, as_saved) }
+    if sizes { kernel_for::<S, true>(settings, as_saved) } else { kernel_for::<S, false>(settings, as_saved) }
 }
 
-fn kernel_for<const SIZES: bool>(settings: &EngineSettings, as_saved: bool) -> ForceKernel {
+fn kernel_for<S: ContactSprings, const SIZES: bool>(
+    settings: &EngineSettings,
+    as_saved: bool,
+) -> ForceKernel<S> {
     let rescaled = settings.tangential == TangentialLaw::Rescaled;
     match (settings.features(), rescaled, as_saved) {
-        (Features::Frictionless, ..) => frictionless::<SIZES>,
-        (Features::Sliding, true, false) => frictional::<true, true, true, SIZES>,
-        (Features::Sliding, false, false) => frictional::<true, true, false, SIZES>,
-        (Features::NoSlip, true, false) => frictional::<true, false, true, SIZES>,
-        (Features::NoSlip, false, false) => frictional::<true, false, false, SIZES>,
-        (Features::Sliding, _, true) => frictional::<false, true, false, SIZES>,
-        (Features::NoSlip, _, true) => frictional::<false, false, false, SIZES>,
+        (Features::Frictionless, ..) => frictionless::<S, SIZES>,
+        (Features::Sliding, true, false) => frictional::<S, true, true, true, SIZES>,
+        (Features::Sliding, false, false) => frictional::<S, true, true, false, SIZES>,
+        (Features::NoSlip, true, false) => frictional::<S, true, false, true, SIZES>,
+        (Features::NoSlip, false, false) => frictional::<S, true, false, false, SIZES>,
+        (Features::Sliding, _, true) => frictional::<S, false, true, false, SIZES>,
+        (Features::NoSlip, _, true) => frictional::<S, false, false, false, SIZES>,
     }
 }
 
-fn frictionless<const SIZES: bool>(
+fn frictionless<S: ContactSprings, const SIZES: bool>(
     simd: Simd,
-    input: ForceInput<'_>,
+    input: ForceInput<'_, S>,
     chunk: PairChunk<'_>,
     with_virial: bool,
 ) -> Virial {
-    simd.run(FrictionlessKernel::<SIZES> { input, chunk, with_virial })
+    simd.run(FrictionlessKernel::<S, SIZES> { input, chunk, with_virial })
 }
 
-fn frictional<const ADVANCE: bool, const SLIDING: bool, const RESCALED: bool, const SIZES: bool>(
+fn frictional<
+    S: ContactSprings,
+    const ADVANCE: bool,
+    const SLIDING: bool,
+    const RESCALED: bool,
+    const SIZES: bool,
+>(
     simd: Simd,
-    input: ForceInput<'_>,
+    input: ForceInput<'_, S>,
     chunk: PairChunk<'_>,
     with_virial: bool,
 ) -> Virial {
-    simd.run(FrictionalKernel::<ADVANCE, SLIDING, RESCALED, SIZES> { input, chunk, with_virial })
+    simd.run(FrictionalKernel::<S, ADVANCE, SLIDING, RESCALED, SIZES> { input, chunk, with_virial })
 }

@@ -4,6 +4,7 @@ use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
 use crate::settings::{EngineSettings, Features};
+use grainlab_core::contact::{ContactSprings, LawVisitor};
 
 /// m R²/I of a sphere.
 const INERTIA_RATIO: f64 = 2.5;
@@ -23,7 +24,7 @@ const INERTIA_RATIO: f64 = 2.5;
 /// A rigorous bound for contacts that stick, for any damping and sizes. It is 0.75 to 0.95 of the true limit in packings of
 /// equal grains, and 0.66 to 0.93 for sizes from 1 to 5; lower with more damping. (Tests check 0.7 and 0.6.)
 pub(crate) fn stable(state: &State, contacts: &Contacts, settings: &EngineSettings) -> f64 {
-    let springs = Springs::new(state, contacts, settings);
+    let springs = state.law.visit(&state.material, CollectSprings { state, contacts, settings });
     // With θ = 1 and the trace for the largest eigenvalue: about half of the result.
     let plain = springs.loads();
     let near = plain.iter().map(|load| 2.0 * load.step()).fold(f64::INFINITY, f64::min);
@@ -74,21 +75,32 @@ struct Springs<'a> {
     ratios: [f64; 2],
 }
 
-impl<'a> Springs<'a> {
-    fn new(state: &'a State, contacts: &'a Contacts, settings: &EngineSettings) -> Self {
-        let normal = 2.0 * state.material.effective_young();
+/// The springs and dashpots of the present contacts, under any law.
+struct CollectSprings<'a> {
+    state: &'a State,
+    contacts: &'a Contacts,
+    settings: &'a EngineSettings,
+}
+
+impl<'a> LawVisitor for CollectSprings<'a> {
+    type Output = Springs<'a>;
+
+    fn visit<S: ContactSprings>(self, springs: S) -> Springs<'a> {
+        let Self { state, contacts, settings } = self;
         let twice = 2.0 * settings.damping;
         let mut list = Vec::with_capacity(contacts.slots());
         list.extend(contacts.touching().map(|p| {
-            let (k, m) = (normal * p.contact_radius, &state.inverse_mass);
+            let (k, m) = (springs.normal_stiffness(p.contact_radius), &state.inverse_mass);
             let dashpot = twice * (k / (m[p.i as usize] + m[p.j as usize])).sqrt();
             (p, k, dashpot)
         }));
         let frictional = settings.features() != Features::Frictionless;
-        let ratio = if frictional { state.material.stiffness_ratio() } else { 0.0 };
-        Self { state, contacts, list, ratios: [ratio, ratio.sqrt()] }
+        let ratio = if frictional { springs.stiffness_ratio() } else { 0.0 };
+        Springs { state, contacts, list, ratios: [ratio, ratio.sqrt()] }
     }
+}
 
+impl Springs<'_> {
     /// The load of a block.
     fn load(&self, block: &GrainBlock) -> Load {
         // The largest eigenvalue of one contact is that along it, or that across it, which also rotates the grain.
@@ -217,11 +229,24 @@ pub(crate) fn rayleigh(state: &State) -> f64 {
 pub(crate) fn collision(state: &State, speed: f64, damping: f64) -> f64 {
     let radius = state.largest_radius;
     let (r_eff, m_eff) = (0.5 * radius, 0.5 * state.material.sphere_mass(radius));
-    let young = state.material.effective_young();
-    // m v²/2 = (8/15) E* √R* δ^{5/2}
-    let overlap = (15.0 / 16.0 * m_eff * speed * speed / (young * r_eff.sqrt())).powf(0.4);
-    let stiffness = state.material.normal_stiffness(r_eff, overlap);
+    let stiffness = state.law.visit(&state.material, CollisionStiffness { r_eff, m_eff, speed });
     2.0 * (m_eff / stiffness).sqrt() * ((1.0 + damping * damping).sqrt() - damping)
+}
+
+/// Normal stiffness at the largest overlap of a collision, N/m, under any law.
+struct CollisionStiffness {
+    r_eff: f64,
+    m_eff: f64,
+    speed: f64,
+}
+
+impl LawVisitor for CollisionStiffness {
+    type Output = f64;
+
+    fn visit<S: ContactSprings>(self, springs: S) -> f64 {
+        let overlap = springs.collision_overlap(self.r_eff, self.m_eff, self.speed);
+        springs.normal_stiffness((self.r_eff * overlap).sqrt())
+    }
 }
 
 /// The next time step: `wanted` rounded down to a power of 2^(1/16), so that it changes seldom. It decreases at once, and

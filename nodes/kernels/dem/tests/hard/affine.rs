@@ -4,7 +4,7 @@
 
 use crate::support::*;
 use grainlab_core::Packing;
-use grainlab_core::TangentialLaw;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_dem::Engine;
 use grainlab_micromechanics::{Settings, analyse};
 

@@ -1,7 +1,8 @@
 //! Run 2N is run N, save, load, run N, bit for bit; and looking changes nothing.
 
 use crate::support::*;
-use grainlab_core::{Packing, ServoLaw, TangentialLaw};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Packing, ServoLaw};
 use grainlab_dem::{Engine, EngineSettings, Features, TimeStep};
 
 const PERIOD: usize = 7;

@@ -1,7 +1,8 @@
 //! The tangential history inside the engine: what changes it and what must not, and the work of closed cycles.
 
 use crate::support::*;
-use grainlab_core::{Cell, SymTensor, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, SymTensor, Vec3};
 use grainlab_dem::Engine;
 
 const OVERLAP: f64 = 4e-8;

@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use grainlab_core::Packing;
-use grainlab_core::TangentialLaw;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_dem::Engine;
 
 /// A packing at the bottom: what is left of its preparation would else be taken for drift.

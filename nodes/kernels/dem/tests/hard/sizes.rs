@@ -1,8 +1,9 @@
 //! Grains of size ratio 1 to 5.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::material::effective_radius;
-use grainlab_core::{Cell, TangentialLaw, Vec3};
+use grainlab_core::{Cell, Vec3};
 use grainlab_dem::Engine;
 
 const SMALL: f64 = 0.2 * RADIUS;

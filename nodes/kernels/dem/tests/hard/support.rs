@@ -1,9 +1,8 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::material::effective_radius;
-use grainlab_core::{
-    Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, TangentialLaw, Vec3,
-};
+use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 pub(crate) const RADIUS: f64 = 1e-4;
@@ -214,6 +213,7 @@ impl Sample {
             radii,
             contacts: Vec::new(),
             material: GLASS,
+            law: Default::default(),
             friction: numerics[0],
             time_step: numerics[1],
         };

@@ -4,8 +4,9 @@
 //! damping feeds a limit cycle) stays finite; never a number that is not one.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::material::effective_radius;
-use grainlab_core::{Cell, Contact, Mat3, Packing, TangentialLaw, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_dem::{DemError, Engine, TimeStep};
 
 /// Two unequal grains in a row, touching directly and across the boundary, and their critical time step, s.

@@ -2,7 +2,8 @@
 
 use crate::golden::{lammps, reference};
 use crate::samples::packing;
-use grainlab_core::{Cell, Mat3, Packing, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::relax::Relaxation;
 use grainlab_micromechanics::{NoNetwork, Probe, ProbeError, Settings, Sides, analyse, probe};

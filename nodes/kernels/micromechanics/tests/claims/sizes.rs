@@ -1,7 +1,8 @@
 //! Spheres of unequal sizes: contacts act at R − δ/2 from each centre, against an independent solve and against the probe.
 
 use crate::samples::Dice;
-use grainlab_core::{Cell, Mat3, Material, Packing, TangentialLaw, Vec3};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, Observables, TimeStep};
 use grainlab_micromechanics::relax::Relaxation;
 use grainlab_micromechanics::{Probe, Settings, analyse, probe};

@@ -166,7 +166,7 @@ fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: grainlab_core::TangentialLaw::Rescaled,
+        tangential: grainlab_core::contact::TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(1e-9),
         skin: 0.01 * largest,
         thermostat_speed: None,

@@ -108,6 +108,7 @@ mod tests {
             spins: vec![Vec3::zeros()],
             contacts: Vec::new(),
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.1,
             time_step: 0.0,
         };

@@ -2,8 +2,8 @@
 
 use super::registers::{Avx2, Avx512, F64x4Avx2};
 use super::shuffle::{columns4, columns8, transpose4, transpose8, two_columns8};
-use crate::simd::lanes::{LaneVec3, Lanes};
 use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64, SimdRow};
+use grainlab_core::lanes::{LaneVec3, Lanes};
 use std::arch::x86_64::*;
 
 /// The methods that both widths write in the same way; `columns` makes vectors of rows.

@@ -3,8 +3,8 @@
 //! SAFETY, for every `unsafe` block of this folder that only calls arithmetic intrinsics: kernels with these types are
 //! entered only through the functions of `mod.rs`, which ask the processor for its features first.
 
-use crate::simd::lanes::{Lanes, RSQRT_MAGIC};
 use crate::simd::simd_f64::SimdRow;
+use grainlab_core::lanes::{Lanes, RSQRT_MAGIC};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 

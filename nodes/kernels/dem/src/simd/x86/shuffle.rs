@@ -1,7 +1,7 @@
 //! Rows into columns and back.
 
 use super::registers::{Avx2, Avx512};
-use crate::simd::lanes::LaneVec3;
+use grainlab_core::lanes::LaneVec3;
 use std::arch::x86_64::*;
 
 /// Columns of four rows.

@@ -4,7 +4,8 @@ use super::super::packing::repeated;
 use crate::commands::bench::cpu_time::process_seconds;
 use crate::failure::Failure;
 use clap::ValueEnum;
-use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor, TangentialLaw};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{ComponentControl, Mat3, Packing, ServoLaw, SymTensor};
 use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, roofline};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
@@ -125,7 +126,7 @@ fn setting(features: Features, packing: &Packing) -> EngineSettings {
 
 /// Floating-point operations of the contact law on one contact.
 pub(crate) fn operations_per_contact(packing: &Packing, case: &Case) -> f64 {
-    roofline::operations_per_contact(&setting(case.features, packing))
+    roofline::operations_per_contact(packing.law, &setting(case.features, packing))
 }
 
 fn invalid(error: grainlab_dem::DemError) -> Failure {

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 /// A float's bits, read as an integer, are roughly its logarithm: this constant less half of them is roughly the
 /// logarithm of the inverse root.
-pub(crate) const RSQRT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
+pub const RSQRT_MAGIC: u64 = 0x5fe6_eb50_c7b5_37a9;
 
 /// Arithmetic on 64-bit floats, one in each lane.
 pub trait Lanes:
@@ -87,7 +87,7 @@ impl Lanes for f64 {
 /// 1/√x for positive x, to about 1e-15; large and finite for zero. It uses neither root nor division: a processor has one
 /// unit for both, which the rest of the contact law keeps busy.
 #[inline(always)]
-pub(crate) fn rsqrt<L: Lanes>(x: L) -> L {
+pub fn rsqrt<L: Lanes>(x: L) -> L {
     let (one, half, three) = (L::splat(1.0), L::splat(0.5), L::splat(0.375));
     // 1/√(1 − e) = 1 + e/2 + 3e²/8 + 5e³/16 + …
     let y = x.rsqrt_estimate();
@@ -117,13 +117,13 @@ impl<L: Lanes> LaneVec3<L> {
 
     /// The same vector in every lane.
     #[inline(always)]
-    pub(crate) fn splat_vector(v: &[f64; 3]) -> Self {
+    pub fn splat_vector(v: &[f64; 3]) -> Self {
         Self::new(L::splat(v[0]), L::splat(v[1]), L::splat(v[2]))
     }
 
     /// The same number in every component and lane.
     #[inline(always)]
-    pub(crate) fn splat(value: f64) -> Self {
+    pub fn splat(value: f64) -> Self {
         Self::new(L::splat(value), L::splat(value), L::splat(value))
     }
 
@@ -151,7 +151,7 @@ impl<L: Lanes> LaneVec3<L> {
 
     /// `self` − `a` × `b` (vector product).
     #[inline(always)]
-    pub(crate) fn sub_cross(self, a: Self, b: Self) -> Self {
+    pub fn sub_cross(self, a: Self, b: Self) -> Self {
         Self::new(
             a.z.mul_add(b.y, a.y.neg_mul_add(b.z, self.x)),
             a.x.mul_add(b.z, a.z.neg_mul_add(b.x, self.y)),
@@ -161,19 +161,19 @@ impl<L: Lanes> LaneVec3<L> {
 
     /// `self` × `factor` − `v`.
     #[inline(always)]
-    pub(crate) fn scale_sub(self, factor: L, v: Self) -> Self {
+    pub fn scale_sub(self, factor: L, v: Self) -> Self {
         Self::new(self.x.mul_sub(factor, v.x), self.y.mul_sub(factor, v.y), self.z.mul_sub(factor, v.z))
     }
 
     /// `self` + `v` × `factor`.
     #[inline(always)]
-    pub(crate) fn add_scaled(self, v: Self, factor: L) -> Self {
+    pub fn add_scaled(self, v: Self, factor: L) -> Self {
         Self::new(v.x.mul_add(factor, self.x), v.y.mul_add(factor, self.y), v.z.mul_add(factor, self.z))
     }
 
     /// `self` − `v` × `factor`.
     #[inline(always)]
-    pub(crate) fn sub_scaled(self, v: Self, factor: L) -> Self {
+    pub fn sub_scaled(self, v: Self, factor: L) -> Self {
         Self::new(
             v.x.neg_mul_add(factor, self.x),
             v.y.neg_mul_add(factor, self.y),
@@ -183,7 +183,7 @@ impl<L: Lanes> LaneVec3<L> {
 
     /// `a` where the mask holds, else `b`.
     #[inline(always)]
-    pub(crate) fn select(mask: L::Mask, a: Self, b: Self) -> Self {
+    pub fn select(mask: L::Mask, a: Self, b: Self) -> Self {
         Self::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
     }
 }

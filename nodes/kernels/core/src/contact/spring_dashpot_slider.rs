@@ -1,23 +1,7 @@
-//! The contact law: Hertz normal force, Mindlin tangential force with history, Coulomb limit, viscous damping.
-//!
-//! Written once for any number of lanes: with `f64` it is the scalar specification; the force kernel runs it in the lanes of
-//! an instruction set.
+//! The part of a contact law that does not depend on its springs: damping, tangential history, Coulomb limit.
 
-use crate::simd::lanes::{LaneVec3, Lanes, rsqrt};
-use grainlab_core::Material;
-
-/// Coefficients of the contact law for one phase.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HertzMindlin {
-    /// 2 E*, Pa: k_n = 2 E* a with the contact radius a = √(R* δ).
-    pub normal: f64,
-    /// 8 G*, Pa: k_t = 8 G* a.
-    pub tangential: f64,
-    /// Friction coefficient.
-    pub friction: f64,
-    /// Damping, as a fraction of critical.
-    pub damping: f64,
-}
+use super::springs::ContactSprings;
+use crate::lanes::{LaneVec3, Lanes, rsqrt};
 
 /// Geometry and motion of a contact, in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +14,8 @@ pub struct ContactKinematics<L> {
     pub overlap: L,
     /// Contact radius √(R* δ), m.
     pub contact_radius: L,
-    /// Contact radius over that of the step before, where it shrank; 1 where it grew or the contact is new.
-    pub unloading: L,
+    /// Contact radius of the step before, m; 0 where the contact is new.
+    pub contact_radius_before: L,
     /// Effective mass m_i m_j/(m_i + m_j), kg.
     pub m_eff: L,
     /// Velocity of the centre of `j` relative to `i`, affine part included, m/s.
@@ -55,23 +39,32 @@ pub struct ContactForces<L> {
     pub history: LaneVec3<L>,
 }
 
-impl HertzMindlin {
-    /// Coefficients for grains of `material`.
-    pub fn new(material: &Material, friction: f64, damping: f64) -> Self {
-        Self {
-            normal: 2.0 * material.effective_young(),
-            tangential: 8.0 * material.effective_shear(),
-            friction,
-            damping,
-        }
-    }
+/// The history of a contact over one step, before the Coulomb limit, in each lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HistoryStep<L> {
+    /// The force of the step before, rotated with the contact and scaled with the stiffness, N.
+    pub carried: LaneVec3<L>,
+    /// This force after the slip of the step, N.
+    pub elastic: LaneVec3<L>,
+}
 
+/// Springs with dashpots beside them, and a slider in series with the tangential ones: a contact law in one phase.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringDashpotSlider<S> {
+    /// The springs.
+    pub springs: S,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Damping, as a fraction of critical.
+    pub damping: f64,
+}
+
+impl<S: ContactSprings> SpringDashpotSlider<S> {
     /// Elastic normal force, normal force with damping, N, and the coefficient of the dashpot, N s/m.
     #[inline(always)]
     fn normal<L: Lanes>(&self, overlap: L, contact_radius: L, m_eff: L, separation_speed: L) -> (L, L, L) {
-        // F = (4/3) E* √(R*) δ^{3/2} = (2/3) k_n δ
-        let k_n = L::splat(self.normal) * contact_radius;
-        let elastic = L::splat(2.0 / 3.0) * k_n * overlap;
+        let k_n = self.springs.normal_stiffness(contact_radius);
+        let elastic = self.springs.normal_force(k_n, overlap);
         if self.damping == 0.0 {
             return (elastic, elastic, L::splat(0.0));
         }
@@ -104,19 +97,11 @@ impl HertzMindlin {
         let across = c.relative_velocity.sub_scaled(n, separation_speed);
         let (elastic, normal, dashpot) = self.normal(c.overlap, c.contact_radius, c.m_eff, separation_speed);
         // The viscous force depends on the present velocities alone, so that a resumed state has the same force.
-        let dashpot_ratio = (self.tangential / self.normal).sqrt();
+        let dashpot_ratio = self.springs.dashpot_ratio();
         let limit = L::splat(self.friction) * elastic;
         let mut f = history;
         if ADVANCE {
-            let mean = n.sub_scaled(across, L::splat(0.5 * dt) * c.inverse_distance);
-            f = rotate_history(f, c, mean, dt);
-            if RESCALED {
-                f = f.scale(c.unloading);
-            }
-            // With the mid-step normal: else a pair that spins about an oblique axis would seem to slip.
-            let slip = across.sub_cross(c.spin_velocity, mean);
-            let slip = slip.sub_scaled(n, slip.dot(n));
-            f = f.add_scaled(slip, L::splat(self.tangential * dt) * c.contact_radius);
+            f = self.history_step::<L, RESCALED>(c, f, dt).elastic;
             if SLIDING {
                 f = coulomb_limit(f, limit);
             }
@@ -130,6 +115,28 @@ impl HertzMindlin {
             }
         }
         ContactForces { elastic, normal, tangential, history: f }
+    }
+
+    /// The history one step further, without the Coulomb limit.
+    #[inline(always)]
+    pub fn history_step<L: Lanes, const RESCALED: bool>(
+        &self,
+        c: &ContactKinematics<L>,
+        history: LaneVec3<L>,
+        dt: f64,
+    ) -> HistoryStep<L> {
+        let n = c.normal;
+        let across = c.relative_velocity.sub_scaled(n, c.relative_velocity.dot(n));
+        let mean = n.sub_scaled(across, L::splat(0.5 * dt) * c.inverse_distance);
+        let mut carried = rotate_history(history, c, mean, dt);
+        if RESCALED {
+            carried = carried.scale(self.springs.unloading(c.contact_radius_before, c.contact_radius));
+        }
+        // With the mid-step normal: else a pair that spins about an oblique axis would seem to slip.
+        let slip = across.sub_cross(c.spin_velocity, mean);
+        let slip = slip.sub_scaled(n, slip.dot(n));
+        let elastic = carried.add_scaled(slip, self.springs.tangential_stiffness(c.contact_radius, dt));
+        HistoryStep { carried, elastic }
     }
 }
 

@@ -1,0 +1,126 @@
+//! The list of contact laws.
+
+use super::hertz_mindlin::HertzMindlin;
+use super::linear::Linear;
+use super::springs::ContactSprings;
+use crate::material::Material;
+
+/// The contact law of a packing, with the parameters that do not follow from the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ContactLaw {
+    /// Hertz's normal spring with Mindlin's tangential spring; its stiffnesses follow from the material.
+    #[default]
+    HertzMindlin,
+    /// Linear springs.
+    Linear(Linear),
+}
+
+/// Work that is compiled for each law.
+pub trait LawVisitor {
+    /// The result.
+    type Output;
+    /// Does the work.
+    fn visit<S: ContactSprings>(self, springs: S) -> Self::Output;
+}
+
+/// A name and parameters that belong to no contact law.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum UnknownLaw {
+    /// The name is unknown.
+    #[error("unknown contact law \"{0}\"; known are hertz_mindlin and linear")]
+    Name(String),
+    /// The parameters are invalid.
+    #[error("parameters {found:?} of contact law {law} are invalid: {requirement}")]
+    Parameters {
+        /// Name of the law.
+        law: &'static str,
+        /// The parameters given.
+        found: Vec<f64>,
+        /// What is required.
+        requirement: &'static str,
+    },
+}
+
+impl ContactLaw {
+    /// One law of each kind, for tests and help.
+    pub fn examples() -> [Self; 2] {
+        [Self::HertzMindlin, Self::Linear(Linear { normal_stiffness: 1e4, stiffness_ratio: 0.5 })]
+    }
+
+    /// Name, as in scenes and messages.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::HertzMindlin => "hertz_mindlin",
+            Self::Linear(_) => "linear",
+        }
+    }
+
+    /// Parameters, as in messages.
+    pub fn parameters(&self) -> Vec<f64> {
+        match self {
+            Self::HertzMindlin => Vec::new(),
+            Self::Linear(l) => vec![l.normal_stiffness, l.stiffness_ratio],
+        }
+    }
+
+    /// The law with this name and these parameters.
+    ///
+    /// # Errors
+    /// The name is unknown, or the number of parameters or their range is wrong.
+    pub fn new(name: &str, parameters: &[f64]) -> Result<Self, UnknownLaw> {
+        let invalid =
+            |law, requirement| Err(UnknownLaw::Parameters { law, found: parameters.to_vec(), requirement });
+        match (name, parameters) {
+            ("hertz_mindlin", []) => Ok(Self::HertzMindlin),
+            ("hertz_mindlin", _) => invalid("hertz_mindlin", "it has none"),
+            ("linear", &[normal_stiffness, stiffness_ratio])
+                if [normal_stiffness, stiffness_ratio].iter().all(|p| *p > 0.0 && p.is_finite()) =>
+            {
+                Ok(Self::Linear(Linear { normal_stiffness, stiffness_ratio }))
+            }
+            ("linear", _) => invalid("linear", "k_n (N/m) and k_t/k_n, both positive and finite"),
+            _ => Err(UnknownLaw::Name(name.to_owned())),
+        }
+    }
+
+    /// Does work that is compiled for each law, with the springs of this one.
+    pub fn visit<V: LawVisitor>(&self, material: &Material, visitor: V) -> V::Output {
+        match self {
+            Self::HertzMindlin => visitor.visit(HertzMindlin::new(material)),
+            Self::Linear(springs) => visitor.visit(*springs),
+        }
+    }
+
+    /// Elastic normal force, N, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
+    pub fn normal_force(&self, material: &Material, r_eff: f64, overlap: f64) -> f64 {
+        match self {
+            Self::HertzMindlin => material.normal_force(r_eff, overlap),
+            Self::Linear(l) => l.normal_stiffness * overlap,
+        }
+    }
+
+    /// Stiffnesses (k_n, k_t), N/m, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
+    pub fn stiffnesses(&self, material: &Material, r_eff: f64, overlap: f64) -> (f64, f64) {
+        match self {
+            Self::HertzMindlin => {
+                (material.normal_stiffness(r_eff, overlap), material.tangential_stiffness(r_eff, overlap))
+            }
+            Self::Linear(l) => (l.normal_stiffness, l.normal_stiffness * l.stiffness_ratio),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_is_found_by_its_name_and_parameters() {
+        for law in ContactLaw::examples() {
+            assert_eq!(ContactLaw::new(law.name(), &law.parameters()), Ok(law));
+            assert!(ContactLaw::new(law.name(), &[f64::NAN]).is_err());
+        }
+        assert!(ContactLaw::new("hooke", &[]).unwrap_err().to_string().contains("hooke"));
+        assert!(ContactLaw::new("linear", &[1e4, -1.0]).is_err());
+    }
+}

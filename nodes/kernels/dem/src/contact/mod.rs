@@ -1,3 +1,0 @@
-//! The contact law.
-
-pub(crate) mod hertz_mindlin;
