@@ -69,6 +69,7 @@ prop_compose! {
         let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
         Packing {
             step, time, time_step, deformation, friction, cell, material,
+            law: Default::default(),
             ids: (0..grains.len() as u32).map(|k| first.wrapping_add(k)).collect(),
             radii: grains.iter().map(|g| g.0).collect(),
             positions: grains.iter().map(|g| g.1).collect(),

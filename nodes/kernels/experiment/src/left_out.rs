@@ -23,8 +23,8 @@ pub(crate) fn left_out(scene: &Scene, phase: &Phase, equal_sized: bool) -> Strin
     if parts.is_empty() {
         return "with the whole contact law".into();
     }
-    let whole = operations_per_contact(&EngineSettings { friction: 0.5, ..settings });
-    let left = operations_per_contact(&settings);
+    let whole = operations_per_contact(scene.law, &EngineSettings { friction: 0.5, ..settings });
+    let left = operations_per_contact(scene.law, &settings);
     let saved = if left < whole {
         format!(" ({left:.0} of {whole:.0} operations per contact)")
     } else {

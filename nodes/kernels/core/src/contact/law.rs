@@ -4,6 +4,8 @@ use super::hertz_mindlin::HertzMindlin;
 use super::linear::Linear;
 use super::springs::ContactSprings;
 use crate::material::Material;
+use std::fmt;
+use std::str::FromStr;
 
 /// The contact law of a packing, with the parameters that do not follow from the material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -110,6 +112,27 @@ impl ContactLaw {
     }
 }
 
+impl fmt::Display for ContactLaw {
+    /// The name, and the parameters after a colon.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())?;
+        let parameters: Vec<String> = self.parameters().iter().map(|p| format!("{p:?}")).collect();
+        if parameters.is_empty() { Ok(()) } else { write!(f, ":{}", parameters.join(",")) }
+    }
+}
+
+impl FromStr for ContactLaw {
+    type Err = UnknownLaw;
+
+    fn from_str(text: &str) -> Result<Self, UnknownLaw> {
+        let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
+        let parameters = parameters.split(',').filter(|p| !p.is_empty()).map(str::parse);
+        // A word that is no number is an invalid parameter.
+        let parameters: Vec<f64> = parameters.map(|p| p.unwrap_or(f64::NAN)).collect();
+        Self::new(name, &parameters)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,6 +141,7 @@ mod tests {
     fn a_law_is_found_by_its_name_and_parameters() {
         for law in ContactLaw::examples() {
             assert_eq!(ContactLaw::new(law.name(), &law.parameters()), Ok(law));
+            assert_eq!(law.to_string().parse(), Ok(law));
             assert!(ContactLaw::new(law.name(), &[f64::NAN]).is_err());
         }
         assert!(ContactLaw::new("hooke", &[]).unwrap_err().to_string().contains("hooke"));
