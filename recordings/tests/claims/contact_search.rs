@@ -110,7 +110,7 @@ proptest! {
 #[test]
 fn one_grain_in_a_small_cell_touches_its_own_images() {
     let cell = Cell::cube(1.0).unwrap();
-    let found = find(&cell, &[Vec3::zeros()], &[0.51], &Material::GLASS).unwrap();
+    let found = find(&cell, &[Vec3::zeros()], &[0.51], |r, d| Material::GLASS.normal_force(r, d)).unwrap();
     assert_eq!(keys(&found), [(0, 0, [0, 0, 1]), (0, 0, [0, 1, 0]), (0, 0, [1, 0, 0])]);
 }
 
@@ -146,7 +146,8 @@ fn an_absurd_cell_costs_neither_memory_nor_time() {
 #[test]
 fn what_cannot_be_a_contact_is_refused() {
     let cell = Cell::cube(1.0).unwrap();
-    let find = |b: Vec3| find(&cell, &[Vec3::zeros(), b], &[0.1, 0.1], &Material::GLASS);
+    let find =
+        |b: Vec3| find(&cell, &[Vec3::zeros(), b], &[0.1, 0.1], |r, d| Material::GLASS.normal_force(r, d));
     assert_eq!(find(Vec3::zeros()).unwrap_err(), SearchError::Coincident(0, 1));
     assert_eq!(find(Vec3::new(200.05, 0.0, 0.0)).unwrap_err(), SearchError::FarImage(0, 1));
     assert_eq!(find(Vec3::new(200.5, 0.0, 0.0)).unwrap(), []);

@@ -65,7 +65,7 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
         &tilted.cell,
         &tilted.positions,
         &tilted.radii,
-        &tilted.material,
+        |r_eff, overlap| tilted.law.normal_force(&tilted.material, r_eff, overlap),
     )
     .unwrap();
     assert!(tilted.contacts.len() > 100);

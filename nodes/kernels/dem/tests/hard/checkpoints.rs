@@ -15,7 +15,7 @@ enum Drive {
     Servoed,
 }
 
-fn settings() -> Vec<Setting> {
+fn settings() -> Vec<EngineSettings> {
     let mut all = Vec::new();
     for friction in [0.0, 0.3, f64::INFINITY] {
         for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {

@@ -207,7 +207,7 @@ fn advance(
     steps: u32,
 ) -> Result<(), Failure> {
     if !case.servo {
-        return compute.within(|| {
+        return compute.install(|| {
             for begin in (0..steps).step_by(PERIOD as usize) {
                 engine.run(PERIOD.min(steps - begin)).map_err(invalid)?;
             }
@@ -216,7 +216,7 @@ fn advance(
     }
     // The stiffness hardly changes on the way: one look is enough for the law to be scaled by.
     let tangent = engine.observables().map_err(invalid)?.tangent;
-    compute.within(|| {
+    compute.install(|| {
         for _ in 0..steps {
             let mut stress = SymTensor::isotropic(0.0);
             engine.run_with_stress(1, |s| stress = s).map_err(invalid)?;
