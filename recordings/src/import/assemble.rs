@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
@@ -288,19 +287,14 @@ fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
     let force = |c: &Contact| {
         packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap.max(0.0))
     };
-    let name = match packing.law {
-        ContactLaw::HertzMindlin => ["Hertz's law", "Hertz-Mindlin"],
-        ContactLaw::Linear(_) => ["linear springs", "linear"],
-    };
     let expected: f64 = listed.iter().map(force).sum();
     let difference: f64 = listed.iter().map(|c| (c.normal_force - force(c)).abs()).sum();
     (difference > 0.01 * expected).then(|| {
         format!(
-            "normal forces differ from {} by {:.1} % on average: of another contact law, another material, or in motion; the \
-             stiffness is that of {} contacts of this material",
-            name[0],
+            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, or \
+             in motion; the stiffness is that of {} contacts of this material",
             100.0 * difference / expected,
-            name[1]
+            packing.law.name()
         )
     })
 }

@@ -49,9 +49,9 @@ pub struct Packing {
     pub poisson_ratio: f64,
     /// kg/m3, of the grain
     pub density: f64,
-    /// hertz_mindlin or linear
+    /// name, as in scenes: hertz_mindlin, linear
     pub contact_law: String,
-    /// hertz_mindlin: none; linear: k_n (N/m), k_t/k_n
+    /// those that do not follow from the material, as in scenes
     pub contact_law_parameters: Vec<f64>,
     /// in force, may be +inf
     pub friction: f64,

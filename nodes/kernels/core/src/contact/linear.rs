@@ -2,7 +2,7 @@
 //!
 //! F = k_n δ with the same k_n for every pair, k_t = ratio × k_n (Cundall & Strack, Géotechnique 29, 47 (1979)).
 
-use super::springs::ContactSprings;
+use super::springs::{ContactSprings, LawParameter};
 use crate::lanes::Lanes;
 
 /// Linear springs.
@@ -12,6 +12,14 @@ pub struct Linear {
     pub normal_stiffness: f64,
     /// k_t/k_n. Positive; usually 0.2 to 1.
     pub stiffness_ratio: f64,
+}
+
+impl Linear {
+    /// Parameters in scenes and messages, in the order of the fields.
+    pub const PARAMETERS: [LawParameter; 2] = [
+        LawParameter { key: "normal_stiffness", meaning: "a stiffness in N/m, more than 0", default: None },
+        LawParameter { key: "stiffness_ratio", meaning: "k_t/k_n, more than 0", default: Some(0.5) },
+    ];
 }
 
 impl ContactSprings for Linear {

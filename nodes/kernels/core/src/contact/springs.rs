@@ -1,6 +1,17 @@
-//! What a contact law provides: its springs.
+//! What a contact law provides: its springs and parameters.
 
 use crate::lanes::Lanes;
+
+/// A parameter of a contact law, which does not follow from the material. It must be positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawParameter {
+    /// Key in scenes.
+    pub key: &'static str,
+    /// Meaning and unit.
+    pub meaning: &'static str,
+    /// Value in scenes that do not give it; `None` if they must.
+    pub default: Option<f64>,
+}
 
 /// The elastic part of a contact law, with its coefficients: a normal and a tangential spring.
 ///
