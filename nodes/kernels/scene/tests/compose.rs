@@ -94,10 +94,7 @@ fn bases_form_a_chain_in_which_the_last_word_wins() {
     let (demo, b) = (scene(&[], "demo"), scene(&files, "b"));
     assert_eq!((b.name.as_str(), b.grains, b.phases[1].drag), ("b", 300, 5e2));
     assert_eq!((demo.phases[7].until.hold, b.phases[7].until.hold), (1e-5, 0.0));
-    assert_eq!(
-        (b.phases[7].until.all.clone(), b.sizes),
-        (demo.phases[7].until.all.clone(), demo.sizes)
-    );
+    assert_eq!((b.phases[7].until.all.clone(), b.sizes), (demo.phases[7].until.all.clone(), demo.sizes));
 }
 
 #[test]

@@ -27,7 +27,13 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { copies: 8, periods: 4.0, amplitude: 1e-9, friction: None, tangential: TangentialLaw::Incremental }
+        Self {
+            copies: 8,
+            periods: 4.0,
+            amplitude: 1e-9,
+            friction: None,
+            tangential: TangentialLaw::Incremental,
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! `grainlab bag export`.
 
-use crate::failure::Failure;
-use crate::output::{print, say};
 use clap::ValueEnum;
+use grainlab_console::Failure;
+use grainlab_console::{print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::export::{csv, lammps_dump, sidecar};
 use grainlab_recordings::import::{self, ImportOptions, Imported};
