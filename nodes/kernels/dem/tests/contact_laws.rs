@@ -347,8 +347,8 @@ fn trajectory(law: ContactLaw) -> u64 {
 fn trajectories_are_those_recorded() {
     for law in ContactLaw::examples() {
         let recorded: u64 = match law {
-            ContactLaw::HertzMindlin => 0,
-            ContactLaw::Linear(_) => 0,
+            ContactLaw::HertzMindlin => 17_239_418_569_566_077_293,
+            ContactLaw::Linear(_) => 12_679_378_947_345_144_448,
         };
         assert_eq!(trajectory(law), recorded, "{law:?}");
     }
