@@ -15,6 +15,10 @@ fn rich() -> Packing {
     let mut p = reference().packing;
     (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
     p.law = ContactLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
+    let forces: Vec<f64> = (p.contacts.iter())
+        .map(|c| p.law.normal_force(&p.material, p.effective_radius(c), c.overlap))
+        .collect();
+    p.contacts.iter_mut().zip(forces).for_each(|(c, force)| c.normal_force = force);
     p.deformation = Mat3::new(0.99, 1e-3, 0.0, 0.0, 0.98, -2e-4, 1e-9, 0.0, 0.97);
     for (k, spin) in p.spins.iter_mut().enumerate() {
         spin.x = 1.0 / (k as f64 + 3.0);
