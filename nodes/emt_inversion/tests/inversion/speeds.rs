@@ -165,7 +165,10 @@ fn a_sample_on_its_side_is_heard_about_its_own_axis() {
     assert_eq!(answer(&nameless, &Settings::default()), expected, "e3 is e3");
     let e = answer(&nameless, &Settings { axis: Axis::Found, ..Settings::default() });
     let said = &e.warnings[0];
-    assert!(e.status == Estimate::STATUS_UNDETERMINED && said.contains("cannot determine 7 unknowns"), "{e:?}");
+    assert!(
+        e.status == Estimate::STATUS_UNDETERMINED && said.contains("cannot determine 7 unknowns"),
+        "{e:?}"
+    );
     assert!(said.contains("no axis was named, and none was found"), "{said}");
 }
 
