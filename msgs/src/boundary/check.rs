@@ -4,7 +4,8 @@ use super::BoundaryError;
 use crate::geometry_msgs::Vector3;
 use crate::msg::SymmetricTensor;
 use crate::std_msgs::Header;
-use grainlab_core::{Anisotropy, SymTensor, Vec3};
+use grainlab_core::results::StrainRatios;
+use grainlab_core::{SymTensor, Vec3};
 
 /// Names of the components in Voigt order.
 pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
@@ -166,6 +167,6 @@ pub(super) fn vector_message(v: &Vec3) -> Vector3 {
 }
 
 /// The three ratios as on the wire: total, elastic, contact.
-pub(super) fn ratios(g: &Anisotropy) -> [(bool, f64); 3] {
+pub(super) fn ratios(g: &StrainRatios) -> [(bool, f64); 3] {
     [g.total, g.elastic, g.contact].map(|v| (v.is_some(), v.unwrap_or(0.0)))
 }

@@ -18,7 +18,7 @@ mod waveform;
 pub use estimate::{
     DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
 };
-pub use fabric::fabric_message;
+pub use fabric::{FabricReading, fabric_message};
 pub use microstructure::MicrostructureReading;
 pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
 pub use packing::{packing_header, packing_message};

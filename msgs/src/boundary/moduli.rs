@@ -5,7 +5,10 @@ use super::check::{Check, ratios, vector_message};
 use crate::builtin_interfaces::Time;
 use crate::msg;
 use crate::std_msgs::Header;
-use grainlab_core::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, Vec3};
+use grainlab_core::results::{
+    ElasticStiffness, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
+};
+use grainlab_core::{Material, Stiffness, Vec3};
 
 const CHECK: Check = Check("Moduli");
 
@@ -48,12 +51,12 @@ impl ModuliMethod {
     }
 }
 
-impl From<Method> for ModuliMethod {
-    fn from(method: Method) -> Self {
+impl From<StiffnessMethod> for ModuliMethod {
+    fn from(method: StiffnessMethod) -> Self {
         match method {
-            Method::FrozenNetwork => Self::FrozenNetwork,
-            Method::PrestressedNetwork => Self::PrestressedNetwork,
-            Method::Probe => Self::Probe,
+            StiffnessMethod::FrozenNetwork => Self::FrozenNetwork,
+            StiffnessMethod::PrestressedNetwork => Self::PrestressedNetwork,
+            StiffnessMethod::StrainProbe => Self::Probe,
         }
     }
 }
@@ -105,7 +108,7 @@ pub struct ModuliReading {
     /// Unit axis of symmetry found.
     pub axis: Option<Vec3>,
     /// The three ratios γ/Δ.
-    pub gamma_over_delta: Anisotropy,
+    pub gamma_over_delta: StrainRatios,
     /// Measured coordination number k.
     pub k: Option<f64>,
     /// Measured coordination number without rattlers.
@@ -116,53 +119,50 @@ pub struct ModuliReading {
     pub material: Material,
 }
 
-/// The message of the moduli of a packing about the reference axis of `fabric`; `header` and `source_step` are those of the packing. `pressure` in Pa. The
-/// covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
+/// The message of the stiffness of a packing, moduli about the reference axis of its fabric; `header` is that of the packing.
+/// The covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
 pub fn moduli_message(
     header: Header,
-    source_step: u64,
-    fabric: &Fabric,
-    moduli: &Moduli,
-    pressure: f64,
-    solid_fraction: f64,
-    material: &Material,
+    report: &PackingReport,
+    stiffness: &ElasticStiffness,
 ) -> Result<msg::Moduli, BoundaryError> {
-    let axis = fabric.structure.reference_axis;
-    let projected = moduli.stiffness.transverse_isotropy_about(&axis);
-    let [total, elastic, contact] = ratios(&fabric.anisotropy);
+    let axis = report.fabric.reference_axis;
+    let (tensor, bounds) = (&stiffness.tensor, &stiffness.bounds);
+    let projected = tensor.transverse_isotropy_about(&axis);
+    let [total, elastic, contact] = ratios(&report.strain_ratios);
     let message = msg::Moduli {
         header,
-        source_step,
-        method: ModuliMethod::from(moduli.method).code(),
-        grains: fabric.grains,
-        stiffness: moduli.stiffness.row_major(),
-        stiffness_stddev: moduli.stddev.row_major(),
-        stiffness_affine: moduli.affine.row_major(),
-        stiffness_mean_spin: moduli.mean_spin.row_major(),
+        source_step: report.step,
+        method: ModuliMethod::from(stiffness.method).code(),
+        grains: report.contacts.grains,
+        stiffness: tensor.row_major(),
+        stiffness_stddev: stiffness.stddev.row_major(),
+        stiffness_affine: bounds.affine.row_major(),
+        stiffness_mean_spin: bounds.uniform_rotation.row_major(),
         reference_axis: vector_message(&axis),
         g12: projected.g12,
         g13: projected.g13,
-        theta: moduli.stiffness.bulk_voigt(),
-        theta_reuss: moduli.stiffness.bulk_reuss().unwrap_or(0.0),
-        theta_bound: moduli.reuss_bound.unwrap_or(0.0),
+        theta: tensor.bulk_voigt(),
+        theta_reuss: tensor.bulk_reuss().unwrap_or(0.0),
+        theta_bound: bounds.bulk_reuss.unwrap_or(0.0),
         covariance: [0.0; 9],
-        pressure,
-        solid_fraction,
-        axis: vector_message(&fabric.axis),
+        pressure: report.pressure(),
+        solid_fraction: report.solid_fraction,
+        axis: vector_message(&report.fabric.principal_axis.direction),
         gamma_over_delta_total_known: total.0,
         gamma_over_delta_total: total.1,
         gamma_over_delta_elastic_known: elastic.0,
         gamma_over_delta_elastic: elastic.1,
         gamma_over_delta_contact_known: contact.0,
         gamma_over_delta_contact: contact.1,
-        k: fabric.k,
-        z: fabric.z,
-        eps: fabric.eps,
-        grain_shear_modulus: material.shear_modulus,
-        grain_poisson_ratio: material.poisson_ratio,
-        grain_density: material.density,
-        residual: moduli.residual,
-        iterations: moduli.iterations,
+        k: report.contacts.coordination,
+        z: report.contacts.mechanical_coordination,
+        eps: report.fabric.contact_anisotropy,
+        grain_shear_modulus: report.material.shear_modulus,
+        grain_poisson_ratio: report.material.poisson_ratio,
+        grain_density: report.material.density,
+        residual: stiffness.residual,
+        iterations: stiffness.iterations,
     };
     ModuliReading::try_from(&message)?;
     Ok(message)
@@ -215,8 +215,8 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
     }
 }
 
-/// The kernels' moduli, of a message that knows both stiffnesses.
-impl TryFrom<&msg::Moduli> for Moduli {
+/// The kernels' stiffness, of a message that knows it and its bounds.
+impl TryFrom<&msg::Moduli> for ElasticStiffness {
     type Error = BoundaryError;
 
     fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
@@ -228,20 +228,22 @@ impl TryFrom<&msg::Moduli> for Moduli {
             requirement: "known: the message holds only zeros there",
         };
         Ok(Self {
-            stiffness: reading.stiffness.ok_or_else(|| missing("stiffness"))?,
+            tensor: reading.stiffness.ok_or_else(|| missing("stiffness"))?,
             stddev: reading.stddev.ok_or_else(|| missing("stiffness_stddev"))?,
-            affine: reading.affine.ok_or_else(|| missing("stiffness_affine"))?,
-            mean_spin: reading.mean_spin.ok_or_else(|| missing("stiffness_mean_spin"))?,
+            bounds: StiffnessBounds {
+                affine: reading.affine.ok_or_else(|| missing("stiffness_affine"))?,
+                uniform_rotation: reading.mean_spin.ok_or_else(|| missing("stiffness_mean_spin"))?,
+                bulk_reuss: reading.theta_bound,
+            },
             method: match reading.method {
-                ModuliMethod::FrozenNetwork => Method::FrozenNetwork,
-                ModuliMethod::PrestressedNetwork => Method::PrestressedNetwork,
-                ModuliMethod::Probe => Method::Probe,
+                ModuliMethod::FrozenNetwork => StiffnessMethod::FrozenNetwork,
+                ModuliMethod::PrestressedNetwork => StiffnessMethod::PrestressedNetwork,
+                ModuliMethod::Probe => StiffnessMethod::StrainProbe,
                 ModuliMethod::Affine | ModuliMethod::Acoustic => {
                     let measured = "0 (frozen network), 2 (probe), 4 (prestressed network)";
                     return Err(CHECK.code("method", m.method, measured));
                 }
             },
-            reuss_bound: reading.theta_bound,
             residual: m.residual,
             iterations: m.iterations,
         })
@@ -273,11 +275,11 @@ fn method(code: u8) -> Result<ModuliMethod, BoundaryError> {
     }
 }
 
-fn anisotropy(m: &msg::Moduli) -> Result<Anisotropy, BoundaryError> {
+fn anisotropy(m: &msg::Moduli) -> Result<StrainRatios, BoundaryError> {
     let total = (m.gamma_over_delta_total_known, m.gamma_over_delta_total);
     let elastic = (m.gamma_over_delta_elastic_known, m.gamma_over_delta_elastic);
     let contact = (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact);
-    Ok(Anisotropy {
+    Ok(StrainRatios {
         total: CHECK.ratio("gamma_over_delta_total", total)?,
         elastic: CHECK.ratio("gamma_over_delta_elastic", elastic)?,
         contact: CHECK.ratio("gamma_over_delta_contact", contact)?,

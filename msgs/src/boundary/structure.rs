@@ -1,37 +1,39 @@
-//! The part of `Fabric` that is a packing's [`Structure`].
+//! The parts of a `Fabric` message.
 
 use super::BoundaryError;
 use super::check::{tensor_message, vector_message};
-use super::fabric::CHECK;
+use super::fabric::{CHECK, FabricReading};
 use crate::msg;
-use grainlab_core::structure::{
-    AxisFound, ContactFit, Forces, FourthOrderFabric, Mobilisation, NetworkPart, Orientation, OverlapFit,
-    StressForceFabric, StressParts,
+use grainlab_core::Vec3;
+use grainlab_core::results::{
+    ContactStatistics, Fabric, ForceStatistics, FourthOrderFabric, MobilisedFriction, OrientationFit,
+    OrientationHistogram, OverlapAnisotropyFit, PackingReport, PrincipalAxis, StrainRatios,
+    StressDecomposition, StressForceFabric, SubNetwork,
 };
-use grainlab_core::{Structure, Vec3};
 
-/// A message with the fields of the structure set.
-pub(super) fn structure_message(s: &Structure) -> msg::Fabric {
-    let (o, axis) = (&s.orientation, &s.axis);
+/// A message with these fields set.
+pub(super) fn structure_message(report: &PackingReport) -> msg::Fabric {
+    let (c, f, d) = (&report.contacts, &report.fabric, &report.stress_decomposition);
+    let (o, axis) = (&f.orientation, &f.principal_axis);
     let fit = o.contact_fit.unwrap_or_default();
     let g_stddev = o.overlap_fit.and_then(|f| f.g_stddev);
-    let a = s.stress_force_fabric.unwrap_or_default();
-    let forces = s.forces.unwrap_or_default();
-    let mobilisation = s.mobilisation.unwrap_or_default();
+    let a = d.stress_force_fabric.unwrap_or_default();
+    let forces = c.forces.unwrap_or_default();
+    let friction = c.friction.unwrap_or_default();
     msg::Fabric {
-        reference_axis: vector_message(&s.reference_axis),
-        axis_eps: axis.eps,
-        axis_eps_stddev_known: axis.eps_stddev.is_some(),
-        axis_eps_stddev: axis.eps_stddev.unwrap_or(0.0),
+        reference_axis: vector_message(&f.reference_axis),
+        axis_eps: axis.contact_anisotropy,
+        axis_eps_stddev_known: axis.contact_anisotropy_stddev.is_some(),
+        axis_eps_stddev: axis.contact_anisotropy_stddev.unwrap_or(0.0),
         axis_angle_stddev_known: axis.angle_stddev.is_some(),
         axis_angle_stddev: axis.angle_stddev.unwrap_or(0.0),
         axis_determined: axis.determined,
-        tangential_fabric: tensor_message(&s.tangential_fabric),
-        fourth_order_fabric: s.fourth_order.components,
-        fourth_order_magnitude: s.fourth_order.magnitude,
-        stress_normal: tensor_message(&s.stress.normal),
-        stress_tangential: tensor_message(&s.stress.tangential),
-        stress_force_fabric_known: s.stress_force_fabric.is_some(),
+        tangential_fabric: tensor_message(&f.tangential_force_fabric),
+        fourth_order_fabric: f.fourth_order.components,
+        fourth_order_magnitude: f.fourth_order.magnitude,
+        stress_normal: tensor_message(&d.normal),
+        stress_tangential: tensor_message(&d.tangential),
+        stress_force_fabric_known: d.stress_force_fabric.is_some(),
         anisotropy_contacts: tensor_message(&a.contacts),
         anisotropy_normal_forces: tensor_message(&a.normal_forces),
         anisotropy_branches: tensor_message(&a.branches),
@@ -45,61 +47,91 @@ pub(super) fn structure_message(s: &Structure) -> msg::Fabric {
         orientation_chi2: fit.chi2_per_dof,
         gamma_over_delta_contact_stddev_known: g_stddev.is_some(),
         gamma_over_delta_contact_stddev: g_stddev.unwrap_or(0.0),
-        strong_contacts: s.strong.contacts,
-        strong_fabric: tensor_message(&s.strong.fabric),
-        weak_fabric: tensor_message(&s.weak.fabric),
-        strong_eps: s.strong.eps,
-        weak_eps: s.weak.eps,
-        strong_stress: tensor_message(&s.strong.stress),
-        weak_stress: tensor_message(&s.weak.stress),
-        forces_known: s.forces.is_some(),
+        strong_contacts: d.strong.contacts,
+        strong_fabric: tensor_message(&d.strong.fabric),
+        weak_fabric: tensor_message(&d.weak.fabric),
+        strong_eps: d.strong.contact_anisotropy,
+        weak_eps: d.weak.contact_anisotropy,
+        strong_stress: tensor_message(&d.strong.stress),
+        weak_stress: tensor_message(&d.weak.stress),
+        forces_known: c.forces.is_some(),
         force_mean_normal: forces.mean_normal,
         force_mean_tangential: forces.mean_tangential,
         force_moments: forces.moments,
         force_largest: forces.largest,
-        force_contacts: forces.contacts,
-        mobilisation_known: s.mobilisation.is_some(),
-        mobilisation_mean: mobilisation.mean,
-        mobilisation_contacts: mobilisation.contacts,
+        force_contacts: forces.histogram,
+        mobilisation_known: c.friction.is_some(),
+        mobilisation_mean: friction.mean,
+        mobilisation_contacts: friction.histogram,
         ..msg::Fabric::default()
     }
 }
 
-/// The structure that a message holds.
-pub(super) fn structure(m: &msg::Fabric) -> Result<Structure, BoundaryError> {
+/// What a message holds.
+pub(super) fn reading(m: &msg::Fabric) -> Result<FabricReading, BoundaryError> {
+    CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
+    Ok(FabricReading {
+        contacts: ContactStatistics {
+            grains: m.grains,
+            contacts: m.contacts,
+            rattlers: m.rattlers,
+            coordination: CHECK.not_negative("k", m.k)?,
+            mechanical_coordination: CHECK.not_negative("z", m.z)?,
+            sliding_fraction: CHECK.share("mobilised", m.mobilised)?,
+            forces: forces(m)?,
+            friction: friction(m)?,
+        },
+        fabric: Fabric {
+            reference_axis: unit("reference_axis", m)?,
+            contact_fabric: CHECK.tensor("contact_fabric", &m.contact_fabric)?,
+            normal_force_fabric: CHECK.tensor("force_fabric", &m.force_fabric)?,
+            tangential_force_fabric: CHECK.tensor("tangential_fabric", &m.tangential_fabric)?,
+            stiffness_fabric: CHECK.tensor("stiffness_fabric", &m.stiffness_fabric)?,
+            contact_anisotropy: CHECK.finite("eps", m.eps)?,
+            p4_coefficient: CHECK.finite("fourth_order", m.fourth_order)?,
+            fourth_order: FourthOrderFabric {
+                components: m.fourth_order_fabric,
+                magnitude: CHECK.not_negative("fourth_order_magnitude", m.fourth_order_magnitude)?,
+            },
+            principal_axis: axis(m)?,
+            orientation: orientation(m)?,
+        },
+        stress_decomposition: stress_decomposition(m)?,
+        strain_ratios: strain_ratios(m)?,
+    })
+}
+
+fn strain_ratios(m: &msg::Fabric) -> Result<StrainRatios, BoundaryError> {
+    let total = (m.gamma_over_delta_total_known, m.gamma_over_delta_total);
+    let elastic = (m.gamma_over_delta_elastic_known, m.gamma_over_delta_elastic);
+    let contact = (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact);
+    Ok(StrainRatios {
+        total: CHECK.ratio("gamma_over_delta_total", total)?,
+        elastic: CHECK.ratio("gamma_over_delta_elastic", elastic)?,
+        contact: CHECK.ratio("gamma_over_delta_contact", contact)?,
+    })
+}
+
+fn stress_decomposition(m: &msg::Fabric) -> Result<StressDecomposition, BoundaryError> {
     let strong_contacts = m.strong_contacts;
     let few = "at most the number of contacts";
     CHECK.that(strong_contacts <= m.contacts, "strong_contacts", f64::from(strong_contacts), few)?;
-    let weak_contacts = m.contacts - strong_contacts;
-    CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
-    Ok(Structure {
-        reference_axis: unit("reference_axis", m)?,
-        axis: axis(m)?,
-        tangential_fabric: CHECK.tensor("tangential_fabric", &m.tangential_fabric)?,
-        fourth_order: FourthOrderFabric {
-            components: m.fourth_order_fabric,
-            magnitude: CHECK.not_negative("fourth_order_magnitude", m.fourth_order_magnitude)?,
-        },
-        orientation: orientation(m)?,
-        stress: StressParts {
-            normal: CHECK.tensor("stress_normal", &m.stress_normal)?,
-            tangential: CHECK.tensor("stress_tangential", &m.stress_tangential)?,
-        },
-        stress_force_fabric: anisotropies(m)?,
-        strong: NetworkPart {
+    Ok(StressDecomposition {
+        normal: CHECK.tensor("stress_normal", &m.stress_normal)?,
+        tangential: CHECK.tensor("stress_tangential", &m.stress_tangential)?,
+        strong: SubNetwork {
             contacts: strong_contacts,
             fabric: CHECK.tensor("strong_fabric", &m.strong_fabric)?,
-            eps: CHECK.finite("strong_eps", m.strong_eps)?,
+            contact_anisotropy: CHECK.finite("strong_eps", m.strong_eps)?,
             stress: CHECK.tensor("strong_stress", &m.strong_stress)?,
         },
-        weak: NetworkPart {
-            contacts: weak_contacts,
+        weak: SubNetwork {
+            contacts: m.contacts - strong_contacts,
             fabric: CHECK.tensor("weak_fabric", &m.weak_fabric)?,
-            eps: CHECK.finite("weak_eps", m.weak_eps)?,
+            contact_anisotropy: CHECK.finite("weak_eps", m.weak_eps)?,
             stress: CHECK.tensor("weak_stress", &m.weak_stress)?,
         },
-        forces: forces(m)?,
-        mobilisation: mobilisation(m)?,
+        stress_force_fabric: anisotropies(m)?,
     })
 }
 
@@ -109,10 +141,11 @@ fn unit(field: &str, m: &msg::Fabric) -> Result<Vec3, BoundaryError> {
     Ok(direction.unwrap_or_default())
 }
 
-fn axis(m: &msg::Fabric) -> Result<AxisFound, BoundaryError> {
-    Ok(AxisFound {
-        eps: CHECK.finite("axis_eps", m.axis_eps)?,
-        eps_stddev: spread("axis_eps_stddev", (m.axis_eps_stddev_known, m.axis_eps_stddev))?,
+fn axis(m: &msg::Fabric) -> Result<PrincipalAxis, BoundaryError> {
+    Ok(PrincipalAxis {
+        direction: CHECK.direction("axis", &m.axis)?.unwrap_or_else(Vec3::zeros),
+        contact_anisotropy: CHECK.finite("axis_eps", m.axis_eps)?,
+        contact_anisotropy_stddev: spread("axis_eps_stddev", (m.axis_eps_stddev_known, m.axis_eps_stddev))?,
         angle_stddev: spread("axis_angle_stddev", (m.axis_angle_stddev_known, m.axis_angle_stddev))?,
         determined: m.axis_determined,
     })
@@ -123,7 +156,7 @@ fn spread(field: &str, (known, value): (bool, f64)) -> Result<Option<f64>, Bound
     if known { CHECK.not_negative(field, value).map(Some) } else { Ok(None) }
 }
 
-fn orientation(m: &msg::Fabric) -> Result<Orientation, BoundaryError> {
+fn orientation(m: &msg::Fabric) -> Result<OrientationHistogram, BoundaryError> {
     of_all_contacts("orientation_contacts", &m.orientation_contacts, m)?;
     for (field, means) in [
         ("orientation_overlap", &m.orientation_overlap),
@@ -136,7 +169,7 @@ fn orientation(m: &msg::Fabric) -> Result<Orientation, BoundaryError> {
     let contact_fit = if m.orientation_fit_known {
         let eps = m.orientation_eps;
         let requirement = "between -1/2 and 1, where no contact density is negative";
-        Some(ContactFit {
+        Some(OrientationFit {
             eps: CHECK.that((-0.5..=1.0).contains(&eps), "orientation_eps", eps, requirement)?,
             eps_stddev: CHECK.not_negative("orientation_eps_stddev", m.orientation_eps_stddev)?,
             chi2_per_dof: CHECK.not_negative("orientation_chi2", m.orientation_chi2)?,
@@ -150,12 +183,12 @@ fn orientation(m: &msg::Fabric) -> Result<Orientation, BoundaryError> {
         "gamma_over_delta_contact_stddev",
         (m.gamma_over_delta_contact_stddev_known, m.gamma_over_delta_contact_stddev),
     )?;
-    Ok(Orientation {
+    Ok(OrientationHistogram {
         contacts: m.orientation_contacts,
         overlap: m.orientation_overlap,
         sqrt_overlap: m.orientation_sqrt_overlap,
         contact_fit,
-        overlap_fit: g.map(|g| OverlapFit { g, g_stddev }),
+        overlap_fit: g.map(|g| OverlapAnisotropyFit { g, g_stddev }),
     })
 }
 
@@ -171,30 +204,30 @@ fn anisotropies(m: &msg::Fabric) -> Result<Option<StressForceFabric>, BoundaryEr
     }))
 }
 
-fn forces(m: &msg::Fabric) -> Result<Option<Forces>, BoundaryError> {
+fn forces(m: &msg::Fabric) -> Result<Option<ForceStatistics>, BoundaryError> {
     if !m.forces_known {
         return Ok(None);
     }
     of_all_contacts("force_contacts", &m.force_contacts, m)?;
     CHECK.all_finite("force_moments", &m.force_moments)?;
     CHECK.positive("force_moments[0]", m.force_moments[0])?;
-    Ok(Some(Forces {
+    Ok(Some(ForceStatistics {
         mean_normal: CHECK.positive("force_mean_normal", m.force_mean_normal)?,
         mean_tangential: CHECK.not_negative("force_mean_tangential", m.force_mean_tangential)?,
         moments: m.force_moments,
         largest: CHECK.positive("force_largest", m.force_largest)?,
-        contacts: m.force_contacts,
+        histogram: m.force_contacts,
     }))
 }
 
-fn mobilisation(m: &msg::Fabric) -> Result<Option<Mobilisation>, BoundaryError> {
+fn friction(m: &msg::Fabric) -> Result<Option<MobilisedFriction>, BoundaryError> {
     if !m.mobilisation_known {
         return Ok(None);
     }
     of_all_contacts("mobilisation_contacts", &m.mobilisation_contacts, m)?;
-    Ok(Some(Mobilisation {
+    Ok(Some(MobilisedFriction {
         mean: CHECK.share("mobilisation_mean", m.mobilisation_mean)?,
-        contacts: m.mobilisation_contacts,
+        histogram: m.mobilisation_contacts,
     }))
 }
 

@@ -1,95 +1,125 @@
-//! The part of a fabric that is its structure.
+//! The structure of a packing, as a `Fabric` message has it.
 
 use super::refuses;
-use super::results::{fabric, header};
-use grainlab_core::structure::{
-    AxisFound, ContactFit, Forces, FourthOrderFabric, Mobilisation, NetworkPart, Orientation, OverlapFit,
-    StressForceFabric, StressParts,
+use super::results::{fabric_of, header, report};
+use grainlab_core::results::{
+    ContactStatistics, Fabric, ForceStatistics, FourthOrderFabric, MobilisedFriction, OrientationFit,
+    OrientationHistogram, OverlapAnisotropyFit, PackingReport, PrincipalAxis, StressDecomposition,
+    StressForceFabric, SubNetwork,
 };
-use grainlab_core::{Fabric, Structure, SymTensor, Vec3};
-use grainlab_msgs::boundary::fabric_message;
+use grainlab_core::{SymTensor, Vec3};
+use grainlab_msgs::boundary::{FabricReading, fabric_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
 
-/// Every field differs from every other, so that none is mistaken for another.
-pub(crate) fn structure() -> Structure {
-    let tensor = |seed: f64| SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64));
-    let network = |contacts, seed| NetworkPart {
-        contacts,
-        fabric: tensor(seed),
-        eps: seed + 0.5,
-        stress: tensor(seed + 100.0),
-    };
-    let mut forces = Forces {
+fn tensor(seed: f64) -> SymTensor {
+    SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64))
+}
+
+// Every field differs from every other, so that none is mistaken for another.
+
+pub(crate) fn contacts() -> ContactStatistics {
+    let mut forces = ForceStatistics {
         mean_normal: 4e-3,
         mean_tangential: 3e-4,
         moments: [1.5, 2.8, 6.3],
         largest: 4.1,
-        ..Forces::default()
+        ..ForceStatistics::default()
     };
-    forces.contacts[3] = 1300;
-    let mut mobilisation = Mobilisation { mean: 0.75, ..Mobilisation::default() };
-    mobilisation.contacts[9] = 1300;
-    Structure {
+    forces.histogram[3] = 1300;
+    let mut friction = MobilisedFriction { mean: 0.75, ..MobilisedFriction::default() };
+    friction.histogram[9] = 1300;
+    ContactStatistics {
+        grains: 500,
+        contacts: 1300,
+        rattlers: 20,
+        coordination: 5.2,
+        mechanical_coordination: 5.4,
+        sliding_fraction: 0.125,
+        forces: Some(forces),
+        friction: Some(friction),
+    }
+}
+
+pub(crate) fn fabric() -> Fabric {
+    Fabric {
         reference_axis: Vec3::x(),
-        axis: AxisFound { eps: -0.07, eps_stddev: Some(0.018), angle_stddev: Some(0.125), determined: true },
-        tangential_fabric: tensor(1.0),
+        contact_fabric: SymTensor::from_voigt([0.33, 0.32, 0.35, 0.001, -0.002, 0.003]),
+        normal_force_fabric: SymTensor::isotropic(1.0 / 3.0),
+        tangential_force_fabric: tensor(1.0),
+        stiffness_fabric: SymTensor::from_voigt([0.3, 0.3, 0.4, 0.0, 0.0, 0.0]),
+        contact_anisotropy: 0.0625,
+        p4_coefficient: -0.01,
         fourth_order: FourthOrderFabric {
             components: std::array::from_fn(|k| 0.0625 * k as f64),
             magnitude: 0.1875,
         },
-        orientation: Orientation {
+        principal_axis: PrincipalAxis {
+            direction: Vec3::z(),
+            contact_anisotropy: -0.07,
+            contact_anisotropy_stddev: Some(0.018),
+            angle_stddev: Some(0.125),
+            determined: true,
+        },
+        orientation: OrientationHistogram {
             contacts: std::array::from_fn(|k| 85 + 10 * k as u32),
             overlap: std::array::from_fn(|k| 1e-8 * (k + 1) as f64),
             sqrt_overlap: std::array::from_fn(|k| 1e-4 * (k + 1) as f64),
-            contact_fit: Some(ContactFit { eps: 0.0575, eps_stddev: 0.031, chi2_per_dof: 2.5 }),
+            contact_fit: Some(OrientationFit { eps: 0.0575, eps_stddev: 0.031, chi2_per_dof: 2.5 }),
             overlap_fit: None,
         },
-        stress: StressParts { normal: tensor(2.0), tangential: tensor(3.0) },
+    }
+}
+
+pub(crate) fn stress_decomposition() -> StressDecomposition {
+    let network = |contacts, seed| SubNetwork {
+        contacts,
+        fabric: tensor(seed),
+        contact_anisotropy: seed + 0.5,
+        stress: tensor(seed + 100.0),
+    };
+    StressDecomposition {
+        normal: tensor(2.0),
+        tangential: tensor(3.0),
+        strong: network(520, 8.0),
+        weak: network(780, 9.0),
         stress_force_fabric: Some(StressForceFabric {
             contacts: tensor(4.0),
             normal_forces: tensor(5.0),
             branches: tensor(6.0),
             tangential_forces: tensor(7.0),
         }),
-        strong: network(520, 8.0),
-        weak: network(780, 9.0),
-        forces: Some(forces),
-        mobilisation: Some(mobilisation),
     }
 }
 
-/// What is not known arrives as not known, and its zeros are not looked at.
+/// What is not known arrives as not known.
 #[test]
 fn a_structure_without_forces_or_fits_crosses_the_wire_and_back() {
-    let bare = Structure {
-        axis: AxisFound { eps: 0.1, ..AxisFound::default() },
-        stress_force_fabric: None,
-        forces: None,
-        mobilisation: None,
-        orientation: Orientation { contact_fit: None, ..structure().orientation },
-        ..structure()
+    let mut r = report();
+    let axis = &mut r.fabric.principal_axis;
+    (axis.contact_anisotropy_stddev, axis.angle_stddev, axis.determined) = (None, None, false);
+    r.fabric.orientation.contact_fit = None;
+    r.stress_decomposition.stress_force_fabric = None;
+    (r.contacts.forces, r.contacts.friction) = (None, None);
+    let cross = |r: &PackingReport| {
+        let sent = fabric_message(header(), r).unwrap();
+        FabricReading::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
     };
-    let mut f = Fabric { structure: bare, ..fabric() };
-    let cross = |f: &Fabric| {
-        let sent = fabric_message(header(), 7, f).unwrap();
-        Fabric::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
-    };
-    assert_eq!(cross(&f), f);
+    assert_eq!(cross(&r), fabric_of(&r));
     // The ratio fitted to the contacts and the fit it comes from are one and the same.
-    f.anisotropy.contact = Some(0.02);
-    f.structure.orientation.overlap_fit = Some(OverlapFit { g: 0.02, g_stddev: Some(0.009) });
-    assert_eq!(cross(&f), f);
-    f.structure.orientation.overlap_fit = Some(OverlapFit { g: 0.02, g_stddev: None });
-    assert_eq!(cross(&f), f);
+    r.strain_ratios.contact = Some(0.02);
+    for g_stddev in [Some(0.009), None] {
+        r.fabric.orientation.overlap_fit = Some(OverlapAnisotropyFit { g: 0.02, g_stddev });
+        assert_eq!(cross(&r), fabric_of(&r));
+    }
 }
 
 #[test]
 fn each_fault_of_a_structure_is_refused_by_name() {
     refuses(
-        &fabric_message(header(), 7, &fabric()).unwrap(),
+        &fabric_message(header(), &report()).unwrap(),
         &[
             (|m| m.reference_axis.x = 0.0, "Fabric.|reference_axis| = 0.0 is refused: it must be 1"),
             (|m| m.reference_axis.y = 1.0, "Fabric.|reference_axis| = 1.4142135623730951 is refused"),
@@ -144,6 +174,6 @@ fn each_fault_of_a_structure_is_refused_by_name() {
             (|m| m.mobilisation_mean = 1.01, "Fabric.mobilisation_mean = 1.01 is refused"),
             (|m| m.mobilisation_contacts[9] = 0, "Fabric.sum of mobilisation_contacts = 0.0 is refused"),
         ],
-        |m| Fabric::try_from(m),
+        |m| FabricReading::try_from(m),
     );
 }

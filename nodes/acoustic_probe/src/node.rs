@@ -113,11 +113,11 @@ impl AcousticProbe {
     fn decline(&mut self, bus: &mut dyn Bus, error: &MeasureError) {
         match error {
             MeasureError::Undecodable(_) | MeasureError::Refused(_) => bus.count_refused(self.packing.id()),
-            MeasureError::NoNetwork { .. } => self.tally.without_network += 1,
+            MeasureError::NotJammed { .. } => self.tally.without_network += 1,
             MeasureError::Acoustics { .. } | MeasureError::Result { .. } => self.tally.failed += 1,
         }
         match error {
-            MeasureError::NoNetwork { .. } => log::warn!("{error}"),
+            MeasureError::NotJammed { .. } => log::warn!("{error}"),
             _ => log::error!("{error}"),
         }
         self.tally.declined_step = error.step().or(self.tally.declined_step);

@@ -224,7 +224,7 @@ fn resistances(
         let modes = modes(&bloch, motions, &near, tolerance, max_iterations).map_err(|stopped| {
             let contacts = carrier.network.contacts();
             match stopped {
-                Stopped::NoResistance => grainlab_micromechanics::NoNetwork::Floppy { contacts }.into(),
+                Stopped::NoResistance => grainlab_core::results::NotJammed::Floppy { contacts }.into(),
                 stopped => AcousticsError::NotConverged {
                     direction: ray.direction.into(),
                     wavelength: wavelength * diameter,

@@ -10,9 +10,10 @@ mod cluster;
 
 use crate::error::AcousticsError;
 use crate::participation::cluster::{Cluster, clusters};
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_micromechanics::rattlers::{contacts_needed, participating};
-use grainlab_micromechanics::{Network, NoNetwork};
+use grainlab_micromechanics::network::{SpringNetwork, Springs};
+use grainlab_micromechanics::{PackingView, min_contacts, non_rattlers};
 
 /// Mass of a packing that moves with long waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +44,7 @@ impl Participation {
 #[derive(Clone, Debug)]
 pub(crate) struct Carrier {
     /// Contacts between grains that carry force.
-    pub(crate) network: Network,
+    pub(crate) network: SpringNetwork,
     /// Mass of each grain, kg; 0 of a rattler.
     pub(crate) mass: Vec<f64>,
     /// Moment of inertia over a², the length that scales rotations, kg; 0 of a rattler.
@@ -60,17 +61,18 @@ impl Carrier {
     pub(crate) fn new(packing: &Packing) -> Result<Self, AcousticsError> {
         let grains = packing.grains();
         if packing.contacts.is_empty() {
-            return Err(NoNetwork::NoContacts { grains }.into());
+            return Err(NotJammed::NoContacts { grains }.into());
         }
-        let carries = participating(packing);
+        let carries = non_rattlers(packing);
         if carries.iter().all(|c| !c) {
-            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(packing.friction) }.into());
+            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }.into());
         }
         let held = |g: u32| carries[g as usize];
         let mut carrying = packing.clone();
         carrying.contacts.retain(|c| held(c.i) && held(c.j));
-        let network = Network::new(&carrying, packing.friction > 0.0)?;
-        let a = network.rotation_length();
+        let network =
+            SpringNetwork::new(&PackingView::new(&carrying), Springs::with_friction(packing.friction))?;
+        let a = network.spin_scale();
         let mass: Vec<f64> = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).collect();
         let bulk = mass.iter().sum::<f64>() / packing.cell.volume();
         let of = |g: usize, value: f64| if carries[g] { value } else { 0.0 };

@@ -1,7 +1,8 @@
 //! The state that the moduli belong to.
 
 use crate::error::EmtError;
-use grainlab_core::{Anisotropy, Material};
+use grainlab_core::Material;
+use grainlab_core::results::StrainRatios;
 use std::fmt;
 
 /// Where a γ/Δ comes from.
@@ -53,7 +54,7 @@ impl Gamma {
     }
 
     /// Whether the ratio that `source` names was measured.
-    pub fn is_known(measured: &Anisotropy, source: GammaSource) -> bool {
+    pub fn is_known(measured: &StrainRatios, source: GammaSource) -> bool {
         match source {
             GammaSource::Total => measured.total.is_some(),
             GammaSource::Elastic => measured.elastic.is_some(),
@@ -64,12 +65,12 @@ impl Gamma {
 
     /// What the paper's models take of a measured packing: the total ratio where it is known, else the one of the
     /// contacts, else zero.
-    pub fn preferred(measured: &Anisotropy) -> Self {
+    pub fn preferred(measured: &StrainRatios) -> Self {
         Self::of(measured, GammaSource::Total)
     }
 
     /// The ratio of a measured packing that `source` names; where it is not known, the one of the contacts, else zero.
-    pub fn of(measured: &Anisotropy, source: GammaSource) -> Self {
+    pub fn of(measured: &StrainRatios, source: GammaSource) -> Self {
         let with = |value: Option<f64>, source| value.map(|value| Gamma { value, stddev: 0.0, source });
         let wanted = match source {
             GammaSource::Total => with(measured.total, source),

@@ -12,7 +12,7 @@
 //! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
 //! - [`medium`]: absolute moduli of the effective medium
 //! - [`effective`]: the plain theory, with the pressure closing the strain
-//! - [`mod@christoffel`]: moduli from the speeds of waves
+//! - [`mod@christoffel`], [`WaveModuli`]: moduli from the speeds of waves
 //! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
 //! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
 //! - [`directional`]: each modulus by a coordination number of its own
@@ -55,6 +55,7 @@ pub mod sampling;
 pub mod sqrt;
 pub mod structure;
 pub mod warning;
+mod wave_moduli;
 
 pub use calibration::{Calibration, CalibrationError, Isotropic, Sample, learn};
 pub use christoffel::ChristoffelError;
@@ -72,3 +73,4 @@ pub use observation::{INPUT_NAMES, INPUTS, Observation};
 pub use sampling::{Samples, sample};
 pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;
+pub use wave_moduli::WaveModuli;

@@ -7,8 +7,8 @@ use crate::launch::supervisor::{Heard, Supervised, Supervisor};
 use crate::network::FreeDomain;
 use crate::output::{Format, json, print};
 use crate::results::continuity;
+use crate::results::measured_packing;
 use crate::results::read_back::{self, ReadBack};
-use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use crate::scenes::{self, SceneText};
@@ -319,11 +319,11 @@ fn finish(
     let text = json(&summary)?;
     summary.strangers.iter().for_each(|s| crate::output::say!("grainlab: {}", s.line()));
     summary.warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
-    let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
+    let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
     // Printed before anything that may fail: the result is not lost with the disk.
     let printed = print(&match format {
         Format::Json => text.clone(),
-        Format::Csv => state::csv(&states),
+        Format::Csv => measured_packing::table(&packings).csv(),
         Format::Table => {
             let text = summary_text::text(&summary);
             format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())

@@ -1,6 +1,6 @@
 //! What a launched run came to, with the stable keys of `summary.json`.
 
-use super::read_back::{InvertedState, ReadBack};
+use super::read_back::{InvertedPacking, ReadBack};
 use super::strangers::StrangerView;
 use grainlab_node_kit::{Exit, Report};
 use grainlab_recordings::TopicTally;
@@ -25,7 +25,7 @@ pub(crate) struct Summary {
     pub(crate) waiting_fraction: Option<f64>,
     /// While computing.
     pub(crate) particle_steps_per_second: Option<f64>,
-    pub(crate) states: Vec<InvertedState>,
+    pub(crate) states: Vec<InvertedPacking>,
     pub(crate) recording: Option<String>,
     pub(crate) exit: u8,
     pub(crate) warnings: Vec<String>,

@@ -8,8 +8,7 @@
 use crate::dispersion::row::{Amplitude, Row};
 use crate::participation::Carrier;
 use grainlab_core::Vec3;
-use grainlab_micromechanics::Link;
-use grainlab_micromechanics::preconditioner::{Block, generalised_inverse};
+use grainlab_micromechanics::network::{Block, ContactSpring, generalised_inverse};
 
 /// One contact.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +21,7 @@ struct Joint {
     /// Levers of i and j over their mean: exactly 1 where radii are equal.
     share: [f64; 2],
     tangential: f64,
-    excess: f64,
+    kn_minus_kt: f64,
     cos: f64,
     sin: f64,
 }
@@ -38,14 +37,14 @@ pub(crate) struct Bloch<'a> {
 
 impl<'a> Bloch<'a> {
     pub(crate) fn new(carrier: &'a Carrier, q: &Vec3) -> Self {
-        let joint = |l: Link| {
+        let joint = |l: ContactSpring| {
             let half = 0.5 * q.dot(&Vec3::from(l.branch));
-            let Link { i, j, normal, levers, tangential, excess, .. } = l;
+            let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = l;
             let lever = 0.5 * (levers[0] + levers[1]);
             let share = levers.map(|own| own / lever);
-            Joint { i, j, normal, lever, share, tangential, excess, cos: half.cos(), sin: half.sin() }
+            Joint { i, j, normal, lever, share, tangential, kn_minus_kt, cos: half.cos(), sin: half.sin() }
         };
-        let joints: Vec<Joint> = carrier.network.links().map(joint).collect();
+        let joints: Vec<Joint> = carrier.network.contact_springs().map(joint).collect();
         let mut blocks = vec![[[0.0; 6]; 6]; carrier.mass.len()];
         for joint in &joints {
             for (grain, block) in joint.blocks() {
@@ -171,7 +170,7 @@ impl Joint {
         let wx = felt[0] - (mz * felt[4] - my * felt[5]);
         let wy = felt[1] - (mx * felt[5] - mz * felt[3]);
         let wz = felt[2] - (my * felt[3] - mx * felt[4]);
-        let along = self.excess * (nx * wx + ny * wy + nz * wz);
+        let along = self.kn_minus_kt * (nx * wx + ny * wy + nz * wz);
         let fx = self.tangential * wx + nx * along;
         let fy = self.tangential * wy + ny * along;
         let fz = self.tangential * wz + nz * along;

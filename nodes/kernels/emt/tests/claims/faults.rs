@@ -1,7 +1,8 @@
 //! Every error and every warning.
 
 use crate::{PAPER_MODELS, model};
-use grainlab_core::{Anisotropy, Mat3, Material, Stiffness, TransverseIsotropy};
+use grainlab_core::results::StrainRatios;
+use grainlab_core::{Mat3, Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::{
     Calibration, CalibrationError, Conditions, EmtError, Estimate, Gamma, GammaSource, Isotropic, Measured,
     Moduli, ModuliCovariance, Modulus, Observation, Quantity, Status, Structure, Warning,
@@ -229,11 +230,11 @@ fn an_orthotropic_stiffness_is_used_with_a_warning_that_tells_its_asymmetry() {
 
 #[test]
 fn gamma_is_taken_from_the_total_strain_then_from_the_contacts_then_as_zero_with_a_warning() {
-    let measured = Anisotropy { total: Some(-0.06), elastic: Some(0.01), contact: Some(0.02) };
-    let of = |a: &Anisotropy| (Gamma::preferred(a).source, Gamma::preferred(a).value);
+    let measured = StrainRatios { total: Some(-0.06), elastic: Some(0.01), contact: Some(0.02) };
+    let of = |a: &StrainRatios| (Gamma::preferred(a).source, Gamma::preferred(a).value);
     assert_eq!(of(&measured), (GammaSource::Total, -0.06));
-    assert_eq!(of(&Anisotropy { total: None, ..measured }), (GammaSource::Contact, 0.02));
-    assert_eq!(of(&Anisotropy::default()), (GammaSource::Zero, 0.0));
+    assert_eq!(of(&StrainRatios { total: None, ..measured }), (GammaSource::Contact, 0.02));
+    assert_eq!(of(&StrainRatios::default()), (GammaSource::Zero, 0.0));
     let mut o = sound();
     o.conditions.gamma = Gamma::ZERO;
     let e = estimate(&o);

@@ -4,10 +4,11 @@ use super::Args;
 use crate::commands::bench::packing::load_all;
 use crate::failure::Failure;
 use crate::output::{Format, Table, exact, fixed, json, print};
-use crate::results::state::eps_stiffness;
 use grainlab_acoustics::{Measurement, with_speed_noise};
-use grainlab_core::{Fabric, Packing};
+use grainlab_core::Packing;
+use grainlab_core::results::PackingReport;
 use grainlab_emt::Quantity;
+use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
 use grainlab_node_kit::Exit;
@@ -70,15 +71,15 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
     let measurement = grainlab_acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
-    let analysis = grainlab_micromechanics::analyse(
+    let springs = Springs::with_friction(packing.friction);
+    let truth = grainlab_micromechanics::analyze(
         packing,
-        &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        &grainlab_micromechanics::Settings { springs, ..Default::default() },
     )
-    .map_err(|e| invalid(&e))?;
-    let (fabric, by_stiffness) = (analysis.fabric.clone(), eps_stiffness(&analysis.fabric));
-    let truth = Counted { fabric, eps_stiffness: by_stiffness };
+    .map_err(|e| invalid(&e))?
+    .report;
     let header = Default::default();
-    let analysed = grainlab_fabric_analyzer::messages(&header, packing, analysis).map_err(|e| invalid(&e))?;
+    let analysed = grainlab_fabric_analyzer::messages(&header, &truth).map_err(|e| invalid(&e))?;
     let moduli = analysed.moduli.map_err(|e| invalid(&e))?;
     let inversion = inversion()?;
     let by_moduli =
@@ -106,22 +107,16 @@ fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
     Ok(grainlab_emt_inversion::Settings { models, ..Default::default() })
 }
 
-/// What is counted in a packing.
-struct Counted {
-    fabric: Fabric,
-    eps_stiffness: Option<f64>,
-}
-
-fn compared(found: &Microstructure, truth: &Counted) -> Errors {
+fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let reading = MicrostructureReading::try_from(found).ok();
     let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
     let of = |quantity: Quantity| {
         let (inferred, at) = (inferred.as_ref()?, quantity as usize);
         let counted = match quantity {
-            Quantity::K => truth.fabric.k,
-            Quantity::Z => truth.fabric.z,
-            Quantity::Eps => truth.fabric.eps,
-            Quantity::EpsStiffness => truth.eps_stiffness?,
+            Quantity::K => truth.contacts.coordination,
+            Quantity::Z => truth.contacts.mechanical_coordination,
+            Quantity::Eps => truth.fabric.contact_anisotropy,
+            Quantity::EpsStiffness => truth.stiffness_anisotropy()?,
             Quantity::KHat => return None,
         };
         let error = inferred.values[at]? - counted;
