@@ -3,6 +3,8 @@
 //! checks, so that no node publishes what another would refuse.
 
 mod check;
+mod contact_statistics;
+mod elastic_stiffness;
 mod estimate;
 mod fabric;
 mod microstructure;
@@ -11,7 +13,7 @@ mod packing;
 mod run_state;
 mod strain_rate;
 mod stress;
-mod structure;
+mod stress_decomposition;
 mod wave_speeds;
 mod waveform;
 
@@ -20,7 +22,7 @@ pub use estimate::{
 };
 pub use fabric::{FabricReading, fabric_message};
 pub use microstructure::MicrostructureReading;
-pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
+pub use moduli::{ModuliReading, moduli_message};
 pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
@@ -73,7 +75,7 @@ pub enum BoundaryError {
         /// Name of the message.
         message: &'static str,
         /// Name of the field.
-        field: &'static str,
+        field: String,
         /// Entries it has.
         found: usize,
         /// Entries it must have.

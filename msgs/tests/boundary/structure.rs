@@ -123,56 +123,103 @@ fn each_fault_of_a_structure_is_refused_by_name() {
         &[
             (|m| m.reference_axis.x = 0.0, "Fabric.|reference_axis| = 0.0 is refused: it must be 1"),
             (|m| m.reference_axis.y = 1.0, "Fabric.|reference_axis| = 1.4142135623730951 is refused"),
-            (|m| m.axis_eps = NAN, "Fabric.axis_eps = NaN is refused"),
-            (|m| m.axis_eps_stddev = -0.1, "Fabric.axis_eps_stddev = -0.1 is refused"),
-            (|m| m.axis_angle_stddev = INF, "Fabric.axis_angle_stddev = inf is refused"),
-            (|m| m.tangential_fabric.xy = NAN, "Fabric.tangential_fabric.xy = NaN is refused"),
+            (
+                |m| m.principal_axis.contact_anisotropy = NAN,
+                "Fabric.principal_axis.contact_anisotropy = NaN is refused",
+            ),
+            (
+                |m| m.principal_axis.contact_anisotropy_stddev[0] = -0.1,
+                "Fabric.principal_axis.contact_anisotropy_stddev = -0.1 is refused",
+            ),
+            (
+                |m| m.principal_axis.angle_stddev[0] = INF,
+                "Fabric.principal_axis.angle_stddev = inf is refused",
+            ),
+            (|m| m.tangential_force_fabric.xy = NAN, "Fabric.tangential_force_fabric.xy = NaN is refused"),
             (|m| m.fourth_order_fabric[14] = NAN, "Fabric.fourth_order_fabric[14] = NaN is refused"),
             (|m| m.fourth_order_magnitude = -1.0, "Fabric.fourth_order_magnitude = -1.0 is refused"),
-            (|m| m.stress_normal.xx = INF, "Fabric.stress_normal.xx = inf is refused"),
-            (|m| m.stress_tangential.zz = NAN, "Fabric.stress_tangential.zz = NaN is refused"),
-            (|m| m.anisotropy_contacts.xx = NAN, "Fabric.anisotropy_contacts.xx = NaN is refused"),
-            (|m| m.anisotropy_normal_forces.xx = NAN, "Fabric.anisotropy_normal_forces.xx = NaN is refused"),
-            (|m| m.anisotropy_branches.yz = INF, "Fabric.anisotropy_branches.yz = inf is refused"),
+            (|m| m.stress.normal.xx = INF, "Fabric.stress.normal.xx = inf is refused"),
+            (|m| m.stress.tangential.zz = NAN, "Fabric.stress.tangential.zz = NaN is refused"),
             (
-                |m| m.anisotropy_tangential_forces.xx = NAN,
-                "Fabric.anisotropy_tangential_forces.xx = NaN is refused",
+                |m| m.stress.stress_force_fabric[0].contacts.xx = NAN,
+                "Fabric.stress.stress_force_fabric.contacts.xx = NaN is refused",
             ),
             (
-                |m| m.orientation_contacts[4] += 1,
-                "Fabric.sum of orientation_contacts = 1301.0 is refused: it must be the number of contacts",
+                |m| m.stress.stress_force_fabric[0].normal_forces.xx = NAN,
+                "Fabric.stress.stress_force_fabric.normal_forces.xx = NaN is refused",
             ),
-            (|m| m.orientation_overlap[9] = -1e-9, "Fabric.orientation_overlap[9] = -1e-9 is refused"),
-            (|m| m.orientation_sqrt_overlap[0] = NAN, "Fabric.orientation_sqrt_overlap[0] = NaN is refused"),
             (
-                |m| m.orientation_eps = 1.1,
-                "Fabric.orientation_eps = 1.1 is refused: it must be between -1/2 and 1",
+                |m| m.stress.stress_force_fabric[0].branches.yz = INF,
+                "Fabric.stress.stress_force_fabric.branches.yz = inf is refused",
             ),
-            (|m| m.orientation_eps_stddev = NAN, "Fabric.orientation_eps_stddev = NaN is refused"),
-            (|m| m.orientation_chi2 = -1.0, "Fabric.orientation_chi2 = -1.0 is refused"),
+            (
+                |m| m.stress.stress_force_fabric[0].tangential_forces.xx = NAN,
+                "Fabric.stress.stress_force_fabric.tangential_forces.xx = NaN is refused",
+            ),
+            (
+                |m| m.orientation.contacts[4] += 1,
+                "Fabric.sum of orientation.contacts = 1301.0 is refused: it must be the number of contacts",
+            ),
+            (|m| m.orientation.overlap[9] = -1e-9, "Fabric.orientation.overlap[9] = -1e-9 is refused"),
+            (|m| m.orientation.sqrt_overlap[0] = NAN, "Fabric.orientation.sqrt_overlap[0] = NaN is refused"),
+            (
+                |m| m.orientation.contact_fit[0].eps = 1.1,
+                "Fabric.orientation.contact_fit.eps = 1.1 is refused: it must be between -1/2 and 1",
+            ),
+            (
+                |m| m.orientation.contact_fit[0].eps_stddev = NAN,
+                "Fabric.orientation.contact_fit.eps_stddev = NaN is refused",
+            ),
+            (
+                |m| m.orientation.contact_fit[0].chi2_per_dof = -1.0,
+                "Fabric.orientation.contact_fit.chi2_per_dof = -1.0 is refused",
+            ),
             (
                 |m| {
-                    (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact_stddev_known) =
-                        (true, true);
-                    m.gamma_over_delta_contact_stddev = -1.0;
+                    m.orientation.overlap_fit.push(msg::OverlapAnisotropyFit { g: 0.0, g_stddev: vec![-1.0] })
                 },
-                "Fabric.gamma_over_delta_contact_stddev = -1.0 is refused",
+                "Fabric.orientation.overlap_fit.g_stddev = -1.0 is refused",
             ),
-            (|m| m.strong_contacts = 1301, "Fabric.strong_contacts = 1301.0 is refused: it must be at most"),
-            (|m| m.strong_fabric.xx = NAN, "Fabric.strong_fabric.xx = NaN is refused"),
-            (|m| m.weak_fabric.yy = NAN, "Fabric.weak_fabric.yy = NaN is refused"),
-            (|m| m.strong_eps = NAN, "Fabric.strong_eps = NaN is refused"),
-            (|m| m.weak_eps = INF, "Fabric.weak_eps = inf is refused"),
-            (|m| m.strong_stress.xy = NAN, "Fabric.strong_stress.xy = NaN is refused"),
-            (|m| m.weak_stress.xy = NAN, "Fabric.weak_stress.xy = NaN is refused"),
-            (|m| m.force_mean_normal = 0.0, "Fabric.force_mean_normal = 0.0 is refused"),
-            (|m| m.force_mean_tangential = -1.0, "Fabric.force_mean_tangential = -1.0 is refused"),
-            (|m| m.force_moments[0] = 0.0, "Fabric.force_moments[0] = 0.0 is refused"),
-            (|m| m.force_moments[2] = NAN, "Fabric.force_moments[2] = NaN is refused"),
-            (|m| m.force_largest = NAN, "Fabric.force_largest = NaN is refused"),
-            (|m| m.force_contacts[0] = u32::MAX, "Fabric.sum of force_contacts = 4294968595.0 is refused"),
-            (|m| m.mobilisation_mean = 1.01, "Fabric.mobilisation_mean = 1.01 is refused"),
-            (|m| m.mobilisation_contacts[9] = 0, "Fabric.sum of mobilisation_contacts = 0.0 is refused"),
+            (
+                |m| m.contacts.forces.push(msg::ForceStatistics::default()),
+                "Fabric.contacts.forces has 2 entries and is refused: it must have 1",
+            ),
+            (
+                |m| m.stress.strong.contacts = 521,
+                "Fabric.sum of stress.strong.contacts and stress.weak.contacts = 1301.0 is refused",
+            ),
+            (|m| m.stress.strong.fabric.xx = NAN, "Fabric.stress.strong.fabric.xx = NaN is refused"),
+            (|m| m.stress.weak.fabric.yy = NAN, "Fabric.stress.weak.fabric.yy = NaN is refused"),
+            (
+                |m| m.stress.strong.contact_anisotropy = NAN,
+                "Fabric.stress.strong.contact_anisotropy = NaN is refused",
+            ),
+            (
+                |m| m.stress.weak.contact_anisotropy = INF,
+                "Fabric.stress.weak.contact_anisotropy = inf is refused",
+            ),
+            (|m| m.stress.strong.stress.xy = NAN, "Fabric.stress.strong.stress.xy = NaN is refused"),
+            (|m| m.stress.weak.stress.xy = NAN, "Fabric.stress.weak.stress.xy = NaN is refused"),
+            (
+                |m| m.contacts.forces[0].mean_normal = 0.0,
+                "Fabric.contacts.forces.mean_normal = 0.0 is refused",
+            ),
+            (
+                |m| m.contacts.forces[0].mean_tangential = -1.0,
+                "Fabric.contacts.forces.mean_tangential = -1.0 is refused",
+            ),
+            (|m| m.contacts.forces[0].moments[0] = 0.0, "Fabric.contacts.forces.moments[0] = 0.0 is refused"),
+            (|m| m.contacts.forces[0].moments[2] = NAN, "Fabric.contacts.forces.moments[2] = NaN is refused"),
+            (|m| m.contacts.forces[0].largest = NAN, "Fabric.contacts.forces.largest = NaN is refused"),
+            (
+                |m| m.contacts.forces[0].histogram[0] = u32::MAX,
+                "Fabric.sum of contacts.forces.histogram = 4294968595.0 is refused",
+            ),
+            (|m| m.contacts.friction[0].mean = 1.01, "Fabric.contacts.friction.mean = 1.01 is refused"),
+            (
+                |m| m.contacts.friction[0].histogram[9] = 0,
+                "Fabric.sum of contacts.friction.histogram = 0.0 is refused",
+            ),
         ],
         |m| FabricReading::try_from(m),
     );

@@ -1,7 +1,6 @@
 //! CDR of every message, and the boundary to the kernels' types.
 
 use fuzzing::{Counting, Target};
-use grainlab_core::results::ElasticStiffness;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
     EstimateReading, FabricReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
@@ -65,9 +64,9 @@ fn every_message_gives_a_value_or_an_error() {
     decode("cdr-strain-rate", msg::StrainRate::default(), |m| drop(StrainRateAnswer::try_from(m)));
     decode("cdr-run-state", msg::RunState::default(), |m| drop(RunStateReading::try_from(m)));
     decode("cdr-fabric", msg::Fabric::default(), |m| drop(FabricReading::try_from(m)));
-    decode("cdr-moduli", msg::Moduli::default(), |m| {
-        drop(ElasticStiffness::try_from(m));
-        drop(ModuliReading::try_from(m));
+    let stiffness = vec![msg::ElasticStiffness::default()];
+    decode("cdr-moduli", msg::Moduli { stiffness, ..Default::default() }, |m| {
+        drop(ModuliReading::try_from(m))
     });
     decode(
         "cdr-wave-speeds",

@@ -7,7 +7,7 @@ use super::strangers::{self, Authors, StrangerView};
 use grainlab_core::Packing;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
 use grainlab_micromechanics::{PackingView, ReportParts, report};
-use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, WaveSpeedsReading};
+use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::Report;
@@ -178,7 +178,7 @@ fn enter(
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = decoded(payload)?;
             let about = about.entry(message.source_step).or_default();
-            about.stiffness = Some(ElasticStiffness::try_from(&message).map_err(text)?);
+            about.stiffness = ModuliReading::try_from(&message).map_err(text)?.stiffness;
             Ok(message.source_step)
         }
         name if name == topics::WAVE_SPEEDS.name => {
