@@ -4,7 +4,7 @@
 #
 #   nodes/launch/ensemble.sh SCENE "MU2 ..." FIRST_SEED LAST_SEED [RUNS] > measurements.csv
 #
-# SCENE is a file whose lines `friction = ... # mu2` take each MU2 in turn, such as those in nodes/scenes/ensemble.
+# SCENE is a scene whose friction takes each MU2 in turn, such as those in nodes/scenes/ensemble.
 # GRAINLAB names the binary (default: grainlab on the PATH). Runs land in RUNS (default: recordings/runs); one that is there
 # already, by the name of scene, mu2 and seed, is measured and not repeated, so an interrupted ensemble goes on: take another
 # folder for a scene that was edited.
@@ -17,8 +17,7 @@ for seed in "$first" "$last"; do
     case $seed in '' | *[!0-9]*) fail "a seed is a whole number, not \"$seed\"" ;; esac
 done
 [ "$first" -le "$last" ] || fail "there is no seed from $first to $last"
-[ -f "$scene" ] || fail "there is no scene $scene"
-grep -q '^friction = .* # mu2' "$scene" || fail "$scene has no line \"friction = ... # mu2\": mu2 would change nothing"
+"$grainlab" scene show "$scene" --set friction=0.1 > /dev/null || fail "mu2 is the friction of the scene"
 preparation=$(basename "$scene" .toml)
 columns=grains,phi,pressure_pa,k,z,eps,eps_stiffness,g_total,g_elastic,g_contact
 columns=$columns,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,grain_shear_modulus_pa,poisson
@@ -34,24 +33,23 @@ finished() {
     done
 }
 
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+row=$(mktemp)
+trap 'rm -f "$row"' EXIT
 header=preparation,mu2,seed,$columns
 for mu2 in $frictions; do
     # A name has no point: 0.05 becomes 005.
     name=${preparation}_$(printf %s "$mu2" | tr -d .)
-    sed "s/^friction = .* # mu2/friction = $mu2/; 1,/^\[/s/^name = .*/name = \"$name\"/" "$scene" > "$work/$name.toml"
     seed=$first
     while [ "$seed" -le "$last" ]; do
         run=$(finished "$name-$seed")
         if [ -z "$run" ]; then
-            "$grainlab" launch --scene "$work/$name.toml" --seed "$seed" --out "$runs" > /dev/null
+            "$grainlab" launch --scene "$scene" --set "name=$name" --set "friction=$mu2" --seed "$seed" --out "$runs" > /dev/null
             run=$(finished "$name-$seed")
             [ -n "$run" ] || fail "no run $name-$seed came to its end in $runs"
         fi
-        "$grainlab" analyze "$run" --format csv --columns "$columns" > "$work/run.csv"
+        "$grainlab" analyze "$run" --format csv --columns "$columns" > "$row"
         [ -z "$header" ] || { echo "$header"; header=; }
-        sed "1d; s/^/$preparation,$mu2,$seed,/" "$work/run.csv"
+        sed "1d; s/^/$preparation,$mu2,$seed,/" "$row"
         seed=$((seed + 1))
     done
 done

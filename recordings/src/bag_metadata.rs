@@ -1,4 +1,4 @@
-//! `metadata.yaml`, by which rosbag2 takes a directory for a recording.
+//! `metadata.yaml`, the file that makes a directory a recording of rosbag2.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,26 +6,17 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use crate::reader::Recording;
+use crate::reader::{FileCount, Recording};
 use crate::writer::TopicSpec;
 
-/// What is said of one topic.
+/// The entry of one topic.
 #[derive(Clone, Debug)]
 pub(crate) struct TopicCount {
     pub(crate) spec: TopicSpec,
     pub(crate) messages: u64,
 }
 
-/// What is said of one file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct FileCount {
-    pub(crate) name: String,
-    /// First and last log time, ns since 1970; `None` without messages.
-    pub(crate) bounds: Option<(u64, u64)>,
-    pub(crate) messages: u64,
-}
-
-/// All of it.
+/// The content of `metadata.yaml`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BagMetadata {
     pub(crate) files: Vec<FileCount>,
@@ -33,7 +24,7 @@ pub(crate) struct BagMetadata {
 }
 
 impl BagMetadata {
-    /// What the files of a recording say of themselves.
+    /// The metadata from the files of a recording.
     pub(crate) fn of(recording: &Recording) -> Self {
         let mut metadata = Self { files: recording.parts(), topics: BTreeMap::new() };
         for channel in recording.channels() {
@@ -55,18 +46,18 @@ impl BagMetadata {
         self.files.iter().filter_map(|f| f.bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
-    /// Writes the file whole or not at all: a temporary file, renamed when it is on the device.
+    /// Writes the file atomically: a temporary file is synced to the device and then renamed.
     pub(crate) fn write(&self, directory: &Path) -> io::Result<()> {
         let partial = directory.join(".metadata.yaml.part");
         let mut file = File::create(&partial)?;
         file.write_all(self.text().as_bytes())?;
         file.sync_all()?;
         fs::rename(&partial, directory.join("metadata.yaml"))?;
-        // The rename itself is on the device only when the directory is.
+        // The rename is on the device only after the directory is synced.
         File::open(directory)?.sync_all()
     }
 
-    /// Version 8 with integers in the QoS: from Humble to Rolling, every rosbag2 reads it.
+    /// Version 8 with integers in the QoS: every rosbag2 from Humble to Rolling reads it.
     fn text(&self) -> String {
         let (start, end) = self.bounds().unwrap_or((0, 0));
         let messages: u64 = self.files.iter().map(|f| f.messages).sum();

@@ -1,4 +1,4 @@
-//! Packings to files of other programs.
+//! Writes packings as files of other programs.
 
 mod csv;
 mod lammps_dump;

@@ -1,7 +1,7 @@
-//! Files from outside: regular ones, of bounded size.
+//! External files: regular files of bounded size.
 //!
 //! A device may never end, a pipe may never begin, and a few bytes of gzip may be gigabytes of text: none of them may
-//! take the memory or the time of a command.
+//! exhaust the memory or block a command.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -10,17 +10,17 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-/// Scenes, launch files, parameters and calibrations are smaller: bytes.
+/// Maximum size of scenes, launch files, parameters and calibrations, bytes.
 pub const SETTINGS: u64 = 1 << 20;
 
-/// Tables and packings as text are smaller: bytes, decompressed.
+/// Maximum size of tables and packings as text, bytes, decompressed.
 pub const TEXT: u64 = 4 << 30;
 
-/// Decompressed bytes that a byte of a compressed text may stand for. Numbers compress to a third; zeros to a
+/// Maximum compression ratio of a text. Numbers compress to a third; zeros to a
 /// thousandth.
 const RATIO: u64 = 64;
 
-/// What a compressed text may always be, bytes.
+/// Decompressed size that is always accepted, bytes.
 const SMALL: u64 = 16 << 20;
 
 /// Opens a regular file; returns its size (bytes), too.
@@ -59,7 +59,7 @@ pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large());
     }
     let mut content = Vec::with_capacity(size as usize);
-    // The size may be a fiction, as those of /proc are.
+    // The stated size may be wrong, as in /proc.
     file.take(most + 1).read_to_end(&mut content)?;
     if content.len() as u64 > most { Err(too_large()) } else { Ok(content) }
 }
@@ -75,10 +75,10 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
     })
 }
 
-/// What `compressed`, of gzip, decompresses to: at most 64 times as many bytes, or 16 MiB where that is more.
+/// Decompresses gzip: at most 64 times the compressed size, or 16 MiB if that is more.
 ///
 /// # Errors
-/// If it is cut off, damaged, or decompresses to more.
+/// If it is truncated, damaged, or decompresses to more.
 pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
     let most = (compressed.len() as u64).saturating_mul(RATIO).clamp(SMALL, TEXT);
     let mut content = Vec::new();
@@ -130,7 +130,7 @@ mod tests {
         std::fs::write(&path, "twelve bytes").unwrap();
         assert_eq!(text(&path, 12).unwrap(), "twelve bytes");
         assert_eq!(text(&path, 11).unwrap_err().kind(), ErrorKind::FileTooLarge);
-        // Of these the system says that they have no bytes.
+        // The system reports size 0 for these.
         assert_eq!(bytes(Path::new("/proc/self/maps"), 10).unwrap_err().kind(), ErrorKind::FileTooLarge);
     }
 

@@ -1,141 +1,63 @@
-//! What was recorded, lost and repeated, per topic and per writer.
+//! Counts of recorded, lost and repeated messages, per topic and per writer.
 //!
-//! Loss is judged by RTPS sequence numbers, which count every message of one writer from 1: a number that
-//! never came is a message that was lost, whoever lost it. What a writer sent after the last number seen,
-//! only that writer knows; it reports its count when it ends ([`Ledger::report`]).
+//! Loss is found from RTPS sequence numbers, which count every message of one writer from 1: a missing number is
+//! a lost message, wherever it was lost. Messages that a writer sent after the last number received are known only
+//! to that writer, which reports its count when it ends ([`Ledger::report`]).
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
-use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
-
+mod guid;
 mod merge;
 mod sequence;
+mod tally;
 
+pub use guid::{Guid, GuidError};
 pub use merge::merge;
 use sequence::Sequence;
-
-/// The RTPS identity of one writer: 16 bytes, shown as 32 hexadecimal digits.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Guid(pub [u8; 16]);
-
-impl fmt::Display for Guid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|b| write!(f, "{b:02x}"))
-    }
-}
-
-impl fmt::Debug for Guid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Display::fmt(self, f)
-    }
-}
-
-/// A text that is not 32 hexadecimal digits.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a writer GUID: 32 hexadecimal digits are needed")]
-pub struct GuidError(pub String);
-
-impl FromStr for Guid {
-    type Err = GuidError;
-
-    fn from_str(text: &str) -> Result<Self, GuidError> {
-        // Digits only: from_str_radix alone would take a sign.
-        let value = match text.len() {
-            32 if text.bytes().all(|b| b.is_ascii_hexdigit()) => u128::from_str_radix(text, 16).ok(),
-            _ => None,
-        };
-        value.map(|v| Self(v.to_be_bytes())).ok_or_else(|| GuidError(text.to_owned()))
-    }
-}
-
-/// Account of one topic, all writers together.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TopicTally {
-    /// Name of the topic, absolute.
-    pub name: String,
-    /// Messages published: a writer's own count where it reported one, else its highest sequence number seen.
-    pub published: u64,
-    /// Messages in the recording.
-    pub recorded: u64,
-    /// Published but not recorded.
-    pub lost: u64,
-    /// Messages that say what was already recorded, delivered or published once more; not recorded again.
-    pub repeated: u64,
-    /// The writers, in order of GUID.
-    pub writers: Vec<WriterTally>,
-}
-
-/// Account of one writer of one topic.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct WriterTally {
-    /// GUID, 32 hexadecimal digits.
-    pub guid: String,
-    /// Name of the node, if it was told.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub node: Option<String>,
-    /// Messages recorded.
-    pub recorded: u64,
-    /// Count the writer reported; `None` if it ended without a word (a crash) or has not ended.
-    pub reported: Option<u64>,
-    /// Lowest sequence number recorded; `None` if nothing was.
-    pub first: Option<i64>,
-    /// Highest sequence number recorded; `None` if nothing was.
-    pub last: Option<i64>,
-    /// Published but not recorded.
-    pub lost: u64,
-    /// Ranges of sequence numbers, both ends included, that are missing below the highest one seen. At most
-    /// 32 are kept here; `lost` counts all.
-    pub gaps: Vec<(i64, i64)>,
-    /// Deliveries of a message that was already recorded.
-    pub repeated: u64,
-}
-
-/// Ranges that a [`WriterTally`] lists at most.
-const LISTED_GAPS: usize = 32;
+use tally::LISTED_GAPS;
+pub use tally::{TopicTally, WriterTally};
 
 #[derive(Clone, Debug, Default)]
 struct Writer {
     sequence: Sequence,
     reported: Option<u64>,
-    /// Messages that came and say, byte for byte, what another one said that was recorded.
+    /// Received messages that equal a recorded one byte for byte.
     same: u64,
-    /// Messages that came and are left out on purpose: they count neither as published nor as recorded.
+    /// Received messages that are left out on purpose: they count neither as published nor as recorded.
     left_out: u64,
 }
 
 impl Writer {
-    /// Messages before the first one that came; all that it reports, if none came.
+    /// Number of messages before the first received one; all reported ones if none was received.
     fn before_first(&self) -> u64 {
         self.sequence.first().map_or(self.reported.unwrap_or(0), |first| (first - 1).max(0) as u64)
     }
 }
 
-/// The running account of a recording.
+/// The counts of a recording in progress.
 #[derive(Clone, Debug, Default)]
 pub struct Ledger {
     topics: BTreeMap<String, BTreeMap<Guid, Writer>>,
     nodes: BTreeMap<Guid, String>,
-    /// Topics of which each writer counts from its first message that came.
+    /// Topics on which each writer counts from its first received message.
     from_first: BTreeSet<String>,
 }
 
 impl Ledger {
-    /// Makes `topic` known, so that it is accounted for even if nothing comes.
+    /// Declares `topic`, so that it is listed even without messages.
     pub fn expect(&mut self, topic: &str) {
         if !self.topics.contains_key(topic) {
             self.topics.insert(topic.to_owned(), BTreeMap::new());
         }
     }
 
-    /// Counts each writer of `topic` from the first of its messages that comes: what it said before the recorder was there
-    /// is not missed. For topics that tell of processes and not of the run.
+    /// Counts each writer of `topic` from its first received message: messages before the recorder joined are
+    /// not counted as lost. For topics about processes, as opposed to the run.
     pub fn count_from_first(&mut self, topic: &str) {
         self.from_first.insert(topic.to_owned());
     }
 
-    /// Notes that message `sequence` of this writer came and is not recorded, because it says what a recorded one says; it
+    /// Counts message `sequence` of this writer, which is not recorded because it equals a recorded one; it
     /// counts as repeated.
     pub fn repeat(&mut self, topic: &str, guid: Guid, sequence: i64) {
         if self.enter(topic, guid, sequence)
@@ -145,7 +67,7 @@ impl Ledger {
         }
     }
 
-    /// Notes that message `sequence` of this writer came and is left out on purpose: it is of no interest to the recording.
+    /// Counts message `sequence` of this writer as received and left out on purpose.
     pub fn leave_out(&mut self, topic: &str, guid: Guid, sequence: i64) {
         if self.enter(topic, guid, sequence)
             && let Some(writer) = self.topics.get_mut(topic).and_then(|writers| writers.get_mut(&guid))
@@ -159,7 +81,7 @@ impl Ledger {
         self.topics.get(topic).and_then(|t| t.get(guid)).is_some_and(|w| w.sequence.holds(sequence))
     }
 
-    /// Enters message `sequence` of this writer; `false` if it is a repeat, which is then counted as one.
+    /// Counts message `sequence` of this writer; `false` if it is a repeat, which is counted as such.
     pub fn enter(&mut self, topic: &str, guid: Guid, sequence: i64) -> bool {
         self.expect(topic);
         match self.topics.get_mut(topic) {
@@ -168,7 +90,7 @@ impl Ledger {
         }
     }
 
-    /// Notes that a writer says it published `count` messages in all. The largest report counts.
+    /// Notes that a writer reports `count` published messages in total. The largest report counts.
     pub fn report(&mut self, topic: &str, guid: Guid, count: u64) {
         self.expect(topic);
         if let Some(writers) = self.topics.get_mut(topic) {
@@ -177,13 +99,13 @@ impl Ledger {
         }
     }
 
-    /// Notes which node a writer belongs to.
+    /// Notes the node of a writer.
     pub fn name(&mut self, guid: Guid, node: &str) {
         self.nodes.insert(guid, node.to_owned());
     }
 
-    /// Messages that writers report as published and that have not come: what a recorder that is about to end
-    /// may still wait for.
+    /// Number of messages reported as published but not received: an ending recorder
+    /// may still wait for them.
     pub fn outstanding(&self) -> u64 {
         let of_interest = |w: &&Writer| w.left_out == 0 || w.left_out < w.sequence.held();
         let of_topic = |(name, writers): (&String, &BTreeMap<Guid, Writer>)| -> u64 {
@@ -196,7 +118,7 @@ impl Ledger {
         self.topics.iter().map(of_topic).sum()
     }
 
-    /// The account, topic by topic in order of name.
+    /// The counts of all topics, sorted by name.
     pub fn tallies(&self) -> Vec<TopicTally> {
         self.topics.iter().map(|(name, writers)| self.tally(name, writers)).collect()
     }
@@ -212,14 +134,14 @@ impl Ledger {
         };
         for (guid, writer) in writers {
             let s = &writer.sequence;
-            // Nothing of it is of interest: what it published before it was heard is not missed.
+            // No message was received: those published before are not counted as lost.
             if writer.left_out > 0 && writer.left_out == s.held() {
                 continue;
             }
             let before = if self.from_first.contains(name) { writer.before_first() } else { 0 };
             let held = s.held();
             let recorded = held - writer.same - writer.left_out;
-            // A report that is lower than what was seen is out of date, not proof of a negative loss.
+            // A report below the highest received number is out of date; it does not mean a negative loss.
             let published = writer.reported.unwrap_or(0).max(s.highest().max(0) as u64).max(held) - before;
             let lost = published.saturating_sub(held);
             let published = published - writer.left_out;

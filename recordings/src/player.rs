@@ -1,9 +1,9 @@
-//! When to send which recorded message: a schedule without a clock or a socket of its own.
+//! The schedule of a playback, without a clock or a socket of its own.
 //!
-//! The caller says what time it is and does as told. Messages keep their order and their distances in log
-//! time. If the caller falls behind, the whole schedule slips, so that topics stay in proportion, and
-//! [`Player::slipped`] says by how much. Playback that starts in the middle begins with the last earlier
-//! message of every latched topic, as a node that joins late would get it.
+//! The caller passes the time and sends what is due. Messages keep their order and their intervals in log
+//! time. If the caller falls behind, the whole schedule is delayed, so that topics stay in proportion, and
+//! [`Player::slipped`] returns the total delay. Playback that starts in the middle begins with the last earlier
+//! message of every latched topic, as a node that joins late would receive it.
 
 use std::collections::VecDeque;
 use std::iter::Peekable;
@@ -12,20 +12,20 @@ use std::time::Duration;
 
 use crate::reader::{ChannelInfo, Message, Messages, ReadError, Recording, Selection};
 
-/// What to play, and how fast.
+/// The selection and rate of a playback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlayOptions {
     /// Names of topics, with or without the leading slash; `None` for all.
     pub topics: Option<Vec<String>>,
     /// Names of topics to leave out of those.
     pub exclude: Vec<String>,
-    /// Recorded seconds per second; positive. Infinity sends as fast as the caller takes.
+    /// Recorded seconds per second; positive. With infinity, messages are due at once.
     pub rate: f64,
     /// Where to start, after the first message of the recording.
     pub start_offset: Duration,
     /// How much to play, in recorded time; `None` to the end.
     pub duration: Option<Duration>,
-    /// Lateness from which the schedule slips instead of catching up.
+    /// Lateness above which the schedule is delayed instead of catching up.
     pub patience: Duration,
 }
 
@@ -42,13 +42,13 @@ impl Default for PlayOptions {
     }
 }
 
-/// Why a recording cannot be played as asked.
+/// Errors of a playback.
 #[derive(Debug, thiserror::Error)]
 pub enum PlayError {
-    /// The recording does not have what was asked for.
+    /// The recording has no such topic.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// A rate that is no rate.
+    /// The rate is not positive.
     #[error("rate {0} is out of range: it must be more than 0 (1 is the speed of the recording)")]
     Rate(f64),
     /// Nothing is left to play.
@@ -61,16 +61,16 @@ pub enum PlayError {
     },
 }
 
-/// What the caller shall do now.
+/// The next action of the caller.
 #[derive(Clone, Debug)]
 pub enum Play {
-    /// Send this message, and ask again.
+    /// Send this message, and poll again.
     Send(Message),
     /// Nothing is due for this long.
     Wait(Duration),
     /// Nothing is due until [`Player::resume`].
     Paused,
-    /// All has been sent.
+    /// All messages have been sent.
     Done,
 }
 
@@ -84,7 +84,7 @@ pub struct Player<'r> {
     paused: bool,
     /// Log time reached at `anchor`, ns since 1970.
     position: u64,
-    /// In the caller's time; `None` before the first question.
+    /// Time of the caller; `None` before the first poll.
     anchor: Option<Duration>,
     slipped: Duration,
 }
@@ -141,7 +141,7 @@ impl<'r> Player<'r> {
         &self.channels
     }
 
-    /// What to do at `now`, a time that only ever grows (since any origin).
+    /// The action at `now`, a time since any origin, which must not decrease.
     pub fn poll(&mut self, now: Duration) -> Play {
         self.anchor.get_or_insert(now);
         if let Some(message) = self.latched.pop_front() {
@@ -165,7 +165,7 @@ impl<'r> Player<'r> {
         self.messages.next().map_or(Play::Done, Play::Send)
     }
 
-    /// Log time (ns since 1970) that playback has reached at `now`: what a `/clock` would say.
+    /// Log time (ns since 1970) that playback has reached at `now`, as for `/clock`.
     pub fn position(&self, now: Duration) -> u64 {
         match self.anchor {
             Some(anchor) if !self.paused && self.rate.is_finite() => {
@@ -182,7 +182,7 @@ impl<'r> Player<'r> {
         self.paused = true;
     }
 
-    /// Goes on after [`Player::pause`].
+    /// Continues after [`Player::pause`].
     pub fn resume(&mut self, now: Duration) {
         self.set_anchor(self.position(now), now);
         self.paused = false;
@@ -204,8 +204,7 @@ impl<'r> Player<'r> {
         Ok(())
     }
 
-    /// How much later than it should be the schedule has become because messages were not taken in time, all
-    /// told.
+    /// Total delay of the schedule because messages were not taken in time.
     pub fn slipped(&self) -> Duration {
         self.slipped
     }

@@ -1,9 +1,9 @@
-//! Finishes the file of a recorder that was killed, so that every tool reads it.
+//! Completes the file of a recorder that was killed, so that every tool reads it.
 //!
-//! What can be read is written again, message by message, with a proper end: bytes, log times, publish times and sequences of
-//! messages, schemas, channels with their metadata, attachments and metadata records stay as they are. Nothing is
-//! made up: a chunk that is damaged is left out and named. The new file is written beside the old one, checked, and
-//! takes its name; the old one stays as `<name>.mcap.orig`. A directory gets a new `metadata.yaml`.
+//! All readable messages are written again, one by one, with a proper end: bytes, log times, publish times and
+//! sequences of messages, schemas, channels with their metadata, attachments and metadata records are unchanged.
+//! Nothing is invented: a damaged chunk is left out and reported. The new file is written beside the old one, checked,
+//! and renamed to it; the old one is kept as `<name>.mcap.orig`. A directory gets a new `metadata.yaml`.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -19,7 +19,7 @@ use crate::writer::is_locked;
 
 mod rewrite;
 
-/// What became of a recording.
+/// The result for a recording.
 #[derive(Clone, Debug, Serialize)]
 pub struct Recovery {
     /// The recording.
@@ -30,16 +30,16 @@ pub struct Recovery {
     pub metadata_written: bool,
 }
 
-/// What became of one file.
+/// The result for one file.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecoveredFile {
     /// The file.
     pub path: PathBuf,
-    /// Messages in it now.
+    /// Number of messages in the new file.
     pub messages: u64,
-    /// Where the file is as it was; `None` if nothing had to be done.
+    /// Path of the original file; `None` if nothing had to be done.
     pub original: Option<PathBuf>,
-    /// What of it could not be read, and is not in the new file.
+    /// Parts that could not be read, and are not in the new file.
     pub unreadable: Vec<Warning>,
 }
 
@@ -49,59 +49,59 @@ impl Recovery {
         self.metadata_written || self.files.iter().any(|f| f.original.is_some())
     }
 
-    /// What of the recording could not be read.
+    /// Parts of the recording that could not be read.
     pub fn unreadable(&self) -> impl Iterator<Item = &Warning> {
         self.files.iter().flat_map(|f| &f.unreadable)
     }
 }
 
-/// Why a recording cannot be recovered. What there was stays as it was.
+/// Errors of a recovery. The recording is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum RecoverError {
     /// It cannot be read at all.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// A recorder is at work on it.
+    /// A recorder is writing it.
     #[error("{path} is being recorded: end the recorder first, it then finishes the file itself")]
     InUse {
         /// The file.
         path: PathBuf,
     },
-    /// It has its proper end, and damage before it: to write it again could only lose more.
+    /// It has its proper end and is damaged: writing it again could only lose more.
     #[error(
-        "{path} is complete but damaged ({first}): nothing was changed; what is left of it is read as it is, `grainlab bag check` names all of the damage"
+        "{path} is complete but damaged ({first}): nothing was changed; its readable part can be used as it is, and `grainlab bag check` lists all damage"
     )]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// The first that is wrong.
+        /// The first error.
         first: Box<Warning>,
     },
-    /// The file system refused.
-    #[error("{path}: cannot {action}: {source}; the recording is as it was")]
+    /// The file system returned an error.
+    #[error("{path}: cannot {action}: {source}; the recording is unchanged")]
     Io {
         /// The file.
         path: PathBuf,
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
-        /// What it said.
+        /// Its error.
         source: io::Error,
     },
-    /// The new file does not hold what it should.
-    #[error("{path}: the new file is not what it should be ({problem}); the recording is as it was")]
+    /// The new file does not equal the original.
+    #[error("{path}: the new file does not equal the original ({problem}); the recording is unchanged")]
     Check {
         /// The new file.
         path: PathBuf,
-        /// What is wrong.
+        /// The difference.
         problem: String,
     },
 }
 
-/// Finishes the file, or all files of the directory, that a killed recorder left without their end. Done a second time,
-/// it changes nothing.
+/// Completes the file, or all files of the directory, that a killed recorder left without their end. A second call
+/// changes nothing.
 ///
 /// # Errors
-/// If a recorder is at work, a complete file is damaged, the file system refuses, or there is no recording.
+/// If a recorder is writing it, a complete file is damaged, the file system fails, or there is no recording.
 pub fn recover(path: &Path) -> Result<Recovery, RecoverError> {
     let recording = Recording::open(path)?;
     let paths = recording.paths();
@@ -180,7 +180,7 @@ fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
     Ok(())
 }
 
-/// The original under another name: a second link to it, so that there is no moment without a recording; where the file
+/// Keeps the original under another name: by a second link, so that a recording exists at any time; where the file
 /// system has no links, it is renamed.
 fn keep(path: &Path) -> io::Result<PathBuf> {
     for n in 0u32.. {
@@ -196,7 +196,7 @@ fn keep(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("no free name"))
 }
 
-/// Whether `metadata.yaml` had to be written: it is missing, or files were recovered, or it does not name all of them.
+/// Writes `metadata.yaml` if it is missing, files were recovered, or it does not list all of them; true if written.
 fn bring_up_to_date(directory: &Path, files: &[RecoveredFile]) -> Result<bool, RecoverError> {
     let recording = Recording::open(directory)?;
     let unlisted = recording.warnings().iter().any(|w| w.kind == WarningKind::Unlisted);

@@ -1,17 +1,17 @@
-//! Where runs land: one directory per run, never used twice.
+//! Run directories: one per run, never used twice.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Where runs land under the current folder.
+/// Folder of the run directories, under the current folder.
 pub const RUNS: &str = "recordings/runs";
 
 /// Makes the next free directory `<root>/<scene>-<seed>-<n>`, n = 1, 2, …, and returns it. Two processes that
-/// ask at once get two directories.
+/// call it at once get two directories.
 ///
 /// # Errors
-/// When a directory cannot be made for any other reason than that it exists.
+/// If a directory cannot be made for another reason than that it exists.
 pub fn create_run_directory(root: &Path, scene: &str, seed: u64) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     for n in 1u64.. {

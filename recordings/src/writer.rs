@@ -1,13 +1,13 @@
-//! A run directory, written so that a crash costs the open chunk at most.
+//! Writes a run directory; a crash loses the open chunk at most.
 //!
 //! The files follow rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation
 //! header, QoS and type hash in the channel's metadata. Chunks are built in memory and written whole, with
-//! their CRC; a chunk that is not empty is closed at the latest after [`WriterOptions::flush_interval`]. So
-//! what is on disk is at every moment a clean prefix, which [`crate::reader`] reads. A file is pushed to the
+//! their CRC; a chunk that is not empty is closed after [`WriterOptions::flush_interval`] at the latest. So
+//! the data on disk are a valid prefix at any time, which the reader can read. A file is synced to the
 //! device about once a second from another thread.
 //!
 //! A long run is split into files `<name>_0.mcap`, `<name>_1.mcap` … as rosbag2 does, since the index of a file is kept
-//! in memory until its end. Each part declares all topics and holds the account so far; log times increase over
+//! in memory until its end. Each part declares all topics and holds the counts so far; log times increase over
 //! all of them.
 
 use std::borrow::Cow;
@@ -21,8 +21,8 @@ use mcap::{Attachment, McapError};
 
 use crate::bag_metadata::{BagMetadata, TopicCount};
 use crate::ledger::{Guid, Ledger};
+use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::Recording;
-use crate::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 
 mod device_sync;
 mod error;
@@ -33,21 +33,21 @@ pub(crate) mod part;
 mod topic_spec;
 
 pub use error::WriteError;
-pub use free_space::free_space;
+pub(crate) use free_space::free_space;
 pub(crate) use names::is_locked;
 use names::{next_number, part_path, session};
 pub use options::WriterOptions;
 use part::Part;
 pub use topic_spec::TopicSpec;
 
-/// A sample as it came from the network.
+/// A sample received from the network.
 #[derive(Clone, Copy, Debug)]
 pub struct Incoming<'a> {
-    /// Who wrote it.
+    /// The writer.
     pub guid: Guid,
     /// RTPS sequence number, counted from 1 by each writer.
     pub sequence: i64,
-    /// Time of writing, ns since 1970; `None` if the writer did not say.
+    /// Source time, ns since 1970, if the writer gave it.
     pub source_time: Option<u64>,
     /// Time of arrival, ns since 1970.
     pub receive_time: u64,
@@ -55,19 +55,19 @@ pub struct Incoming<'a> {
     pub payload: &'a [u8],
 }
 
-/// What became of a sample.
+/// The result for one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is in the recording, at this log time (ns since 1970).
+    /// It was recorded.
     Recorded {
-        /// Strictly increasing over the recording.
+        /// Log time, ns since 1970, strictly increasing over the recording.
         log_time: u64,
     },
     /// It was recorded before: counted, not written again.
     Repeated,
 }
 
-/// What a finished recording is.
+/// The summary of a finished recording.
 #[derive(Clone, Debug)]
 pub struct Finished {
     /// The last MCAP file.
@@ -82,12 +82,12 @@ pub struct Finished {
     pub start: u64,
     /// Last log time, ns since 1970; 0 without messages.
     pub end: u64,
-    /// The account.
+    /// The counts of all topics.
     pub ledger: Ledger,
 }
 
 /// Writes one run. Call [`RunWriter::tick`] at least every 100 ms and [`RunWriter::finish`] at the end; a
-/// writer that is dropped instead finishes its file as well as it can and marks it `finished = false`.
+/// writer that is dropped instead completes its file if possible and marks it `finished = false`.
 pub struct RunWriter {
     directory: PathBuf,
     name: String,
@@ -110,15 +110,15 @@ pub struct RunWriter {
     bounds: Option<(u64, u64)>,
     /// Last log time of all.
     last: Option<u64>,
-    /// Since when an unwritten message waits.
+    /// Time of the oldest unwritten message.
     pending: Option<Instant>,
-    /// Payload bytes since free space was last looked at.
+    /// Payload bytes since the last check of free space.
     unchecked: u64,
     ended: Option<String>,
     metadata: BTreeMap<String, String>,
 }
 
-/// Payload bytes after which free space is looked at again, whatever the clock says.
+/// Payload bytes after which free space is checked again, whatever the time.
 const CHECK_EVERY: u64 = 1 << 20;
 
 impl RunWriter {
@@ -126,7 +126,7 @@ impl RunWriter {
     /// `name` should be the directory's own name.
     ///
     /// # Errors
-    /// If the file exists, space is short, or the file system refuses.
+    /// If the file exists, space is short, or the file system fails.
     pub fn create(
         directory: &Path,
         name: &str,

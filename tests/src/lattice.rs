@@ -49,6 +49,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
         spins: vec![Vec3::zeros(); grains],
         contacts,
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 1e-8,
     };

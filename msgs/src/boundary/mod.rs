@@ -69,6 +69,9 @@ pub enum BoundaryError {
         /// Those agreed on.
         allowed: &'static str,
     },
+    /// The contact law is unknown, or its parameters are invalid.
+    #[error("Packing.contact_law is refused: {0}")]
+    ContactLaw(#[from] grainlab_core::contact::UnknownLaw),
     /// An array of the wrong length.
     #[error("{message}.{field} has {found} entries and is refused: it must have {expected} ({reason})")]
     Length {

@@ -4,6 +4,7 @@ use super::BoundaryError;
 use super::check::{Check, header};
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const CHECK: Check = Check("Packing");
@@ -32,6 +33,8 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
         shear_modulus: packing.material.shear_modulus,
         poisson_ratio: packing.material.poisson_ratio,
         density: packing.material.density,
+        contact_law: packing.law.name().to_owned(),
+        contact_law_parameters: packing.law.parameters(),
         friction: packing.friction,
         time_step: packing.time_step,
         run_state,
@@ -76,6 +79,7 @@ impl TryFrom<&msg::Packing> for Packing {
                 poisson_ratio: m.poisson_ratio,
                 density: m.density,
             },
+            law: ContactLaw::new(&m.contact_law, &m.contact_law_parameters)?,
             friction: m.friction,
             time_step: m.time_step,
         };

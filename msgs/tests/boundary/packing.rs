@@ -69,6 +69,7 @@ prop_compose! {
         let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
         Packing {
             step, time, time_step, deformation, friction, cell, material,
+            law: Default::default(),
             ids: (0..grains.len() as u32).map(|k| first.wrapping_add(k)).collect(),
             radii: grains.iter().map(|g| g.0).collect(),
             positions: grains.iter().map(|g| g.1).collect(),
@@ -133,6 +134,7 @@ fn pair() -> msg::Packing {
             tangential_force: Vec3::zeros(),
         }],
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.1,
         time_step: 1e-8,
     };
@@ -195,7 +197,7 @@ fn each_fault_of_a_packing_is_refused_by_name() {
             ),
             (
                 |m| m.contact_normal_force[0] = 1e12,
-                "Packing is refused: normal force (N), at most a hundred times Hertz's, of contact 0",
+                "Packing is refused: normal force (N), at most a hundred times that of the contact law, of contact 0",
             ),
             (
                 |m| m.contact_tangential_force[1] = INF,

@@ -118,7 +118,7 @@ fn waveform(
         source_step,
         method: trace.method,
         direction: trace.direction,
-        polarization: trace.motion,
+        polarization: trace.polarization,
         frequency: trace.frequency,
         sample_rate: trace.sample_rate,
         start: trace.start,

@@ -1,6 +1,6 @@
 //! What can be set.
 
-use grainlab_acoustics::{Instrument, dispersion, flight};
+use grainlab_acoustics::{Instrument, dispersion, time_of_flight};
 use grainlab_node_kit::{ParameterSpec, Range};
 
 /// The parameters of the node.
@@ -47,7 +47,7 @@ fn rays() -> Vec<ParameterSpec> {
 /// How they are sent.
 fn ways() -> Vec<ParameterSpec> {
     let dispersion = dispersion::Settings::default();
-    let flight = flight::Settings::default();
+    let flight = time_of_flight::Settings::default();
     let strain = Range::Double { min: 0.0, max: 1e-2 };
     vec![
         ParameterSpec::new(

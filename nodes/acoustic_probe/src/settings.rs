@@ -1,7 +1,9 @@
 //! The parameters, typed.
 
-use grainlab_acoustics::flight::Pick;
-use grainlab_acoustics::{Instrument, Modes, Survey, Way, dispersion, flight, standing};
+use grainlab_acoustics::time_of_flight::ArrivalPick;
+use grainlab_acoustics::{
+    Instrument, MethodSettings, Modes, Survey, dispersion, standing_wave, time_of_flight,
+};
 use grainlab_core::Vec3;
 use grainlab_node_kit::Parameters;
 
@@ -35,12 +37,12 @@ impl TryFrom<&Parameters> for Settings {
     fn try_from(parameters: &Parameters) -> Result<Self, SettingsError> {
         let text = |name| parameters.get::<String>(name);
         Ok(Self(grainlab_acoustics::Settings {
-            way: way(parameters)?,
+            method: method(parameters)?,
             axis: axis(&text("axis"))?,
             survey: match text("survey").as_str() {
-                "three" => Survey::Three,
-                "everywhere" => Survey::Everywhere,
-                _ => Survey::Complete,
+                "three" => Survey::Minimal,
+                "everywhere" => Survey::Hemisphere,
+                _ => Survey::AzimuthalAverage,
             },
             modes: match text("modes").as_str() {
                 "compression" => Modes::Compression,
@@ -64,7 +66,7 @@ fn count(parameters: &Parameters, name: &str) -> u32 {
     u32::try_from(parameters.get::<i64>(name)).unwrap_or(u32::MAX)
 }
 
-fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
+fn method(parameters: &Parameters) -> Result<MethodSettings, SettingsError> {
     let copies = Some(count(parameters, "copies")).filter(|n| *n > 0);
     let amplitude = Some(parameters.get("amplitude")).filter(|strain| *strain > 0.0);
     let friction = Some(parameters.get("wave_friction")).filter(|mu| *mu >= 0.0);
@@ -74,31 +76,31 @@ fn way(parameters: &Parameters) -> Result<Way, SettingsError> {
             if wavelengths.len() < 3 {
                 return Err(SettingsError::Wavelengths(wavelengths.len()));
             }
-            return Ok(Way::Dispersion(dispersion::Settings {
+            return Ok(MethodSettings::Dispersion(dispersion::Settings {
                 wavelengths,
                 tolerance: parameters.get("tolerance"),
                 max_iterations: count(parameters, "max_iterations"),
             }));
         }
         "standing_wave" => {
-            let default = standing::Settings::default();
+            let default = standing_wave::Settings::default();
             let copies = copies.unwrap_or(default.copies);
-            if copies < standing::FEWEST_COPIES {
+            if copies < standing_wave::MIN_COPIES {
                 return Err(SettingsError::Copies(copies));
             }
-            return Ok(Way::Standing(standing::Settings {
+            return Ok(MethodSettings::StandingWave(standing_wave::Settings {
                 copies,
                 amplitude: amplitude.unwrap_or(default.amplitude),
                 friction,
                 ..default
             }));
         }
-        "first_arrival" => Pick::FirstArrival,
-        "peak" => Pick::Peak,
-        _ => Pick::CrossCorrelation,
+        "first_arrival" => ArrivalPick::FirstArrival,
+        "peak" => ArrivalPick::Peak,
+        _ => ArrivalPick::CrossCorrelation,
     };
-    let default = flight::Settings::default();
-    Ok(Way::Flight(flight::Settings {
+    let default = time_of_flight::Settings::default();
+    Ok(MethodSettings::TimeOfFlight(time_of_flight::Settings {
         frequencies: Some(parameters.get::<Vec<f64>>("frequencies")).filter(|f| !f.is_empty()),
         cycles: parameters.get("cycles"),
         copies,

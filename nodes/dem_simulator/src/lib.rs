@@ -1,22 +1,23 @@
-//! The simulator node: owns the run, publishes stress and packings, obeys strain rates.
+//! The simulator node: advances the run, publishes stress and packings, applies strain rates.
 //!
-//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
+//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`DemSimulator`]: the node; `start`: before its first request; `exchange`: after it
-//! - `barrier`: the lockstep, one request and its answer; `ahead`: what is computed while the answer is on its way
-//! - `outbox`: messages in their order, none lost where a reader is behind
-//! - `rivals`: other simulators on the same topics
-//! - `messages`: from the run to messages
+//! - `lockstep`: one request, its repetitions and its answer; `question`: which answers a request allows
+//! - `speculative_step`: computing while the answer is in transit
+//! - `send_queue`: messages in order, none lost if a reader is behind
+//! - `duplicate_simulators`: other simulators on the same topics; `partner`: the servo of the run
+//! - `messages`: messages of the run
 
-mod ahead;
-mod barrier;
+mod duplicate_simulators;
 mod exchange;
+mod lockstep;
 mod messages;
 mod node;
-mod outbox;
 mod partner;
 mod question;
-mod rivals;
+mod send_queue;
 mod settings;
+mod speculative_step;
 mod start;
 
 pub use node::{DemSimulator, SimulatorError};

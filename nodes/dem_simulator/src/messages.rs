@@ -1,7 +1,7 @@
-//! From the run to messages. Only simulated time is in any of them.
+//! The messages of a run. All their times are simulated time.
 
 use grainlab_core::PackingError;
-use grainlab_dem::{Request, Simulation};
+use grainlab_experiment::{ServoRequest, Simulation};
 use grainlab_msgs::boundary::{BoundaryError, StressRequest, packing_message};
 use grainlab_msgs::geometry_msgs::{Quaternion, Transform, TransformStamped};
 use grainlab_msgs::rosgraph_msgs::Clock;
@@ -12,8 +12,8 @@ use grainlab_msgs::{msg, stamp};
 /// Frame of everything measured in the cell.
 const FRAME: &str = "cell";
 
-pub(crate) fn stress(request: &Request) -> Result<msg::Stress, BoundaryError> {
-    let seen = &request.snapshot;
+pub(crate) fn stress(request: &ServoRequest) -> Result<msg::Stress, BoundaryError> {
+    let seen = &request.observables;
     msg::Stress::try_from(&StressRequest {
         sequence: request.sequence,
         step: request.step,
@@ -65,7 +65,7 @@ pub(crate) fn clock(run: &Simulation) -> Clock {
     Clock { clock: stamp(run.engine().time()) }
 }
 
-/// The frame of the cell rests in the world: what a viewer needs to show anything.
+/// The cell's frame is at rest in the world frame; viewers need this transform.
 pub(crate) fn frames() -> TFMessage {
     let rotation = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 };
     let rest = TransformStamped {

@@ -1,18 +1,19 @@
 //! The node.
 
-use crate::ahead::{self, Ahead};
-use crate::barrier::Barrier;
+use crate::duplicate_simulators::DuplicateSimulators;
+use crate::lockstep::Lockstep;
 use crate::messages::{self, Packings};
-use crate::outbox::Outbox;
 use crate::partner::Partner;
-use crate::rivals::Rivals;
+use crate::send_queue::SendQueue;
 use crate::settings::{Mode, Settings};
-use grainlab_dem::{ComputeError, DemError, Simulation};
+use crate::speculative_step::{self, SpeculativeStep};
+use grainlab_dem::ComputeError;
+use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::rosgraph_msgs::Clock;
 use grainlab_msgs::tf2_msgs::TFMessage;
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::admission::Participant;
+use grainlab_node_kit::Participant;
 use grainlab_node_kit::{
     BulkPublisher, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription,
 };
@@ -23,40 +24,40 @@ use std::time::Duration;
 pub(crate) const BEAT: Duration = Duration::from_secs(1);
 /// Least period of `/clock`, wall time.
 const CLOCK_PERIOD: Duration = Duration::from_millis(10);
-/// How often a run that waits says what it waits for.
+/// Period of the log message of a run that waits.
 pub(crate) const NOTICE_PERIOD: Duration = Duration::from_secs(5);
-/// How long an outbox that a slow reader holds up rests.
+/// Pause before the next attempt while a slow reader holds up the send queue.
 pub(crate) const HOLD: Duration = Duration::from_millis(5);
-/// How long the delivery of a state that is saved may take: less than the launcher's patience.
+/// Time limit for the delivery of a saved state: less than the launcher waits before it kills a process.
 const SAVING: Duration = Duration::from_secs(4);
-/// How long the last messages may take to be acknowledged.
+/// Time limit for the acknowledgement of the last messages.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Why there is no simulator.
+/// Errors at the start of a simulator.
 #[derive(Debug, thiserror::Error)]
 pub enum SimulatorError {
-    /// The scene cannot be set up, or the packing is no state of it.
+    /// The scene is invalid, or the packing is not a state of it.
     #[error(transparent)]
-    Dem(#[from] DemError),
-    /// The processor cannot do what it was told to.
+    Run(#[from] ExperimentError),
+    /// The processor does not support the compute settings.
     #[error(transparent)]
     Compute(#[from] ComputeError),
-    /// The topics cannot be had.
+    /// A topic cannot be opened.
     #[error(transparent)]
     Bus(#[from] BusError),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
-    /// Looks for rivals, readers and a servo.
+    /// Looks for other simulators, readers and a servo.
     Starting,
-    /// Asks and obeys.
+    /// Sends requests and applies the answers.
     Running,
-    /// The loading path is done.
+    /// The loading path is complete.
     Finished,
 }
 
-/// The simulator: owns the run and moves only when it is answered.
+/// The simulator: owns the run and advances it only with an answer of the servo.
 pub struct DemSimulator {
     pub(crate) run: Simulation,
     pub(crate) settings: Settings,
@@ -66,25 +67,25 @@ pub struct DemSimulator {
     pub(crate) strain_rate: Subscription<StrainRate>,
     pub(crate) run_states: Subscription<RunState>,
     pub(crate) stage: Stage,
-    pub(crate) rivals: Rivals,
+    pub(crate) duplicates: DuplicateSimulators,
     pub(crate) participant: Participant,
-    pub(crate) barrier: Barrier,
+    pub(crate) lockstep: Lockstep,
     pub(crate) partner: Partner,
-    /// The run as it will be if the answer is the one that the law gives.
-    pub(crate) ahead: Option<Ahead>,
-    /// Whether that is computed: not any more once a servo has answered otherwise.
-    pub(crate) looks_ahead: bool,
-    /// Answers that came as they were computed with.
+    /// The run after the next steps if the answer is the one that the law gives.
+    pub(crate) speculative: Option<SpeculativeStep>,
+    /// Whether speculative steps are computed: not any more once a servo has answered otherwise.
+    pub(crate) speculates: bool,
+    /// Answers that equal the one a speculative step was computed with.
     pub(crate) foreseen: u64,
-    pub(crate) outbox: Outbox,
+    pub(crate) send_queue: SendQueue,
     pub(crate) packings: Packings,
-    /// The packing that the run goes on from, until it is published again for those who missed it.
+    /// Whether the packing that the run resumes from is still to be published.
     pub(crate) resumed: bool,
     pub(crate) born: Duration,
     pub(crate) began: Duration,
     pub(crate) first_step: u64,
     pub(crate) computing: Duration,
-    /// From the first request to the latest answer obeyed.
+    /// Wall time from the first request to the latest applied answer.
     pub(crate) wall: Duration,
     pub(crate) next_beat: Duration,
     pub(crate) next_clock: Duration,
@@ -92,7 +93,8 @@ pub struct DemSimulator {
 }
 
 impl DemSimulator {
-    /// A simulator at the beginning of `scene`, or where `resume` was published: a packing and the run state in it.
+    /// A simulator at the beginning of `scene`, or at the state of `resume`: a packing and its run state. A scene that
+    /// starts from a packing begins with `resume`, whose run state is then empty.
     pub fn new(
         bus: &mut dyn Bus,
         scene: Scene,
@@ -100,6 +102,9 @@ impl DemSimulator {
         settings: Settings,
     ) -> Result<Self, SimulatorError> {
         let (mut run, packings) = match &resume {
+            Some((packing, state)) if state.is_empty() && scene.start.is_some() => {
+                (Simulation::from_packing(scene, packing)?, Packings { last_step: 0, count: 1 })
+            }
             Some((packing, state)) => {
                 let run = Simulation::resume(scene, packing, state)?;
                 let count = u32::try_from(run.packings()).unwrap_or(u32::MAX);
@@ -114,7 +119,8 @@ impl DemSimulator {
         let clock = Publisher::advertise(bus, &topics::CLOCK)?;
         let frames: Publisher<TFMessage> = Publisher::advertise(bus, &topics::TF_STATIC)?;
         let strain_rate = Subscription::subscribe(bus, &topics::STRAIN_RATE, Demand::best_effort(64))?;
-        // A rival says it again every second; a reliable reader of our own topic might fill our own window.
+        // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own
+        // window.
         let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
         frames.publish(bus, &messages::frames())?;
         let own_stress = bus.published().first().map(|p| p.writer).unwrap_or_default();
@@ -126,16 +132,16 @@ impl DemSimulator {
             strain_rate,
             run_states,
             stage: Stage::Starting,
-            rivals: Rivals::new(own_stress.participant()),
+            duplicates: DuplicateSimulators::new(own_stress.participant()),
             participant: own_stress.participant(),
-            barrier: Barrier::new(&settings),
+            lockstep: Lockstep::new(&settings),
             partner: Partner::new(own_stress),
-            ahead: None,
-            looks_ahead: settings.ahead
+            speculative: None,
+            speculates: settings.ahead
                 && settings.mode == Mode::Lockstep
-                && run.scene().grains <= ahead::GRAINS,
+                && run.scene().grains <= speculative_step::GRAINS,
             foreseen: 0,
-            outbox: Outbox::new(packing),
+            send_queue: SendQueue::new(packing),
             packings,
             resumed: resume.is_some(),
             born: now,
@@ -151,22 +157,22 @@ impl DemSimulator {
         })
     }
 
-    pub(crate) fn post_run_state(&mut self, state: u8, text: &str) {
+    pub(crate) fn publish_run_state(&mut self, state: u8, text: &str) {
         let message = messages::run_state(&self.run, state, self.packings, text);
-        self.outbox.post_state(self.run_state.id(), to_cdr(&message));
+        self.send_queue.push_state(self.run_state.id(), to_cdr(&message));
     }
 
-    /// The packing as it is now, once.
-    pub(crate) fn post_packing(&mut self) -> Result<(), grainlab_core::PackingError> {
+    /// Publishes the current packing.
+    pub(crate) fn publish_packing(&mut self) -> Result<(), grainlab_core::PackingError> {
         let message = messages::packing(&self.run)?;
         self.packings = Packings { last_step: message.step, count: self.packings.count.saturating_add(1) };
-        self.outbox.post_packing(to_cdr(&message));
+        self.send_queue.push_packing(to_cdr(&message));
         Ok(())
     }
 
-    /// Progress once a second, simulated time at most every hundredth.
+    /// Publishes the progress once a second and the simulated time at most every 10 ms.
     fn beat(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
-        // Not before the run begins: who waits for readers would say it to nobody.
+        // Not before the run begins: while it waits for readers, nobody would receive it.
         if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
             self.clock.publish(bus, &messages::clock(&self.run))?;
@@ -174,12 +180,13 @@ impl DemSimulator {
         if now >= self.next_beat {
             self.next_beat = now + BEAT;
             let state = if self.stage == Stage::Finished { RunState::FINISHED } else { RunState::RUNNING };
-            self.post_run_state(state, if self.stage == Stage::Starting { "starting" } else { "" });
+            let left_out = self.run.left_out();
+            self.publish_run_state(state, &left_out);
         }
         Ok(())
     }
 
-    /// Whether it is time to say again what is waited for.
+    /// Whether the log message of a run that waits is due.
     pub(crate) fn notice_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_notice;
         if due {
@@ -188,7 +195,7 @@ impl DemSimulator {
         due
     }
 
-    /// Saves the last finite state and ends. A failing run is back there by itself.
+    /// Saves the last finite state and ends. A failed run has returned to that state already.
     pub(crate) fn fail(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<Next, NodeError> {
         let step = self.run.engine().steps();
         let saved = match self.save(bus, reason) {
@@ -199,24 +206,24 @@ impl DemSimulator {
     }
 
     fn save(&mut self, bus: &mut dyn Bus, reason: &str) -> Result<(), BusError> {
-        if let Err(error) = self.post_packing() {
+        if let Err(error) = self.publish_packing() {
             log::error!("the state cannot be saved: {error}");
         }
-        self.post_run_state(RunState::FAILED, reason);
-        // Whoever lives has a packing before this one after half the time.
-        for hurry in [false, true] {
-            if hurry && !self.outbox.is_empty() {
-                self.outbox.hurry(bus)?;
+        self.publish_run_state(RunState::FAILED, reason);
+        // After half the time, every running reader has received the packing before this one.
+        for flush in [false, true] {
+            if flush && !self.send_queue.is_empty() {
+                self.send_queue.flush(bus)?;
             }
             let until = bus.now() + SAVING / 2;
-            self.outbox.deliver(bus)?;
-            while !self.outbox.is_empty() && bus.now() < until {
+            self.send_queue.deliver(bus)?;
+            while !self.send_queue.is_empty() && bus.now() < until {
                 bus.wait(HOLD);
-                self.outbox.deliver(bus)?;
+                self.send_queue.deliver(bus)?;
             }
         }
-        if !self.outbox.is_empty() {
-            let lacking = self.outbox.packings().waited_for();
+        if !self.send_queue.is_empty() {
+            let lacking = self.send_queue.packings().waited_for();
             log::warn!("{lacking} readers do not have the whole last packing after {} s", SAVING.as_secs());
         }
         self.farewell(bus);
@@ -233,12 +240,12 @@ impl DemSimulator {
 impl Node for DemSimulator {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         let now = bus.now();
-        self.hear_rivals(bus, now)?;
-        if let Some(reason) = self.hear_answers(bus, now)? {
+        self.receive_run_states(bus, now)?;
+        if let Some(reason) = self.receive_answers(bus, now)? {
             return self.fail(bus, &reason);
         }
         self.beat(bus, now)?;
-        if !self.outbox.deliver(bus)? {
+        if !self.send_queue.deliver(bus)? {
             return Ok(Next::Wait(HOLD));
         }
         let next = match self.stage {
@@ -247,8 +254,10 @@ impl Node for DemSimulator {
             Stage::Finished => self.rest(bus),
         }?;
         Ok(match next {
-            // What a reader says ends a wait by itself; what it does not say has to be noticed.
-            Next::Wait(time) if self.outbox.is_under_way() => Next::Wait(time.min(BulkPublisher::patience())),
+            // A message of a reader ends a wait by itself; its absence is found at the end of this time.
+            Next::Wait(time) if self.send_queue.is_under_way() => {
+                Next::Wait(time.min(BulkPublisher::patience()))
+            }
             next => next,
         })
     }
@@ -256,7 +265,7 @@ impl Node for DemSimulator {
     fn health(&self) -> Health {
         let phase = self.run.path().phase(self.run.scene()).map_or("none", |p| p.name.as_str());
         let (counts, steps) =
-            (self.barrier.counts, self.run.engine().steps().saturating_sub(self.first_step));
+            (self.lockstep.counts, self.run.engine().steps().saturating_sub(self.first_step));
         let computing = self.computing.as_secs_f64();
         let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
         let message = match self.stage {
@@ -275,9 +284,9 @@ impl Node for DemSimulator {
             .with("stale", counts.stale)
             .with("contradictions", counts.contradictions)
             .with("other_servos", self.partner.ignored())
-            .with("held_up", self.outbox.held_up())
+            .with("held_up", self.send_queue.held_up())
             .with("packings", self.packings.count)
-            .with("readers_left_behind", self.outbox.packings().left_behind())
+            .with("readers_left_behind", self.send_queue.packings().left_behind())
             .with("waiting_s", counts.waiting.as_secs_f64())
             .with("computing_s", computing)
             .with("wall_s", self.wall.as_secs_f64())

@@ -1,14 +1,12 @@
-//! Which servo the run stays with.
+//! The servo of the run.
 
-use grainlab_node_kit::admission::Participant;
-use grainlab_node_kit::identity::{member_of, run_of};
-use grainlab_node_kit::{SampleInfo, WriterId};
+use grainlab_node_kit::{Participant, SampleInfo, WriterId, member_of, run_of};
 use std::collections::BTreeSet;
 
-/// Servos that are named one by one.
+/// Maximum number of other servos that are logged.
 const NAMED: usize = 64;
 
-/// The servo that answered first, until it is gone.
+/// The servo of the run: the first one that answered, until it is gone.
 #[derive(Debug)]
 pub(crate) struct Partner {
     /// Our writer of requests.
@@ -18,26 +16,26 @@ pub(crate) struct Partner {
     ignored: u64,
 }
 
-/// Whose answer it is.
+/// Where an answer comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Whose {
-    /// Of the servo that the run stays with.
+pub(crate) enum AnswerSource {
+    /// The servo of the run.
     Ours,
-    /// Of the one that takes its place from now on.
+    /// A servo that replaces it.
     Successor,
-    /// To the request of another simulator.
+    /// An answer to another simulator.
     AnotherRun,
-    /// Of another servo, while the first is there; `new` the first time that one is heard.
+    /// Another servo, while that of the run is present; `new` at its first answer.
     Another { new: bool },
 }
 
-/// Whether two participants are one process of a launched run, before and after a restart.
+/// Whether two participants are the same process of a launched run, before and after a restart.
 pub(crate) fn same_member(a: &Participant, b: &Participant) -> bool {
     run_of(a).is_some() && run_of(a) == run_of(b) && member_of(a) == member_of(b)
 }
 
-/// Whether `b` is the restarted process of `a`. Only a launcher gives a process a place in its run (member 1 to 254). Without
-/// one, two simulators are always taken for two processes.
+/// Whether `b` is the restarted process of `a`. Only processes of a launcher have a member number (1 to 254); without
+/// one, two simulators are always two processes.
 pub(crate) fn predecessor(a: &Participant, b: &Participant) -> bool {
     same_member(a, b) && member_of(b) != 0
 }
@@ -57,36 +55,36 @@ pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
 }
 
 impl Partner {
-    /// For a simulator that asks by this writer of stress.
+    /// For a simulator with this writer of stress.
     pub(crate) fn new(stress: WriterId) -> Self {
         Self { stress, current: None, named: BTreeSet::new(), ignored: 0 }
     }
 
-    /// Judges an answer; `present` tells the writers of answers that are there.
-    pub(crate) fn judge(&mut self, info: &SampleInfo, present: impl Fn() -> Vec<WriterId>) -> Whose {
+    /// The source of an answer; `present` returns the writers of answers in the graph.
+    pub(crate) fn judge(&mut self, info: &SampleInfo, present: impl Fn() -> Vec<WriterId>) -> AnswerSource {
         if info.about.is_some_and(|asked| asked.writer != self.stress) {
-            return Whose::AnotherRun;
+            return AnswerSource::AnotherRun;
         }
         let heard = info.writer.participant();
-        let Some(current) = self.current else { return Whose::Successor };
+        let Some(current) = self.current else { return AnswerSource::Successor };
         if current == heard {
-            return Whose::Ours;
+            return AnswerSource::Ours;
         }
         let gone = || !present().iter().any(|w| w.participant() == current);
         if same_member(&current, &heard) || gone() {
-            return Whose::Successor;
+            return AnswerSource::Successor;
         }
         self.ignored += 1;
-        Whose::Another { new: self.named.len() < NAMED && self.named.insert(heard) }
+        AnswerSource::Another { new: self.named.len() < NAMED && self.named.insert(heard) }
     }
 
-    /// The run stays with this servo from now on; true if another one was there before.
+    /// Makes this the servo of the run; true if another one was before.
     pub(crate) fn stay_with(&mut self, writer: WriterId) -> bool {
         let heard = writer.participant();
         self.current.replace(heard).is_some_and(|before| before != heard)
     }
 
-    /// Answers of other servos.
+    /// Number of ignored answers of other servos.
     pub(crate) fn ignored(&self) -> u64 {
         self.ignored
     }
@@ -113,12 +111,18 @@ mod tests {
     fn the_run_stays_with_the_first_servo_until_that_one_is_gone() {
         let (first, second) = (writer([1; 12]), writer([2; 12]));
         let mut partner = Partner::new(STRESS);
-        assert_eq!(partner.judge(&answer(first), || vec![first, second]), Whose::Successor);
+        assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Successor);
         assert!(!partner.stay_with(first));
-        assert_eq!(partner.judge(&answer(second), || vec![first, second]), Whose::Another { new: true });
-        assert_eq!(partner.judge(&answer(second), || vec![first, second]), Whose::Another { new: false });
-        assert_eq!(partner.judge(&answer(first), || vec![first, second]), Whose::Ours);
-        assert_eq!(partner.judge(&answer(second), || vec![second]), Whose::Successor);
+        assert_eq!(
+            partner.judge(&answer(second), || vec![first, second]),
+            AnswerSource::Another { new: true }
+        );
+        assert_eq!(
+            partner.judge(&answer(second), || vec![first, second]),
+            AnswerSource::Another { new: false }
+        );
+        assert_eq!(partner.judge(&answer(first), || vec![first, second]), AnswerSource::Ours);
+        assert_eq!(partner.judge(&answer(second), || vec![second]), AnswerSource::Successor);
         assert!(partner.stay_with(second));
         assert_eq!(partner.ignored(), 2);
     }
@@ -129,7 +133,7 @@ mod tests {
         let (before, after) = (writer(servo.guid_prefix()), writer(servo.guid_prefix()));
         let mut partner = Partner::new(STRESS);
         partner.stay_with(before);
-        assert_eq!(partner.judge(&answer(after), || vec![before, after]), Whose::Successor);
+        assert_eq!(partner.judge(&answer(after), || vec![before, after]), AnswerSource::Successor);
         assert_eq!(different(&[before, after]).len(), 1);
         assert_eq!(different(&[writer([1; 12]), writer([2; 12])]).len(), 2);
     }
@@ -140,8 +144,8 @@ mod tests {
         let about = |writer| Some(SampleId { writer, sequence: 5 });
         let mut partner = Partner::new(STRESS);
         let elsewhere = SampleInfo { about: about(WriterId([8; 16])), ..answer(servo) };
-        assert_eq!(partner.judge(&elsewhere, || vec![servo]), Whose::AnotherRun);
+        assert_eq!(partner.judge(&elsewhere, || vec![servo]), AnswerSource::AnotherRun);
         let here = SampleInfo { about: about(STRESS), ..answer(servo) };
-        assert_eq!(partner.judge(&here, || vec![servo]), Whose::Successor);
+        assert_eq!(partner.judge(&here, || vec![servo]), AnswerSource::Successor);
     }
 }

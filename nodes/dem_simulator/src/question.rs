@@ -1,28 +1,25 @@
-//! What a request asks, and which answers it allows.
+//! A request, and the answers that it allows.
 
-use grainlab_core::ComponentControl;
-use grainlab_dem::Request;
+use grainlab_core::{ComponentControl, SymTensor};
+use grainlab_experiment::ServoRequest;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
-
-/// Names of the components, in Voigt order.
-const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// Rounding that a servo in another language may add, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// One request, as far as its answer is held against it.
+/// The part of a request against which its answer is checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Question {
     pub(crate) sequence: u64,
     pub(crate) stamp: Time,
-    /// What is imposed on each component, Voigt order.
+    /// Control of each component, Voigt order.
     pub(crate) controls: [ComponentControl; 6],
     /// Largest magnitude of a component of the answer, 1/s.
     pub(crate) rate_limit: f64,
 }
 
-/// An answer that does what its request forbids.
+/// An answer that its request does not allow.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Violation {
     #[error("rate {component} = {found} 1/s is beyond the rate limit of the request, {limit} 1/s")]
@@ -32,8 +29,8 @@ pub(crate) enum Violation {
 }
 
 impl Question {
-    /// What `request` asks.
-    pub(crate) fn of(request: &Request) -> Self {
+    /// Of a request.
+    pub(crate) fn of(request: &ServoRequest) -> Self {
         Self {
             sequence: request.sequence,
             stamp: stamp(request.time),
@@ -42,11 +39,12 @@ impl Question {
         }
     }
 
-    /// Whether these rates, 1/s, may be obeyed: none beyond the limit, none but zero where a component is held, and the
-    /// rate imposed where one is. Only a component with a stress target is the servo's to choose.
+    /// Whether these rates, 1/s, are allowed: within the limit, zero where a component is held, and equal to an imposed
+    /// rate. The servo chooses only the rates of components with a stress target.
     pub(crate) fn check(&self, rate: &[f64; 6]) -> Result<(), Violation> {
         let limit = self.rate_limit;
-        for ((component, control), found) in COMPONENTS.into_iter().zip(&self.controls).zip(*rate) {
+        for ((component, control), found) in SymTensor::COMPONENTS.into_iter().zip(&self.controls).zip(*rate)
+        {
             if found.abs() > limit * (1.0 + ROUNDING) {
                 return Err(Violation::Limit { component, found, limit });
             }

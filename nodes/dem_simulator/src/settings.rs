@@ -1,4 +1,4 @@
-//! What can be set.
+//! The parameters of the node.
 
 use grainlab_dem::{Compute, ComputeError, Simd};
 use grainlab_msgs::{Topic, topics};
@@ -6,13 +6,13 @@ use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
-/// How the run and the servo are tied together.
+/// How the run is coupled to the servo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// Every request waits for its own answer: a run is a pure function of scene and seed.
     Lockstep,
-    /// The run goes on with the latest answer, as hardware does; it depends on timing. It waits only where the latest
-    /// answer is this many requests old, so that a dead servo stops it.
+    /// The run uses the latest answer, as hardware does; it depends on timing. It waits only where the latest answer is
+    /// older than `lag` requests, so that a failed servo stops it.
     FreeRun {
         /// Requests that may be ahead of the latest answer.
         lag: u64,
@@ -29,7 +29,7 @@ impl Mode {
     }
 }
 
-/// Topics of ours that a run may wait for readers of.
+/// Topics of the simulator that `wait_for` may name.
 const AWAITED: [Topic; 4] = [topics::STRESS, topics::PACKING, topics::RUN_STATE, topics::CLOCK];
 
 /// The parameters of the node; scene and packing to resume from come as values.
@@ -94,13 +94,13 @@ pub fn parameters() -> Vec<ParameterSpec> {
 /// The parameters, typed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// How the run and the servo are tied together.
+    /// How the run is coupled to the servo.
     pub mode: Mode,
     /// Time to look for another simulator before the first request.
     pub look_around: Duration,
     /// Time after which a request without answer is published again.
     pub resend_after: Duration,
-    /// Longest time between repetitions; they grow apart by factors of two.
+    /// Longest time between repetitions; it doubles at each repetition.
     pub resend_at_most: Duration,
     /// Topics that need readers before the run starts.
     pub wait_for: Vec<Topic>,
@@ -119,10 +119,10 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What a run of so many grains is computed with.
+    /// The compute settings of a run of `grains` grains.
     pub(crate) fn compute(&self, grains: usize) -> Result<Compute, ComputeError> {
         let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let threads = self.threads.map_or(Compute::threads_that_pay(grains, cores), NonZeroUsize::get);
+        let threads = self.threads.map_or(Compute::useful_threads(grains, cores), NonZeroUsize::get);
         Compute::new(self.simd.unwrap_or_else(Simd::best), threads)
     }
 }

@@ -1,29 +1,30 @@
-//! Before the first request: is another simulator there, are the readers there, is there a servo?
+//! The checks before the first request: no other simulator, enough readers, one servo.
 
 use crate::DemSimulator;
+use crate::duplicate_simulators::Verdict;
 use crate::messages;
 use crate::node::Stage;
 use crate::partner::{different, predecessor};
-use crate::rivals::Verdict;
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, BusError, Exit, Next, NodeError};
 use std::time::Duration;
 
-/// How often a start that waits looks again.
+/// Period at which a waiting start checks again.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
 
-/// A crashed servo stays in the graph until its lease ends, within a minute. Two that are there for longer are two.
+/// A crashed servo stays in the graph until its lease ends, within a minute. Two servos that are present for longer are
+/// an error.
 const TWO_SERVOS: Duration = Duration::from_secs(75);
 
 impl DemSimulator {
-    pub(crate) fn hear_rivals(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
+    pub(crate) fn receive_run_states(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
         while let Some((_, info)) = self.run_states.take_valid(bus)? {
             if predecessor(&info.writer.participant(), &self.participant) {
                 continue;
             }
-            if self.rivals.hear(info.writer, now) && self.stage != Stage::Starting {
+            if self.duplicates.hear(info.writer, now) && self.stage != Stage::Starting {
                 log::error!(
-                    "a second simulator ({}) speaks on our topics; it should end by itself",
+                    "a second simulator ({}) publishes on our topics; it should end by itself",
                     info.writer
                 );
             }
@@ -37,14 +38,14 @@ impl DemSimulator {
             return Ok(Next::Wait(self.settings.look_around - looked));
         }
         let mut simulators = bus.foreign_writers(&topics::STRESS);
-        // The process that this one takes the place of stays in the graph for a while.
+        // The process that this one replaces stays in the graph for a while.
         simulators.retain(|writer| !predecessor(&writer.participant(), &self.participant));
-        match self.rivals.verdict(&simulators, now) {
+        match self.duplicates.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
                 if self.notice_due(now) {
                     log::warn!(
-                        "another writer of stress ({writer}) is there and silent; waiting for it to speak or go"
+                        "another writer of stress ({writer}) is present and silent; waiting until it publishes or leaves"
                     );
                 }
                 return Ok(Next::Wait(LOOK_AGAIN));
@@ -68,7 +69,7 @@ impl DemSimulator {
                 return Err(NodeError::new(Exit::Failure, message));
             }
             if self.notice_due(now) {
-                log::warn!("two writers of strain_rate: {both}; waiting for one to go");
+                log::warn!("two writers of strain_rate: {both}; waiting for one to leave");
             }
             return Ok(Next::Wait(LOOK_AGAIN));
         }
@@ -82,19 +83,19 @@ impl DemSimulator {
         if std::mem::take(&mut self.resumed) {
             let message = messages::packing(&self.run)
                 .map_err(|e| NodeError::new(Exit::PhysicsInvalid, e.to_string()))?;
-            self.outbox.post_packing(to_cdr(&message));
+            self.send_queue.push_packing(to_cdr(&message));
         }
         self.go_on(bus, now)
     }
 
-    /// What the start still lacks.
+    /// The first condition of the start that is not met yet.
     fn missing(&self, bus: &dyn Bus) -> Option<String> {
         let of_all = self.settings.min_readers;
         for topic in &self.settings.wait_for {
             let (publisher, needed) = match topic.name {
                 name if name == topics::STRESS.name => (self.stress.id(), of_all),
                 name if name == topics::PACKING.name => {
-                    (self.outbox.packings().id(), self.settings.min_packing_readers.unwrap_or(of_all))
+                    (self.send_queue.packings().id(), self.settings.min_packing_readers.unwrap_or(of_all))
                 }
                 name if name == topics::CLOCK.name => (self.clock.id(), 1),
                 _ => (self.run_state.id(), of_all),

@@ -36,7 +36,7 @@ impl CalibrationChoice {
     pub(crate) fn calibration_for(&self, model: &dyn Model) -> &Calibration {
         match self {
             Self::One(calibration) => calibration,
-            Self::Default => Calibration::default_for(model),
+            Self::Default => model.default_calibration(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::observed::{Observed, Unobservable};
 use grainlab_emt::{
-    CREDIBLE_LEVEL, EmtError, Estimate, Gamma, INPUTS, Misfit, Model, QUANTITIES, Quantity, Status,
+    CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Quantity, Status, StrainRatio,
     StructureCovariance,
 };
 use grainlab_msgs::boundary::EstimateReading;
@@ -95,7 +95,7 @@ fn entries(covariance: Option<StructureCovariance>) -> Vec<f64> {
     covariance.map_or_else(Vec::new, row_major)
 }
 
-fn gamma_fields(gamma: Option<Gamma>) -> (Vec<f64>, String) {
+fn gamma_fields(gamma: Option<StrainRatio>) -> (Vec<f64>, String) {
     (gamma.iter().map(|g| g.value).collect(), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
@@ -108,18 +108,18 @@ pub(crate) fn failure(
 ) -> msg::Estimate {
     let gamma = observed.observation.conditions.gamma;
     let reasons = std::iter::once(error.to_string()).chain(observed.notes.iter().cloned()).collect();
-    without_values(model, calibration, gamma, error.is_of_input(), reasons)
+    without_values(model, calibration, gamma, error.is_input_error(), reasons)
 }
 
 /// The message of a model that was never asked, because there was nothing to ask it.
 pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
-    without_values(model, calibration, Gamma::ZERO, nothing.is_of_input(), vec![nothing.to_string()])
+    without_values(model, calibration, StrainRatio::ZERO, nothing.is_input_error(), vec![nothing.to_string()])
 }
 
 fn without_values(
     model: &dyn Model,
     calibration: &str,
-    gamma: Gamma,
+    gamma: StrainRatio,
     of_input: bool,
     reasons: Vec<String>,
 ) -> msg::Estimate {

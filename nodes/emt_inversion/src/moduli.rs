@@ -3,7 +3,7 @@
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
 use grainlab_core::{Mat3, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Gamma, Measured, Moduli, Modulus, Observation};
+use grainlab_emt::{Conditions, Measured, Moduli, Modulus, Observation, StrainRatio};
 use grainlab_msgs::boundary::ModuliReading;
 
 /// Sine of the angle between axes below which they are one: rounding.
@@ -30,7 +30,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     let conditions = Conditions {
         pressure: Measured::exact(reading.pressure),
         gamma: {
-            let gamma = Gamma::of(&reading.strain_ratios, settings.gamma);
+            let gamma = StrainRatio::of(&reading.strain_ratios, settings.gamma);
             if as_stated { gamma } else { about(&axis, gamma) }
         },
         solid_fraction: reading.solid_fraction.map(Measured::exact),
@@ -56,8 +56,8 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
 }
 
 /// γ/Δ about another axis than e3, of a strain that is symmetric about e3: less by the Legendre polynomial P₂.
-fn about(axis: &Vec3, about_e3: Gamma) -> Gamma {
-    Gamma { value: about_e3.value * (1.5 * axis.z * axis.z - 0.5), ..about_e3 }
+fn about(axis: &Vec3, about_e3: StrainRatio) -> StrainRatio {
+    StrainRatio { value: about_e3.value * (1.5 * axis.z * axis.z - 0.5), ..about_e3 }
 }
 
 fn turned(stiffness: &Stiffness, axis: &Vec3, conditions: Conditions) -> Observation {

@@ -1,7 +1,7 @@
 //! What the models are asked with, wherever it is from.
 
-use grainlab_emt::christoffel::AxisError;
-use grainlab_emt::{ChristoffelError, Misfit, Modulus, Observation};
+use grainlab_emt::christoffel::{AxisError, ChristoffelError};
+use grainlab_emt::{Misfit, Modulus, Observation};
 
 /// Moduli with their state, and what was seen on the way to them.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,9 +53,11 @@ pub(crate) enum Unobservable {
 
 impl Unobservable {
     /// Whether the data are too few, or are no data, rather than those of no medium.
-    pub(crate) fn is_of_input(&self) -> bool {
+    pub(crate) fn is_input_error(&self) -> bool {
         match self {
-            Unobservable::Speeds(error) | Unobservable::Axis(AxisError::Speeds(error)) => error.is_of_input(),
+            Unobservable::Speeds(error) | Unobservable::Axis(AxisError::Speeds(error)) => {
+                error.is_input_error()
+            }
             _ => true,
         }
     }

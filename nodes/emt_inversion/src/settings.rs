@@ -3,7 +3,7 @@
 use crate::calibration::CalibrationChoice;
 use crate::models::Models;
 use grainlab_core::Vec3;
-use grainlab_emt::{CalibrationError, GammaSource};
+use grainlab_emt::{CalibrationError, StrainRatioSource};
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
@@ -47,7 +47,7 @@ pub struct Settings {
     pub axis: Axis,
     /// Which of the measured strain ratios γ/Δ feeds the models. The paper takes the total one, which is mostly plastic
     /// history; the one fitted to the contacts is what its Eq. 10 stands for.
-    pub gamma: GammaSource,
+    pub gamma: StrainRatioSource,
     /// Relative one-sigma error, independent for each modulus measured, taken where the data bring no error. 0 leaves the
     /// uncertainty of the estimates unknown.
     pub modulus_error: f64,
@@ -74,7 +74,7 @@ impl Default for Settings {
             models: Models::all(),
             calibration: CalibrationChoice::Default,
             axis: Axis::Stated,
-            gamma: GammaSource::Total,
+            gamma: StrainRatioSource::Total,
             modulus_error: 0.01,
         }
     }
@@ -136,10 +136,10 @@ impl Settings {
             calibration: CalibrationChoice::named(&calibration)?,
             axis: axis(&text("axis"))?,
             gamma: match text("gamma_over_delta").as_str() {
-                "elastic" => GammaSource::Elastic,
-                "contact" => GammaSource::Contact,
-                "zero" => GammaSource::Zero,
-                _ => GammaSource::Total,
+                "elastic" => StrainRatioSource::Elastic,
+                "contact" => StrainRatioSource::Contact,
+                "zero" => StrainRatioSource::Zero,
+                _ => StrainRatioSource::Total,
             },
             modulus_error: parameters.get("modulus_error"),
         })

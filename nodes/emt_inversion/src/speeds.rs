@@ -3,8 +3,8 @@
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
 use grainlab_core::{Material, Vec3, WaveSpeed};
-use grainlab_emt::christoffel::{self, AxisError, Fitted};
-use grainlab_emt::{Conditions, Gamma, Measured, Misfit, Modulus};
+use grainlab_emt::christoffel::{self, AxisError, SpeedFit};
+use grainlab_emt::{Conditions, Measured, Misfit, Modulus, StrainRatio};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 
 /// Sine of the angle between the axis taken and the one named beyond which something is said: 6°.
@@ -26,7 +26,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
     let conditions = Conditions {
         pressure: Measured::exact(reading.pressure),
-        gamma: Gamma::ZERO,
+        gamma: StrainRatio::ZERO,
         solid_fraction: reading.solid_fraction.map(Measured::exact),
         material: Some(Material {
             shear_modulus: reading.grain_shear_modulus,
@@ -35,7 +35,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
             ..Material::GLASS
         }),
     };
-    let fitted = christoffel::observation(&speeds, density, Some(axis), conditions)?;
+    let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
     notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
     let other = other_axis(&fitted, &speeds, density, &axis);
@@ -73,14 +73,15 @@ fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobserv
 
 /// A note on another axis about which speeds that depart from a medium scatter less than half as much: the axis taken is then
 /// the wrong one, and not the sample.
-fn other_axis(fitted: &Fitted, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
-    fitted.departure?;
+fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
+    fitted.anisotropy_scatter?;
     let found = christoffel::find_axis(speeds).ok()?;
     let axis = found.axis;
     if axis.cross(taken).norm() < APART.max(3.0 * found.stddev()) {
         return None;
     }
-    let about = christoffel::observation(speeds, density, Some(axis), fitted.observation.conditions).ok()?;
+    let about =
+        christoffel::moduli_from_speeds(speeds, density, Some(axis), fitted.observation.conditions).ok()?;
     let (before, after) = (2.0 * fitted.scatter()?, 2.0 * about.scatter()?);
     (after < 0.5 * before).then(|| {
         format!(
@@ -91,9 +92,9 @@ fn other_axis(fitted: &Fitted, speeds: &[WaveSpeed], density: Measured, taken: &
     })
 }
 
-fn notes_on(fitted: &Fitted, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
+fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3) -> Vec<String> {
     let mut notes = Vec::new();
-    if let Some(departure) = &fitted.departure {
+    if let Some(departure) = &fitted.anisotropy_scatter {
         notes.push(format!(
             "rho v^2 of the wave speeds scatters by {:.1} % about a medium isotropic about the axis, more than their errors \
              do: the sample is not quite one, and {:.2} % were added to the error of every speed",

@@ -31,6 +31,7 @@ fn lattice(overlap: f64) -> grainlab_core::Packing {
         spins: vec![Vec3::zeros()],
         contacts: if overlap > 0.0 { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 1e-8,
     }

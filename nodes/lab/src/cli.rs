@@ -1,8 +1,9 @@
 //! The command line, as typed.
 
-use crate::commands::{analyze, bag, bench, calibrate, invert, launch, probe, run};
-use crate::failure::Failure;
+use crate::commands::{analyze, bag, calibrate, invert, launch, probe, run, scene};
 use clap::{Parser, Subcommand};
+use grainlab_bench as bench;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use std::process::ExitCode;
 
@@ -25,6 +26,9 @@ struct Cli {
 enum Command {
     /// Run a scene: every node as its own process, recorded, measured, inverted. The default.
     Launch(launch::Args),
+    /// List, show, check and begin scenes: what a run simulates.
+    #[command(subcommand)]
+    Scene(scene::Command),
     /// Run one node as this process, with ROS 2 arguments.
     Run(run::Args),
     /// Record, play and inspect recordings.
@@ -49,6 +53,7 @@ pub(crate) fn main() -> ExitCode {
     let outcome = match cli.command {
         None => launch::run(&launch::Args::default()),
         Some(Command::Launch(args)) => launch::run(&args),
+        Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),
         Some(Command::Invert(args)) => invert::run(&args),
@@ -64,7 +69,7 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn report(failure: &Failure) -> Exit {
-    crate::output::say!("grainlab: {failure}");
+    grainlab_console::say!("grainlab: {failure}");
     failure.exit
 }
 

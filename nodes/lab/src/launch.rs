@@ -1,18 +1,17 @@
-//! The launcher: a launch file becomes processes, which are watched until the run is done.
+//! The launcher: starts the processes of a launch file and supervises them until the run is done.
 //!
-//! - [`plan`]: launch files, the YAML form of ROS 2 launch
-//! - [`child`]: one process, which cannot outlive this one
+//! - [`child`]: one process, which ends with the launcher
 //! - [`progress`]: a line for each phase
-//! - [`debts`]: what is still to come about its last packing
-//! - [`watch`]: what the run says of itself over DDS
-//! - [`stopped`]: which processes are stopped by a signal; [`patience`]: how long something may take
-//! - [`supervisor`]: who is restarted, whose death ends the run; [`ending`]: in which order all end
+//! - [`pending_results`]: results of the last packing that are still to come; [`deadline`]: how long they may take
+//! - [`watch`]: the messages of the run
+//! - [`stopped`]: processes that are stopped by a signal; [`patience`]: a time limit that does not count those
+//! - [`supervisor`]: restarts, and ends of processes that end the run; [`ending`]: the order in which processes end
 
 pub(crate) mod child;
 mod deadline;
-mod debts;
 mod ending;
 mod patience;
+mod pending_results;
 pub(crate) mod plan;
 mod progress;
 mod stopped;
@@ -24,7 +23,7 @@ use grainlab_node_kit::RunId;
 /// The run that a launcher starts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
-    /// Its id, made afresh.
+    /// Its id.
     pub(crate) id: RunId,
     /// DDS domain.
     pub(crate) domain: u16,

@@ -1,6 +1,6 @@
 //! A recording of what a node would publish, made without the node.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Message, Topic, to_cdr};
 use grainlab_recordings::{Guid, Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};

@@ -16,9 +16,18 @@ fn help_goes_to_stdout_and_lists_every_command_and_exit_code() {
     let help = grainlab(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let out = text(&help.stdout);
-    for word in
-        ["launch", "run", "bag", "analyze", "probe", "invert", "calibrate", "bench", "130 interrupted"]
-    {
+    for word in [
+        "launch",
+        "scene",
+        "run",
+        "bag",
+        "analyze",
+        "probe",
+        "invert",
+        "calibrate",
+        "bench",
+        "130 interrupted",
+    ] {
         assert!(out.contains(word), "{word} is missing:\n{out}");
     }
     let help = text(&grainlab(&["run", "--help"]).stdout);
@@ -38,6 +47,11 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
         (&["run", "dem_simulator", "--ros-args", "-p", "scene"], "\"scene\""),
         (&["launch", "--scene", "no-such-scene"], "demo, s1"),
         (&["launch", "--seed", "-3"], "-3"),
+        (&["launch", "--set", "grains.cuont=500"], "grains.cuont: unknown key (did you mean count?)"),
+        (&["launch", "--set", "grains.count=0"], "grains.count: is 0; it must be a whole number from 1"),
+        (&["launch", "--set", "phase.rset.drag=1"], "did you mean rest?"),
+        (&["launch", "--set", "friction"], "KEY=VALUE"),
+        (&["run", "dem_simulator", "--ros-args", "-p", "set:=[friction=-1]"], "friction: is -1"),
         (&["invert", "--g12", "1e8"], "--pressure"),
         (&["invert", "--pressure", "5e4"], "G12"),
         (&["invert", "--table", "x.csv", "--g12", "1e8"], "--table"),
@@ -120,4 +134,39 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn scenes_are_listed_shown_checked_and_begun() {
+    let list = text(&grainlab(&["scene", "list"]).stdout);
+    assert_eq!(list.lines().map(|line| &line[..2]).collect::<Vec<_>>(), ["de", "s1", "s2", "s3", "s4"]);
+    let show = grainlab(&["scene", "show", "s3", "--set", "grains.count=500", "--seed", "7"]);
+    let shown = text(&show.stdout);
+    for line in ["count = 500", "seed = 7", "friction = 0.3", "name = \"s3\"", "time_step_safety = 0.8"] {
+        assert!(shown.lines().any(|l| l == line), "{line} is missing:\n{shown}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let here = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
+        command.args(arguments).current_dir(folder.path()).stdin(Stdio::null()).output().unwrap()
+    };
+    std::fs::write(folder.path().join("shown.toml"), &shown).unwrap();
+    assert_eq!(text(&here(&["scene", "show", "shown.toml"]).stdout), shown, "what is shown can be run");
+    assert_eq!(text(&here(&["scene", "new", "mine"]).stdout), "mine.toml\n");
+    assert_eq!(here(&["scene", "new", "mine"]).status.code(), Some(1), "it is there already");
+    assert_eq!(here(&["scene", "new", "yours", "--base", "mine.toml"]).status.code(), Some(0));
+    assert_eq!(here(&["scene", "new", "No Name"]).status.code(), Some(2));
+    std::fs::write(
+        folder.path().join("bad.toml"),
+        "base = 'mine.toml'\nname = 'bad'\nfriktion = 1\nseed = -1\n",
+    )
+    .unwrap();
+    let check = here(&["scene", "check", "yours.toml", "bad.toml", "s1"]);
+    let (out, err) = (text(&check.stdout), text(&check.stderr));
+    assert_eq!(check.status.code(), Some(2));
+    assert!(out.contains("yours.toml     500       4         1") && out.contains("s1"), "{out}");
+    assert!(
+        err.contains("bad.toml: the scene has 2 faults") && err.contains("did you mean friction?"),
+        "{err}"
+    );
 }

@@ -1,29 +1,29 @@
-//! Whose samples are taken, and whose are ignored, counted and named.
+//! Decides whose samples a process accepts, and counts the ignored ones by participant.
 
-use crate::bus::WriterId;
 use crate::identity::{Identity, RunId, Scope, member_of, run_of};
+use crate::sample::WriterId;
 use std::collections::BTreeMap;
 
 /// The GUID prefix of one participant.
 pub type Participant = [u8; 12];
 
-/// Strangers that are counted one by one; those beyond count together, so that a flood of made-up names takes no memory.
+/// Maximum number of participants counted separately; further ones are counted together, so that memory is bounded.
 const COUNTED: usize = 64;
 
 /// A participant whose samples were ignored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stranger {
-    /// Its GUID prefix; zero for all those beyond the ones that are counted one by one.
+    /// Its GUID prefix; zero for the participants that are counted together.
     pub participant: Participant,
-    /// The run that it says it belongs to.
+    /// The run in its GUID prefix.
     pub run: Option<RunId>,
-    /// Its process, as in `pid 4711 (python3)`, where that is known.
+    /// Its process, as in `pid 4711 (python3)`, if known.
     pub process: Option<String>,
-    /// Samples ignored, by resolved topic.
+    /// Number of ignored samples by resolved topic.
     pub ignored: BTreeMap<String, u64>,
 }
 
-/// A name for people: the process where it is known, the run, or the GUID prefix.
+/// The process if known, the run, or the GUID prefix.
 impl std::fmt::Display for Stranger {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.participant == [0; 12] {
@@ -53,65 +53,65 @@ pub struct Process {
     pub pid: u32,
     /// Its name, as `ps` shows it.
     pub name: String,
-    /// Whether what started the run started it, or its parent, and so on.
+    /// Whether it descends from the process that started the run.
     pub below_root: bool,
 }
 
-/// Decides for one process whose samples it takes.
+/// Decides for one process whose samples it accepts.
 #[derive(Debug)]
-pub struct Admission {
+pub(crate) struct Admission {
     identity: Identity,
     own: Participant,
-    /// Processes of participants that do not say a run, where they are on this host.
+    /// Processes of participants without a run, if they are on this host.
     processes: BTreeMap<Participant, Process>,
     strangers: BTreeMap<Participant, Stranger>,
 }
 
 impl Admission {
-    /// For the participant `own` of a process with this identity.
-    pub fn new(identity: Identity, own: Participant) -> Self {
+    /// The rules for the participant `own` of a process with this identity.
+    pub(crate) fn new(identity: Identity, own: Participant) -> Self {
         Self { identity, own, processes: BTreeMap::new(), strangers: BTreeMap::new() }
     }
 
-    /// What this process is to its run.
-    pub fn identity(&self) -> &Identity {
+    /// The process's place in its run.
+    pub(crate) fn identity(&self) -> &Identity {
         &self.identity
     }
 
-    /// A participant was discovered, and this process runs it.
-    pub fn discovered(&mut self, participant: Participant, process: Process) {
-        // As many as discovery itself keeps; those beyond stay nameless.
+    /// Notes a discovered participant and its process.
+    pub(crate) fn discovered(&mut self, participant: Participant, process: Process) {
+        // As many as discovery itself keeps; further ones stay unnamed.
         if self.processes.len() < 16 * COUNTED || self.processes.contains_key(&participant) {
             self.processes.insert(participant, process);
         }
     }
 
-    /// A participant is gone.
-    pub fn lost(&mut self, participant: &Participant) {
+    /// Forgets a participant that left.
+    pub(crate) fn lost(&mut self, participant: &Participant) {
         self.processes.remove(participant);
     }
 
-    /// Whether samples of this participant are taken.
-    pub fn admits(&self, participant: &Participant) -> bool {
+    /// Whether samples of this participant are accepted.
+    pub(crate) fn admits(&self, participant: &Participant) -> bool {
         if self.identity.scope == Scope::Everyone || *participant == self.own {
             return true;
         }
         match (self.identity.run, run_of(participant)) {
-            // A process of a launched run takes samples of its members alone. In a run by hand no process has a place: there
-            // the name of the run is enough.
+            // A process of a launched run accepts samples of its members only. In a run by hand no process has a member
+            // number: the name of the run decides.
             (Some(own), Some(run))
                 if run == own && (self.identity.member == 0 || member_of(participant) != 0) =>
             {
                 true
             }
-            // What another launcher started is below a root of its own.
+            // The processes of another launcher have another root.
             (Some(_), _) => self.processes.get(participant).is_some_and(|p| p.below_root),
             (None, run) => run.is_none(),
         }
     }
 
-    /// The same for one sample; one that is not taken is counted. The second value is true for the first of its writer.
-    pub fn takes(&mut self, writer: WriterId, topic: &str) -> (bool, bool) {
+    /// The same for one sample; an ignored one is counted. The second value is true for the first one of its writer.
+    pub(crate) fn takes(&mut self, writer: WriterId, topic: &str) -> (bool, bool) {
         let participant = writer.participant();
         if self.admits(&participant) {
             return (true, false);
@@ -134,13 +134,13 @@ impl Admission {
         (false, new)
     }
 
-    /// Everyone whose samples were ignored, by GUID prefix.
-    pub fn strangers(&self) -> Vec<Stranger> {
+    /// The participants whose samples were ignored, by GUID prefix.
+    pub(crate) fn strangers(&self) -> Vec<Stranger> {
         self.strangers.values().cloned().collect()
     }
 
-    /// What is known of a participant, for people.
-    pub fn describe(&self, participant: &Participant) -> Stranger {
+    /// The known facts of a participant, for messages to users.
+    pub(crate) fn describe(&self, participant: &Participant) -> Stranger {
         let process = self.processes.get(participant).map(|p| format!("pid {} ({})", p.pid, p.name));
         let (participant, run) = (*participant, run_of(participant));
         Stranger { participant, run, process, ignored: BTreeMap::new() }
@@ -174,13 +174,16 @@ mod tests {
         let joined = Identity::member_of(RunId::named("a"), 0);
         assert!(
             !admission.admits(&joined.guid_prefix()),
-            "one that was given the run's name, and no place in it"
+            "a process with the run's name and without a member number"
         );
-        assert!(Admission::new(joined, joined.guid_prefix()).admits(&run.guid_prefix()), "it hears the run");
+        assert!(
+            Admission::new(joined, joined.guid_prefix()).admits(&run.guid_prefix()),
+            "it receives the run's samples"
+        );
         let instrument = [0x01, 0x10, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5];
         assert!(!admission.admits(&instrument));
         admission.discovered(instrument, process(false));
-        assert!(!admission.admits(&instrument), "other software that somebody else started");
+        assert!(!admission.admits(&instrument), "other software that was not started by the launcher");
         admission.discovered(instrument, process(true));
         assert!(admission.admits(&instrument));
         admission.lost(&instrument);

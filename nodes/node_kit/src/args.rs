@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-/// Why a command line was refused. The process then ends with [`crate::Exit::Usage`].
+/// Errors of a command line. The process then ends with [`crate::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ArgsError {
-    /// An option that needs a value stands last.
+    /// An option without its value.
     #[error("{option} needs a value: {example}")]
     MissingValue {
         /// The option as typed.
@@ -31,15 +31,15 @@ pub enum ArgsError {
         /// The option as typed.
         option: String,
     },
-    /// An option of ROS 2 that cannot be honoured here.
-    #[error("{option} cannot be honoured: {reason}")]
+    /// An option of ROS 2 that is not supported.
+    #[error("{option} is not supported: {reason}")]
     Unsupported {
         /// The option as typed.
         option: String,
-        /// Why not.
+        /// Why it is not supported.
         reason: &'static str,
     },
-    /// A log level that does not exist.
+    /// An unknown log level.
     #[error("log level {level:?} does not exist: use debug, info, warn, error or fatal")]
     LogLevel {
         /// The level as typed.
@@ -50,9 +50,9 @@ pub enum ArgsError {
 /// One remap rule, `[node:]from:=to`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remap {
-    /// The node it is for; `None` for every node.
+    /// The node it applies to; `None` for every node.
     pub node: Option<String>,
-    /// What is renamed: a topic, `__node` or `__ns`.
+    /// The old name: a topic, `__node` or `__ns`.
     pub from: String,
     /// The new name.
     pub to: String,
@@ -61,7 +61,7 @@ pub struct Remap {
 /// One parameter from the command line, `[node:]name:=value`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
-    /// The node it is for; `None` for every node.
+    /// The node it applies to; `None` for every node.
     pub node: Option<String>,
     /// The parameter's name.
     pub name: String,
@@ -74,11 +74,11 @@ pub struct Assignment {
 pub struct RosArgs {
     /// Remap rules in the order given.
     pub remaps: Vec<Remap>,
-    /// Parameters in the order given; a later one wins, and all of them win over files.
+    /// Parameters in the order given; a later one overrides an earlier one, and all override files.
     pub parameters: Vec<Assignment>,
-    /// Parameter files in the order given; a later one wins.
+    /// Parameter files in the order given; a later one overrides an earlier one.
     pub params_files: Vec<PathBuf>,
-    /// The level of our own log lines.
+    /// The log level of this process's own lines.
     pub log_level: log::LevelFilter,
     /// Levels of single loggers, `--log-level rustdds:=debug`; the logger is a Rust module path.
     pub logger_levels: Vec<(String, log::LevelFilter)>,
@@ -108,7 +108,7 @@ const PARAM_FORM: &str = "-p name:=value";
 impl RosArgs {
     /// Splits a command line into its ROS arguments and everything else, in order.
     ///
-    /// ROS arguments stand between `--ros-args` and `--` (or the end); both may occur several times.
+    /// ROS arguments are those between `--ros-args` and `--` (or the end); both may occur several times.
     pub fn parse(args: &[String]) -> Result<(RosArgs, Vec<String>), ArgsError> {
         let mut ros = RosArgs::default();
         let mut plain = Vec::new();
@@ -155,7 +155,7 @@ impl RosArgs {
             "--disable-rosout-logs" => self.rosout = false,
             "--enable-stdout-logs" => self.stderr = true,
             "--disable-stdout-logs" => self.stderr = false,
-            // Written by some launch tools always; there is no external logger here to switch.
+            // Some launch tools always pass these; there is no external logger here.
             "--enable-external-lib-logs" | "--disable-external-lib-logs" => {}
             "-e" | "--enclave" => {
                 return Err(ArgsError::Unsupported {
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn node_prefixes_are_split_off_but_schemes_are_not() {
         let (ros, _) =
-            parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p grainlab_servo:gain.xx:=3").unwrap();
+            parse("--ros-args -r dem:__ns:=/x -r rostopic://stress:=p -p servo:gain.xx:=3").unwrap();
         assert_eq!(ros.remaps[0], Remap { node: Some("dem".into()), from: "__ns".into(), to: "/x".into() });
         assert_eq!(ros.remaps[1], Remap { node: None, from: "stress".into(), to: "p".into() });
         assert_eq!(ros.parameters[0].node.as_deref(), Some("servo"));

@@ -1,8 +1,9 @@
-//! What a process reports about itself on `/diagnostics`, as a value and as a message.
+//! The report of a process on `/diagnostics`, as a value and as a message.
 
-use crate::bus::{Bus, Published, Received, WriterId};
+use crate::bus::{Bus, Published, Received};
 use crate::exit::Exit;
-use crate::node::{Health, Level};
+use crate::health::{Health, Level};
+use crate::sample::WriterId;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::std_msgs::Header;
@@ -22,19 +23,19 @@ pub struct Report {
     pub node: String,
     /// Process id.
     pub pid: u32,
-    /// What the node says.
+    /// The health that the node reports.
     pub health: Health,
-    /// How the process ends; only in its last report.
+    /// The exit code of the process; only in its last report.
     pub exit: Option<Exit>,
-    /// What each of its writers published so far. In the last report this is final and counts that report itself, so
-    /// that a recording can be balanced against it by RTPS sequence numbers.
+    /// The statistics of each of its writers. In the last report they are final and count that report itself, so
+    /// that a recording can be checked against them by RTPS sequence numbers.
     pub published: Vec<Published>,
-    /// What each of its subscriptions took so far, one entry a topic.
+    /// The number of samples its subscriptions took, one entry per topic.
     pub received: Vec<Received>,
 }
 
 impl Report {
-    /// Of this process, now. `next` is the writer that will publish the report: its count includes it.
+    /// The current report of this process. `next` is the writer that will publish it: its count includes the report.
     pub fn of(
         bus: &dyn Bus,
         node: &str,
@@ -95,7 +96,7 @@ impl Report {
         }
     }
 
-    /// Every report in a message. A status that is not of this laboratory (no `pid:` in its hardware id) is none.
+    /// The reports in a message. Statuses of other software (no `pid:` in the hardware id) are skipped.
     pub fn from_message(message: &DiagnosticArray) -> Vec<Report> {
         message.status.iter().filter_map(Self::from_status).collect()
     }

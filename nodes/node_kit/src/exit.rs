@@ -1,20 +1,20 @@
-//! The exit codes of every process of the laboratory.
+//! The exit codes of all processes.
 
 use std::fmt;
 
-/// How a process ended, as its exit code says it.
+/// The result of a process, as an exit code.
 ///
-/// The codes are a contract with launchers and scripts; they are the same for nodes, tools and the launcher.
+/// Launchers and scripts rely on the codes; they are the same for nodes, tools and the launcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Exit {
-    /// 0: everything asked for was done.
+    /// 0: success.
     Done = 0,
     /// 1: something failed while it ran: a file, the network, another process.
     Failure = 1,
     /// 2: wrong usage: an unknown option, scene key or parameter, or a value out of range. Nothing was started.
     Usage = 2,
-    /// 3: done, but data was lost on the way.
+    /// 3: done, but data was lost.
     DataLoss = 3,
     /// 4: the physics became invalid: unstable, not finite, or no contact network.
     PhysicsInvalid = 4,
@@ -23,16 +23,16 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Every way to end, in the order of the codes.
+    /// All results, in the order of the codes.
     pub const ALL: [Exit; 6] =
         [Exit::Done, Exit::Failure, Exit::Usage, Exit::DataLoss, Exit::PhysicsInvalid, Exit::Interrupted];
 
-    /// The number handed to the operating system.
+    /// The exit code.
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// The meaning of a child's exit code; `None` for a code that is not in the contract.
+    /// The meaning of a child's exit code; `None` for an unknown code.
     pub fn from_code(code: i32) -> Option<Exit> {
         Self::ALL.into_iter().find(|exit| i32::from(exit.code()) == code)
     }

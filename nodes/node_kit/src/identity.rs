@@ -1,9 +1,9 @@
-//! Which run a process belongs to.
+//! The run that a process belongs to.
 //!
-//! A run has an id, made afresh for it. Every process of the run carries the id in the GUID prefix of its DDS participant,
-//! so that each sample says by its writer which run it is of: without a byte in any message, from the first sample on, and
-//! for best-effort readers, too. Two other places were weighed. A partition would hide the topics from ROS 2 tools, which
-//! cannot join one. The user data of a participant travel with discovery, later than the first best-effort samples.
+//! Each run has a new id. Every process of the run has the id in the GUID prefix of its DDS participant,
+//! so that the writer of a sample identifies the run: without a byte in any message, from the first sample on, and
+//! for best-effort readers, too. There are two alternatives. A partition would hide the topics from ROS 2 tools, which
+//! cannot join one. The user data of a participant arrive with discovery, later than the first best-effort samples.
 
 use std::collections::hash_map::RandomState;
 use std::fmt;
@@ -11,16 +11,16 @@ use std::hash::{BuildHasher, Hasher};
 use std::str::FromStr;
 use std::time::SystemTime;
 
-/// Names the run to its processes: 12 hexadecimal digits, or any other text, from which an id is derived.
+/// Environment variable with the run: 12 hexadecimal digits, or any other text, from which an id is derived.
 pub const RUN_VARIABLE: &str = "GRAINLAB_RUN";
 
-/// The place of a process in its run, 1 to 254: the same after a restart.
+/// Environment variable with the member number of a process in its run, 1 to 254: the same after a restart.
 pub const MEMBER_VARIABLE: &str = "GRAINLAB_MEMBER";
 
-/// Process id of what started the run: the processes below it belong to the run, whatever DDS they use.
+/// Environment variable with the process id of the launcher: its descendants belong to the run, whatever DDS they use.
 pub const ROOT_VARIABLE: &str = "GRAINLAB_RUN_ROOT";
 
-/// The vendor id of RustDDS, with which it begins each GUID prefix.
+/// The vendor id of RustDDS, the first bytes of each GUID prefix.
 const VENDOR: [u8; 2] = [0x01, 0x12];
 
 /// Identity of one run: 48 bits, of which the first eight are not all zero.
@@ -28,12 +28,12 @@ const VENDOR: [u8; 2] = [0x01, 0x12];
 pub struct RunId([u8; 6]);
 
 impl RunId {
-    /// A fresh one.
+    /// A new random id.
     pub fn fresh() -> Self {
         Self::of_bits(random())
     }
 
-    /// The run that `text` names: its 12 hexadecimal digits, or an id derived from it.
+    /// The run with the name `text`: 12 hexadecimal digits, or any other text, from which an id is derived.
     pub fn named(text: &str) -> Self {
         text.parse().unwrap_or_else(|_| Self::of_bits(fnv1a(text.as_bytes())))
     }
@@ -59,7 +59,7 @@ impl fmt::Debug for RunId {
     }
 }
 
-/// Text that is not the 12 hexadecimal digits of a run.
+/// The text is not a run id.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not a run id: 12 hexadecimal digits, the first two not both zero")]
 pub struct RunIdError(pub String);
@@ -79,37 +79,37 @@ impl FromStr for RunId {
     }
 }
 
-/// Whose samples a process takes.
+/// Whose samples a process accepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scope {
-    /// Everyone's: a tool, or a node that was started by hand beside whatever runs.
+    /// All samples: a tool, or a node started by hand.
     #[default]
     Everyone,
-    /// Those of its own run alone: of the processes with its run id, or, without one, of those that have none.
+    /// Only those of its own run: of the processes with its run id, or, without one, of those that have none.
     OwnRun,
 }
 
-/// What a process is to its run.
+/// The place of a process in its run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
     /// The run; `None` for a process that was started by hand.
     pub run: Option<RunId>,
-    /// Its place in the run, 1 to 254; 0 for none.
+    /// Its member number, 1 to 254; 0 for none.
     pub member: u8,
-    /// Process id of what started the run.
+    /// Process id of the launcher.
     pub root: Option<u32>,
-    /// Whose samples it takes.
+    /// Whose samples it accepts.
     pub scope: Scope,
 }
 
 impl Identity {
-    /// Of this process, by its environment. A process of a named run takes the samples of that run; one without takes
-    /// those that `otherwise` says.
+    /// The identity of this process, from its environment. A process of a run accepts the samples of that run; one
+    /// without a run accepts those of `otherwise`.
     pub fn from_env(otherwise: Scope) -> Self {
         Self::from_variables(otherwise, |name| std::env::var(name).ok())
     }
 
-    /// The same from any source of variables; unset and empty are the same.
+    /// The same from any source of variables; an empty one counts as unset.
     pub fn from_variables(otherwise: Scope, lookup: impl Fn(&str) -> Option<String>) -> Self {
         let get = |name: &str| lookup(name).filter(|value| !value.is_empty());
         let run = get(RUN_VARIABLE).map(|text| RunId::named(&text));
@@ -122,13 +122,13 @@ impl Identity {
         }
     }
 
-    /// A member of a run.
+    /// The identity of a member of a run.
     pub fn member_of(run: RunId, member: u8) -> Self {
         Self { run: Some(run), member, root: None, scope: Scope::OwnRun }
     }
 
-    /// A GUID prefix for a participant of this process: vendor, run, member, two random bytes that differ at each start, and
-    /// a check byte. Without a run: vendor, zero, and nine random bytes.
+    /// A GUID prefix for a participant of this process: vendor, run, member, two random bytes that differ at each
+    /// start, and a check byte. Without a run: vendor, zero, and nine random bytes.
     pub fn guid_prefix(&self) -> [u8; 12] {
         let chance = [random(), random()].map(u64::to_le_bytes).concat();
         let mut bytes = [0; 9];
@@ -136,7 +136,7 @@ impl Identity {
         self.guid_prefix_with(bytes)
     }
 
-    /// The same with these bytes in place of random ones; a member of a run takes two of them.
+    /// The same with given bytes in place of random ones; a member of a run uses two of them.
     pub(crate) fn guid_prefix_with(&self, chance: [u8; 9]) -> [u8; 12] {
         let mut prefix = [0; 12];
         prefix[..2].copy_from_slice(&VENDOR);
@@ -153,7 +153,7 @@ impl Identity {
     }
 }
 
-/// The run that a participant of this laboratory says it belongs to; `None` if it says none, or is of other software.
+/// The run in a participant's GUID prefix; `None` without a run and for other software.
 pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
     // Other programs with RustDDS have random bytes there.
     (prefix[..2] == VENDOR && prefix[2] != 0 && prefix[11] == check(prefix)).then(|| {
@@ -163,17 +163,17 @@ pub fn run_of(prefix: &[u8; 12]) -> Option<RunId> {
     })
 }
 
-/// A byte that follows from the eleven before it.
+/// The check byte of the eleven bytes before it.
 fn check(prefix: &[u8; 12]) -> u8 {
     fnv1a(&prefix[..11]) as u8
 }
 
-/// The place of a participant in its run.
+/// The member number of a participant.
 pub fn member_of(prefix: &[u8; 12]) -> u8 {
     prefix[8]
 }
 
-/// Bits that differ from call to call and from process to process.
+/// Random bits, different for each call and process.
 fn random() -> u64 {
     let mut hasher = RandomState::new().build_hasher();
     hasher.write_u32(std::process::id());

@@ -1,51 +1,66 @@
-//! What every process of the laboratory shares. This is the only crate that knows DDS.
+//! What every process of the laboratory shares. This is the only crate that uses DDS.
 //!
-//! - [`bus`]: the [`Bus`] a node sees: serialized samples, one place to wait; [`typed`]: typed handles over it
-//! - [`bulk`]: messages too large for one sample; [`worker`]: work that takes longer than a node may be away
-//! - [`dds`]: the bus over DDS; [`memory`]: the bus in memory, with virtual time and faults, for tests
-//! - [`identity`]: which run a process belongs to; [`admission`]: whose samples it takes
-//! - [`node`]: a node as a state machine; [`run`]: running it as a process
-//! - [`diagnostics`]: what a process reports of itself; [`peers`]: who lives; [`watchdog`]: whether DDS lives
-//! - [`args`], [`names`], [`parameters`]: the ROS 2 command line, names and remaps, parameters
-//! - [`pingpong`]: the bare exchange, to measure
-//! - [`exit`]: exit codes; [`signals`]: SIGINT and SIGTERM; [`logging`]: stderr and `/rosout`
+//! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
+//!   its types
+//! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long
+//!   computations
+//! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
+//! - `identity`: the run of a process; `admission`: which samples a process accepts
+//! - `node`: a node as a state machine; `health`: its health; `run`: running it as a process
+//! - [`PackingNode`]: the template of nodes that turn packings into results
+//! - `diagnostics`: the heartbeat of a process; `peers`: which processes are alive; [`watchdog`]: whether DDS works
+//! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters
+//! - [`pingpong`]: the exchange of the lockstep alone, for measurements
+//! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: stderr and `/rosout`
 
-pub mod admission;
-pub mod args;
-pub mod bulk;
-pub mod bus;
-pub mod dds;
-pub mod diagnostics;
-pub mod exit;
-pub mod identity;
-pub mod logging;
-pub mod memory;
-pub mod names;
-pub mod node;
-pub mod parameters;
-pub mod peers;
+mod admission;
+mod args;
+mod bulk;
+mod bus;
+mod bus_error;
+mod dds;
+mod demand;
+mod diagnostics;
+mod exit;
+mod health;
+mod identity;
+mod logging;
+mod memory;
+mod names;
+mod node;
+mod packing_node;
+mod parameters;
+mod peers;
 pub mod pingpong;
-pub mod run;
-pub mod signals;
-pub mod typed;
+mod run;
+mod sample;
+mod signals;
+mod typed;
 pub mod watchdog;
-pub mod worker;
+mod worker;
 
-pub use admission::Stranger;
-pub use args::RosArgs;
-pub use bulk::{BulkPublisher, BulkSubscription};
-pub use bus::{
-    Bus, BusError, Demand, PublisherId, Sample, SampleId, SampleInfo, SubscriptionId, Wake, WriterId,
-};
-pub use dds::{DdsBus, Network};
+pub use admission::{Participant, Process, Stranger};
+pub use args::{ArgsError, Assignment, Remap, RosArgs};
+pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
+pub use bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+pub use bus_error::BusError;
+pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach};
+pub use demand::Demand;
 pub use diagnostics::Report;
 pub use exit::Exit;
-pub use identity::{Identity, RunId, Scope};
-pub use memory::{Faults, Hub, MemoryBus};
-pub use names::Names;
-pub use node::{Health, Level, Next, Node, NodeError};
-pub use parameters::{ParameterSpec, ParameterValue, Parameters, Range};
-pub use peers::{Life, PeerWatch, Peers};
-pub use run::{NodeSpec, drive, run_node};
+pub use health::{Health, Level};
+pub use identity::{
+    Identity, MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE, RunId, RunIdError, Scope, member_of, run_of,
+};
+pub use logging::Logger;
+pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
+pub use names::{NameError, Names};
+pub use node::{Next, Node, NodeError};
+pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
+pub use parameters::{FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range};
+pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
+pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
+pub use sample::{Sample, SampleId, SampleInfo, WriterId, WriterIdError};
+pub use signals::Signals;
 pub use typed::{Publisher, Subscription, TakeError};
 pub use worker::Worker;

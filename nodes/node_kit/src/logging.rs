@@ -9,10 +9,10 @@ use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, Once, PoisonError};
 use std::time::SystemTime;
 
-/// Lines kept for `/rosout` until they are published; the oldest give way.
+/// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
 
-/// Libraries below us: their errors matter, their warnings are about packets.
+/// Libraries of which only errors are logged: their warnings concern single packets.
 const LIBRARIES: [&str; 3] = ["rustdds", "ros2_client", "mio"];
 
 static LOGGER: Logger = Logger {
@@ -27,7 +27,7 @@ static LOGGER: Logger = Logger {
     }),
 };
 
-/// Everything that can change after the logger is installed.
+/// The settings that can change after the logger is installed.
 struct Settings {
     name: String,
     level: LevelFilter,
@@ -44,8 +44,8 @@ pub struct Logger {
 }
 
 impl Logger {
-    /// Installs the logger, or changes its name and levels if it is installed already. `node` is the fully qualified
-    /// node name. A logger installed by someone else before us stays in charge of stderr.
+    /// Installs the logger, or changes the name and levels of the installed one. `node` is the fully qualified
+    /// node name. A logger of other code that was installed before keeps stderr.
     pub fn install(node: &str, args: &RosArgs) -> &'static Logger {
         let settings = Settings {
             // ROS 2 writes namespaces with dots in logger names.
@@ -73,12 +73,12 @@ impl Logger {
         self.settings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes the lines that are to be published on `/rosout`.
+    /// Takes the queued lines for `/rosout`.
     pub fn drain(&self) -> Vec<Log> {
         self.lock().queue.drain(..).collect()
     }
 
-    /// Publishes nothing more on `/rosout`: the final counts were reported.
+    /// Ends the queue for `/rosout`: the final counts were reported.
     pub fn close(&self) {
         let mut settings = self.lock();
         settings.rosout = false;
@@ -86,7 +86,7 @@ impl Logger {
     }
 }
 
-/// Colour only for people: a terminal, `NO_COLOR` unset, `RCUTILS_COLORIZED_OUTPUT` not 0 (1 forces it, as in ROS 2).
+/// Colour on a terminal, if `NO_COLOR` is unset and `RCUTILS_COLORIZED_OUTPUT` is not 0 (1 forces it, as in ROS 2).
 fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> bool {
     match lookup("RCUTILS_COLORIZED_OUTPUT").as_deref() {
         Some("1") => true,
@@ -96,7 +96,7 @@ fn colour_wanted(lookup: impl Fn(&str) -> Option<String>, terminal: bool) -> boo
 }
 
 impl Settings {
-    /// The level in force for a module.
+    /// The level of a module.
     fn level_of(&self, target: &str) -> LevelFilter {
         let named = |logger: &str| {
             target.strip_prefix(logger).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
@@ -109,7 +109,7 @@ impl Settings {
     }
 }
 
-/// Name on stderr, number on the wire, colour as rcutils has it.
+/// Name on stderr, number in messages, colour as in rcutils.
 fn severity(level: Level) -> (&'static str, u8, &'static str) {
     match level {
         Level::Error => ("ERROR", Log::ERROR, "\x1b[31m"),
@@ -139,7 +139,7 @@ impl log::Log for Logger {
             let line = format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
             let (colour, reset) =
                 if settings.colour && !colour.is_empty() { (colour, "\x1b[0m") } else { ("", "") };
-            // One write, so that lines of several processes on one terminal do not mix. A closed stderr is no reason to end.
+            // One write, so that lines of several processes on one terminal do not mix. A closed stderr is ignored.
             let _ = std::io::stderr().write_all(format!("{colour}{line}{reset}\n").as_bytes());
         }
         if settings.rosout {

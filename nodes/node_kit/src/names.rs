@@ -3,10 +3,10 @@
 use crate::args::RosArgs;
 use std::fmt;
 
-/// Why a name was refused.
+/// Errors of a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NameError {
-    /// Nothing between two slashes, or nothing at all.
+    /// A part of the name is empty.
     #[error("name {name:?} has an empty part: write tokens separated by single slashes, as in /lab/stress")]
     Empty {
         /// The refused name.
@@ -14,7 +14,7 @@ pub enum NameError {
     },
     /// A character that ROS 2 does not allow in a name.
     #[error(
-        "name {name:?} holds {found:?}: only letters, digits and underscores are allowed between slashes"
+        "name {name:?} contains {found:?}: only letters, digits and underscores are allowed between slashes"
     )]
     Character {
         /// The refused name.
@@ -50,7 +50,7 @@ fn check_token(token: &str, name: &str) -> Result<(), NameError> {
     Ok(())
 }
 
-/// Who a node is and what its topics are called: its name, its namespace and the remap rules that apply to it.
+/// The names of a node and its topics: node name, namespace and the remap rules that apply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Names {
     node: String,
@@ -73,7 +73,7 @@ impl Names {
         Ok(names)
     }
 
-    /// The names that `args` give to a node whose own name is `default_node`.
+    /// The names from `args` for a node with the default name `default_node`.
     ///
     /// Rules with a node prefix (`node:from:=to`) apply when the prefix is `default_node`, as in rcl.
     pub fn from_args(default_node: &str, args: &RosArgs) -> Result<Self, NameError> {
@@ -108,7 +108,7 @@ impl Names {
         join(&self.namespace, &self.node)
     }
 
-    /// The name a topic has on the bus: expanded with the namespace, then remapped.
+    /// The resolved name of a topic: expanded with the namespace, then remapped.
     pub fn resolve(&self, topic: &str) -> Result<String, NameError> {
         let expanded = self.expand(topic)?;
         Ok(self.remaps.iter().find(|(from, _)| *from == expanded).map_or(expanded, |(_, to)| to.clone()))

@@ -1,95 +1,35 @@
-//! A node as a state machine: it never sleeps, spawns or exits; it is stepped.
+//! A node as a state machine: it never sleeps, spawns threads or exits; the run loop steps it.
 
-use crate::bus::{Bus, BusError};
+use crate::bus::Bus;
+use crate::bus_error::BusError;
 use crate::exit::Exit;
+use crate::health::Health;
 use crate::peers::Peers;
 use std::time::Duration;
 
-/// What a node wants after a step.
+/// What the run loop does after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
-    /// Another step at once.
+    /// Step again at once.
     Again,
-    /// A step when something arrives, or after this time at the latest.
+    /// Step when something arrives, or after this time at the latest.
     Wait(Duration),
-    /// Nothing more: leave with this exit.
+    /// End with this exit.
     Finished(Exit),
 }
 
-/// How bad it is, in the numbers of `diagnostic_msgs/DiagnosticStatus`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Level {
-    /// All is well.
-    #[default]
-    Ok = 0,
-    /// Something a user should look at.
-    Warn = 1,
-    /// The node cannot do its work.
-    Error = 2,
-    /// What the node reports is old.
-    Stale = 3,
-}
-
-impl Level {
-    /// From the number on the wire.
-    pub fn from_wire(level: u8) -> Level {
-        match level {
-            0 => Level::Ok,
-            1 => Level::Warn,
-            3 => Level::Stale,
-            _ => Level::Error,
-        }
-    }
-}
-
-/// How a node is, for `/diagnostics`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Health {
-    /// How bad it is.
-    pub level: Level,
-    /// One line for a person.
-    pub message: String,
-    /// Numbers by name; units in the names, as in `waiting_s`.
-    pub values: Vec<(String, String)>,
-}
-
-impl Health {
-    /// All is well.
-    pub fn ok(message: impl Into<String>) -> Self {
-        Self { message: message.into(), ..Self::default() }
-    }
-
-    /// Something a user should look at.
-    pub fn warn(message: impl Into<String>) -> Self {
-        Self { level: Level::Warn, message: message.into(), values: Vec::new() }
-    }
-
-    /// The node cannot do its work.
-    pub fn error(message: impl Into<String>) -> Self {
-        Self { level: Level::Error, message: message.into(), values: Vec::new() }
-    }
-
-    /// The same with one more value.
-    #[must_use]
-    pub fn with(mut self, name: impl Into<String>, value: impl ToString) -> Self {
-        self.values.push((name.into(), value.to_string()));
-        self
-    }
-}
-
-/// Why a node cannot go on.
+/// Errors that end a node.
 #[derive(Debug, thiserror::Error)]
 pub enum NodeError {
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// Anything else, with the exit code it means.
+    /// Any other error, with its exit code.
     #[error("{message}")]
     Failed {
-        /// How the process ends.
+        /// The exit of the process.
         exit: Exit,
-        /// What happened, where, and what to do.
+        /// The error, its place, and what to do.
         message: String,
     },
 }
@@ -100,7 +40,7 @@ impl NodeError {
         Self::Failed { exit, message: message.into() }
     }
 
-    /// How the process ends.
+    /// The exit of the process.
     pub fn exit(&self) -> Exit {
         match self {
             Self::Bus(BusError::Name(_)) => Exit::Usage,
@@ -110,20 +50,20 @@ impl NodeError {
     }
 }
 
-/// A node: decode, compute, encode. It takes everything that arrived in each step; what it leaves untaken ends the next
+/// A node: decode, compute, encode. In each step it takes all samples that arrived; a sample left untaken ends the next
 /// wait at once.
 pub trait Node {
-    /// One step: takes what arrived, publishes what follows from it. May compute for long.
+    /// One step: takes what arrived and publishes the results. May compute for long.
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError>;
 
-    /// How the node is; asked for once a second.
+    /// The state of the node; called once a second.
     fn health(&self) -> Health;
 
-    /// The peers, whenever one of them was heard. A node that waits for a partner finds here whether it lives.
+    /// The known peers; called whenever a heartbeat arrives. A node that waits for another one finds its state here.
     fn on_peers(&mut self, _peers: &Peers) {}
 
-    /// The user or the launcher asks to end: publish what is final, and say how it ends. [`Exit::Interrupted`] if the
-    /// result is incomplete.
+    /// Called when the user or the launcher stops the node: publishes final results and returns the exit.
+    /// [`Exit::Interrupted`] if the result is incomplete.
     fn on_shutdown(&mut self, _bus: &mut dyn Bus) -> Result<Exit, NodeError> {
         Ok(Exit::Done)
     }

@@ -1,65 +1,68 @@
-//! Who lives, by heartbeats: DDS keeps a crashed process matched for up to a minute.
+//! Liveliness of processes by heartbeats: DDS keeps a crashed process matched for up to a minute.
 
-use crate::bus::{Bus, BusError, Demand, SampleInfo};
+use crate::bus::Bus;
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::diagnostics::Report;
 use crate::exit::Exit;
+use crate::sample::SampleInfo;
 use crate::typed::Subscription;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::topics;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A heartbeat comes each second. A node that computes does not beat, so silence alone is no death.
+/// The period of heartbeats is 1 s. A node that computes sends none, so silence alone does not prove a crash.
 pub const SILENCE: Duration = Duration::from_secs(5);
 
-/// Peers that are kept: of more, the one that was silent for longest is forgotten.
+/// Maximum number of peers; beyond it, the one silent for longest is forgotten.
 const KEPT: usize = 512;
 
-/// Heartbeats kept between two looks: a minute of a full laboratory.
+/// Queue of heartbeats between two calls: one minute of all peers.
 const BACKLOG: u32 = 512;
 
-/// What is known of one process.
+/// The known state of one process.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Peer {
     /// Its last report.
     pub report: Report,
     /// The GUID prefix of its writers.
     pub participant: [u8; 12],
-    /// When it was last heard, in [`Bus::now`].
+    /// Time of its last heartbeat, in [`Bus::now`].
     pub last_heard: Duration,
 }
 
-/// Whether a peer lives.
+/// The liveliness of a peer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Life {
-    /// Heard within [`SILENCE`].
+pub enum Liveliness {
+    /// A heartbeat arrived within [`SILENCE`].
     Alive,
-    /// Not heard for this long: it computes, or it is dead.
+    /// No heartbeat for this long: it computes, or it has crashed.
     Silent(Duration),
-    /// It said that it leaves, and how.
+    /// It has ended with this exit.
     Left(Exit),
 }
 
 impl Peer {
-    /// Whether it lives at `now`, in [`Bus::now`].
-    pub fn life(&self, now: Duration) -> Life {
+    /// Its liveliness at `now`, in [`Bus::now`].
+    pub fn liveliness(&self, now: Duration) -> Liveliness {
         let silent = now.saturating_sub(self.last_heard);
         match self.report.exit {
-            Some(exit) => Life::Left(exit),
-            None if silent > SILENCE => Life::Silent(silent),
-            None => Life::Alive,
+            Some(exit) => Liveliness::Left(exit),
+            None if silent > SILENCE => Liveliness::Silent(silent),
+            None => Liveliness::Alive,
         }
     }
 }
 
-/// Every process heard on `/diagnostics`, this one included.
+/// All processes that publish on `/diagnostics`, this one included.
 #[derive(Clone, Debug, Default)]
 pub struct Peers {
     by_participant: BTreeMap<[u8; 12], Peer>,
 }
 
 impl Peers {
-    /// Takes one heartbeat in; the reports in it are returned.
+    /// Processes one heartbeat and returns its reports.
     pub fn hear(&mut self, message: &DiagnosticArray, info: &SampleInfo, now: Duration) -> Vec<Report> {
         let reports = Report::from_message(message);
         for report in &reports {
@@ -80,23 +83,24 @@ impl Peers {
         }
     }
 
-    /// Every peer, in the order of its GUID.
+    /// All peers, sorted by GUID.
     pub fn iter(&self) -> impl Iterator<Item = &Peer> {
         self.by_participant.values()
     }
 
-    /// The one heard last of those with this fully qualified node name: a restarted node hides its predecessor.
+    /// The peer with this fully qualified node name and the latest heartbeat: a restarted node replaces its
+    /// predecessor.
     pub fn find(&self, node: &str) -> Option<&Peer> {
         self.iter().filter(|p| p.report.node == node).max_by_key(|p| p.last_heard)
     }
 
-    /// The peer with a writer.
+    /// The peer that owns a writer.
     pub fn owner(&self, participant: [u8; 12]) -> Option<&Peer> {
         self.by_participant.get(&participant)
     }
 }
 
-/// [`Peers`] fed by a subscription of their own.
+/// [`Peers`] with a subscription to their heartbeats.
 #[derive(Debug)]
 pub struct PeerWatch {
     subscription: Subscription<DiagnosticArray>,
@@ -104,13 +108,13 @@ pub struct PeerWatch {
 }
 
 impl PeerWatch {
-    /// Listens on `/diagnostics`.
+    /// Subscribes to `/diagnostics`.
     pub fn subscribe(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let subscription = Subscription::subscribe(bus, &topics::DIAGNOSTICS, Demand::best_effort(BACKLOG))?;
         Ok(Self { subscription, peers: Peers::default() })
     }
 
-    /// Takes in what was heard since the last call, and hands on each sample's origin and report.
+    /// Processes the heartbeats since the last call, and passes each sample's origin and report on.
     pub fn update(
         &mut self,
         bus: &mut dyn Bus,
@@ -125,7 +129,7 @@ impl PeerWatch {
         Ok(())
     }
 
-    /// What is known now.
+    /// The known peers.
     pub fn peers(&self) -> &Peers {
         &self.peers
     }
@@ -134,8 +138,8 @@ impl PeerWatch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bus::WriterId;
-    use crate::node::Health;
+    use crate::health::Health;
+    use crate::sample::WriterId;
 
     fn beat(pid: u32, exit: Option<Exit>) -> (DiagnosticArray, SampleInfo) {
         let report = Report {
@@ -158,12 +162,12 @@ mod tests {
         let mut peers = Peers::default();
         let (message, info) = beat(1, None);
         peers.hear(&message, &info, Duration::from_secs(10));
-        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.life(Duration::from_secs(at)));
-        assert_eq!(life(&peers, 15), Some(Life::Alive));
-        assert_eq!(life(&peers, 16), Some(Life::Silent(Duration::from_secs(6))));
+        let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.liveliness(Duration::from_secs(at)));
+        assert_eq!(life(&peers, 15), Some(Liveliness::Alive));
+        assert_eq!(life(&peers, 16), Some(Liveliness::Silent(Duration::from_secs(6))));
         let (message, info) = beat(1, Some(Exit::Done));
         peers.hear(&message, &info, Duration::from_secs(20));
-        assert_eq!(life(&peers, 100), Some(Life::Left(Exit::Done)));
+        assert_eq!(life(&peers, 100), Some(Liveliness::Left(Exit::Done)));
     }
 
     #[test]

@@ -1,7 +1,8 @@
-//! Running a node: the only place that waits.
+//! Runs a node: the only file that waits.
 
 use crate::args::RosArgs;
-use crate::bus::{Bus, BusError, Wake, WriterId};
+use crate::bus::{Bus, Wake};
+use crate::bus_error::BusError;
 use crate::dds::{DdsBus, Network};
 use crate::diagnostics::Report;
 use crate::exit::Exit;
@@ -11,6 +12,7 @@ use crate::names::Names;
 use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
+use crate::sample::WriterId;
 use crate::signals::Signals;
 use crate::typed::Publisher;
 use crate::watchdog;
@@ -21,36 +23,36 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
 
 /// Time between two heartbeats, and from the start to the first: `/diagnostics` keeps nothing for late joiners, and a
-/// recorder that is still being discovered would miss it and count it as lost.
+/// recorder that is not discovered yet would miss it and count it as lost.
 pub const HEARTBEAT: Duration = Duration::from_secs(1);
 
-/// A node that never waits looks at the graph this often.
+/// Period at which a node that never waits updates its view of the graph.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How long a leaving process waits for its readers' acknowledgements: a recorder that was stopped for a while has some
-/// megabytes to ask for again. One that is gone for good costs this time.
+/// How long an ending process waits for its readers' acknowledgements: a recorder that was suspended has some
+/// megabytes to request again. A crashed one costs this time.
 const LAST_WORDS: Duration = Duration::from_secs(1);
 
-/// How long it stays after that: a reader loses what it received but did not take when the writer goes. A busy node's
-/// readers are emptied within 40 ms, on a busy host perhaps some ten milliseconds later.
+/// How long it stays after that: a reader loses the samples it has not taken when the writer leaves. A busy node's
+/// readers are emptied within 40 ms, on a busy host some ten milliseconds later.
 const GRACE: Duration = Duration::from_millis(90);
 
-/// What a node is called and which parameters it has.
+/// Name, description and parameters of a node.
 #[derive(Clone, Debug)]
 pub struct NodeSpec {
-    /// Its name unless `__node` gives another.
+    /// Its default name; `__node` overrides it.
     pub name: &'static str,
-    /// What it does, in a line.
+    /// Its description, one line.
     pub summary: &'static str,
-    /// Whose samples it takes where it is started by hand, without a run.
+    /// Whose samples it accepts if started by hand, without a run.
     pub scope: Scope,
     /// Its parameters.
     pub parameters: Vec<ParameterSpec>,
 }
 
-/// Runs one node as this process: arguments, logs, signals, DDS, the loop, and a clean leave.
+/// Runs one node as this process: arguments, logs, signals, DDS, the loop, and the orderly end.
 ///
-/// `build` makes the node on the open bus; it subscribes and advertises there. The first SIGINT or SIGTERM ends the run
+/// `build` makes the node on the open bus, where it subscribes and advertises. The first SIGINT or SIGTERM ends the run
 /// after the current step, the second ends the process at once.
 pub fn run_node<F>(spec: &NodeSpec, args: &RosArgs, build: F) -> Exit
 where
@@ -58,7 +60,7 @@ where
 {
     Logger::install(spec.name, args);
     watchdog::watch_dds_threads();
-    // A panic of a node is a bug, but it must leave as every other failure does: with exit 1 and a farewell to the peers.
+    // A panic of a node is a bug, but it ends as every other failure does: with exit 1 and a last report.
     catch_unwind(AssertUnwindSafe(|| run_process(spec, args, build))).unwrap_or_else(|_| {
         log::error!("{} panicked (see above); this is a bug", spec.name);
         Exit::Failure
@@ -93,9 +95,9 @@ where
         })?;
         let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
         let driven = drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop);
-        if let Err(DriveError::Dead(dead)) = driven {
-            log::error!("{dead}");
-            // Dropping the bus would wait for the dead threads.
+        if let Err(DriveError::Dds(failure)) = driven {
+            log::error!("{failure}");
+            // Dropping the bus would wait for the failed threads.
             std::process::exit(i32::from(Exit::Failure.code()));
         }
         let exit = refused(Exit::Failure, driven)?;
@@ -105,8 +107,8 @@ where
     start().unwrap_or_else(|exit| exit)
 }
 
-/// Steps a node on any bus until it finishes, fails, or is asked to stop; reports its health once a second and its final
-/// counts at the end. `stop` is asked before every step, for nodes that never wait.
+/// Steps a node on any bus until it finishes, fails, or is stopped; reports its health once a second and its final
+/// counts at the end. `stop` is called before every step, for nodes that never wait.
 pub fn drive(
     node: &mut dyn Node,
     bus: &mut dyn Bus,
@@ -114,16 +116,16 @@ pub fn drive(
     logger: Option<&Logger>,
     stop: &dyn Fn() -> bool,
 ) -> Result<Exit, DriveError> {
-    let mut tender = Tender::new(bus, node_name, logger)?;
+    let mut housekeeping = Housekeeping::new(bus, node_name, logger)?;
     let mut asked = false;
     let exit = loop {
-        let until_beat = tender.tend(node, bus)?;
+        let until_beat = housekeeping.tend(node, bus)?;
         if asked || stop() {
-            log::info!("asked to stop");
+            log::info!("stopping on request");
             break settle(node.on_shutdown(bus));
         }
         match node.step(bus) {
-            Ok(Next::Again) if tender.look_due(bus.now()) => {
+            Ok(Next::Again) if housekeeping.look_due(bus.now()) => {
                 asked = bus.wait(Duration::ZERO) == Wake::Shutdown
             }
             Ok(Next::Again) => {}
@@ -132,7 +134,7 @@ pub fn drive(
             Err(error) => break settle(Err(error)),
         }
     };
-    tender.leave(node, bus, exit)?;
+    housekeeping.leave(node, bus, exit)?;
     Ok(exit)
 }
 
@@ -143,19 +145,19 @@ fn settle(result: Result<Exit, NodeError>) -> Exit {
     })
 }
 
-/// Why the run loop gives up on its bus.
+/// Errors of the run loop.
 #[derive(Debug, thiserror::Error)]
 pub enum DriveError {
-    /// The DDS threads of this process are dead or stuck; the bus must not even be dropped, which would wait for them.
+    /// The DDS threads of this process have ended or hang; the bus must not even be dropped, which would wait for them.
     #[error(transparent)]
-    Dead(#[from] watchdog::Dead),
+    Dds(#[from] watchdog::DdsFailure),
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
 }
 
 /// Heartbeats, log lines, peers and watchdog of one process.
-struct Tender<'a> {
+struct Housekeeping<'a> {
     node_name: String,
     pid: u32,
     diagnostics: Publisher<DiagnosticArray>,
@@ -167,7 +169,7 @@ struct Tender<'a> {
     next_look: Duration,
 }
 
-impl<'a> Tender<'a> {
+impl<'a> Housekeeping<'a> {
     fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'a Logger>) -> Result<Self, BusError> {
         let diagnostics = Publisher::advertise(bus, &topics::DIAGNOSTICS)?;
         let diagnostics_writer = bus.published().last().map(|p| p.writer);
@@ -184,7 +186,7 @@ impl<'a> Tender<'a> {
         })
     }
 
-    /// Does what is due and returns the time until the next heartbeat.
+    /// Does the tasks that are due and returns the time until the next heartbeat.
     fn tend(&mut self, node: &mut dyn Node, bus: &mut dyn Bus) -> Result<Duration, DriveError> {
         let mut heard = false;
         self.watch.update(bus, |_, _| heard = true)?;
@@ -201,7 +203,7 @@ impl<'a> Tender<'a> {
         Ok(self.next_beat.saturating_sub(now))
     }
 
-    /// Whether a node that never waits has to look at the bus for once, so that it follows the graph.
+    /// Whether a node that never waits has to poll the bus, so that it follows the graph.
     fn look_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_look;
         if due {
@@ -223,7 +225,7 @@ impl<'a> Tender<'a> {
         Ok(())
     }
 
-    /// A listener that died must not end the node: the bus counts what it could not send.
+    /// A crashed reader must not end the node: the bus counts what it could not send.
     fn tolerate_full(&self, published: Result<i64, BusError>) -> Result<(), BusError> {
         match published {
             Ok(_) | Err(BusError::Full { .. }) => Ok(()),
@@ -231,7 +233,7 @@ impl<'a> Tender<'a> {
         }
     }
 
-    /// Last log lines, then the last report: nothing is published after it, so its counts are final.
+    /// Publishes the last log lines, then the last report: nothing is published after it, so its counts are final.
     fn leave(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Exit) -> Result<(), BusError> {
         log::info!("leaving: {exit}");
         self.publish_logs(bus)?;

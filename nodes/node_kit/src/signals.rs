@@ -17,7 +17,7 @@ pub struct Signals {
 
 /// Whether the process was started with this signal ignored.
 fn is_ignored(signal: i32) -> bool {
-    // SAFETY: a null action only asks for the present one, which is written into memory of ours.
+    // SAFETY: with a null action, `sigaction` only writes the current one into our memory.
     unsafe {
         let mut present: libc::sigaction = std::mem::zeroed();
         libc::sigaction(signal, std::ptr::null(), &mut present) == 0 && present.sa_sigaction == libc::SIG_IGN
@@ -30,10 +30,11 @@ impl Signals {
         let requested = Arc::new(AtomicBool::new(false));
         let (arrivals, sender) = std::os::unix::net::UnixStream::pair()?;
         arrivals.set_nonblocking(true)?;
-        // Who started us under `nohup` wants us to outlive the terminal.
+        // Under `nohup` the process must continue after the terminal closes.
         let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
         for signal in [SIGINT, SIGTERM].into_iter().chain(hangup) {
-            // Handlers run in this order: the first signal finds the flag unset and sets it, the second ends the process.
+            // Handlers run in this order: the first signal finds the flag unset and sets it, the second ends the
+            // process.
             flag::register_conditional_shutdown(
                 signal,
                 i32::from(Exit::Interrupted.code()),
@@ -45,12 +46,12 @@ impl Signals {
         Ok(Self { requested, arrivals: UnixStream::from_std(arrivals) })
     }
 
-    /// Whether a signal came.
+    /// Whether a signal arrived.
     pub fn requested(&self) -> bool {
         self.requested.load(Ordering::Relaxed)
     }
 
-    /// A flag that becomes true with the first signal, for those who outlive the bus.
+    /// A flag that becomes true with the first signal, for code that runs after the bus was closed.
     pub fn flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.requested)
     }
@@ -59,7 +60,7 @@ impl Signals {
         &mut self.arrivals
     }
 
-    /// Forgets the arrivals that woke a waiter; true if there were any.
+    /// Clears the pending wake-ups; true if there were any.
     pub(crate) fn drain(&mut self) -> bool {
         let mut bytes = [0; 16];
         let mut any = false;

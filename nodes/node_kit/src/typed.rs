@@ -1,11 +1,14 @@
 //! Typed handles over the raw bus.
 
-use crate::bus::{Bus, BusError, Demand, PublisherId, SampleId, SampleInfo, SubscriptionId};
+use crate::bus::{Bus, PublisherId, SubscriptionId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::{SampleId, SampleInfo};
 use grainlab_msgs::{DecodeError, Message, Topic, from_cdr, to_cdr};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A topic offered with its type.
+/// A publisher of messages of one type.
 #[derive(Debug)]
 pub struct Publisher<T> {
     id: PublisherId,
@@ -13,10 +16,10 @@ pub struct Publisher<T> {
 }
 
 impl<T: Message> Publisher<T> {
-    /// Offers `topic`, which must be of type `T` in the contract table.
+    /// Advertises `topic`, which must be of type `T` in the topic table.
     ///
     /// # Panics
-    /// If the contract table gives the topic another type: a mistake in the node's code.
+    /// If the topic table gives the topic another type: an error in the node's code.
     pub fn advertise(bus: &mut dyn Bus, topic: &Topic) -> Result<Self, BusError> {
         assert_eq!(topic.info.type_name, T::TYPE, "type of topic {}", topic.name);
         Ok(Self { id: bus.advertise(topic)?, message: PhantomData })
@@ -27,7 +30,7 @@ impl<T: Message> Publisher<T> {
         bus.publish(self.id, &to_cdr(message))
     }
 
-    /// The same of a message about a sample that came; see [`SampleInfo::about`].
+    /// The same for a message that refers to a received sample; see [`SampleInfo::about`].
     pub fn publish_about(&self, bus: &mut dyn Bus, message: &T, about: SampleId) -> Result<i64, BusError> {
         bus.publish_about(self.id, &to_cdr(message), Some(about))
     }
@@ -38,43 +41,43 @@ impl<T: Message> Publisher<T> {
     }
 }
 
-/// Why a sample could not be had.
+/// Errors of [`Subscription::take`].
 #[derive(Debug, thiserror::Error)]
 pub enum TakeError {
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// A sample came but is not a message of the type. It is counted as refused; the next take goes on behind it.
+    /// A sample does not decode as the type. It is counted as refused; the next call takes the sample after it.
     #[error("sample {} of writer {} refused: {reason}", info.sequence, info.writer)]
     Decode {
         /// Which sample.
         info: SampleInfo,
-        /// What is wrong with it.
+        /// The error of decoding.
         reason: DecodeError,
     },
 }
 
-/// A subscription with its type.
+/// A subscription to messages of one type.
 #[derive(Debug)]
 pub struct Subscription<T> {
     id: SubscriptionId,
-    /// How many samples did not decode.
+    /// Number of samples that did not decode.
     undecodable: AtomicU64,
     message: PhantomData<fn() -> T>,
 }
 
 impl<T: Message> Subscription<T> {
-    /// Subscribes to `topic`, which must be of type `T` in the contract table.
+    /// Subscribes to `topic`, which must be of type `T` in the topic table.
     ///
     /// # Panics
-    /// If the contract table gives the topic another type: a mistake in the node's code.
+    /// If the topic table gives the topic another type: an error in the node's code.
     pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
         assert_eq!(topic.info.type_name, T::TYPE, "type of topic {}", topic.name);
         let id = bus.subscribe(topic, demand)?;
         Ok(Self { id, undecodable: AtomicU64::new(0), message: PhantomData })
     }
 
-    /// The next message, if there is one. A sample that is not a `T` is an error of that sample alone.
+    /// The next message, if any. An error concerns one sample; later ones can still be taken.
     pub fn take(&self, bus: &mut dyn Bus) -> Result<Option<(T, SampleInfo)>, TakeError> {
         let Some(sample) = bus.take(self.id)? else { return Ok(None) };
         match from_cdr(&sample.body) {
@@ -86,7 +89,7 @@ impl<T: Message> Subscription<T> {
         }
     }
 
-    /// The next message that decodes, if there is one; what does not is counted and logged.
+    /// The next message that decodes, if any; others are counted and logged.
     pub fn take_valid(&self, bus: &mut dyn Bus) -> Result<Option<(T, SampleInfo)>, BusError> {
         loop {
             match self.take(bus) {

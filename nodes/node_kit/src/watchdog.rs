@@ -1,21 +1,21 @@
-//! Finds a dead DDS thread: a process that looks alive and hears nothing is worse than one that ended.
+//! Detects failed DDS threads: a process that runs and receives nothing is worse than one that ended.
 //!
-//! Two ways: a panic in one of RustDDS's threads is caught by a hook, and once a second the process counts those threads
-//! in `/proc/self/task` and compares with the participants that it has open. Its own heartbeat would say more, but a
-//! participant finds itself only where multicast reaches it.
+//! There are two checks: a hook notes a panic in one of RustDDS's threads, and once a second the process counts those
+//! threads in `/proc/self/task` and compares with its open participants. Its own heartbeat would be a better check, but
+//! a participant discovers itself only where multicast reaches it.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// RustDDS names its threads so.
+/// Prefix of the names of RustDDS's threads.
 const DDS_THREAD: &str = "RustDDS";
 
-/// RustDDS runs so many threads for each participant: discovery and the event loop.
+/// Number of RustDDS's threads per participant: discovery and the event loop.
 const THREADS: usize = 2;
 
 static DDS_THREAD_PANICKED: AtomicBool = AtomicBool::new(false);
 
-/// Participants of this process that are open.
+/// Number of open participants of this process.
 static PARTICIPANTS: AtomicUsize = AtomicUsize::new(0);
 
 /// Counts one participant while it exists.
@@ -23,7 +23,7 @@ static PARTICIPANTS: AtomicUsize = AtomicUsize::new(0);
 pub(crate) struct OpenParticipant(());
 
 impl OpenParticipant {
-    /// To be made when the participant's threads run.
+    /// Call this after the participant's threads were started.
     pub(crate) fn new() -> Self {
         PARTICIPANTS.fetch_add(1, Ordering::Relaxed);
         Self(())
@@ -50,39 +50,41 @@ pub fn watch_dds_threads() {
     });
 }
 
-/// Why the DDS layer counts as dead.
+/// Failures of the DDS layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Dead {
+pub enum DdsFailure {
     /// One of its threads panicked.
     #[error("a DDS thread of this process panicked (see above): nothing is sent or received any more")]
     Panicked,
-    /// One of its threads is gone.
-    #[error("{left} of {started} DDS threads of this process are left: nothing is sent or received any more")]
+    /// One of its threads has ended.
+    #[error(
+        "only {left} of {started} DDS threads of this process are running: nothing is sent or received any more"
+    )]
     Ended {
-        /// Those that the open participants started.
+        /// Number of threads that the open participants started.
         started: usize,
-        /// Those there are.
+        /// Number of running threads.
         left: usize,
     },
 }
 
-/// Whether the DDS threads of this process are all there. To be asked once a second.
-pub fn check() -> Result<(), Dead> {
+/// Checks the DDS threads of this process. Call it once a second.
+pub fn check() -> Result<(), DdsFailure> {
     if DDS_THREAD_PANICKED.load(Ordering::Relaxed) {
-        return Err(Dead::Panicked);
+        return Err(DdsFailure::Panicked);
     }
     judge(THREADS * PARTICIPANTS.load(Ordering::Relaxed), dds_threads())
 }
 
-/// The same, `found` being there now; `None` where they cannot be counted.
-fn judge(started: usize, found: Option<usize>) -> Result<(), Dead> {
+/// The same for `found` running threads; `None` where they cannot be counted.
+fn judge(started: usize, found: Option<usize>) -> Result<(), DdsFailure> {
     match found {
-        Some(left) if left < started => Err(Dead::Ended { started, left }),
+        Some(left) if left < started => Err(DdsFailure::Ended { started, left }),
         _ => Ok(()),
     }
 }
 
-/// Threads of this process with RustDDS's names; `None` where the system does not tell.
+/// Number of threads of this process with RustDDS's names; `None` where the system does not list them.
 fn dds_threads() -> Option<usize> {
     let tasks = std::fs::read_dir("/proc/self/task").ok()?;
     let names = tasks.flatten().filter_map(|t| std::fs::read_to_string(t.path().join("comm")).ok());
@@ -97,7 +99,7 @@ mod tests {
     fn a_thread_that_is_gone_is_missed_from_the_first_look_on() {
         assert_eq!(judge(2, Some(2)), Ok(()));
         assert_eq!(judge(2, None), Ok(()), "no count is no evidence");
-        assert_eq!(judge(2, Some(1)), Err(Dead::Ended { started: 2, left: 1 }));
-        assert_eq!(judge(2, Some(0)), Err(Dead::Ended { started: 2, left: 0 }));
+        assert_eq!(judge(2, Some(1)), Err(DdsFailure::Ended { started: 2, left: 1 }));
+        assert_eq!(judge(2, Some(0)), Err(DdsFailure::Ended { started: 2, left: 0 }));
     }
 }

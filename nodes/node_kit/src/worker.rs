@@ -1,15 +1,15 @@
-//! Work that takes longer than a node may be away from its bus.
+//! Computations that take longer than a node may leave its bus.
 
 use crate::bus::{Bus, Caller};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Does one job at a time, on a thread of its own where the bus has a thread to be woken from, so that the node goes on
-/// living meanwhile. On the bus in memory, where time is virtual and nothing may depend on real time, a job is done as
-/// soon as it is given.
+/// Does one job at a time. If another thread can wake the bus, the job runs on a thread of its own, so that the node
+/// keeps publishing heartbeats. On the bus in memory, where time is virtual and results must not depend on real time, a
+/// job is done at once.
 ///
-/// A job's panic is the node's: [`Worker::result`] goes on with it. A worker that is dropped leaves its job alone: the
-/// thread ends with it, or with the process.
+/// [`Worker::result`] resumes a panic of the job. Dropping a worker does not stop its job: the
+/// thread ends with the job, or with the process.
 pub struct Worker<J, R> {
     kind: Kind<J, R>,
     busy: bool,
@@ -32,7 +32,7 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
     /// A worker for a node on `bus`, without a job. The thread is called `name`.
     ///
     /// # Errors
-    /// If the system has no thread left.
+    /// If the system cannot start a thread.
     pub fn new<F>(bus: &dyn Bus, name: &str, work: F) -> std::io::Result<Self>
     where
         F: FnMut(J) -> R + Send + 'static,
@@ -71,7 +71,7 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
     /// Begins a job. The bus wakes the node when it is done.
     ///
     /// # Panics
-    /// If the worker is busy: a mistake in the node's code.
+    /// If the worker is busy: an error in the node's code.
     pub fn give(&mut self, job: J) {
         assert!(!self.busy, "a worker has one job at a time");
         self.busy = true;
@@ -84,7 +84,7 @@ impl<J: Send + 'static, R: Send + 'static> Worker<J, R> {
     /// The result of the job, once, when it is done.
     ///
     /// # Panics
-    /// With the job's own panic, if it panicked.
+    /// With the panic of the job.
     pub fn result(&mut self) -> Option<R> {
         let outcome = match &mut self.kind {
             Kind::Here { done, .. } => done.take().map(Ok),

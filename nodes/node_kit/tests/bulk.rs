@@ -1,7 +1,7 @@
 //! Messages of any length on the bus in memory.
 
 use grainlab_msgs::topics;
-use grainlab_node_kit::bulk::LIMIT;
+use grainlab_node_kit::BULK_LIMIT;
 use grainlab_node_kit::{
     BulkPublisher, BulkSubscription, Bus, BusError, Demand, Faults, Hub, MemoryBus, Names, Sample,
 };
@@ -91,7 +91,7 @@ fn a_message_up_to_the_limit_is_one_sample_of_the_plain_topic_with_the_same_byte
     let mut plain = bus(&hub, "plain");
     let listener = plain.subscribe(&topics::PACKING, Demand::reliable(9)).unwrap();
     let mut writer = writer(&hub);
-    for length in [100, LIMIT] {
+    for length in [100, BULK_LIMIT] {
         let body = body(1, length);
         publish(&hub, &mut writer, &mut readers, &body);
         deliver(&hub, &mut writer, &mut readers);
@@ -112,7 +112,7 @@ fn large_and_small_messages_arrive_whole_and_in_order_at_every_reader_on_a_bad_n
         hub.set_faults("/lab/packing_credit", faults);
         let mut readers = [reader(&hub, "a"), reader(&hub, "b")];
         let mut writer = writer(&hub);
-        let lengths = [LIMIT + 1, 700, 700, 3 * LIMIT, LIMIT + 70_000, 60];
+        let lengths = [BULK_LIMIT + 1, 700, 700, 3 * BULK_LIMIT, BULK_LIMIT + 70_000, 60];
         for (n, length) in (1..).zip(lengths) {
             publish(&hub, &mut writer, &mut readers, &body(n, length));
         }
@@ -131,7 +131,7 @@ fn large_messages_count_as_published_on_the_topic_and_carry_their_own_sequence()
     let hub = Hub::new(2);
     let mut readers = [reader(&hub, "a")];
     let mut writer = writer(&hub);
-    for (n, length) in [(1, LIMIT + 1), (2, 50), (3, LIMIT + 2)] {
+    for (n, length) in [(1, BULK_LIMIT + 1), (2, 50), (3, BULK_LIMIT + 2)] {
         publish(&hub, &mut writer, &mut readers, &body(n, length));
     }
     deliver(&hub, &mut writer, &mut readers);
@@ -148,8 +148,8 @@ fn a_late_reader_gets_the_latest_message_whichever_way_it_went() {
     let hub = Hub::new(3);
     let mut readers = vec![reader(&hub, "a")];
     let mut writer = writer(&hub);
-    publish(&hub, &mut writer, &mut readers, &body(1, LIMIT + 1));
-    publish(&hub, &mut writer, &mut readers, &body(2, 2 * LIMIT));
+    publish(&hub, &mut writer, &mut readers, &body(1, BULK_LIMIT + 1));
+    publish(&hub, &mut writer, &mut readers, &body(2, 2 * BULK_LIMIT));
     deliver(&hub, &mut writer, &mut readers);
     readers.push(reader(&hub, "late"));
     pass(&hub, &mut writer, &mut readers, 2000);
@@ -169,9 +169,9 @@ fn a_reader_that_stops_looking_holds_the_writer_up_for_seconds_and_not_for_ever(
     let mut writer = writer(&hub);
     pass(&hub, &mut writer, &mut readers, 100);
     let (alive, _dead) = readers.split_at_mut(1);
-    publish(&hub, &mut writer, alive, &body(1, LIMIT + 1));
+    publish(&hub, &mut writer, alive, &body(1, BULK_LIMIT + 1));
     let began = hub.now();
-    publish(&hub, &mut writer, alive, &body(2, LIMIT + 1));
+    publish(&hub, &mut writer, alive, &body(2, BULK_LIMIT + 1));
     assert!(hub.now() - began < Duration::from_secs(8), "{:?}", hub.now() - began);
     deliver(&hub, &mut writer, alive);
     assert_eq!((alive[0].numbers(), writer.publisher.left_behind()), (vec![1, 2], 1));
@@ -214,7 +214,7 @@ fn parts_of_a_remapped_topic_are_beside_it() {
     let mut bus = hub.bus(Names::from_args("writer", &ros).unwrap());
     let publisher = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();
     let mut writer = Writer { bus, publisher };
-    publish(&hub, &mut writer, &mut readers, &body(1, LIMIT + 1));
+    publish(&hub, &mut writer, &mut readers, &body(1, BULK_LIMIT + 1));
     deliver(&hub, &mut writer, &mut readers);
     let names: Vec<String> = writer.bus.published().into_iter().map(|p| p.topic).collect();
     assert_eq!(names, ["/other", "/other", "/other_chunk"]);

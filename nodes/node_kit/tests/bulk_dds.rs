@@ -2,8 +2,8 @@
 
 use grainlab_msgs::msg::Packing;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
-use grainlab_node_kit::bulk::LIMIT;
-use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::BULK_LIMIT;
+use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{BulkPublisher, BulkSubscription, Bus, BusError, DdsBus, Demand, Names, Network};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -48,7 +48,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_arrive_intact_at_two_rea
     let claimed = ClaimedDomain::claim().expect("a free DDS domain");
     let network = claimed.network();
     let first = packing(16_000);
-    assert!(to_cdr(&first).len() > 2 * LIMIT);
+    assert!(to_cdr(&first).len() > 2 * BULK_LIMIT);
     let body = |step: u64| to_cdr(&Packing { step, time: step as f64, ..first.clone() });
     let stop = Arc::new(AtomicBool::new(false));
     let readers: Vec<_> = (0..2)

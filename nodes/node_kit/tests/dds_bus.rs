@@ -2,7 +2,7 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
 use std::time::{Duration, Instant};
 

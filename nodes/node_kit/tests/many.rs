@@ -1,7 +1,7 @@
 //! Many nodes on one host: more than the 12 ports that announcements are sent to one by one.
 
 use grainlab_msgs::topics;
-use grainlab_node_kit::dds::ClaimedDomain;
+use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{Bus, DdsBus, Demand, Names};
 use std::time::{Duration, Instant};
 

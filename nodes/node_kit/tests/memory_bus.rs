@@ -2,7 +2,7 @@
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
-use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{
     Bus, Demand, Exit, Faults, Health, Hub, MemoryBus, Names, Next, Node, NodeError, Publisher, Subscription,
     Wake,

@@ -3,26 +3,26 @@
 use grainlab_msgs::boundary::{BoundaryError, StrainRateAnswer, StressRequest};
 use grainlab_msgs::msg;
 
-/// Why a stress has no answer.
+/// Why a stress is not answered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
-    /// The message is not a request, or the answer would not be one.
+    /// The message is not a valid request, or the answer would not be valid.
     #[error(transparent)]
     Boundary(#[from] BoundaryError),
-    /// No law answers the request.
+    /// The control law refuses the request.
     #[error("request {sequence} is not answered: {reason}")]
     Servo {
-        /// Its sequence.
+        /// Its sequence number.
         sequence: u64,
-        /// What the law objects to.
+        /// The reason.
         reason: grainlab_servo::ServoError,
     },
 }
 
-/// The answer to one stress, with its header and sequence copied.
+/// The answer to one stress, with the same header and sequence number.
 pub fn answer(stress: &msg::Stress) -> Result<msg::StrainRate, Refusal> {
     let request = StressRequest::try_from(stress)?;
-    let answered = grainlab_servo::answer(&grainlab_servo::Request {
+    let output = grainlab_servo::control(&grainlab_servo::ServoInput {
         stress: request.stress,
         controls: request.controls,
         rate: request.rate,
@@ -35,8 +35,8 @@ pub fn answer(stress: &msg::Stress) -> Result<msg::StrainRate, Refusal> {
     let message = msg::StrainRate::try_from(&StrainRateAnswer {
         stamp: request.stamp,
         sequence: request.sequence,
-        rate: answered.rate,
-        saturated: answered.saturated,
+        rate: output.rate,
+        saturated: output.saturated,
     })?;
     Ok(msg::StrainRate { header: stress.header.clone(), ..message })
 }

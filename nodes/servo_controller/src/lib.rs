@@ -1,9 +1,10 @@
 //! The servo node: answers every stress with a strain rate.
 //!
-//! - [`answer`]: the whole work, a pure function of one message; the same question has the same answer, so a servo may
-//!   die and be replaced in the middle of a run
+//! - [`answer`]: the work of the node, a pure function of one message: the same stress gets the same answer, so that a
+//!   servo
+//!   can be restarted in the middle of a run
 //! - [`ServoController`]: the node
-//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
+//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
 
 mod answer;
 mod node;

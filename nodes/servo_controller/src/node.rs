@@ -9,35 +9,35 @@ use grainlab_node_kit::{
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// There is nothing to do between two questions.
+/// The node does nothing between two stresses.
 const IDLE: Duration = Duration::from_secs(3600);
 
-/// Questions that may wait; the simulator asks one at a time, and in free run a few.
+/// Capacity of the queue of stresses; the simulator sends one at a time, and a few ahead in free run.
 const BACKLOG: u32 = 16;
 
-/// The servo: answers every stress, remembers nothing.
+/// The servo: answers every stress and has no state that matters.
 #[derive(Debug)]
 pub struct ServoController {
     settings: Settings,
-    /// Whether the readers waited for have been there.
-    heard: bool,
-    /// Questions asked before that.
+    /// Whether the readers to wait for have been present.
+    ready: bool,
+    /// Stresses received before that.
     early: VecDeque<(Stress, SampleId)>,
     stress: Subscription<Stress>,
     strain_rate: Publisher<StrainRate>,
     answered: u64,
     unanswered: u64,
-    /// What was wrong with the latest stress, if something was.
+    /// The fault of the latest stress, if any.
     trouble: Option<String>,
 }
 
 impl ServoController {
-    /// Joins the lockstep. It asks for best effort: the simulator repeats what gets lost, and a dead servo must not fill
-    /// the simulator's window.
+    /// Creates the publisher and the subscription. The latter is best effort: the simulator repeats lost stresses, and
+    /// a servo that stopped must not fill the simulator's window.
     pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
             settings,
-            heard: false,
+            ready: false,
             early: VecDeque::new(),
             stress: Subscription::subscribe(bus, &topics::STRESS, Demand::best_effort(BACKLOG))?,
             strain_rate: Publisher::advertise(bus, &topics::STRAIN_RATE)?,
@@ -47,14 +47,14 @@ impl ServoController {
         })
     }
 
-    fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress, asked: SampleId) -> Result<(), BusError> {
+    fn reply(&mut self, bus: &mut dyn Bus, stress: &Stress, request: SampleId) -> Result<(), BusError> {
         match answer(stress) {
-            Ok(message) => match self.strain_rate.publish_about(bus, &message, asked) {
+            Ok(message) => match self.strain_rate.publish_about(bus, &message, request) {
                 Ok(_) => {
                     self.answered += 1;
                     self.trouble = None;
                 }
-                // The question comes again; the kit counts the answer lost.
+                // The stress will be repeated; the kit counts the lost answer.
                 Err(full @ BusError::Full { .. }) => self.trouble = Some(full.to_string()),
                 Err(error) => return Err(error),
             },
@@ -68,7 +68,7 @@ impl ServoController {
             bus.count_refused(self.stress.id());
         }
         self.unanswered += 1;
-        // A repeated question would fill the log with the same line.
+        // Not every time: a repeated stress would fill the log with the same line.
         if self.unanswered.is_power_of_two() {
             log::warn!("{refusal} ({} unanswered so far)", self.unanswered);
         }
@@ -78,14 +78,14 @@ impl ServoController {
 
 impl Node for ServoController {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
-        self.heard = self.heard || bus.readers(self.strain_rate.id()) >= self.settings.min_readers;
-        if self.heard {
-            while let Some((stress, asked)) = self.early.pop_front() {
-                self.reply(bus, &stress, asked)?;
+        self.ready = self.ready || bus.readers(self.strain_rate.id()) >= self.settings.min_readers;
+        if self.ready {
+            while let Some((stress, request)) = self.early.pop_front() {
+                self.reply(bus, &stress, request)?;
             }
         }
         while let Some((stress, info)) = self.stress.take_valid(bus)? {
-            if self.heard {
+            if self.ready {
                 self.reply(bus, &stress, info.id())?;
             } else {
                 if self.early.len() >= BACKLOG as usize {

@@ -1,4 +1,4 @@
-//! What can be set.
+//! Parameters.
 
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
@@ -9,16 +9,16 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "min_readers",
             Settings::default().min_readers as i64,
-            "readers of strain_rate that are waited for before the first answer, 1",
+            "number of readers of strain_rate to wait for before the first answer, 1",
         )
         .within(Range::Integer { min: 0, max: most }),
     ]
 }
 
-/// The parameters, typed. None of them enters an answer: the question holds everything.
+/// The values of the parameters. None of them changes an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Readers of `strain_rate` that are waited for before the first answer: a recorder must not miss it.
+    /// Number of readers of `strain_rate` to wait for before the first answer, so that a recorder does not miss it.
     pub min_readers: usize,
 }
 

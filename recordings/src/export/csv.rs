@@ -1,12 +1,12 @@
-//! The CSV format of [`crate::import::csv`], exact: numbers are written with as many digits as bring them
-//! back.
+//! Writes the CSV format of [`crate::import::csv`] without loss: numbers have enough digits to read them
+//! back exactly.
 
 use std::fmt::Write as _;
 
 use grainlab_core::{Mat3, Packing};
 use serde_json::{Value, json};
 
-/// Grains and contacts of a packing as CSV; [`sidecar`] gives the rest. Reading both back gives the same
+/// Grains and contacts of a packing as CSV; [`sidecar`] writes the rest. Reading both back gives the same
 /// packing, bit for bit.
 pub fn csv(packing: &Packing) -> String {
     let mut text = String::from("# particles: id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz\n");
@@ -45,6 +45,8 @@ pub fn sidecar(packing: &Packing) -> String {
         "G": packing.material.shear_modulus,
         "nu": packing.material.poisson_ratio,
         "density": packing.material.density,
+        "contact_law": packing.law.name(),
+        "contact_law_parameters": packing.law.parameters(),
         "mu_prep": friction,
         "cell": rows(packing.cell.matrix()),
         "step": packing.step,

@@ -1,13 +1,13 @@
-//! LAMMPS dump text, which OVITO opens.
+//! Writes LAMMPS dump text, which OVITO opens.
 
 use std::fmt::Write as _;
 
 use grainlab_core::{Packing, Vec3};
 
-/// Why a packing cannot be written as a LAMMPS dump.
+/// The cell of the packing cannot be written in a LAMMPS dump.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the cell's edge vectors are not (lx,0,0), (xy,ly,0), (xz,yz,lz), which is all that a LAMMPS dump can hold; entry ({row}, {column}) is {value:e} m: export CSV instead"
+    "the cell's edge vectors are not (lx,0,0), (xy,ly,0), (xz,yz,lz), the only form of a LAMMPS dump; entry ({row}, {column}) is {value:e} m: export CSV instead"
 )]
 pub struct DumpError {
     /// Row of the offending entry, 0-based.
@@ -19,7 +19,7 @@ pub struct DumpError {
 }
 
 /// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
-/// and the number of contacts as `c_contacts`. Frames may be put one after the other. Contact forces are not
+/// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
 /// part of the format.
 ///
 /// # Errors

@@ -1,17 +1,17 @@
-//! Grains, settings and contacts to a packing.
+//! Makes a packing from grains, settings and contacts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_header;
 
-use super::Imported;
 use super::contacts::{self, SearchError};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::Settings;
 use super::text::{Line, digits};
 
-/// Grains as a file lists them.
+/// Grains in the order and with the ids of a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainTable {
     pub(super) ids: Vec<u32>,
@@ -23,19 +23,19 @@ pub(super) struct GrainTable {
     pub(super) velocities: Vec<Vec3>,
     /// rad/s.
     pub(super) spins: Vec<Vec3>,
-    /// Where each was read, counted from 1.
+    /// Line of each grain, counted from 1.
     pub(super) lines: Vec<usize>,
     /// Most significant digits of any coordinate as printed.
     pub(super) digits: u32,
 }
 
-/// A contact as a file lists it.
+/// A contact as listed in a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ListedContact {
     pub(super) line: usize,
     /// Ids of the two grains, in the file's order.
     pub(super) ids: (u32, u32),
-    /// From the second to the first grain, if the file has it.
+    /// Unit vector from the second to the first grain, if the file has it.
     pub(super) normal: Option<Vec3>,
     /// m, if the file has it.
     pub(super) overlap: Option<f64>,
@@ -53,7 +53,7 @@ pub(super) enum ListedForce {
     Total(Vec3),
 }
 
-/// What is known of the state besides.
+/// Other known properties of the state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub(super) step: u64,
@@ -91,12 +91,12 @@ impl GrainTable {
         Ok(())
     }
 
-    /// Takes note of how many digits the file prints coordinates with.
+    /// Notes the number of digits of the coordinates.
     pub(super) fn printed(&mut self, coordinates: [&str; 3]) {
         self.digits = coordinates.into_iter().map(digits).fold(self.digits, u32::max);
     }
 
-    /// In order of id: other programs list grains in whatever order they hold them.
+    /// Sorts by id: other programs list grains in any order.
     pub(super) fn sorted_by_id(self) -> Self {
         let mut order: Vec<usize> = (0..self.ids.len()).collect();
         order.sort_by_key(|&k| self.ids[k]);
@@ -112,7 +112,7 @@ impl GrainTable {
         }
     }
 
-    /// Folds grains that have wandered further than 60 cells back into the cell: image indices end at 127.
+    /// Folds grains that are more than 60 cells away back into the cell: image indices end at 127.
     pub(super) fn folded_if_far(mut self, cell: &Cell) -> Self {
         for x in &mut self.positions {
             let copy = cell.fractional(x).map(f64::floor);
@@ -124,7 +124,7 @@ impl GrainTable {
     }
 }
 
-/// The packing of these grains; contacts that are not listed (`None`) are found.
+/// The packing of these grains; contacts that are not listed (`None`) are found from positions.
 pub(super) fn packing(
     grains: GrainTable,
     settings: &Settings,
@@ -160,11 +160,13 @@ pub(super) fn packing(
         spins: grains.spins,
         contacts: Vec::new(),
         material: settings.material,
+        law: settings.law,
         friction: settings.friction,
         time_step: state.time_step,
     }
     .validated()?;
-    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material);
+    let normal_force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
+    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, normal_force);
     let id = |k: usize| packing.ids[k];
     let found = found.map_err(|e| match e {
         SearchError::Coincident(i, j) => ImportError::Coincident(id(i), id(j)),
@@ -194,8 +196,8 @@ pub(super) fn packing(
     Ok(Imported { header: packing_header(&packing), packing, step: state.step, source, notes })
 }
 
-/// What rounding of printed positions does to overlaps, if it is not negligible. Programs print six digits at
-/// least; fewer were typed, and are meant.
+/// A warning if the rounding of printed positions changes overlaps noticeably. Programs print six digits at
+/// least; fewer were typed, and count as exact.
 fn too_few_digits(digits: u32, packing: &Packing) -> Option<String> {
     let overlaps = packing.contacts.iter().map(|c| c.overlap);
     let mean = overlaps.sum::<f64>() / packing.contacts.len() as f64;
@@ -218,13 +220,13 @@ fn listed_contact(
 ) -> Result<Contact, ImportError> {
     let find = |id: u32| index.get(&id).copied().ok_or(ImportError::UnknownId { line: c.line, id });
     let (first, second) = (find(c.ids.0)?, find(c.ids.1)?);
-    // The file's first grain is our i unless its index is the larger one; then everything changes sides.
+    // The file's first grain is our i unless its index is the larger one; then all signs change.
     let swapped = first > second;
     let (i, j) = if swapped { (second, first) } else { (first, second) };
     let side = if swapped { -1.0 } else { 1.0 };
     let radii = p.radii[i] + p.radii[j];
     let apart = p.positions[j] - p.positions[i];
-    // Where the image of j is expected; without a normal, the nearest one.
+    // Expected image of j; without a normal, the nearest one.
     let steps = match (c.normal, c.overlap) {
         (Some(normal), overlap) => {
             let expected = normal * (-side * (radii - overlap.unwrap_or(0.0)));
@@ -250,7 +252,7 @@ fn listed_contact(
         given,
         found,
     };
-    // What 17 digits leave open: a few units in the last place of the coordinates.
+    // Rounding of 17 digits: a few units in the last place of the coordinates.
     let rounding =
         16.0 * f64::EPSILON * (p.positions[i].amax() + p.positions[j].amax() + p.cell.matrix().amax());
     let overlap = c.overlap.unwrap_or(radii - distance);
@@ -270,7 +272,7 @@ fn listed_contact(
             (pressing, on_i + normal * pressing)
         }
     };
-    // Other codes turn the tangential force with the contact only so well; a wrong convention is wrong by
+    // Other codes rotate the tangential force with the contact only approximately; a wrong convention is wrong by
     // much more.
     let along = tangential_force.dot(&normal).abs();
     if along > 1e-3 * (normal_force.abs() + tangential_force.norm()) {
@@ -280,21 +282,24 @@ fn listed_contact(
     Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
 }
 
-/// Says where listed forces are not those of Hertz: the stiffness that is measured would be of other contacts.
+/// Warns if listed forces are not those of the contact law: the measured stiffness would be that of other contacts.
 fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
-    let hertz = |c: &Contact| packing.material.normal_force(packing.effective_radius(c), c.overlap.max(0.0));
-    let expected: f64 = listed.iter().map(hertz).sum();
-    let difference: f64 = listed.iter().map(|c| (c.normal_force - hertz(c)).abs()).sum();
+    let force = |c: &Contact| {
+        packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap.max(0.0))
+    };
+    let expected: f64 = listed.iter().map(force).sum();
+    let difference: f64 = listed.iter().map(|c| (c.normal_force - force(c)).abs()).sum();
     (difference > 0.01 * expected).then(|| {
         format!(
-            "normal forces differ from Hertz's law by {:.1} % on average: of another contact law, another material, or in \
-             motion; the stiffness is that of Hertz-Mindlin contacts of this material",
-            100.0 * difference / expected
+            "normal forces differ from the contact law by {:.1} % on average: of another contact law, another material, or \
+             in motion; the stiffness is that of {} contacts of this material",
+            100.0 * difference / expected,
+            packing.law.name()
         )
     })
 }
 
-/// Notes contacts that only one of list and positions has.
+/// Warns of contacts that are only in the list or only in the positions.
 fn compare(p: &Packing, listed: &[Contact], found: &[Contact], notes: &mut Vec<String>) {
     let key = |c: &Contact| (c.i, c.j, c.image);
     let (a, b): (BTreeSet<_>, BTreeSet<_>) =

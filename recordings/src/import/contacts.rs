@@ -1,45 +1,14 @@
-//! Contacts found from positions, in a time and a memory proportional to the number of grains, whatever the
+//! Finds contacts from positions, in time and memory proportional to the number of grains, whatever the
 //! shape of the cell.
 
 use grainlab_core::material::effective_radius;
-use grainlab_core::{Cell, Contact, Material, Vec3};
+use grainlab_core::{Cell, Contact, Vec3};
 
+mod error;
 mod grid;
 
+pub use error::SearchError;
 use grid::Grid;
-
-/// Why contacts cannot be found. Grains are named by index.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SearchError {
-    /// Two grains have the same centre.
-    #[error("grains {0} and {1} have the same centre")]
-    Coincident(usize, usize),
-    /// The image index does not fit its 8 bits.
-    #[error("grains {0} and {1} touch across more than 127 cells")]
-    FarImage(usize, usize),
-    /// The cell is so small, or the grains so large, that a search would not end.
-    #[error(
-        "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, or one is many times as wide"
-    )]
-    Crowded {
-        /// Volume of the spheres over volume of the cell.
-        solid_fraction: f64,
-        /// Largest diameter, m.
-        diameter: f64,
-        /// Narrowest width of the cell, m.
-        width: f64,
-    },
-    /// The grains lie in so small a part of the cell that a search would not end.
-    #[error(
-        "the grains lie in a small part of the cell, up to {together} of them in one box of the search: {pairs:.1e} pairs would have to be looked at"
-    )]
-    Clustered {
-        /// Most grains in one box.
-        together: usize,
-        /// Pairs to look at.
-        pairs: f64,
-    },
-}
 
 /// Every contact (positive overlap) of spheres of `radii` (m) at `positions` (m, folded or not) in `cell`,
 /// sorted by `(i, j, image)`: Hertz normal force from the overlap, no tangential force. Contacts across
@@ -47,13 +16,13 @@ pub enum SearchError {
 /// several images of another. Positions and radii must be finite and radii positive.
 ///
 /// # Errors
-/// If two centres coincide, an image is too far away to be named, grains fill the cell many times over, or lie
+/// If two centres coincide, the index of an image is too large, grains fill the cell many times over, or lie
 /// in a tiny part of it.
 ///
 /// ```
 /// use grainlab_core::{Cell, Material, Vec3};
 /// let (cell, r) = (Cell::cube(1.0).unwrap(), [0.11, 0.11]);
-/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, &Material::GLASS);
+/// let found = grainlab_recordings::import::contacts::find(&cell, &[Vec3::zeros(), Vec3::new(0.0, 0.0, 0.8)], &r, |r, d| Material::GLASS.normal_force(r, d));
 /// let found = found.unwrap();
 /// assert_eq!((found.len(), found[0].image), (1, [0, 0, -1]));
 /// assert!((found[0].overlap - 0.02).abs() < 1e-15);
@@ -62,23 +31,23 @@ pub fn find(
     cell: &Cell,
     positions: &[Vec3],
     radii: &[f64],
-    material: &Material,
+    normal_force: impl Fn(f64, f64) -> f64,
 ) -> Result<Vec<Contact>, SearchError> {
     let grid = Grid::new(cell, positions, radii)?;
     let mut contacts = Vec::new();
     for i in 0..positions.len() {
         grid.visit(i, |j, lattice| {
-            // Each pair once; of a grain and its own images, one of each opposite two.
+            // Each pair once; of a grain's own images, one of each opposite pair.
             if j < i || (j == i && lattice <= [0, 0, 0]) {
                 return Ok(());
             }
-            // Measured from positions as they are, so that `Packing::branch` gives the same number.
+            // Computed from unfolded positions, so that `Packing::branch` gives the same number.
             let step =
                 |k: usize| lattice[k].saturating_add(grid.cells[i][k]).saturating_sub(grid.cells[j][k]);
             let steps: [i64; 3] = std::array::from_fn(step);
             let image = steps.map(i8::try_from);
             let [Ok(a), Ok(b), Ok(c)] = image else {
-                // Too far to be named, but only an error if the two touch.
+                // The image index is too large, which is only an error if the two touch.
                 let shift = cell.matrix() * Vec3::new(steps[0] as f64, steps[1] as f64, steps[2] as f64);
                 let touch = (positions[j] - positions[i] + shift).norm() < radii[i] + radii[j];
                 return if touch { Err(SearchError::FarImage(i, j)) } else { Ok(()) };
@@ -99,7 +68,7 @@ pub fn find(
                 image: [a, b, c],
                 overlap,
                 normal: branch / distance,
-                normal_force: material.normal_force(r_eff, overlap),
+                normal_force: normal_force(r_eff, overlap),
                 tangential_force: Vec3::zeros(),
             });
             Ok(())

@@ -6,17 +6,17 @@
 //! - `c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz`, a contact of the grains with ids `i` and `j`: unit vector n from
 //!   `j` to `i`, full overlap, and the force on `i`, fn·n + ft.
 //!
-//! Lines that start with `#` are comments. A file without contact rows has its contacts found from positions.
+//! Lines that start with `#` are comments. Without contact rows, contacts are found from positions.
 //!
 //! Sidecar keys: `G` (Pa), `nu`, `density` (kg/m³), `mu_prep` (a number, or `"inf"`), `cell` (three rows of
 //! three; columns are the edge vectors, m) or `box_L` (three edges, m), and optionally `step`, `time` (s),
-//! `time_step` (s), `deformation` (three rows of three). Other keys are left alone.
+//! `time_step` (s), `deformation` (three rows of three). Other keys are ignored.
 
 use grainlab_core::Vec3;
 
-use super::Imported;
 use super::assemble::{self, GrainTable, ListedContact, ListedForce};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::ImportOptions;
 use super::text::{Line, lines, shown};
 
@@ -27,7 +27,7 @@ use sidecar::Sidecar;
 /// The packing of a CSV text and the text of its sidecar, if there is one.
 ///
 /// # Errors
-/// If a row or the sidecar is malformed, something is missing, or contacts contradict the positions.
+/// If a row or the sidecar is invalid, a quantity is missing, or contacts contradict the positions.
 pub fn packing(csv: &str, sidecar: Option<&str>, options: &ImportOptions) -> Result<Imported, ImportError> {
     let sidecar = Sidecar::parse(sidecar)?;
     let settings = sidecar.known()?.complete(options)?;

@@ -1,14 +1,14 @@
-//! Why an import fails.
+//! Errors of an import.
 
 use std::io;
 use std::path::PathBuf;
 
 use grainlab_core::PackingError;
 
-use super::settings::Setting;
+use super::setting::Setting;
 use crate::reader::ReadError;
 
-/// Why something is not a packing that can be used.
+/// Errors of an import.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// A file cannot be read.
@@ -16,31 +16,31 @@ pub enum ImportError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// A recording cannot be read.
     #[error(transparent)]
     Recording(#[from] ReadError),
-    /// The error, and the file it is in.
+    /// An error with its file.
     #[error("{path}: {source}")]
     In {
         /// The file.
         path: PathBuf,
-        /// What is wrong in it.
+        /// The error.
         source: Box<ImportError>,
     },
-    /// No parser knows this file.
+    /// The format of the file is unknown.
     #[error(
-        "line {line}, {first}, begins nothing that can be read: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
+        "line {line}, {first}, is of no known format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
     )]
     UnknownFormat {
         /// Its first line that is not empty, counted from 1.
         line: usize,
-        /// How that line begins, quoted.
+        /// The beginning of that line, quoted.
         first: String,
     },
-    /// A line is not what the format says.
+    /// A line is invalid in its format.
     #[error("line {line}: {problem}")]
     Syntax {
         /// Line, counted from 1.
@@ -48,21 +48,21 @@ pub enum ImportError {
         /// What was expected and what was found.
         problem: String,
     },
-    /// Nothing in the file, its sidecar or the options says this.
+    /// The file, its sidecar and the options lack these quantities.
     #[error("the file does not say {}", list(.0))]
     Missing(Vec<Setting>),
-    /// The sidecar is not what it should be.
+    /// The sidecar is invalid.
     #[error("sidecar: {0}")]
     Sidecar(String),
-    /// The cell is not one.
+    /// The cell has no positive volume.
     #[error("the cell {0:?} (row-major, columns are the edge vectors, m) has no positive volume")]
     Cell([f64; 9]),
-    /// The file describes something that this laboratory does not have.
+    /// The file uses a feature that is not supported.
     #[error("line {line}: {what} is not supported: {reason}")]
     Unsupported {
         /// Line, counted from 1.
         line: usize,
-        /// What was found.
+        /// The feature.
         what: String,
         /// Why, and what to do.
         reason: &'static str,
@@ -74,7 +74,7 @@ pub enum ImportError {
         id: u32,
         /// Line, counted from 1.
         line: usize,
-        /// Line in which it was before.
+        /// Line of its first occurrence.
         before: usize,
     },
     /// A contact names a grain that does not exist.
@@ -96,11 +96,11 @@ pub enum ImportError {
         i: u32,
         /// Id of the second grain.
         j: u32,
-        /// What disagrees, with its unit.
+        /// The quantity that disagrees, with its unit.
         quantity: &'static str,
-        /// As the file has it.
+        /// Value in the file.
         given: f64,
-        /// As positions have it.
+        /// Value from positions.
         found: f64,
     },
     /// Two grains have the same centre.
@@ -154,21 +154,21 @@ pub enum ImportError {
         /// Pairs to look at.
         pairs: f64,
     },
-    /// The numbers are no packing.
+    /// The packing is invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// A recorded message is no packing.
+    /// A recorded message is not a valid packing.
     #[error("message {sequence} on {topic}: {problem}")]
     Message {
         /// Topic.
         topic: String,
         /// Low half of its sequence number.
         sequence: u32,
-        /// Why not.
+        /// The error.
         problem: String,
     },
-    /// There is no packing in the file.
-    #[error("there is no packing in it")]
+    /// The file contains no packing.
+    #[error("it contains no packing")]
     Empty,
 }
 

@@ -1,6 +1,6 @@
 //! LAMMPS data files of `atom_style sphere`, as `write_data` makes them.
 //!
-//! Taken: the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are left alone) and
+//! It reads the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are ignored) and
 //! `Velocities` (id, v, ω), in SI units. Contacts are found from positions.
 
 use std::collections::BTreeMap;
@@ -9,19 +9,20 @@ use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
+use super::imported::Imported;
+use super::lammps_cell::lammps_cell;
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, lines};
-use super::{Imported, lammps_cell};
 
 /// The packing of a data file.
 ///
 /// # Errors
-/// If the text is malformed, of another style or unit, has mixed densities, or settings are missing.
+/// If the text is invalid, has another style or unit or mixed densities, or settings are missing.
 pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
     let mut file = DataFile::default();
     let mut section = Section::Header;
     for line in lines(text) {
-        // A section's name may be followed by a comment that names the style.
+        // A section's name may be followed by a comment with the style.
         let (content, comment) = line.text.split_once('#').unwrap_or((line.text, ""));
         let words: Vec<&str> = content.split_whitespace().collect();
         if line.number == 1 {
@@ -76,7 +77,7 @@ struct DataFile {
 }
 
 impl DataFile {
-    /// `LAMMPS data file via write_data, version …, timestep = 100000, units = si`: read where it says so.
+    /// `LAMMPS data file via write_data, version …, timestep = 100000, units = si`: read if present.
     fn title(&mut self, line: &Line<'_>) -> Result<(), ImportError> {
         let value = |key: &str| {
             line.text.split(',').find_map(|p| p.trim().strip_prefix(key)?.trim().strip_prefix('='))

@@ -1,6 +1,6 @@
-//! LAMMPS dump files in text form, one packing a frame.
+//! LAMMPS dump files in text form, one packing per frame.
 //!
-//! Taken: the time step, the box (orthogonal or restricted triclinic, periodic), and from the columns `id`,
+//! It reads the time step, the box (orthogonal or restricted triclinic, periodic), and from the columns `id`,
 //! `radius` or `diameter`, positions as `x`, `xu`, `xs` or `xsu` …, `mass`, `vx` …, `omegax` …. Contacts are
 //! found from positions, unless a `dump local` with their forces is given beside a single frame
 //! ([`ImportOptions::contact_forces`]).
@@ -13,14 +13,17 @@ use grainlab_core::{Mat3, Vec3};
 
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
-use super::settings::{ImportOptions, Known, Setting};
+use super::imported::Imported;
+use super::lammps_cell::lammps_cell;
+use super::lammps_local;
+use super::setting::Setting;
+use super::settings::{ImportOptions, Known};
 use super::text::{Line, cut, lines, shown};
-use super::{Imported, lammps_cell, lammps_local};
 
 /// The packings of a dump, in order.
 ///
 /// # Errors
-/// If the text is malformed, not periodic or not in SI units, or settings are missing.
+/// If the text is invalid, not periodic or not in SI units, or settings are missing.
 pub fn packings(text: &str, options: &ImportOptions) -> Result<Vec<Imported>, ImportError> {
     let mut all = Vec::new();
     each(text, options, &mut |imported| {
@@ -30,10 +33,10 @@ pub fn packings(text: &str, options: &ImportOptions) -> Result<Vec<Imported>, Im
     Ok(all)
 }
 
-/// Gives `take` the packings of a dump one by one, in order, until it has enough.
+/// Passes the packings of a dump to `take` one by one, in order, until it stops.
 ///
 /// # Errors
-/// As [`packings`], once `take` has been given the packings before the fault.
+/// As [`packings`]; `take` has received the packings before the error.
 pub fn each(
     text: &str,
     options: &ImportOptions,
@@ -79,7 +82,7 @@ struct Frame<'a> {
     rows: Vec<Row<'a>>,
 }
 
-/// An atom before options complete it.
+/// An atom before missing values are taken from the options.
 struct Row<'a> {
     line: Line<'a>,
     coordinates: [&'a str; 3],
@@ -92,7 +95,7 @@ struct Row<'a> {
     spin: Vec3,
 }
 
-/// The frames of a text, one at a time: a dump may hold thousands.
+/// Reads the frames of a text one at a time: a dump may hold thousands.
 struct Frames<'a, L: Iterator<Item = Line<'a>>> {
     lines: Peekable<L>,
 }
@@ -196,7 +199,7 @@ fn bounds(item: &Line<'_>, words: &str, rows: [Line<'_>; 3]) -> Result<(Vec3, Ma
     Ok((low.into(), lammps_cell(std::array::from_fn(|k| high[k] - low[k]), tilt)))
 }
 
-/// Which column holds what.
+/// The column of each quantity.
 struct Columns {
     names: BTreeMap<String, usize>,
     id: Option<usize>,
@@ -209,7 +212,7 @@ impl Columns {
         let announced = names.split_whitespace().count();
         let names: BTreeMap<String, usize> =
             names.split_whitespace().enumerate().map(|(k, n)| (n.to_owned(), k)).collect();
-        // Which of the two would be meant, nothing says.
+        // It is unknown which of the two is meant.
         if names.len() != announced {
             return Err(line.error("a column occurs twice: dump each quantity once"));
         }
@@ -240,7 +243,7 @@ impl Columns {
         Ok(Row {
             line: *line,
             coordinates: self.position.map(|k| words[k]),
-            // Without an id column the order of the rows stands for it.
+            // Without an id column, the row number is the id.
             id: self.id.map_or(Ok(before as u32 + 1), |k| line.id("id", words[k]))?,
             radius,
             mass: number("mass")?,
@@ -271,7 +274,7 @@ impl Frame<'_> {
             grains.push(&row.line, row.id, radius, [position, row.velocity, row.spin])?;
             densities.extend(row.mass.map(|m| m / (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3))));
         }
-        // Masses give the density if they agree on one to what 6 printed digits allow.
+        // Masses give the density if all agree within 6 printed digits.
         let density =
             densities.first().copied().filter(|d| densities.iter().all(|e| (e / d - 1.0).abs() < 1e-5));
         let settings = Known { cell: Some(self.cell), density, ..Known::default() }.complete(options)?;

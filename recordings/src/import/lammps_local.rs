@@ -1,7 +1,7 @@
 //! Contact forces of a LAMMPS `dump local`.
 //!
-//! Of every granular pair style `compute pair/local` gives the normal force alone as `fx fy fz`, and the tangential force
-//! as `p1 p2 p3`; both act on the first of the two grains. The dump that is taken:
+//! For every granular pair style, `compute pair/local` gives the normal force alone as `fx fy fz`, and the tangential
+//! force as `p1 p2 p3`; both act on the first of the two grains. The expected dump:
 //!
 //! ```text
 //! compute pl all property/local patom1 patom2
@@ -10,7 +10,7 @@
 //! dump_modify forces format float %.17g
 //! ```
 //!
-//! The dump does not say what its columns are: those are their names by default. Columns that `dump_modify colname` has
+//! By default the dump names its columns as above. Columns that `dump_modify colname` has
 //! called `patom1 patom2 fx fy fz p1 p2 p3` are found by these names, and any others by
 //! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which LAMMPS
 //! lists as long as they are neighbours, have no force and are left out.
@@ -31,19 +31,19 @@ const LEAST: usize = 5;
 /// Tangential forces up to this share of the force are rounding of its direction: 17 digits leave less, 6 more.
 const CENTRAL: f64 = 1e-9;
 
-/// What a dump holds.
+/// The content of a dump.
 #[derive(Debug)]
 pub(super) struct Local {
-    /// Time step of the last frame, if it says one.
+    /// Time step of the last frame, if given.
     pub(super) step: Option<u64>,
     /// Its pairs that carry force.
     pub(super) contacts: Vec<ListedContact>,
-    /// Whether tangential forces were among the columns.
+    /// Whether the columns include tangential forces.
     tangential: bool,
 }
 
-/// The contacts of the last frame. `chosen` are the columns in the order of those by default, five or eight; none for
-/// these.
+/// The contacts of the last frame. `chosen` are the columns in the default order, five or eight; none for
+/// the default ones.
 pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportError> {
     let mut columns: Option<Vec<usize>> = None;
     let mut local = Local { step: None, contacts: Vec::new(), tangential: false };
@@ -92,17 +92,17 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
     }
     match (last, entries) {
         (None, _) => Err(ImportError::Empty),
-        (Some(line), Some(entries)) if entries != rows => Err(line.error(format!(
-            "the last frame has {rows} entries and says that it has {entries}: the file is cut off"
-        ))),
+        (Some(line), Some(entries)) if entries != rows => {
+            Err(line.error(format!("the last frame has {rows} of {entries} entries: the file is truncated")))
+        }
         (Some(line), _) if columns.is_none() => Err(line.error(NEEDED)),
         _ => Ok(local),
     }
 }
 
 impl Local {
-    /// Refuses normal forces taken for all of the force: without columns of the tangential ones, where there is friction,
-    /// some force must point across its contact.
+    /// Refuses normal forces given as the whole force: with friction and without columns of tangential forces,
+    /// some force must have a tangential part.
     pub(super) fn whole(&self, packing: &grainlab_core::Packing) -> Result<(), ImportError> {
         let central =
             |c: &grainlab_core::Contact| c.tangential_force.norm() <= CENTRAL * c.normal_force.abs();
@@ -118,7 +118,7 @@ const NEEDED: &str = "columns c_pl[1] c_pl[2] c_pf[2] c_pf[3] c_pf[4] c_pf[5] c_
     compute pl all property/local patom1 patom2 and compute pf all pair/local dist fx fy fz p1 p2 p3; name others with \
     --contact-columns";
 
-/// Places of the columns, all eight or five.
+/// Indices of the columns, all eight or five.
 fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
     let place = |wanted: &str| names.iter().position(|n| *n == wanted);
     if !chosen.is_empty() {
@@ -135,7 +135,7 @@ fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
     for wanted in [BY_NAME, BY_NUMBER] {
         let places: Vec<usize> = wanted.iter().map_while(|name| place(name)).collect();
         if places.len() >= LEAST {
-            // Some of the three are not a force.
+            // Part of the three components is not a force.
             let whole = places.len() == wanted.len();
             return Ok(places[..if whole { wanted.len() } else { LEAST }].to_vec());
         }

@@ -1,21 +1,22 @@
-//! A path to packings.
+//! Loads packings from a path.
 
 use std::fs;
 use std::io::{self, Read as _};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use super::imported::Imported;
 use super::text::{lines, shown};
-use super::{ImportError, ImportOptions, Imported, csv, lammps_data, lammps_dump, recording, yade};
+use super::{ImportError, ImportOptions, csv, lammps_data, lammps_dump, recording, yade};
 use crate::input;
 use crate::reader::{Recording, Warning};
 
-/// What a path gave.
+/// The packings of a path.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// The packings, at least one, in order.
     pub packings: Vec<Imported>,
-    /// What of a recording could not be read: data was lost if this is not empty.
+    /// The parts of a recording that could not be read: data was lost if this is not empty.
     pub warnings: Vec<Warning>,
 }
 
@@ -40,15 +41,15 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Loaded, ImportError>
     Ok(Loaded { packings, warnings })
 }
 
-/// Gives `take` the packings of a file or run directory one by one, in order, until it has enough: of a
+/// Passes the packings of a file or run directory to `take` one by one, in order, until it stops: those of a
 /// recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump or data file, a YADE export;
 /// `.gz` is decompressed, to 64 times its size or 16 MiB at most; texts have at most 4 GiB, and pipes and devices are
-/// refused. The content decides, and where it does not, the name. Returned are the warnings of a
+/// refused. The content determines the format, or else the name. Returns the warnings of a
 /// recording: data was lost if there are any.
 ///
 /// # Errors
-/// With the path in front of the reason: see [`ImportError`]. `take` has then been given the packings before the
-/// fault.
+/// See [`ImportError`]; the message begins with the path. `take` has received the packings before the
+/// error.
 pub fn each(
     path: &Path,
     options: &ImportOptions,
@@ -88,7 +89,7 @@ fn stem_and_extension(path: &Path) -> (String, String) {
     (part(name.file_stem()), part(name.extension()).to_lowercase())
 }
 
-/// What a text is: its first lines tell, or else its name does.
+/// The format of a text, from its first lines or else from its name.
 fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError> {
     let mut full = lines(text).filter(|l| !l.text.trim().is_empty());
     let first = full.next().ok_or(ImportError::Empty)?;
@@ -127,7 +128,7 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
 const FROM_YADE: &str =
     "from YADE, export with textExt, or with the script of `grainlab analyze --yade-script`";
 
-/// Lines among which a LAMMPS data file says how many atoms it has; its first line may be anything.
+/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line may be anything.
 const HEADER: usize = 20;
 
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
@@ -150,7 +151,7 @@ fn starts_with(path: &Path, magic: &[u8]) -> bool {
 /// The text of a file; `.gz` is decompressed.
 ///
 /// # Errors
-/// If it cannot be read, is damaged or is no text.
+/// If it cannot be read, is damaged or is not text.
 pub fn text(path: &Path) -> Result<String, ImportError> {
     let io = |source| ImportError::Io { path: path.to_owned(), source };
     let mut bytes = input::bytes(path, input::TEXT).map_err(io)?;

@@ -1,17 +1,18 @@
-//! Packings of recordings of ours.
+//! Packings of our own recordings.
 
 use std::ops::ControlFlow;
 
 use grainlab_core::Packing;
 use grainlab_msgs::{Message as _, from_cdr, msg, topics};
 
+use super::ImportOptions;
 use super::error::ImportError;
-use super::{ImportOptions, Imported};
+use super::imported::Imported;
 use crate::reader::{Message, ReadError, Recording, Selection};
 
-/// Gives `take` the packings of a recording one by one, in order of log time, until it has enough. A message
-/// that is not a packing is an error; a damaged or truncated recording gives what is left of it, and says so in
-/// its warnings.
+/// Passes the packings of a recording to `take` one by one, in order of log time, until it stops. A message
+/// that is not a packing is an error; the readable part of a damaged or truncated recording is used, with
+/// warnings.
 ///
 /// # Errors
 /// If the topic does not exist, carries another type, or a message on it is not a packing.
@@ -42,7 +43,7 @@ pub fn each(
 /// The packing of one recorded message.
 ///
 /// # Errors
-/// If the message is not one, or what it holds is not a packing.
+/// If the message does not decode, or its packing is invalid.
 pub fn packing(message: &Message) -> Result<Imported, ImportError> {
     let fail = |problem: String| ImportError::Message {
         topic: message.channel.topic.clone(),

@@ -1,10 +1,12 @@
-//! What a file does not say about a packing.
+//! Properties of a packing that a file may lack.
 
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Mat3, Material};
 
 use super::error::ImportError;
+use super::setting::Setting;
 
-/// Values given by hand; each one goes before what the file or its sidecar says.
+/// Values given by the user; each one overrides the file and its sidecar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// The cell: edge vectors as columns, m.
@@ -17,76 +19,37 @@ pub struct ImportOptions {
     pub density: Option<f64>,
     /// Friction coefficient; may be infinite.
     pub friction: Option<f64>,
+    /// Contact law; Hertz–Mindlin if not given.
+    pub law: Option<ContactLaw>,
     /// Radius of every grain, m, for files that have none.
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
     pub topic: Option<String>,
     /// Text of a LAMMPS `dump local` with the contact forces of the one frame of a dump.
     pub contact_forces: Option<String>,
-    /// Its columns, where they are not those by default: ids of the two grains, normal force on the first, tangential
-    /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for those
-    /// by default.
+    /// Its columns, if not the default ones: ids of the two grains, normal force on the first, tangential
+    /// force on the first (`patom1 patom2 fx fy fz p1 p2 p3`); or the first five, with the whole force. Empty for the
+    /// default ones.
     pub contact_columns: Vec<String>,
 }
 
-/// Something that must be known of a packing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Setting {
-    /// The periodic cell.
-    Cell,
-    /// Shear modulus of the grain.
-    ShearModulus,
-    /// Poisson ratio of the grain.
-    PoissonRatio,
-    /// Density of the grain.
-    Density,
-    /// Friction coefficient.
-    Friction,
-    /// Radius of the grains.
-    Radius,
-}
-
-impl Setting {
-    /// In words.
-    pub fn what(self) -> &'static str {
-        match self {
-            Self::Cell => "the cell",
-            Self::ShearModulus => "the grain's shear modulus",
-            Self::PoissonRatio => "the grain's Poisson ratio",
-            Self::Density => "the grain's density",
-            Self::Friction => "the friction coefficient",
-            Self::Radius => "the radius of the grains",
-        }
-    }
-
-    /// The command-line flag that gives it, with its unit.
-    pub fn flag(self) -> &'static str {
-        match self {
-            Self::Cell => "--cell LX,LY,LZ or nine numbers row by row, m",
-            Self::ShearModulus => "--shear-modulus PA",
-            Self::PoissonRatio => "--poisson NU",
-            Self::Density => "--density KG_PER_M3",
-            Self::Friction => "--friction MU",
-            Self::Radius => "--radius M",
-        }
-    }
-}
-
-/// What a file says, to be completed by the options.
+/// The properties in a file, to be completed by the options.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     pub(super) cell: Option<Mat3>,
     pub(super) shear_modulus: Option<f64>,
     pub(super) poisson_ratio: Option<f64>,
     pub(super) density: Option<f64>,
+    pub(super) law: Option<ContactLaw>,
     pub(super) friction: Option<f64>,
 }
 
-/// All that a packing needs beside its grains.
+/// All properties of a packing except its grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
     pub(super) cell: Cell,
     pub(super) material: Material,
+    pub(super) law: ContactLaw,
     pub(super) friction: f64,
 }
 
@@ -114,6 +77,7 @@ impl Known {
         };
         let rows = std::array::from_fn(|k| matrix[(k / 3, k % 3)]);
         let cell = Cell::new(matrix).ok_or(ImportError::Cell(rows))?;
-        Ok(Settings { cell, material: Material { shear_modulus, poisson_ratio, density }, friction })
+        let material = Material { shear_modulus, poisson_ratio, density };
+        Ok(Settings { cell, material, law: options.law.or(self.law).unwrap_or_default(), friction })
     }
 }

@@ -1,4 +1,4 @@
-//! Lines with their numbers, fields as numbers, and errors that name both.
+//! Lines with their numbers, fields as numbers, and errors with both.
 
 use grainlab_core::Vec3;
 
@@ -20,19 +20,19 @@ impl<'a> Line<'a> {
         self.text.split_whitespace().collect()
     }
 
-    /// `field`, which is called `name`, as a number.
+    /// The number in `field`; `name` is its name in errors.
     pub(super) fn number<T: std::str::FromStr>(&self, name: &str, field: &str) -> Result<T, ImportError> {
         let problem = || format!("{name} is {}, not a number of its kind", shown(field));
         field.trim().parse().map_err(|_| self.error(problem()))
     }
 
-    /// The same where only a finite number makes sense.
+    /// The same for a finite number.
     pub(super) fn finite(&self, name: &str, field: &str) -> Result<f64, ImportError> {
         let value: f64 = self.number(name, field)?;
         if value.is_finite() { Ok(value) } else { Err(self.error(format!("{name} is not finite ({value})"))) }
     }
 
-    /// An id or a count that other programs may write as `3` or `3.0`.
+    /// An id or a count, written as `3` or `3.0`.
     pub(super) fn id(&self, name: &str, field: &str) -> Result<u32, ImportError> {
         let value: f64 = self.number(name, field)?;
         if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
@@ -54,10 +54,10 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     text.lines().enumerate().map(|(k, text)| Line { number: k + 1, text })
 }
 
-/// Characters of a field that an error shows: a line of a file that is no table may be megabytes long.
+/// Maximum number of characters of a field in an error: a line of a file that is not a table may have megabytes.
 const SHOWN: usize = 40;
 
-/// `text` in quotation marks, cut to what a person reads.
+/// `text` in quotation marks, truncated.
 pub(super) fn shown(text: &str) -> String {
     format!("{:?}", cut(text))
 }
@@ -67,7 +67,7 @@ pub(super) fn cut(text: &str) -> String {
     if head.len() < text.len() { head + "…" } else { head }
 }
 
-/// Significant digits of a number as printed: those from the first that is not zero.
+/// Number of significant digits of a printed number: those from the first that is not zero.
 pub(super) fn digits(field: &str) -> u32 {
     let mantissa = field.trim().split(['e', 'E']).next().unwrap_or_default();
     let count = mantissa.trim_start_matches(['-', '+', '0', '.']).bytes().filter(u8::is_ascii_digit).count();

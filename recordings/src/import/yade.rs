@@ -1,7 +1,7 @@
 //! Text exports of YADE: `export.text` and `export.textExt`.
 //!
-//! The first line names the format. Taken: `x_y_z_r`, `x_y_z_r_matId`, `id_x_y_z_r_matId`, and `x_y_z_r_attrs`
-//! with the columns that its comment names (`vx vy vz`, `wx wy wz` are velocities, others are left alone). The
+//! The first line names the format: `x_y_z_r`, `x_y_z_r_matId`, `id_x_y_z_r_matId`, and `x_y_z_r_attrs`
+//! with the columns in its comment (`vx vy vz`, `wx wy wz` are velocities, others are ignored). The
 //! file holds no cell unless a comment gives it, as three edges or as the nine numbers of `O.cell.hSize`:
 //!
 //! ```python
@@ -14,9 +14,9 @@
 
 use grainlab_core::{Mat3, Vec3};
 
-use super::Imported;
 use super::assemble::{self, GrainTable, State};
 use super::error::ImportError;
+use super::imported::Imported;
 use super::settings::{ImportOptions, Known};
 use super::text::{Line, cut, lines, shown};
 
@@ -26,7 +26,7 @@ pub const EXPORTER: &str = include_str!("yade/grainlab_export.py");
 /// The packing of an export.
 ///
 /// # Errors
-/// If the text is malformed or of another format, or settings are missing.
+/// If the text is invalid or of another format, or settings are missing.
 pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportError> {
     let mut lines = lines(text).filter(|l| !l.text.trim().is_empty());
     let first = lines.next().ok_or(ImportError::Empty)?;
@@ -65,15 +65,15 @@ pub fn packing(text: &str, options: &ImportOptions) -> Result<Imported, ImportEr
     assemble::packing(grains, &settings, None, State::at(0), source, notes)
 }
 
-/// Which column holds what.
+/// The column of each quantity.
 struct Columns {
     id: Option<usize>,
-    /// Of x; y, z and r follow.
+    /// Column of x; y, z and r follow.
     x: usize,
     material: Option<usize>,
     velocity: Option<usize>,
     spin: Option<usize>,
-    /// How many a row has, where the format says.
+    /// Number of columns, if the format defines it.
     count: Option<usize>,
 }
 
@@ -95,7 +95,7 @@ impl Columns {
         Err(ImportError::Unsupported { line: line.number, what: format!("#format {}", cut(format)), reason })
     }
 
-    /// Columns behind x, y, z and r, as the comment names them.
+    /// The columns after x, y, z and r, from the comment.
     fn attributes(&mut self, names: &str) {
         let names: Vec<&str> = names.split_whitespace().collect();
         let three = |wanted: [&str; 3]| names.windows(3).position(|w| *w == wanted).map(|k| k + 4);
@@ -127,7 +127,7 @@ impl Columns {
     }
 }
 
-/// The cell of a comment, in whatever brackets Python put it.
+/// The cell in a comment, with any brackets of Python.
 fn edges(line: &Line<'_>, text: &str) -> Result<Mat3, ImportError> {
     let words = text.split(|c: char| c.is_whitespace() || "()[]{},;:=".contains(c));
     let words: Vec<&str> = words.filter(|w| !w.is_empty() && !w.starts_with(char::is_alphabetic)).collect();

@@ -1,11 +1,11 @@
-//! The accounts of several recorders of one run as one: a run that is resumed is recorded by a recorder after
+//! Merges the counts of several recorders of one run: a resumed run is recorded by one recorder after
 //! another.
 
 use std::collections::BTreeMap;
 
-use super::{LISTED_GAPS, TopicTally, WriterTally};
+use super::tally::{LISTED_GAPS, TopicTally, WriterTally};
 
-/// One account of several, in the order of their recorders. A writer that several of them heard is accounted for once.
+/// Merges counts, in the order of their recorders. A writer that several of them received is counted once.
 pub fn merge(accounts: Vec<Vec<TopicTally>>) -> Vec<TopicTally> {
     let mut topics = BTreeMap::<String, BTreeMap<String, WriterTally>>::new();
     for topic in accounts.into_iter().flatten() {
@@ -27,13 +27,13 @@ fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
     TopicTally { name, published: recorded.saturating_add(lost), recorded, lost, repeated, writers }
 }
 
-/// Two recorders heard the same writer, one after the other or at the same time.
+/// Merges the counts of one writer by two recorders, one after the other or at the same time.
 fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     let published = |w: &WriterTally| w.recorded.saturating_add(w.lost);
     let published = published(a).max(published(b));
     let gaps = common(&missing(a), &missing(b));
     let last = a.last.max(b.last);
-    // Both may have recorded a message; where all gaps are listed they tell how many are missing in both.
+    // Both may have recorded a message; if all gaps are listed, they give the number missing in both.
     let listed = a.gaps.len() < LISTED_GAPS && b.gaps.len() < LISTED_GAPS;
     let below: u64 =
         gaps.iter().map(|(from, to)| to.abs_diff(*from).saturating_add(1)).fold(0, u64::saturating_add);
@@ -59,13 +59,13 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     }
 }
 
-/// Ranges of numbers that one recorder does not have: its gaps, and all behind its last.
+/// Ranges of numbers that one recorder does not have: its gaps, and all after its last.
 fn missing(w: &WriterTally) -> Vec<(i64, i64)> {
     let behind = w.last.map_or(1, |last| last.saturating_add(1));
     w.gaps.iter().copied().chain([(behind, i64::MAX)]).collect()
 }
 
-/// What two sorted lists of ranges have in common, without the range that has no end.
+/// The intersection of two sorted lists of ranges, without the unbounded range.
 fn common(a: &[(i64, i64)], b: &[(i64, i64)]) -> Vec<(i64, i64)> {
     let (mut i, mut k, mut found) = (0, 0, Vec::new());
     while let (Some(x), Some(y)) = (a.get(i), b.get(k)) {

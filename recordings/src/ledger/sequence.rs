@@ -1,16 +1,16 @@
-//! The sequence numbers of one writer that have come.
+//! The received sequence numbers of one writer.
 
 use std::collections::BTreeMap;
 
-/// Ranges that are kept of one writer. Numbers come in order but for a few: thousands of gaps are the numbers of a
-/// writer that is broken or hostile, and may not fill the memory.
+/// Maximum number of ranges kept per writer. Nearly all numbers arrive in order: thousands of gaps mean a faulty or
+/// hostile writer, which must not exhaust the memory.
 const MOST_GAPS: usize = 4096;
 
-/// Which numbers of 1, 2, 3 … have come, kept as the ranges that have not. Once there are too many of these, the
-/// lowest is forgotten: its numbers then stay missing, and are repeats should they come after all.
+/// The received numbers of 1, 2, 3 …, kept as the missing ranges. If there are too many of these, the
+/// lowest is forgotten: its numbers stay missing, and count as repeats if they arrive later.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
-    /// Highest number that has come; 0 before the first.
+    /// Highest received number; 0 before the first.
     highest: i64,
     first: Option<i64>,
     /// Missing ranges below `highest`: first number → last number, both included.
@@ -20,19 +20,19 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
-    /// Whether `number` has come.
+    /// Whether `number` was received.
     pub(super) fn holds(&self, number: i64) -> bool {
         self.first.is_some() && number <= self.highest && self.gap_of(number).is_none()
     }
 
-    /// Enters `number`; `false`, and counted, if it came before.
+    /// Adds `number`; `false`, and counted as a repeat, if it was received before.
     pub(super) fn enter(&mut self, number: i64) -> bool {
         if self.holds(number) {
             self.repeated += 1;
             return false;
         }
         if number > self.highest {
-            // A first number below 1 says nothing of those before it.
+            // A first number below 1 implies no missing ones.
             if let Some(next) = self.highest.checked_add(1).filter(|next| *next < number) {
                 self.open(next, number - 1);
             }

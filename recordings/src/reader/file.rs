@@ -8,12 +8,12 @@ use mcap::MAGIC;
 use mcap::records::Record;
 use memmap2::Mmap;
 
-use crate::bag_metadata::FileCount;
 use crate::input;
 
+use super::error::{ReadError, Warning, WarningKind};
 use super::index::{Entry, Index};
 use super::records::Records;
-use super::{ReadError, StoredFile, Warning, WarningKind};
+use super::stored_file::{FileCount, StoredFile};
 
 pub(super) struct OpenFile {
     pub(super) path: PathBuf,

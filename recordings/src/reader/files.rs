@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::input;
 
-use super::{ReadError, Warning, WarningKind};
+use super::error::{ReadError, Warning, WarningKind};
 
 /// A `metadata.yaml` is smaller: bytes.
 const METADATA: u64 = 16 << 20;

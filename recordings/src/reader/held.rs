@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::Recording;
-
 /// Content of chunks that may be in memory at once, whatever the size of the recording, bytes.
 const LEAST: u64 = 256 << 20;
 
@@ -25,9 +23,8 @@ pub(super) struct Content {
 }
 
 impl Held {
-    /// Nothing of `recording` is in memory yet.
-    pub(super) fn of(recording: &Recording) -> Self {
-        let size: u64 = recording.files.iter().map(|f| f.bytes().len() as u64).sum();
+    /// For a recording of this size, bytes.
+    pub(super) fn new(size: u64) -> Self {
         Self { bytes: Arc::default(), most: size.saturating_mul(RATIO).max(LEAST) }
     }
 

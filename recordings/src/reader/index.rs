@@ -7,8 +7,10 @@ use std::sync::Arc;
 use mcap::MAGIC;
 use mcap::records::{Channel, Footer, Record, SchemaHeader, op};
 
+use super::channel::ChannelInfo;
+use super::chunk;
+use super::error::{Warning, WarningKind};
 use super::records::{FRAME, RawRecord, Records};
-use super::{ChannelInfo, Warning, WarningKind, chunk};
 
 /// A run of messages: a chunk, or messages that lie in the file without one.
 #[derive(Clone, Debug)]

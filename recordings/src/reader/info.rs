@@ -5,7 +5,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::{Recording, Warning};
+use super::error::Warning;
+use super::recording::Recording;
 use crate::ledger::TopicTally;
 
 /// Overview of a recording; its `Display` is the table for people, its `Serialize` the stable form for
@@ -66,7 +67,14 @@ pub struct TopicInfo {
     pub repeated: Option<u64>,
 }
 
-pub(super) fn of(recording: &Recording) -> Info {
+impl Recording {
+    /// An overview.
+    pub fn info(&self) -> Info {
+        of(self)
+    }
+}
+
+fn of(recording: &Recording) -> Info {
     let files = &recording.files;
     let range = recording.time_range();
     let mut counts = BTreeMap::<&str, u64>::new();
@@ -103,7 +111,7 @@ pub(super) fn of(recording: &Recording) -> Info {
     Info {
         path: recording.path.display().to_string(),
         files: files.iter().map(|f| f.path.display().to_string()).collect(),
-        bytes: files.iter().map(|f| f.bytes().len() as u64).sum(),
+        bytes: recording.size(),
         complete: files.iter().all(|f| f.index.complete),
         profile: files.first().map(|f| f.index.profile.clone()).unwrap_or_default(),
         library: files.first().map(|f| f.index.library.clone()).unwrap_or_default(),

@@ -1,61 +1,18 @@
 //! Messages in order of log time.
 
+use super::chunk;
+use super::error::{ReadError, WarningKind};
+use super::file::OpenFile;
+use super::held::Held;
+use super::index::Block;
+use super::message::{Message, Payload};
+use super::recording::Recording;
+use super::records::Records;
+use super::selection::Selection;
+use mcap::records::{MessageHeader, op};
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
-use std::ops::{Deref, Range};
 use std::sync::Arc;
-
-use mcap::records::{MessageHeader, Record, op};
-
-use super::file::OpenFile;
-use super::held::{Content, Held};
-use super::index::Block;
-use super::records::{RawRecord, Records};
-use super::{ChannelInfo, Recording, WarningKind, chunk};
-
-/// Bytes of a message, shared with the chunk they lie in.
-#[derive(Clone)]
-pub struct Payload {
-    chunk: Arc<Content>,
-    range: Range<usize>,
-}
-
-impl Deref for Payload {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        &self.chunk.bytes()[self.range.clone()]
-    }
-}
-
-impl std::fmt::Debug for Payload {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} bytes", self.range.len())
-    }
-}
-
-/// One recorded message.
-#[derive(Clone, Debug)]
-pub struct Message {
-    /// Its topic.
-    pub channel: Arc<ChannelInfo>,
-    /// Low half of its RTPS sequence number in recordings of ours, 0 in those of rosbag2.
-    pub sequence: u32,
-    /// Time of arrival, ns since 1970.
-    pub log_time: u64,
-    /// Time of writing, ns since 1970.
-    pub publish_time: u64,
-    /// As sent: in CDR, with the 4-byte encapsulation header.
-    pub payload: Payload,
-}
-
-impl Message {
-    /// Whether topic, times, sequence and bytes are the same.
-    pub(crate) fn says_the_same(&self, other: &Self) -> bool {
-        let key = |m: &Self| (m.sequence, m.log_time, m.publish_time);
-        key(self) == key(other) && *self.channel == *other.channel && *self.payload == *other.payload
-    }
-}
 
 /// Messages of a recording in order of log time.
 pub struct Messages<'r> {
@@ -63,9 +20,9 @@ pub struct Messages<'r> {
     topics: Option<BTreeSet<String>>,
     start: u64,
     end: u64,
-    /// Blocks still to be read: file and block, the next one last.
+    /// Blocks still to read: file and block, the next one last.
     blocks: Vec<(usize, usize)>,
-    /// Messages read and not yet given, the earliest on top. Blocks of one file may overlap in time.
+    /// Messages read and not yet returned, the earliest on top. Blocks of one file may overlap in time.
     pending: BinaryHeap<Reverse<Pending>>,
     held: Held,
 }
@@ -93,13 +50,36 @@ impl Ord for Pending {
     }
 }
 
+impl Recording {
+    /// The messages selected, in order of log time; messages of equal log time in the order of the file.
+    ///
+    /// # Errors
+    /// If a named topic does not exist.
+    pub fn messages(&self, selection: &Selection) -> Result<Messages<'_>, ReadError> {
+        let topics = match &selection.topics {
+            None => None,
+            Some(names) => Some(
+                names
+                    .iter()
+                    .map(|n| Ok(self.channel(n)?.topic.clone()))
+                    .collect::<Result<BTreeSet<_>, ReadError>>()?,
+            ),
+        };
+        Ok(Messages::new(self, topics, selection.start.unwrap_or(0), selection.end.unwrap_or(u64::MAX)))
+    }
+
+    /// The last message on `topic` whose log time is below `time` (ns since 1970).
+    ///
+    /// # Errors
+    /// If the topic does not exist.
+    pub fn last_before(&self, topic: &str, time: u64) -> Result<Option<Message>, ReadError> {
+        let topic = self.channel(topic)?.topic.clone();
+        Ok(last_before(self, &topic, time))
+    }
+}
+
 impl<'r> Messages<'r> {
-    pub(super) fn new(
-        recording: &'r Recording,
-        topics: Option<BTreeSet<String>>,
-        start: u64,
-        end: u64,
-    ) -> Self {
+    fn new(recording: &'r Recording, topics: Option<BTreeSet<String>>, start: u64, end: u64) -> Self {
         let mut blocks = Vec::new();
         for (f, file) in recording.files.iter().enumerate() {
             let wanted = |b: &Block| b.end >= start && b.start < end && holds(file, b, topics.as_ref());
@@ -107,7 +87,15 @@ impl<'r> Messages<'r> {
                 .extend(file.index.blocks.iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
         }
         blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].index.blocks[n].start, f, n)));
-        Self { recording, topics, start, end, blocks, pending: BinaryHeap::new(), held: Held::of(recording) }
+        Self {
+            recording,
+            topics,
+            start,
+            end,
+            blocks,
+            pending: BinaryHeap::new(),
+            held: Held::new(recording.size()),
+        }
     }
 
     fn read_block(&mut self, f: usize, n: usize) {
@@ -134,7 +122,7 @@ impl Iterator for Messages<'_> {
     type Item = Message;
 
     fn next(&mut self) -> Option<Message> {
-        // A block that starts no later than the earliest message at hand may hold an earlier one.
+        // A block that starts no later than the earliest read message may hold an earlier one.
         while let Some(&(f, n)) = self.blocks.last() {
             let start = self.recording.files[f].index.blocks[n].start;
             if self.pending.peek().is_some_and(|Reverse(p)| p.key.0 < start) {
@@ -148,7 +136,7 @@ impl Iterator for Messages<'_> {
 }
 
 /// The last message on `topic` before `time`.
-pub(super) fn last_before(recording: &Recording, topic: &str, time: u64) -> Option<Message> {
+fn last_before(recording: &Recording, topic: &str, time: u64) -> Option<Message> {
     let topics = BTreeSet::from([topic.to_owned()]);
     let mut best: Option<Message> = None;
     let mut blocks: Vec<(&OpenFile, &Block)> =
@@ -159,7 +147,7 @@ pub(super) fn last_before(recording: &Recording, topic: &str, time: u64) -> Opti
         if best.as_ref().is_some_and(|m| m.log_time >= block.end) {
             break;
         }
-        decode(recording, file, block, &Held::of(recording), |_, message| {
+        decode(recording, file, block, &Held::new(recording.size()), |_, message| {
             let later = best.as_ref().is_none_or(|b| b.log_time <= message.log_time);
             if message.channel.topic == topic && message.log_time < time && later {
                 best = Some(message);
@@ -174,7 +162,7 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
     channels.iter().any(|c| file.index.channels.get(c).is_some_and(|c| topics.contains(&c.topic)))
 }
 
-/// Gives each message of a block to `take`, with its position in the block; what cannot be read becomes a
+/// Passes each message of a block to `take`, with its position in the block; an unreadable one becomes a
 /// warning.
 fn decode(
     recording: &Recording,
@@ -202,7 +190,7 @@ fn decode(
             Ok(_) => continue,
             Err(at) => return damaged(format!("byte {at} of its content starts no whole record")),
         };
-        let Some((header, range)) = message(&record) else {
+        let Some((header, range)) = record.message() else {
             damaged(format!("the message at byte {} of its content has no whole header", record.offset));
             continue;
         };
@@ -218,13 +206,5 @@ fn decode(
     if orphans > 0 {
         let detail = format!("{orphans} messages belong to channels whose declaration was lost");
         recording.warn(file.warning(block.offset, WarningKind::Orphans, detail));
-    }
-}
-
-/// Header of a message record, and where its data lies in the bytes that the record was taken from.
-pub(super) fn message(record: &RawRecord<'_>) -> Option<(MessageHeader, Range<usize>)> {
-    match record.parse() {
-        Ok(Record::Message { header, data }) => Some((header, record.end() - data.len()..record.end())),
-        _ => None,
     }
 }

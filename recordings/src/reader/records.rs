@@ -1,14 +1,15 @@
 //! Framing: one byte of opcode, eight of length, the body.
 
-use mcap::records::Record;
+use mcap::records::{MessageHeader, Record};
+use std::ops::Range;
 
 use super::lengths;
 
-/// A record as it lies in the file or in a chunk.
+/// A record in the file or in a chunk.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawRecord<'a> {
     pub(super) opcode: u8,
-    /// Where its opcode stands, counted from the start of the bytes walked.
+    /// Offset of its opcode from the start of the bytes.
     pub(super) offset: usize,
     pub(super) body: &'a [u8],
 }
@@ -22,7 +23,7 @@ impl<'a> RawRecord<'a> {
         self.offset + FRAME + self.body.len()
     }
 
-    /// The record, or what is wrong with it.
+    /// The parsed record, or the error.
     pub(super) fn parse(&self) -> Result<Record<'a>, String> {
         if !lengths::fit(self.opcode, self.body) {
             return Err(format!("the lengths in it do not fit a record of type 0x{:02x}", self.opcode));
@@ -34,7 +35,17 @@ impl<'a> RawRecord<'a> {
     }
 }
 
-/// Walks over records; ends at the end of the bytes, or with the offset of what is not a whole record.
+impl RawRecord<'_> {
+    /// Header of a message record, and the position of its data in the bytes from which the record was taken.
+    pub(super) fn message(&self) -> Option<(MessageHeader, Range<usize>)> {
+        match self.parse() {
+            Ok(Record::Message { header, data }) => Some((header, self.end() - data.len()..self.end())),
+            _ => None,
+        }
+    }
+}
+
+/// Iterates over records; ends at the end of the bytes, or with the offset of an incomplete record.
 pub(super) struct Records<'a> {
     bytes: &'a [u8],
     position: usize,
@@ -45,7 +56,7 @@ impl<'a> Records<'a> {
         Self { bytes, position }
     }
 
-    /// The record at `offset`, if a whole one lies there.
+    /// The record at `offset`, if it is complete.
     pub(super) fn at(bytes: &'a [u8], offset: u64) -> Option<RawRecord<'a>> {
         let offset = usize::try_from(offset).ok()?;
         Records::new(bytes, offset).next()?.ok()
@@ -58,7 +69,7 @@ impl<'a> Iterator for Records<'a> {
     fn next(&mut self) -> Option<Self::Item> {
         let offset = self.position;
         let rest = self.bytes.get(offset..).filter(|rest| !rest.is_empty())?;
-        // A broken frame ends the walk: after it nothing says where the next record starts.
+        // An invalid frame ends the iteration: the start of the next record is unknown.
         self.position = self.bytes.len();
         let frame = rest.split_first().and_then(|(opcode, rest)| Some((*opcode, rest.first_chunk::<8>()?)));
         let Some((opcode, length)) = frame else { return Some(Err(offset)) };

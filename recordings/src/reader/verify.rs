@@ -7,11 +7,13 @@ use mcap::MAGIC;
 use mcap::records::{Record, op};
 use serde::Serialize;
 
+use super::chunk;
+use super::error::{Warning, WarningKind};
 use super::file::OpenFile;
+use super::recording::Recording;
 use super::records::{FRAME, RawRecord, Records};
-use super::{Recording, Warning, WarningKind, chunk, messages};
 
-/// What a complete check found.
+/// The result of a complete check.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
     /// Files read.
@@ -26,48 +28,56 @@ pub struct Check {
     pub messages: u64,
     /// Stored files.
     pub attachments: u64,
-    /// Messages lost by the account of the recorders; `None` without an account.
+    /// Lost messages according to the ledger of the recorders; `None` without a ledger.
     pub lost: Option<u64>,
-    /// Files that no recorder accounted for: it was killed, or is still at work.
+    /// Files without a ledger: the recorder was killed, or is still running.
     pub unaccounted: Vec<PathBuf>,
-    /// All that is wrong.
+    /// All faults.
     pub warnings: Vec<Warning>,
 }
 
-/// Reads everything but the account.
-pub(super) fn files(recording: &Recording) -> Vec<Warning> {
-    Found::of(recording);
-    recording.warnings()
-}
+impl Recording {
+    /// Reads all data and returns all faults: checksums, the index against the messages, log times that decrease, and
+    /// the ledger against the messages.
+    pub fn verify(&self) -> Vec<Warning> {
+        self.check().warnings
+    }
 
-/// Reads everything.
-pub(super) fn recording(recording: &Recording) -> Check {
-    let found = Found::of(recording);
-    let ledger = recording.ledger();
-    let unaccounted = recording.unaccounted();
-    if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
-        for topic in ledger {
-            let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
-            if topic.recorded != there {
-                let detail = format!(
-                    "the account says that {} messages on {} were recorded, the files hold {there}",
-                    topic.recorded, topic.name
-                );
-                let path = recording.path().to_owned();
-                recording.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+    /// The same without the ledger: in a recovered file it also counts messages that are no longer readable.
+    pub(crate) fn verify_files(&self) -> Vec<Warning> {
+        Found::of(self);
+        self.warnings()
+    }
+
+    /// [`Recording::verify`] with the counts of what was read.
+    pub fn check(&self) -> Check {
+        let found = Found::of(self);
+        let ledger = self.ledger();
+        let unaccounted = self.unaccounted();
+        if let Some(ledger) = ledger.as_ref().filter(|_| unaccounted.is_empty()) {
+            for topic in ledger {
+                let there = found.by_topic.get(&topic.name).copied().unwrap_or(0);
+                if topic.recorded != there {
+                    let detail = format!(
+                        "the ledger lists {} recorded messages on {}, the files hold {there}",
+                        topic.recorded, topic.name
+                    );
+                    let path = self.path().to_owned();
+                    self.warn(Warning { path, offset: 0, kind: WarningKind::Inconsistent, detail });
+                }
             }
         }
-    }
-    Check {
-        files: recording.paths(),
-        bytes: recording.files.iter().map(|f| f.bytes().len() as u64).sum(),
-        records: found.records,
-        chunks: found.chunks,
-        messages: found.messages,
-        attachments: found.attachments,
-        lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
-        unaccounted,
-        warnings: recording.warnings(),
+        Check {
+            files: self.paths(),
+            bytes: self.size(),
+            records: found.records,
+            chunks: found.chunks,
+            messages: found.messages,
+            attachments: found.attachments,
+            lost: ledger.map(|l| l.iter().map(|t| t.lost).fold(0, u64::saturating_add)),
+            unaccounted,
+            warnings: self.warnings(),
+        }
     }
 }
 
@@ -103,10 +113,10 @@ impl Found {
             let record = match record {
                 Ok(record) => record,
                 Err(at) => {
-                    // Of a file without its proper end, opening it has said so.
+                    // Opening a file without its proper end has already given a warning.
                     if file.index.complete {
                         let detail =
-                            "no whole record starts here; what follows can be reached by the index only"
+                            "no complete record starts here; later ones can be reached by the index only"
                                 .to_owned();
                         warn(file.warning(at, WarningKind::Inconsistent, detail));
                     }
@@ -175,7 +185,7 @@ impl Found {
         counts: &mut BTreeMap<u16, u64>,
         warn: &mut dyn FnMut(Warning),
     ) {
-        let Some((header, _)) = messages::message(record) else { return };
+        let Some((header, _)) = record.message() else { return };
         self.messages += 1;
         *counts.entry(header.channel_id).or_default() += 1;
         if let Some(channel) = file.index.channels.get(&header.channel_id) {
@@ -218,7 +228,7 @@ fn data_checksum(file: &OpenFile, end: &RawRecord<'_>) -> Option<String> {
         return Some(format!("the end record has {} bytes", end.body.len() + FRAME));
     };
     let crc = crc32fast::hash(&file.bytes()[..end.offset]);
-    // 0 stands for "not computed".
+    // 0 means "not computed".
     (claimed.data_section_crc != 0 && claimed.data_section_crc != crc).then(|| {
         format!(
             "the checksum of the whole data is {crc:08x}, not {:08x}: bytes were altered",

@@ -1,4 +1,4 @@
-//! A walk over everything that can be read of one file, in the order of the file, without its index.
+//! Reads all readable parts of one file in order, without its index.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,17 +6,18 @@ use std::path::Path;
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
+use super::chunk;
+use super::error::{ReadError, Warning, WarningKind};
 use super::file::OpenFile;
 use super::records::Records;
-use super::{ReadError, Warning, WarningKind, chunk};
 
-/// What the walk comes upon.
+/// An item of the walk.
 pub(crate) enum Walked<'a> {
     /// A schema, a channel, a message, an attachment or a metadata record.
     Record(Record<'a>),
     /// A chunk ends here.
     ChunkEnd,
-    /// What stands here cannot be read.
+    /// An unreadable part.
     Unreadable(Warning),
 }
 
@@ -36,13 +37,13 @@ impl Walk {
         &self.file.index.profile
     }
 
-    /// What there is to say of messages whose channel was lost.
+    /// Warnings about messages whose channel was lost.
     pub(crate) fn orphans(&self, channel: u16) -> Warning {
         let detail = format!("messages of channel {channel}, whose declaration was lost, are left out");
         self.file.warning(0, WarningKind::Orphans, detail)
     }
 
-    /// Gives `take` everything up to the end of the data, or as far as whole records go, until it has enough.
+    /// Passes all items to `take` until the end of the data, an incomplete record, or `take` stops.
     pub(crate) fn each(&self, take: &mut dyn FnMut(Walked<'_>) -> bool) {
         let bytes = self.file.bytes();
         let mut end = MAGIC.len();

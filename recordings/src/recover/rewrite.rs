@@ -1,4 +1,4 @@
-//! All that can be read of a file, written again with a proper end.
+//! Writes the readable part of a file again, with a proper end.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,12 +9,12 @@ use std::path::Path;
 use mcap::records::{Channel, MessageHeader, Metadata, Record, SchemaHeader};
 use mcap::{Attachment, McapError};
 
-use crate::METADATA_RECORD;
-use crate::reader::walk::{Walk, Walked};
+use crate::metadata_keys::METADATA_RECORD;
 use crate::reader::{ReadError, Warning};
+use crate::reader::{Walk, Walked};
 use crate::writer::part;
 
-/// What was written.
+/// The result of a rewrite.
 pub(super) struct Written {
     pub(super) messages: u64,
     pub(super) unreadable: Vec<Warning>,
@@ -40,14 +40,14 @@ impl From<io::Error> for RewriteError {
     }
 }
 
-/// Writes what can be read of `from` to the new file `to`, and pushes it to the device.
+/// Writes the readable part of `from` to the new file `to`, and syncs it to the device.
 pub(super) fn rewrite(from: &Path, to: &Path) -> Result<Written, RewriteError> {
     let walk = Walk::open(from).map_err(RewriteError::Read)?;
-    // What an earlier attempt left behind.
+    // Remove the file of an earlier attempt.
     let file = File::create(to)?;
     let mcap = part::options(" (recovered)")
         .profile(walk.profile())
-        // Chunks end where they ended.
+        // Chunks end as in the original.
         .chunk_size(None)
         .create(BufWriter::with_capacity(64 << 10, file))?;
     let mut copy = Copy {
@@ -85,7 +85,7 @@ struct Copy {
     channels: BTreeMap<u16, u16>,
     /// Channels with messages whose declaration was lost.
     orphans: BTreeSet<u16>,
-    /// What the recorder knew of the run, where it came to write it.
+    /// The recorder's metadata of the run, if it was written.
     known: BTreeMap<String, String>,
     messages: u64,
 }
@@ -105,7 +105,7 @@ impl Copy {
                 media_type: header.media_type,
                 data: Cow::Borrowed(&data),
             })?,
-            // Written at the end, with what the recovery adds.
+            // Written at the end, with the additions of the recovery.
             Record::Metadata(m) if m.name == METADATA_RECORD => self.known = m.metadata,
             Record::Metadata(m) => self.mcap.write_metadata(&m)?,
             _ => {}
@@ -120,7 +120,7 @@ impl Copy {
         let schema = match self.schemas.get(&channel.schema_id) {
             Some((header, data)) => self.mcap.add_schema(&header.name, &header.encoding, data)?,
             None if channel.schema_id == 0 => 0,
-            // Its schema was lost with a chunk: without it nobody can read the messages.
+            // Its schema was lost with a chunk: without it the messages cannot be read.
             None => return Ok(()),
         };
         let Channel { topic, message_encoding, metadata, .. } = channel;

@@ -1,4 +1,4 @@
-//! Pushes a file to the device from a thread of its own: inline it would stall the recorder for tens of
+//! Syncs a file to the device in a separate thread: in the recorder's thread it would take tens of
 //! milliseconds.
 
 use std::fs::File;
@@ -24,7 +24,7 @@ impl DeviceSync {
         let work = move || {
             while inbox.recv().is_ok() {
                 if let Err(e) = file.sync_data() {
-                    // The first failure is the one that tells; a full mailbox holds it already.
+                    // The first error matters; a full mailbox holds it already.
                     let _ = report.try_send(e);
                 }
             }
@@ -42,7 +42,7 @@ impl DeviceSync {
         if !(self.unsynced && due) {
             return;
         }
-        // A full mailbox means that the last push is still running: the next tick asks again.
+        // A full mailbox means that the last sync is still running: the next tick tries again.
         if self.requests.as_ref().is_some_and(|r| r.try_send(()).is_ok()) {
             self.last = Some(now);
             self.unsynced = false;

@@ -1,20 +1,20 @@
-//! Why a recording fails.
+//! Errors of a recording.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use mcap::McapError;
 
-/// Why a recording cannot be begun, continued or ended.
+/// Errors at the start, during, or at the end of a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// There is a recording already.
+    /// A recording exists already.
     #[error("{path} exists: choose another run directory; a recording is never overwritten")]
     Exists {
-        /// The file in the way.
+        /// The existing file.
         path: PathBuf,
     },
-    /// A recorder is at work on the run.
+    /// Another recorder is writing the run.
     #[error("{path} is being recorded: end that recorder first")]
     InUse {
         /// The file it writes.
@@ -34,27 +34,27 @@ pub enum WriteError {
         /// `not begun`, or `stopped (what is recorded stays readable)`.
         state: &'static str,
     },
-    /// The file system refused.
+    /// The file system returned an error.
     #[error("{path}: cannot {action}: {source}")]
     Io {
         /// The file or directory.
         path: PathBuf,
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
-        /// What it said.
+        /// Its error.
         source: io::Error,
     },
-    /// The MCAP writer refused.
+    /// The MCAP writer returned an error.
     #[error("{path}: cannot {action}: {source}; what was written before stays readable")]
     Format {
         /// The recording.
         path: PathBuf,
-        /// What was tried.
+        /// The attempted action.
         action: &'static str,
-        /// What it said.
+        /// Its error.
         source: McapError,
     },
-    /// A sample came on a topic that was never declared.
+    /// The topic of a sample was never declared.
     #[error("topic {0} was not declared to the recording: add it with its type before its first message")]
     UnknownTopic(String),
     /// A topic was declared twice, differently.
@@ -81,7 +81,7 @@ pub enum WriteError {
 }
 
 impl WriteError {
-    /// The file system's own words where it was the file system.
+    /// The error of the file system, if it was one.
     pub(super) fn mcap(path: &Path, action: &'static str, source: McapError) -> Self {
         let path = path.to_owned();
         match source {

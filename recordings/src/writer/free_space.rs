@@ -5,11 +5,11 @@ use std::io;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
-/// Bytes that an ordinary user may still write on the file system of `path`.
+/// Free bytes for an ordinary user on the file system of `path`.
 ///
 /// # Errors
-/// If `path` does not exist or cannot be asked.
-pub fn free_space(path: &Path) -> io::Result<u64> {
+/// If `path` does not exist or the call fails.
+pub(crate) fn free_space(path: &Path) -> io::Result<u64> {
     let name = CString::new(path.as_os_str().as_bytes())?;
     let mut answer = std::mem::MaybeUninit::<libc::statvfs>::uninit();
     // SAFETY: `name` ends in NUL and outlives the call; `answer` has room for what is written.

@@ -1,4 +1,4 @@
-//! The files of a run: how they are called, and whether a recorder is at work on them.
+//! The files of a run: their names, and whether a recorder is writing them.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ pub(super) fn part_path(directory: &Path, name: &str, number: u64) -> PathBuf {
     directory.join(format!("{name}_{number}.mcap"))
 }
 
-/// The number of the part behind all that are there.
+/// The number after those of all existing parts.
 pub(super) fn next_number(directory: &Path, name: &str) -> Result<u64, WriteError> {
     let io = |source| WriteError::Io { path: directory.to_owned(), action: "read the directory", source };
     let mut next = 0;
@@ -37,7 +37,7 @@ pub(crate) fn is_locked(file: &File) -> bool {
     matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock))
 }
 
-/// What tells this writer from those before and after it in the same directory: when it began, in ns since 1970.
+/// The session of this writer, unique within its directory: its start, ns since 1970.
 pub(super) fn session() -> String {
     SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos()).to_string()
 }

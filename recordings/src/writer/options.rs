@@ -1,16 +1,17 @@
-//! How a recording is written.
+//! Options of a recording.
 
 use std::time::Duration;
 
-/// How a recording is written.
+/// Options of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriterOptions {
     /// Uncompressed bytes after which a chunk is closed.
     pub chunk_size: u64,
-    /// Age of the oldest message at which an open chunk is closed and handed to the system.
-    /// [`RunWriter::tick`](super::RunWriter::tick) must be called often enough for the sum to stay below what a crash may cost.
+    /// Age of the oldest message at which an open chunk is closed and written.
+    /// [`RunWriter::tick`](super::RunWriter::tick) must be called often enough for the sum to stay below what a crash
+    /// may cost.
     pub flush_interval: Duration,
-    /// Time between two pushes to the device.
+    /// Time between two syncs to the device.
     pub sync_interval: Duration,
     /// Bytes of a file after which the next one is begun.
     pub split_bytes: u64,
@@ -18,7 +19,7 @@ pub struct WriterOptions {
     pub split_after: Duration,
     /// Bytes that must be free to begin.
     pub free_to_start: u64,
-    /// Bytes that must stay free: below, the recording ends in good order while it still can.
+    /// Bytes that must stay free: below, the recording is completed while this is still possible.
     pub free_to_continue: u64,
 }
 

@@ -11,7 +11,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use super::device_sync::DeviceSync;
 use super::{TopicSpec, WriteError};
-use crate::bag_metadata::FileCount;
+use crate::reader::FileCount;
 
 type Writer = mcap::Writer<BufWriter<File>>;
 
@@ -19,7 +19,7 @@ pub(super) struct Part {
     path: PathBuf,
     mcap: Writer,
     pub(super) sync: DeviceSync,
-    /// Another handle of the file, to ask for its size.
+    /// Another handle of the file, to read its size.
     handle: File,
     channels: BTreeMap<String, u16>,
     messages: u64,
@@ -36,8 +36,8 @@ pub(super) struct Closed {
 }
 
 impl Part {
-    /// Begins the file, which must not exist. It stays locked while it is open: nobody recovers what is being
-    /// recorded.
+    /// Begins the file, which must not exist. It stays locked while it is open, so that no process recovers a file
+    /// being recorded.
     pub(super) fn create(path: PathBuf, chunk_size: u64, began: Instant) -> Result<Self, WriteError> {
         let io = |action: &'static str| {
             let path = path.clone();
@@ -47,7 +47,7 @@ impl Part {
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
             other => other.map_err(io("create the file"))?,
         };
-        // A file system without locks has none to respect either.
+        // Without locks in the file system there is nothing to respect.
         let _ = file.try_lock();
         let clone = || file.try_clone().map_err(io("duplicate the handle"));
         let (handle, synced) = (clone()?, clone()?);
@@ -69,7 +69,7 @@ impl Part {
         self.bounds.is_some()
     }
 
-    /// Bytes that are in the file by now; 0 if the system does not say.
+    /// Current size of the file, bytes; 0 if unknown.
     pub(super) fn bytes(&self) -> u64 {
         self.handle.metadata().map_or(0, |m| m.len())
     }
@@ -113,7 +113,7 @@ impl Part {
         Ok(())
     }
 
-    /// Writes the metadata record and the index, and returns when all of it is on the device.
+    /// Writes the metadata record and the index, and syncs the file to the device.
     pub(super) fn close(mut self, metadata: Metadata) -> Result<Closed, WriteError> {
         let path = self.path.clone();
         let format = |action: &'static str| {
@@ -140,8 +140,8 @@ impl Part {
     }
 }
 
-/// How every file of ours is written. A chunk is written whole with its true header (`disable_seeking`), so a crash
-/// leaves a clean prefix.
+/// The options of all files. A chunk is written whole with its final header (`disable_seeking`), so a crash
+/// leaves a valid prefix.
 pub(crate) fn options(remark: &str) -> WriteOptions {
     WriteOptions::new()
         .profile("ros2")

@@ -1,8 +1,8 @@
-//! What a recording says about a topic.
+//! The declaration of a topic in a recording.
 
 use grainlab_msgs::{Topic, TypeInfo};
 
-/// What a channel of the recording declares.
+/// The declaration of a channel of the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TopicSpec {
     /// Absolute name, `/stress`.
@@ -18,14 +18,14 @@ pub struct TopicSpec {
 }
 
 impl TopicSpec {
-    /// The channel of a topic of the contract, under its full name (with the namespace, if it has one).
+    /// The channel of a topic of the topic table, under its full name (with the namespace, if any).
     pub fn of_contract(topic: &Topic, full_name: &str) -> Self {
         let mut spec = Self::of_type(&topic.info, full_name);
         spec.qos = topic.qos.offered_qos_profiles();
         spec
     }
 
-    /// A channel of any type known to the laboratory; its QoS is unknown.
+    /// A channel of any known type; its QoS is unknown.
     pub fn of_type(info: &TypeInfo, full_name: &str) -> Self {
         Self {
             name: full_name.to_owned(),

@@ -41,7 +41,7 @@ proptest! {
         prop_assume!((0..3).all(|k| cell.width(k) > 0.55));
         let x: Vec<Vec3> = grains.iter().map(|(f, _)| cell.matrix() * Vec3::from(*f)).collect();
         let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
-        let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+        let found = find(&cell, &x, &r, |r, d| Material::GLASS.normal_force(r, d)).unwrap();
         prop_assert_eq!(keys(&found), all_pairs(&cell, &x, &r));
         for c in &found {
             let branch = x[c.j as usize] - x[c.i as usize] + cell.shift(c.image);
@@ -100,7 +100,7 @@ proptest! {
         let x: Vec<Vec3> = grains.iter().map(|(f, _)| Vec3::from(*f) * 2.0).collect();
         let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
         let images = std::array::from_fn(|k| ((3.5 + 0.8) / cell.width(k)).ceil().min(60.0) as i8 + 1);
-        match find(&cell, &x, &r, &Material::GLASS) {
+        match find(&cell, &x, &r, |r, d| Material::GLASS.normal_force(r, d)) {
             Ok(found) => prop_assert_eq!(keys(&found), all_pairs_within(&cell, &x, &r, images)),
             Err(e) => prop_assert!(matches!(e, SearchError::Crowded { .. }), "{}", e),
         }
@@ -110,7 +110,7 @@ proptest! {
 #[test]
 fn one_grain_in_a_small_cell_touches_its_own_images() {
     let cell = Cell::cube(1.0).unwrap();
-    let found = find(&cell, &[Vec3::zeros()], &[0.51], &Material::GLASS).unwrap();
+    let found = find(&cell, &[Vec3::zeros()], &[0.51], |r, d| Material::GLASS.normal_force(r, d)).unwrap();
     assert_eq!(keys(&found), [(0, 0, [0, 0, 1]), (0, 0, [0, 1, 0]), (0, 0, [1, 0, 0])]);
 }
 
@@ -123,7 +123,7 @@ fn time_grows_with_the_number_of_grains_not_its_square() {
     let x: Vec<Vec3> = (0..n * n * n).map(place).collect();
     let r = vec![0.500_001; x.len()];
     let start = std::time::Instant::now();
-    let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+    let found = find(&cell, &x, &r, |r, d| Material::GLASS.normal_force(r, d)).unwrap();
     assert_eq!(found.len(), 3 * x.len());
     assert!(start.elapsed().as_secs_f64() < 5.0, "{:?}", start.elapsed());
 }
@@ -137,7 +137,7 @@ fn an_absurd_cell_costs_neither_memory_nor_time() {
             let mut edges = Vec3::repeat(6.0);
             edges[k] = long;
             let Some(cell) = Cell::new(Mat3::from_diagonal(&edges)) else { continue };
-            let found = find(&cell, &x, &r, &Material::GLASS).unwrap();
+            let found = find(&cell, &x, &r, |r, d| Material::GLASS.normal_force(r, d)).unwrap();
             assert_eq!(found.len(), 4, "{edges:?}");
         }
     }
@@ -146,7 +146,8 @@ fn an_absurd_cell_costs_neither_memory_nor_time() {
 #[test]
 fn what_cannot_be_a_contact_is_refused() {
     let cell = Cell::cube(1.0).unwrap();
-    let find = |b: Vec3| find(&cell, &[Vec3::zeros(), b], &[0.1, 0.1], &Material::GLASS);
+    let find =
+        |b: Vec3| find(&cell, &[Vec3::zeros(), b], &[0.1, 0.1], |r, d| Material::GLASS.normal_force(r, d));
     assert_eq!(find(Vec3::zeros()).unwrap_err(), SearchError::Coincident(0, 1));
     assert_eq!(find(Vec3::new(200.05, 0.0, 0.0)).unwrap_err(), SearchError::FarImage(0, 1));
     assert_eq!(find(Vec3::new(200.5, 0.0, 0.0)).unwrap(), []);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::support::run_in;
-use grainlab_recordings::reader::WarningKind;
+use grainlab_recordings::WarningKind;
 use grainlab_recordings::{ReadError, Recording, Selection};
 
 fn read(bytes: &[u8]) -> (Vec<(String, u32)>, Vec<WarningKind>) {

@@ -46,7 +46,7 @@ fn forces_of_another_contact_law_are_noted() {
     let found = csv::packing(PAIR, None, &in_cube(1.0)).unwrap().packing.contacts[0].normal_force;
     assert!(!notes(found).contains("Hertz"));
     // A linear spring, a forgotten unit.
-    assert!(notes(1.1 * found).contains("differ from Hertz's law by 10.0 %"), "{}", notes(1.1 * found));
+    assert!(notes(1.1 * found).contains("differ from the contact law by 10.0 %"), "{}", notes(1.1 * found));
 }
 
 #[test]

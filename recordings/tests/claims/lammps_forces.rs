@@ -92,5 +92,5 @@ fn forces_of_another_step_and_cut_files_are_refused() {
     assert!(problem(&options(later, &[])).contains("same step"), "another step");
     let text = forces();
     let cut = text.trim_end().rfind('\n').unwrap();
-    assert!(problem(&options(text[..cut].to_owned(), &[])).contains("cut off"), "a line less");
+    assert!(problem(&options(text[..cut].to_owned(), &[])).contains("truncated"), "a line less");
 }

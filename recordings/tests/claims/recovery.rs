@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::{SIMULATOR, START, contract, options, run_in, sample, stress};
-use grainlab_recordings::reader::WarningKind;
+use grainlab_recordings::WarningKind;
 use grainlab_recordings::{METADATA_RECORD, Recording, RecoverError, RunWriter, Selection, recover};
 
 type Said = (String, u32, u64, u64, Vec<u8>);
@@ -73,9 +73,9 @@ fn a_damaged_chunk_of_a_cut_file_is_left_out_and_named() {
     let metadata = Recording::open(&directory).unwrap().metadata(METADATA_RECORD).unwrap();
     assert!(metadata["recovered_without"].contains("chunk"), "{metadata:?}");
     assert!(!recover(&directory).unwrap().changed());
-    // The recorder came to write its account: what the damage cost stays known.
+    // The recorder wrote its ledger, which shows the damage.
     let faults = Recording::open(&directory).unwrap().verify();
-    assert!(!faults.is_empty() && faults.iter().all(|w| w.detail.contains("account")), "{faults:?}");
+    assert!(!faults.is_empty() && faults.iter().all(|w| w.detail.contains("ledger")), "{faults:?}");
 }
 
 #[test]

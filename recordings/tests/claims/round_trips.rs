@@ -1,5 +1,6 @@
 //! What is exported comes back.
 
+use grainlab_core::contact::{ContactLaw, Linear};
 use grainlab_core::{Cell, Mat3, Packing};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Topic, to_cdr, topics};
@@ -13,6 +14,7 @@ use crate::support::{SIMULATOR, START, options, sample};
 fn rich() -> Packing {
     let mut p = reference().packing;
     (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
+    p.law = ContactLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
     p.deformation = Mat3::new(0.99, 1e-3, 0.0, 0.0, 0.98, -2e-4, 1e-9, 0.0, 0.97);
     for (k, spin) in p.spins.iter_mut().enumerate() {
         spin.x = 1.0 / (k as f64 + 3.0);
@@ -63,7 +65,7 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
         &tilted.cell,
         &tilted.positions,
         &tilted.radii,
-        &tilted.material,
+        |r_eff, overlap| tilted.law.normal_force(&tilted.material, r_eff, overlap),
     )
     .unwrap();
     assert!(tilted.contacts.len() > 100);

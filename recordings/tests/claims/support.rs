@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::{TOPICS, Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
-use grainlab_recordings::writer::Finished;
+use grainlab_recordings::Finished;
 use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 
 pub(crate) const START: u64 = 1_700_000_000_000_000_000;

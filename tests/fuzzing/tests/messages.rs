@@ -37,6 +37,7 @@ fn packing() -> Packing {
         spins: vec![Vec3::zeros(); 3],
         contacts: vec![contact(0, 1, 1.0), contact(1, 2, 1.0)],
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 1e-7,
     }

@@ -49,6 +49,10 @@ pub struct Packing {
     pub poisson_ratio: f64,
     /// kg/m3, of the grain
     pub density: f64,
+    /// name, as in scenes: hertz_mindlin, linear
+    pub contact_law: String,
+    /// those that do not follow from the material, as in scenes
+    pub contact_law_parameters: Vec<f64>,
     /// in force, may be +inf
     pub friction: f64,
     /// s, in force, 0 = not made by a simulation of ours
@@ -63,7 +67,7 @@ impl Message for Packing {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Packing";
     const TYPE: &'static str = "grainlab_msgs/msg/Packing";
-    const HASH: &'static str = "RIHS01_b6f9388e9c6a4cb6f4342889946a2e1730b1fe0efa8396b851b928201d374bcb";
+    const HASH: &'static str = "RIHS01_662484e983818a423e0c3914130bbdad3bcb2c03bdc961e95f030f303f5562d2";
     const DEFINITION: &'static str = definition!(
         "msg/Packing.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",

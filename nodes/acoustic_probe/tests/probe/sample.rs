@@ -1,7 +1,7 @@
 //! A packing that can be reckoned by hand, and what might be measured of it.
 
-use grainlab_acoustics::trace::Channel;
-use grainlab_acoustics::{AcousticsError, Measurement, Participation, Trace};
+use grainlab_acoustics::Channel;
+use grainlab_acoustics::{AcousticsError, EffectiveDensity, Measurement, Trace};
 use grainlab_core::{Cell, Contact, Mat3, Material, MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg;
@@ -29,6 +29,7 @@ pub(crate) fn lattice(overlap: f64) -> grainlab_core::Packing {
         spins: vec![Vec3::zeros()],
         contacts: if overlap > 0.0 { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 1e-8,
     }
@@ -51,7 +52,7 @@ pub(crate) fn measurement() -> Measurement {
     let channel = |distance: f64| Channel { distance, samples: vec![0.0, 1e-6, 0.0, -1e-6] };
     Measurement {
         waves: vec![wave(Vec3::z(), 500.0), wave(Vec3::x(), 300.0)],
-        participation: Participation {
+        effective_density: EffectiveDensity {
             density: Mat3::identity() * 1500.0,
             bulk: 1550.0,
             rattlers: 0,
@@ -63,14 +64,14 @@ pub(crate) fn measurement() -> Measurement {
         curves: Vec::new(),
         traces: vec![Trace {
             direction: Vec3::z(),
-            motion: Vec3::x(),
+            polarization: Vec3::x(),
             method: WaveMethod::CrossCorrelation,
             frequency: 2e4,
             sample_rate: 8e5,
             start: 0.0,
             channels: vec![channel(4e-3), channel(8e-3)],
         }],
-        warnings: vec![grainlab_acoustics::measure::Warning::LeftOut(AcousticsError::NoLatticePlane {
+        warnings: vec![grainlab_acoustics::Warning::LeftOut(AcousticsError::NoLatticePlane {
             direction: [0.0, 0.6, 0.8],
         })],
     }

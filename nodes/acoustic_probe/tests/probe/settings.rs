@@ -1,5 +1,5 @@
 use grainlab_acoustic_probe::{Settings, SettingsError, parameters};
-use grainlab_acoustics::{Modes, Survey, Way, flight::Pick};
+use grainlab_acoustics::{MethodSettings, Modes, Survey, time_of_flight::ArrivalPick};
 use grainlab_core::Vec3;
 use grainlab_node_kit::{Names, Parameters, RosArgs};
 
@@ -23,21 +23,25 @@ fn the_declared_defaults_are_the_typed_ones() {
 
 #[test]
 fn every_method_gets_its_own_settings() {
-    let Way::Dispersion(d) = settings(&["wavelengths:=[30, 40, 50, 60]", "tolerance:=1e-8"]).way else {
+    let MethodSettings::Dispersion(d) =
+        settings(&["wavelengths:=[30, 40, 50, 60]", "tolerance:=1e-8"]).method
+    else {
         panic!("dispersion is the default")
     };
     assert_eq!((d.wavelengths, d.tolerance), (vec![30.0, 40.0, 50.0, 60.0], 1e-8));
-    let Way::Standing(s) = settings(&["method:=standing_wave", "copies:=6", "amplitude:=1e-9"]).way else {
+    let MethodSettings::StandingWave(s) =
+        settings(&["method:=standing_wave", "copies:=6", "amplitude:=1e-9"]).method
+    else {
         panic!("a standing wave was asked for")
     };
     assert_eq!((s.copies, s.amplitude), (6, 1e-9));
     for (method, pick) in [
-        ("first_arrival", Pick::FirstArrival),
-        ("cross_correlation", Pick::CrossCorrelation),
-        ("peak", Pick::Peak),
+        ("first_arrival", ArrivalPick::FirstArrival),
+        ("cross_correlation", ArrivalPick::CrossCorrelation),
+        ("peak", ArrivalPick::Peak),
     ] {
-        let Way::Flight(f) =
-            settings(&[&format!("method:={method}"), "frequencies:=[2e4, 4e4]", "cycles:=3"]).way
+        let MethodSettings::TimeOfFlight(f) =
+            settings(&[&format!("method:={method}"), "frequencies:=[2e4, 4e4]", "cycles:=3"]).method
         else {
             panic!("a time of flight was asked for")
         };
@@ -58,7 +62,7 @@ fn rays_and_instrument_are_as_asked_for() {
         "sample_rate:=1e6",
     ]);
     assert!((s.axis.unwrap() - Vec3::new(1.0, 0.0, 1.0).normalize()).norm() < 1e-15);
-    assert_eq!((s.survey, s.modes), (Survey::Three, Modes::Shear));
+    assert_eq!((s.survey, s.modes), (Survey::Minimal, Modes::Shear));
     let i = s.instrument;
     assert_eq!((i.signal_to_noise, i.shots, i.speed_noise, i.seed), (20.0, 64, 0.003, 7));
     assert_eq!(i.sample_rate, Some(1e6));

@@ -6,7 +6,7 @@ use grainlab_dem_simulator::Settings;
 use grainlab_msgs::boundary::StressRequest;
 use grainlab_msgs::msg::{self, Fabric, RunState, StrainRate, Stress};
 use grainlab_msgs::{to_cdr, topics};
-use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 

@@ -6,7 +6,7 @@ use grainlab_dem_simulator::{DemSimulator, Settings};
 use grainlab_msgs::boundary::BoundaryError;
 use grainlab_msgs::msg::{self, RunState};
 use grainlab_msgs::topics;
-use grainlab_node_kit::memory::{Actor, run_until};
+use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{Bus, Exit, Faults, Health, Next, Node, NodeError};
 use std::time::Duration;
 

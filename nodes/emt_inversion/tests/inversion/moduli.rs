@@ -1,6 +1,6 @@
 use crate::{corrected, of_ratio, s1, sent};
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3};
-use grainlab_emt::{Calibration, Conditions, Gamma, Measured, Modulus, Quantity, Structure};
+use grainlab_emt::{Calibration, Conditions, Measured, Modulus, Quantity, StrainRatio, Structure};
 use grainlab_emt_inversion::{Axis, Settings, microstructure_message};
 use grainlab_msgs::boundary::{DATA, MicrostructureReading, QUANTITIES};
 use grainlab_msgs::geometry_msgs::Vector3;
@@ -58,7 +58,10 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
     let m = s1();
     let material = grainlab_core::Material { shear_modulus: 29e9, poisson_ratio: 0.2, density: 2500.0 };
     let conditions = Conditions {
-        gamma: Gamma { source: grainlab_emt::GammaSource::Total, ..Gamma::given(m.strain_ratios.total[0]) },
+        gamma: StrainRatio {
+            source: grainlab_emt::StrainRatioSource::Total,
+            ..StrainRatio::given(m.strain_ratios.total[0])
+        },
         solid_fraction: Some(Measured::exact(m.solid_fraction[0])),
         material: Some(material),
         ..Conditions::at(m.pressure)

@@ -1,6 +1,6 @@
 use crate::{corrected, s1};
 use grainlab_core::Vec3;
-use grainlab_emt::{Calibration, GammaSource};
+use grainlab_emt::{Calibration, StrainRatioSource};
 use grainlab_emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
 use grainlab_node_kit::{Names, Parameters, RosArgs};
 
@@ -129,7 +129,7 @@ fn the_strain_ratio_that_feeds_the_models_can_be_chosen_and_moves_eps_by_as_much
         assert!((e.eps[0] - total.eps[0] - (g + 0.0623)).abs() < 3e-3, "{e:?}");
         assert!((e.k_hat[0] - total.k_hat[0]).abs() < 1e-12);
     }
-    assert_eq!(given(&["-p", "gamma_over_delta:=elastic"]).unwrap().gamma, GammaSource::Elastic);
+    assert_eq!(given(&["-p", "gamma_over_delta:=elastic"]).unwrap().gamma, StrainRatioSource::Elastic);
     // An elastic ratio that nobody measured is replaced by that of the contacts.
     assert_eq!(with("elastic").gamma_over_delta_source, "contact");
 }

@@ -1,240 +1,172 @@
 //! Acoustic modes of the frozen contact network at Bloch wave vectors.
 //!
-//! The packing is repeated for ever, so that waves of any length and direction fit in. At each wave vector q the three
-//! acoustic modes are found to rounding; ω²/q² bends as 1 − b q² and is extrapolated to long waves ([`crate::curve`]).
-//! Nothing moves: amplitudes are infinitely small, contacts neither open nor slide.
+//! The packing is repeated to infinity, so that waves of any length and direction fit. At each wave vector q the three
+//! acoustic modes are computed; ω²/q² is proportional to 1 − b q² and extrapolated to long waves
+//! ([`crate::DispersionCurve::fit`]). Amplitudes are infinitesimal: contacts neither open nor slide.
 
+mod alignment;
 mod bloch;
+mod error;
 #[cfg(test)]
 mod lattice_sample;
 mod modes;
-mod row;
+mod settings;
 mod solve;
 mod subspace;
+mod waves;
 
-use crate::curve::{Curve, Point};
-use crate::dispersion::bloch::Bloch;
-use crate::dispersion::modes::{Stopped, modes};
+pub(crate) use alignment::Alignment;
+pub use settings::Settings;
+
+use crate::backbone::Backbone;
+use crate::curve::{DispersionCurve, DispersionPoint};
 use crate::error::AcousticsError;
-use crate::measure::Warning;
-use crate::participation::Carrier;
 use crate::ray::Ray;
+use crate::warning::Warning;
+use alignment::{aligned, completed};
+use bloch::Bloch;
+use error::SolveError;
 use grainlab_core::{Mat3, Packing, Vec3};
-use nalgebra::SymmetricEigen;
+use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Waves of less than this many mean diameters are no waves of a medium: neighbours move against each other.
-const SHORTEST: f64 = 2.0;
-
-/// Waves of less than this many mean diameters leave loose grains of a packing behind, one after the other, which makes them
-/// faster by up to this share of ω².
+/// Wavelength in mean diameters below which loosely held grains stay behind a wave, which increases ω² by up to this
+/// fraction.
 const SOFT_BELOW: f64 = 100.0;
 const SOFT: f64 = 1e-3;
 
-/// How dispersion is measured.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Wavelengths in mean grain diameters, three or more different ones, each above 2. In packings of z = 5 waves shorter than some 100 diameters
-    /// leave loose grains behind that longer ones take along, and are faster for that by up to a thousandth.
-    pub wavelengths: Vec<f64>,
-    /// Relative error allowed to ω², in [1e-12, 1e-2].
-    pub tolerance: f64,
-    /// Iterations of conjugate gradients after which a wave vector is given up.
-    pub max_iterations: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { wavelengths: vec![160.0, 240.0, 320.0], tolerance: 1e-5, max_iterations: 20_000 }
-    }
-}
-
-/// The curves of every ray's motions, in that order.
+/// The curves of all polarizations of all rays, in that order.
 ///
-/// Where a ray has three motions, the first two span its plane with the axis and are turned in it to those of the modes: what
-/// is not symmetric about that plane in a packing averages out over azimuths and is left out. Two or one are taken as they
-/// are. Speeds are √(pᵀ R p)/q of the motion p, with R = Σ ω² p p* over the modes.
-pub fn curves(packing: &Packing, rays: &[Ray], settings: &Settings) -> Result<Vec<Curve>, AcousticsError> {
-    check(settings)?;
-    let carrier = Carrier::new(packing)?;
-    curves_of(&carrier, mean_diameter(packing), rays, Turn::InPlane, settings)
-}
-
-/// How the motions of a ray that has three are turned to those of the modes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Turn {
-    /// The first two, in their plane.
-    InPlane,
-    /// All.
-    Freely,
+/// If a ray has three polarizations, the first two span its plane with the axis and are rotated in it to those of the
+/// modes; the coupling with the third averages out over azimuths and is left out. One or two polarizations are taken as
+/// given. The speed of the polarization p is √(pᵀ A p)/q, with A = Σ ω² p p* over the modes.
+pub fn curves(
+    packing: &Packing,
+    rays: &[Ray],
+    settings: &Settings,
+) -> Result<Vec<DispersionCurve>, AcousticsError> {
+    settings.validated()?;
+    let backbone = Backbone::new(packing)?;
+    curves_of(&backbone, mean_diameter(packing), rays, Alignment::InPlane, settings)
 }
 
 pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
     2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
 }
 
-pub(crate) fn check(settings: &Settings) -> Result<(), AcousticsError> {
-    let range = |name, value: f64, valid: bool, requirement| {
-        if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
-    };
-    let mut different = settings.wavelengths.clone();
-    different.sort_by(f64::total_cmp);
-    different.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
-    let count = different.len();
-    let requirement = "3 or more different ones, to extrapolate from and to tell how well";
-    range("number of wavelengths", count as f64, count >= 3, requirement)?;
-    for wavelength in &settings.wavelengths {
-        let valid = wavelength.is_finite() && *wavelength > SHORTEST;
-        range("wavelength", *wavelength, valid, "more than 2 mean grain diameters, finite")?;
-    }
-    let (t, n) = (settings.tolerance, settings.max_iterations);
-    range("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
-    range("max_iterations", f64::from(n), n > 0, "1 or more")
-}
-
-/// The curves of the rays that have any; those whose modes are not found are left out with a warning, unless all are.
+/// The curves of all rays. Rays whose modes are not found are left out with a warning; if all are, that is the error.
 pub(crate) fn all_curves(
-    carrier: &Carrier,
+    backbone: &Backbone,
     diameter: f64,
     rays: &[Ray],
-    turn: Turn,
+    alignment: Alignment,
     settings: &Settings,
-) -> Result<(Vec<Curve>, Vec<Warning>), AcousticsError> {
+) -> Result<(Vec<DispersionCurve>, Vec<Warning>), AcousticsError> {
     let found: Vec<_> =
-        rays.par_iter().map(|ray| curves_along(carrier, diameter, ray, turn, settings)).collect();
-    let (mut curves, mut warnings, mut lost) = (Vec::new(), Vec::new(), None);
+        rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
+    let (mut curves, mut warnings, mut first_error) = (Vec::new(), Vec::new(), None);
     for found in found {
         match found {
             Ok(found) => curves.extend(found),
             Err(error @ (AcousticsError::NotConverged { .. } | AcousticsError::NoSignal { .. })) => {
-                lost = lost.or_else(|| Some(error.clone()));
+                first_error = first_error.or_else(|| Some(error.clone()));
                 warnings.push(Warning::LeftOut(error));
             }
             Err(error) => return Err(error),
         }
     }
-    match lost {
+    match first_error {
         Some(error) if curves.is_empty() => Err(error),
         _ => Ok((curves, warnings)),
     }
 }
 
 fn curves_of(
-    carrier: &Carrier,
+    backbone: &Backbone,
     diameter: f64,
     rays: &[Ray],
-    turn: Turn,
+    alignment: Alignment,
     settings: &Settings,
-) -> Result<Vec<Curve>, AcousticsError> {
+) -> Result<Vec<DispersionCurve>, AcousticsError> {
     let curves: Result<Vec<_>, _> =
-        rays.par_iter().map(|ray| curves_along(carrier, diameter, ray, turn, settings)).collect();
+        rays.par_iter().map(|ray| curves_along(backbone, diameter, ray, alignment, settings)).collect();
     Ok(curves?.into_iter().flatten().collect())
 }
 
-/// R/q² at one wave number.
-struct Resistance {
+/// The acoustic tensor A at one wave number.
+struct AcousticTensor {
     wavenumber: f64,
-    /// m²/s².
+    /// A/q², m²/s².
     over_square: Mat3,
     /// Relative error of ω².
     error: f64,
 }
 
 fn curves_along(
-    carrier: &Carrier,
+    backbone: &Backbone,
     diameter: f64,
     ray: &Ray,
-    turn: Turn,
+    alignment: Alignment,
     settings: &Settings,
-) -> Result<Vec<Curve>, AcousticsError> {
+) -> Result<Vec<DispersionCurve>, AcousticsError> {
     let mut wavelengths = settings.wavelengths.clone();
     wavelengths.sort_by(|a, b| b.total_cmp(a));
-    let complete = complete(&ray.motions);
-    // All three modes are sought, so that none is mistaken for another; where some meet no resistance, those asked for.
-    let found = resistances(carrier, ray, &complete, diameter, &wavelengths, settings);
-    let found = match found {
-        Err(_) if ray.motions.len() < complete.len() => {
-            resistances(carrier, ray, &ray.motions, diameter, &wavelengths, settings)?
+    let completed = completed(&ray.polarizations);
+    // All three modes are computed, so that none is mistaken for another; if some have no stiffness, only those of the
+    // ray.
+    let tensors = acoustic_tensors(backbone, ray, &completed, diameter, &wavelengths, settings);
+    let tensors = match tensors {
+        Err(_) if ray.polarizations.len() < completed.len() => {
+            acoustic_tensors(backbone, ray, &ray.polarizations, diameter, &wavelengths, settings)?
         }
-        found => found?,
+        tensors => tensors?,
     };
-    let curve = |motion: Vec3| {
-        let points = found.iter().map(|r| {
-            let speed = motion.dot(&(r.over_square * motion)).max(0.0).sqrt();
-            Point { wavenumber: r.wavenumber, speed, stddev: 0.5 * r.error * speed }
+    let curve = |polarization: Vec3| {
+        let points = tensors.iter().map(|a| {
+            let speed = polarization.dot(&(a.over_square * polarization)).max(0.0).sqrt();
+            DispersionPoint { wavenumber: a.wavenumber, speed, stddev: 0.5 * a.error * speed }
         });
-        Curve::through(ray.direction, motion, points.collect()).ok_or_else(|| AcousticsError::NoSignal {
-            what: "long wave",
-            direction: ray.direction.into(),
-            motion: motion.into(),
-            reason: "its speeds extrapolate to none; use longer waves".to_owned(),
+        DispersionCurve::fit(ray.direction, polarization, points.collect()).ok_or_else(|| {
+            AcousticsError::NoSignal {
+                what: "long wave",
+                direction: ray.direction.into(),
+                polarization: polarization.into(),
+                reason: "its speeds have no positive limit at long waves; use longer waves".to_owned(),
+            }
         })
     };
-    turned(&ray.motions, turn, &found[0].over_square).into_iter().map(curve).collect()
+    aligned(&ray.polarizations, alignment, &tensors[0].over_square).into_iter().map(curve).collect()
 }
 
-/// The motions, and what makes them three perpendicular ones.
-fn complete(motions: &[Vec3]) -> Vec<Vec3> {
-    let mut all = motions.to_vec();
-    while all.len() < 3 {
-        let left = |e: &Vec3| e - all.iter().map(|m| *m * m.dot(e)).sum::<Vec3>();
-        let next = (0..3).map(|k| left(&Vec3::ith(k, 1.0))).max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        all.push(next.unwrap_or_default().normalize());
-    }
-    all
-}
-
-/// Three motions turned to the modes of `resistance`; others as they are.
-fn turned(motions: &[Vec3], turn: Turn, resistance: &Mat3) -> Vec<Vec3> {
-    let Ok(all) = <[Vec3; 3]>::try_from(motions) else { return motions.to_vec() };
-    let frame = Mat3::from_columns(&all);
-    let mut inside = frame.transpose() * resistance * frame;
-    if turn == Turn::InPlane {
-        for k in 0..2 {
-            (inside[(k, 2)], inside[(2, k)]) = (0.0, 0.0);
-        }
-    }
-    let modes = frame * SymmetricEigen::new(inside).eigenvectors;
-    // Each motion's mode is the one that is most along it, of those left.
-    let mut left: Vec<Vec3> = modes.column_iter().map(|c| c.into_owned()).collect();
-    let mut nearest_mode = |motion: &Vec3| {
-        let most =
-            (0..left.len()).max_by(|a, b| left[*a].dot(motion).abs().total_cmp(&left[*b].dot(motion).abs()));
-        let mode = left.swap_remove(most.unwrap_or_default());
-        if mode.dot(motion) < 0.0 { -mode } else { mode }
-    };
-    motions.iter().map(&mut nearest_mode).collect()
-}
-
-fn resistances(
-    carrier: &Carrier,
+fn acoustic_tensors(
+    backbone: &Backbone,
     ray: &Ray,
-    motions: &[Vec3],
+    polarizations: &[Vec3],
     diameter: f64,
     wavelengths: &[f64],
     settings: &Settings,
-) -> Result<Vec<Resistance>, AcousticsError> {
+) -> Result<Vec<AcousticTensor>, AcousticsError> {
     let mut near = Vec::new();
     let mut found = Vec::with_capacity(wavelengths.len());
     for wavelength in wavelengths {
         let wavenumber = TAU / (wavelength * diameter);
-        let bloch = Bloch::new(carrier, &(ray.direction * wavenumber));
+        let bloch = Bloch::new(backbone, &(ray.direction * wavenumber));
         let Settings { tolerance, max_iterations, .. } = *settings;
-        let modes = modes(&bloch, motions, &near, tolerance, max_iterations).map_err(|stopped| {
-            let contacts = carrier.network.contacts();
-            match stopped {
-                Stopped::NoResistance => grainlab_core::results::NotJammed::Floppy { contacts }.into(),
-                stopped => AcousticsError::NotConverged {
+        let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations).map_err(|error| {
+            let contacts = backbone.network.contacts();
+            match error {
+                SolveError::Floppy => grainlab_core::results::NotJammed::Floppy { contacts }.into(),
+                error => AcousticsError::NotConverged {
                     direction: ray.direction.into(),
                     wavelength: wavelength * diameter,
-                    reason: stopped.to_string(),
+                    reason: error.to_string(),
                 },
             }
         })?;
-        found.push(Resistance {
+        found.push(AcousticTensor {
             wavenumber,
-            over_square: modes.resistance / (wavenumber * wavenumber),
+            over_square: modes.acoustic_tensor / (wavenumber * wavenumber),
             error: modes.change.max(tolerance).max(if *wavelength < SOFT_BELOW { SOFT } else { 0.0 }),
         });
         near = modes.found;

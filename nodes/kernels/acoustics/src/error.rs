@@ -1,4 +1,4 @@
-//! What can go wrong, typed.
+//! Why a measurement failed.
 
 use grainlab_core::results::NotJammed;
 
@@ -18,14 +18,14 @@ pub enum AcousticsError {
     /// Nothing carries a wave.
     #[error(transparent)]
     NotJammed(#[from] NotJammed),
-    /// Waves of this frequency do not travel through the packing.
+    /// Waves of this frequency do not propagate in the packing.
     #[error(
-        "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {} are two \
-         grains long and travel no more; send less than half of it",
+        "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {} are two grains long and \
+         do not propagate; use less than half of it",
         in_brackets(direction)
     )]
     CutOff {
-        /// The frequency asked for, Hz.
+        /// The frequency, Hz.
         frequency: f64,
         /// The cut-off, Hz.
         cutoff: f64,
@@ -34,33 +34,33 @@ pub enum AcousticsError {
     },
     /// The sample is too short for the wave.
     #[error(
-        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed ({why}); use {enough} \
+        "{copies} repetitions of the packing are a path of {path:.4e} m, and {needed:.4e} m are needed: {why}; use {enough} \
          repetitions or a shorter wave"
     )]
     PathTooShort {
-        /// Repetitions asked for.
+        /// Number of repetitions.
         copies: u32,
         /// Length of the path, m.
         path: f64,
         /// Length needed, m.
         needed: f64,
-        /// What for.
+        /// Why it is needed.
         why: &'static str,
-        /// Repetitions that suffice.
+        /// Number of repetitions that suffices.
         enough: u32,
     },
     /// The ray is not normal to lattice planes, so that the packing cannot be repeated along it.
     #[error(
-        "the packing cannot be repeated along {}: not a normal of its lattice planes",
+        "the packing cannot be repeated along {}, which is not normal to lattice planes",
         in_brackets(direction)
     )]
     NoLatticePlane {
         /// Direction of propagation.
         direction: [f64; 3],
     },
-    /// The mode of a wave vector was not found to the accuracy asked for.
+    /// The modes of a wave vector did not converge.
     #[error(
-        "the mode along {} at a wavelength of {wavelength:.4e} m was not found: {reason}",
+        "the modes along {} at a wavelength of {wavelength:.4e} m were not found: {reason}",
         in_brackets(direction)
     )]
     NotConverged {
@@ -68,22 +68,26 @@ pub enum AcousticsError {
         direction: [f64; 3],
         /// Wavelength, m.
         wavelength: f64,
-        /// What went wrong.
+        /// The reason.
         reason: String,
     },
-    /// No arrival, or no ringing, was recognised.
-    #[error("no {what} along {}, motion {}: {reason}", in_brackets(direction), in_brackets(motion))]
+    /// No arrival or standing wave was found.
+    #[error(
+        "no {what} along {}, polarization {}: {reason}",
+        in_brackets(direction),
+        in_brackets(polarization)
+    )]
     NoSignal {
-        /// What was looked for.
+        /// What was not found.
         what: &'static str,
         /// Direction of propagation.
         direction: [f64; 3],
-        /// Particle motion.
-        motion: [f64; 3],
-        /// Why.
+        /// Polarization.
+        polarization: [f64; 3],
+        /// The reason.
         reason: String,
     },
-    /// The network could not be built.
+    /// The contact network could not be built.
     #[error(transparent)]
     Network(#[from] grainlab_micromechanics::MicroError),
     /// The engine failed.
@@ -91,7 +95,7 @@ pub enum AcousticsError {
     Engine(#[from] grainlab_dem::DemError),
 }
 
-/// A direction as people write it.
+/// A direction as text.
 pub(crate) fn in_brackets(v: &[f64; 3]) -> String {
     format!("({:.3}, {:.3}, {:.3})", v[0], v[1], v[2])
 }

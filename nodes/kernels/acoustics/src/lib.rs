@@ -1,35 +1,47 @@
 //! Virtual acoustic measurement of a packing.
 //!
-//! Three ways to measure the speed of a wave, which share [`ray`] (where a wave goes and how the grains move), [`curve`]
-//! (a speed at several wavelengths, extrapolated to long ones) and [`participation`] (the mass that moves with a wave):
+//! Three methods measure the speed of a wave:
 //!
-//! - [`dispersion`]: frequencies of the acoustic modes of the frozen contact network at Bloch wave vectors of any length
-//! - [`standing`]: the packing, repeated along the path, starts with the velocity of a plane wave; how it rings
-//! - [`flight`]: a burst is sent through the packing, repeated along the path; when it arrives
+//! - [`dispersion`]: frequencies of the acoustic modes of the frozen contact network at Bloch wave vectors of any
+//!   length
+//! - [`standing_wave`]: free vibration of a supercell that starts with the velocities of plane waves
+//! - [`time_of_flight`]: arrival of a burst that is sent through a supercell
 //!
-//! [`mod@measure`] does any of them along a whole set of rays ([`survey`]), through an [`instrument`] with noise of its own.
+//! They share `ray` (direction of propagation and polarizations), `curve` (speeds at several wavelengths, extrapolated
+//! to long waves), `backbone` (the grains that carry waves, and their effective density) and `supercell` (the packing,
+//! repeated along a path). `wave_path` runs the two methods with moving grains for all polarizations of all rays.
+//!
+//! [`measure`](fn@measure) applies a method to a set of rays (`survey`), through an `instrument` with noise.
 
-pub mod curve;
+mod backbone;
+mod contact_changes;
+mod curve;
 pub mod dispersion;
-pub mod error;
-pub mod flight;
-pub mod instrument;
-pub mod measure;
+mod effective_density;
+mod error;
+mod instrument;
+mod measure;
 mod noise;
-pub mod participation;
-pub mod ray;
-pub mod repeat;
+mod nonlinearity;
+mod ray;
 mod sample;
-pub mod standing;
-pub mod survey;
-pub mod trace;
+mod settings;
+pub mod standing_wave;
+mod supercell;
+mod survey;
+pub mod time_of_flight;
+mod trace;
+mod warning;
+mod wave_path;
 
-pub use curve::Curve;
+pub use curve::{DispersionCurve, DispersionPoint};
+pub use effective_density::EffectiveDensity;
 pub use error::AcousticsError;
-pub use instrument::Instrument;
-pub use measure::{Measurement, Settings, Way, measure, with_speed_noise};
-pub use participation::Participation;
+pub use instrument::{Instrument, ReceiverSignals, SamplingWindow};
+pub use measure::{Measurement, measure, with_speed_noise};
 pub use ray::Ray;
-pub use repeat::{Repeated, repeated};
+pub use settings::{MethodSettings, Settings};
+pub use supercell::{Supercell, supercell};
 pub use survey::{Modes, Survey};
-pub use trace::Trace;
+pub use trace::{Channel, Trace};
+pub use warning::Warning;

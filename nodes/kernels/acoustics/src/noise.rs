@@ -1,4 +1,4 @@
-//! Gaussian noise that depends on seed and place alone.
+//! Gaussian noise that depends on a seed and a place alone.
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
@@ -14,8 +14,8 @@ pub(crate) fn seed_at(seed: u64, place: &[u64]) -> u64 {
 pub(crate) struct Noise(Pcg64Mcg);
 
 impl Noise {
-    /// The numbers of `seed` at a place, such as ray, motion and shot: other places have others, whatever the order in which
-    /// they are visited.
+    /// The numbers of `seed` at a place, such as (ray, polarization, shot), independent of the order in which places
+    /// are visited.
     pub(crate) fn at(seed: u64, place: &[u64]) -> Self {
         Self(Pcg64Mcg::seed_from_u64(seed_at(seed, place)))
     }

@@ -1,4 +1,4 @@
-//! What a receiver hears.
+//! Recorded signals.
 
 use grainlab_core::{Vec3, WaveMethod};
 
@@ -7,13 +7,13 @@ use grainlab_core::{Vec3, WaveMethod};
 pub struct Trace {
     /// Unit direction of propagation.
     pub direction: Vec3,
-    /// Unit particle motion sent and received.
-    pub motion: Vec3,
-    /// What it is evaluated for.
+    /// Unit polarization, sent and received.
+    pub polarization: Vec3,
+    /// Method of evaluation.
     pub method: WaveMethod,
-    /// Dominant frequency sent, Hz.
+    /// Dominant frequency, Hz.
     pub frequency: f64,
-    /// Samples a second, Hz.
+    /// Sampling rate, Hz.
     pub sample_rate: f64,
     /// Time of the first sample after the trigger, s.
     pub start: f64,
@@ -26,6 +26,6 @@ pub struct Trace {
 pub struct Channel {
     /// Distance from the source along the ray, m; the wavelength of a standing wave.
     pub distance: f64,
-    /// Particle velocity along the motion, m/s.
+    /// Particle velocity along the polarization, m/s.
     pub samples: Vec<f64>,
 }

@@ -81,9 +81,13 @@ impl Packing {
         if angle.is_nan() || angle > SHARE * distance + rounding {
             return fault("angle of the normal (rad)", angle / distance, 0.0);
         }
-        let most = HARDEST * self.material.normal_force(self.effective_radius(c), c.overlap);
+        let most = HARDEST * self.law.normal_force(&self.material, self.effective_radius(c), c.overlap);
         if c.normal_force.abs() > most {
-            return fault("normal force (N), at most a hundred times Hertz's,", c.normal_force, most);
+            return fault(
+                "normal force (N), at most a hundred times that of the contact law,",
+                c.normal_force,
+                most,
+            );
         }
         Ok(())
     }
@@ -124,6 +128,7 @@ mod tests {
             spins: vec![Vec3::zeros(); 2],
             contacts: vec![contact(0, 1, [-1, 0, 0], a, b, 0.11)],
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.1,
             time_step: 0.0,
         }

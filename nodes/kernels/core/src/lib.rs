@@ -6,7 +6,8 @@
 //!
 //! - [`tensor`]: small vectors and tensors
 //! - [`cell`]: the periodic cell
-//! - [`material`]: the grain's material and the contact stiffnesses that follow from it (Eqs. 8 and 9)
+//! - [`material`]: the grain's material
+//! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
 //! - [`packing`]: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`stress`]: the one definition of stress
@@ -19,7 +20,9 @@
 
 pub mod cell;
 mod consistency;
+pub mod contact;
 pub mod control;
+pub mod lanes;
 pub mod material;
 pub mod packing;
 pub mod quantity;

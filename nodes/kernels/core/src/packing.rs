@@ -1,6 +1,7 @@
 //! Grains, cell and contact network at one instant.
 
 use crate::cell::Cell;
+use crate::contact::ContactLaw;
 use crate::material::{Material, effective_radius};
 use crate::tensor::{Mat3, Vec3};
 
@@ -63,6 +64,8 @@ pub struct Packing {
     pub contacts: Vec<Contact>,
     /// Material of every grain.
     pub material: Material,
+    /// Contact law.
+    pub law: ContactLaw,
     /// Friction coefficient in force; may be infinite.
     pub friction: f64,
     /// Time step in force, s; 0 if the packing was not made by a simulation of ours.
@@ -245,11 +248,7 @@ impl Packing {
 
     /// Contact stiffnesses (k_n, k_t) at the present overlap, N/m.
     pub fn contact_stiffness(&self, c: &Contact) -> (f64, f64) {
-        let r_eff = self.effective_radius(c);
-        (
-            self.material.normal_stiffness(r_eff, c.overlap),
-            self.material.tangential_stiffness(r_eff, c.overlap),
-        )
+        self.law.stiffnesses(&self.material, self.effective_radius(c), c.overlap)
     }
 }
 
@@ -295,6 +294,7 @@ mod tests {
                 tangential_force: Vec3::zeros(),
             }],
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.1,
             time_step: 0.0,
         }

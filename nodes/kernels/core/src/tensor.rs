@@ -24,6 +24,9 @@ pub struct SymTensor {
 }
 
 impl SymTensor {
+    /// Names of the components, in Voigt order.
+    pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
     /// `value` times the identity.
     pub const fn isotropic(value: f64) -> Self {
         Self { xx: value, yy: value, zz: value, yz: 0.0, xz: 0.0, xy: 0.0 }

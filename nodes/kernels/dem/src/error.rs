@@ -1,6 +1,6 @@
-//! What can go wrong in the engine.
+//! Errors of the engine.
 
-/// Why a simulation cannot start or go on.
+/// Why the engine cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DemError {
     /// A grain moved too far in one step, or its state is not finite.
@@ -41,7 +41,7 @@ pub enum DemError {
         /// Solver step.
         step: u64,
     },
-    /// A grain travelled too many cell lengths for image numbers to hold.
+    /// A grain moved too many cell lengths for image numbers.
     #[error(
         "grain {grain} is, or would touch an image, more than 100 cells away: it travelled too far (shorten the gas phase or \
          lower its speed), or the cell is sheared too far"
@@ -62,10 +62,10 @@ pub enum DemError {
         /// Solid fraction asked for.
         solid_fraction: f64,
     },
-    /// A state that is no gas of hard spheres.
+    /// The state is not a gas of hard spheres.
     #[error("the event-driven gas cannot take up this state: {0}")]
     HardSpheres(String),
-    /// Hard spheres that can get no closer.
+    /// The hard spheres are jammed.
     #[error(
         "the event-driven gas jammed at a solid fraction of {solid_fraction:.4}: {cause}; end the gas phase at a lower \
          solid fraction"
@@ -73,10 +73,10 @@ pub enum DemError {
     Jammed {
         /// Solid fraction reached.
         solid_fraction: f64,
-        /// What showed it.
+        /// What shows that it is jammed.
         cause: String,
     },
-    /// A strain rate that cannot be obeyed.
+    /// The strain rate is not finite.
     #[error("strain rate component {component} is {value}; it must be finite")]
     Rate {
         /// Voigt component name.
@@ -84,10 +84,4 @@ pub enum DemError {
         /// The value.
         value: f64,
     },
-    /// The path failed.
-    #[error(transparent)]
-    Path(#[from] grainlab_scene::PathError),
-    /// A saved state does not belong to this scene or version.
-    #[error("cannot resume: {0}")]
-    Resume(String),
 }

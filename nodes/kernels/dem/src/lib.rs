@@ -1,53 +1,39 @@
-//! The particle engine: frictional Hertz–Mindlin spheres in a deforming periodic cell.
+//! The particle engine: frictional spheres in a deforming periodic cell.
 //!
-//! - [`simulation`]: a scene run along its loading path, one request and one answer at a time
-//! - [`engine`]: stepping grains at a given strain rate
-//! - [`law`]: the contact law, written once for any number of lanes; with `f64` it is the specification
-//! - [`lanes`], [`simd`], [`compute`]: one, four or eight contacts at a time, on one thread or more, with the same bits
-//! - [`gas`]: placing grains at random and agitating them
-//! - [`event_driven`]: the gas as hard spheres, from collision to collision
-//! - [`observe`]: stress, tangent stiffness and balance of the present contacts
-//! - [`roofline`]: what the contact law asks of a processor, for benchmarks
+//! [`Engine`] steps grains at a given strain rate. Its folders follow a step, each using those before it only:
 //!
-//! Everything is a function of the state alone: sums run over contacts sorted by (i, j, image), by chunks and parts that
-//! follow from the number of grains, so nothing depends on when a neighbour list was rebuilt, on the instruction set or on the
-//! number of threads, and a state saved and loaded goes on bit for bit.
+//! - `simd`: arithmetic in one, four or eight lanes
+//! - `domain`: grains, and how they are divided among threads
+//! - `pairs`: neighbours, and the blocks of pairs that may touch
+//! - `force`: the force kernel, compiled for each contact law, and the stress that forces carry
+//! - `step`: forces and motion of one step, and the stable time step
+//! - `observe`: stress, tangent stiffness and force balance of the present contacts; the running energy balance
+//! - `engine`: steps with checks, thermostat and upkeep of the lists of pairs
+//!
+//! Beside the engine: [`gas`] places grains at random and moves hard spheres from collision to collision; [`roofline`] counts
+//! operations for benchmarks.
+//!
+//! Every result is a function of the state alone. Sums run over contacts sorted by (i, j, image), by chunks and parts that
+//! follow from the number of grains. So nothing depends on when neighbours were found, on the instruction set or on the number
+//! of threads, and a state saved and loaded goes on bit for bit.
 
-mod approach;
-mod checkpoint;
-pub mod compute;
-mod contacts;
-pub mod engine;
-pub mod error;
-pub mod event_driven;
+mod domain;
+mod engine;
+mod error;
+mod force;
 pub mod gas;
-mod geometry;
-mod homes;
-mod images;
-mod integrate;
-pub mod lanes;
-pub mod law;
-mod neighbours;
-pub mod observe;
-mod order;
-mod own;
-mod pass;
+mod observe;
+mod pairs;
 pub mod roofline;
-mod run_state;
-mod share;
-pub mod simd;
-pub mod simulation;
-mod state;
-mod stress;
-mod sums;
-mod sweep;
-mod time_step;
-#[cfg(target_arch = "x86_64")]
-mod x86;
+mod settings;
+mod simd;
+mod step;
 
-pub use compute::{Compute, ComputeError};
-pub use engine::{Engine, Features, Setting, TimeStep};
+pub use domain::compute::{Compute, ComputeError};
+pub use engine::checkpoint::Checkpoint;
+pub use engine::engine::Engine;
 pub use error::DemError;
-pub use observe::Snapshot;
-pub use simd::Simd;
-pub use simulation::{Advanced, Request, Simulation};
+pub use observe::energy::EnergyBalance;
+pub use observe::observables::Observables;
+pub use settings::{EngineSettings, Features, TimeStep};
+pub use simd::instruction_set::{Simd, UnknownSimd};

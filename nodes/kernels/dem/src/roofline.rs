@@ -1,12 +1,15 @@
-//! What the contact law asks of a processor, and what the processor has to give: for benchmarks.
+//! Floating-point operations per contact, and the peak rate of the processor: for benchmarks.
 
-use crate::engine::{Engine, Features, Setting, TimeStep};
-use crate::lanes::{BLOCK, CHUNK, Lanes, Octad, Quad, Rows, V3};
-use crate::pass::{Frictional, Frictionless};
-use crate::simd::{Kernel, Simd};
-use crate::sweep;
+use crate::engine::engine::Engine;
+use crate::force::geometry::ForceInput;
+use crate::force::kernel::{FrictionalKernel, FrictionlessKernel};
+use crate::settings::{EngineSettings, Features, TimeStep};
+use crate::simd::instruction_set::Simd;
+use crate::simd::kernel::Kernel;
+use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE, CheckedIndices, F64x4, F64x8, SimdF64};
+use grainlab_core::contact::{ContactLaw, ContactSprings, LawVisitor, TangentialLaw};
+use grainlab_core::lanes::{LaneVec3, Lanes};
 use grainlab_core::{Cell, Material, Vec3};
-use grainlab_scene::Tangential;
 use std::cell::Cell as Counter;
 use std::hint::black_box;
 use std::ops::{Add, Div, Mul, Sub};
@@ -15,7 +18,7 @@ thread_local! {
     static OPERATIONS: Counter<u64> = const { Counter::new(0) };
 }
 
-/// One lane that counts what is done to it.
+/// One lane that counts its operations.
 #[derive(Clone, Copy)]
 struct Counted(f64);
 
@@ -38,33 +41,25 @@ macro_rules! count {
 count!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Lanes for Counted {
-    const WIDTH: usize = 1;
     type Mask = bool;
-    type Row = Quad;
 
     fn splat(value: f64) -> Self {
         Self(value)
     }
-    fn load(from: &[f64; BLOCK], lane: usize) -> Self {
-        Self(from[lane])
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
     }
-    fn store(self, to: &mut [f64; BLOCK], lane: usize) {
-        to[lane] = self.0;
+    fn mul_sub(self, factor: Self, subtrahend: Self) -> Self {
+        self * factor - subtrahend
     }
-    fn mul_add(self, by: Self, plus: Self) -> Self {
-        self * by + plus
-    }
-    fn mul_sub(self, by: Self, minus: Self) -> Self {
-        self * by - minus
-    }
-    fn mul_sub_from(self, by: Self, from: Self) -> Self {
-        from - self * by
+    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
+        addend - self * factor
     }
     fn sqrt(self) -> Self {
         counted(self.0.sqrt())
     }
-    fn about_inverse_root(self) -> Self {
-        counted(self.0.about_inverse_root())
+    fn rsqrt_estimate(self) -> Self {
+        counted(self.0.rsqrt_estimate())
     }
     fn max(self, other: Self) -> Self {
         counted(<f64 as Lanes>::max(self.0, other.0))
@@ -79,36 +74,56 @@ impl Lanes for Counted {
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
-    fn are_below(number: &[u32; BLOCK], lane: usize, bound: usize) -> bool {
-        f64::are_below(number, lane, bound)
+}
+
+impl SimdF64 for Counted {
+    const WIDTH: usize = 1;
+    type Row = F64x4;
+
+    fn load(from: &[f64; BLOCK_SIZE], lane: usize) -> Self {
+        Self(from[lane])
     }
-    fn rows(table: &[Quad], at: Rows<'_, Self>) -> V3<Self> {
-        let [x, y, z, _] = table[at.number(0)].map(Self);
-        V3 { x, y, z }
+    fn store(self, to: &mut [f64; BLOCK_SIZE], lane: usize) {
+        to[lane] = self.0;
     }
-    fn difference(table: &[Quad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> V3<Self> {
-        Self::rows(table, a) - Self::rows(table, b)
+    fn all_below(indices: &[u32; BLOCK_SIZE], lane: usize, bound: usize) -> bool {
+        f64::all_below(indices, lane, bound)
     }
-    fn relative(table: &[Octad], a: Rows<'_, Self>, b: Rows<'_, Self>) -> [V3<Self>; 2] {
-        let (p, q) = (table[a.number(0)].0.map(Self), table[b.number(0)].0.map(Self));
-        let velocity = V3 { x: p[0] - q[0], y: p[1] - q[1], z: p[2] - q[2] };
-        [velocity, V3 { x: p[4] + q[4], y: p[5] + q[5], z: p[6] + q[6] }]
+    fn gather(table: &[F64x4], at: CheckedIndices<'_, Self>) -> LaneVec3<Self> {
+        let [x, y, z, _] = table[at.get(0)].map(Self);
+        LaneVec3 { x, y, z }
     }
-    fn spins(table: &[Octad], at: Rows<'_, Self>) -> V3<Self> {
-        let row = table[at.number(0)].0.map(Self);
-        V3 { x: row[4], y: row[5], z: row[6] }
+    fn gather_difference(
+        table: &[F64x4],
+        a: CheckedIndices<'_, Self>,
+        b: CheckedIndices<'_, Self>,
+    ) -> LaneVec3<Self> {
+        Self::gather(table, a) - Self::gather(table, b)
     }
-    fn prefetch<T>(_: &[T], _: &[u32; BLOCK]) {}
-    fn scatter<const TURN: bool, const LEVERS: bool>(
+    fn gather_relative_motion(
+        table: &[F64x8],
+        a: CheckedIndices<'_, Self>,
+        b: CheckedIndices<'_, Self>,
+    ) -> [LaneVec3<Self>; 2] {
+        let (p, q) = (table[a.get(0)].0.map(Self), table[b.get(0)].0.map(Self));
+        let velocity = LaneVec3 { x: p[0] - q[0], y: p[1] - q[1], z: p[2] - q[2] };
+        [velocity, LaneVec3 { x: p[4] + q[4], y: p[5] + q[5], z: p[6] + q[6] }]
+    }
+    fn gather_spins(table: &[F64x8], at: CheckedIndices<'_, Self>) -> LaneVec3<Self> {
+        let row = table[at.get(0)].0.map(Self);
+        LaneVec3 { x: row[4], y: row[5], z: row[6] }
+    }
+    fn prefetch<T>(_: &[T], _: &[u32; BLOCK_SIZE]) {}
+    fn scatter_add<const MOMENTS: bool, const LEVERS: bool>(
         c: [Self; 8],
-        from: Rows<'_, Self>,
-        to: Rows<'_, Self>,
-        sums: &mut [Octad],
+        from: CheckedIndices<'_, Self>,
+        to: CheckedIndices<'_, Self>,
+        sums: &mut [F64x8],
     ) {
         // One vector on each of two grains, or two with their levers.
-        let operations = 6 * (1 + u64::from(TURN) * (1 + u64::from(LEVERS)));
+        let operations = 6 * (1 + u64::from(MOMENTS) * (1 + u64::from(LEVERS)));
         OPERATIONS.set(OPERATIONS.get() + operations);
-        for (row, sign) in [(to.number(0), 1.0), (from.number(0) % CHUNK, -1.0)] {
+        for (row, sign) in [(to.get(0), 1.0), (from.get(0) % CHUNK_SIZE, -1.0)] {
             for k in 0..3 {
                 sums[row].0[k] += sign * c[k].0;
                 sums[row].0[4 + k] += c[4 + k].0;
@@ -117,47 +132,65 @@ impl Lanes for Counted {
     }
 }
 
-/// Floating-point operations (additions, multiplications, divisions, square roots, comparisons; one each) on one sliding
-/// contact of grains of one size in one pass, counted by running the law itself.
-pub fn operations_per_contact(setting: &Setting) -> f64 {
+/// Floating-point operations (additions, multiplications, divisions, square roots, comparisons; one each) of the force kernel
+/// per sliding contact of grains of one size, counted by running the kernel itself.
+pub fn operations_per_contact(law: ContactLaw, settings: &EngineSettings) -> f64 {
     // A row of grains with one full block of contacts, sheared hard enough to slide.
-    let (radius, grains) = (1e-4, BLOCK + 1);
+    let (radius, grains) = (1e-4, BLOCK_SIZE + 1);
     let along = |k: usize| Vec3::x() * (1.99 * radius * k as f64);
     let positions: Vec<Vec3> = (0..grains).map(along).collect();
     let Some(cell) = Cell::cube(4.0 * radius * grains as f64) else { return 0.0 };
-    let setting = Setting { time_step: TimeStep::Fixed(1e-8), skin: 0.1 * radius, ..*setting };
-    let mut engine = Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, setting);
-    let aside = |k: usize| Vec3::y() * (100.0 * k as f64);
-    engine.set_velocities(&(0..grains).map(aside).collect::<Vec<_>>());
-    if engine.prepare().is_err() {
+    let settings = EngineSettings { time_step: TimeStep::Fixed(1e-8), skin: 0.1 * radius, ..*settings };
+    let mut engine =
+        Engine::new(cell, Material::GLASS, vec![radius; grains], &positions, settings).with_law(law);
+    let sideways = |k: usize| Vec3::y() * (100.0 * k as f64);
+    engine.set_velocities(&(0..grains).map(sideways).collect::<Vec<_>>());
+    if engine.initialise().is_err() {
         return 0.0;
     }
-    let contacts = &mut engine.contacts;
-    let view = sweep::view(&engine.state, contacts.images.shifts(), &setting);
-    let Some(share) = contacts.shares.first_mut() else { return 0.0 };
-    let mut part = share.part_mut(0);
-    let chunk = part.chunk(0);
-    let rescaled = setting.tangential == Tangential::Rescaled;
-    OPERATIONS.set(0);
-    macro_rules! frictional {
-        ($sliding:literal, $rescaled:literal) => {
-            Frictional::<true, $sliding, $rescaled, false> { view, chunk, look: false }.run::<Counted>()
-        };
-    }
-    match (setting.features(), rescaled) {
-        (Features::Frictionless, _) => Frictionless::<false> { view, chunk, look: false }.run::<Counted>(),
-        (Features::Coulomb, true) => frictional!(true, true),
-        (Features::Coulomb, false) => frictional!(true, false),
-        (Features::Stuck, true) => frictional!(false, true),
-        (Features::Stuck, false) => frictional!(false, false),
-    };
-    OPERATIONS.get() as f64 / BLOCK as f64
+    let (law, material) = (engine.state.law, engine.state.material);
+    law.visit(&material, CountOperations { engine: &mut engine, settings: &settings })
 }
 
-/// Fused multiply-adds (two operations each) that depend on none but their own chain, `rounds` times over: what the
-/// processor has to give. Returns how many were done, and a number that
-/// hangs on all of them.
-pub fn independent_operations(simd: Simd, rounds: u64) -> (u64, f64) {
+struct CountOperations<'a> {
+    engine: &'a mut Engine,
+    settings: &'a EngineSettings,
+}
+
+impl LawVisitor for CountOperations<'_> {
+    type Output = f64;
+
+    fn visit<P: ContactSprings>(self, springs: P) -> f64 {
+        let Self { engine, settings } = self;
+        let contacts = &mut engine.contacts;
+        let input = ForceInput::new(&engine.state, contacts.images.offsets(), settings, springs);
+        let Some(pairs) = contacts.subdomains.first_mut() else { return 0.0 };
+        let mut part = pairs.part_mut(0);
+        let (chunk, with_virial) = (part.chunk(0), false);
+        let rescaled = settings.tangential == TangentialLaw::Rescaled;
+        OPERATIONS.set(0);
+        macro_rules! frictional {
+            ($sliding:literal, $rescaled:literal) => {
+                FrictionalKernel::<P, true, $sliding, $rescaled, false> { input, chunk, with_virial }
+                    .run::<Counted>()
+            };
+        }
+        match (settings.features(), rescaled) {
+            (Features::Frictionless, _) => {
+                FrictionlessKernel::<P, false> { input, chunk, with_virial }.run::<Counted>()
+            }
+            (Features::Sliding, true) => frictional!(true, true),
+            (Features::Sliding, false) => frictional!(true, false),
+            (Features::NoSlip, true) => frictional!(false, true),
+            (Features::NoSlip, false) => frictional!(false, false),
+        };
+        OPERATIONS.get() as f64 / BLOCK_SIZE as f64
+    }
+}
+
+/// Runs independent chains of fused multiply-adds (two operations each) for `rounds`, to measure the peak rate of the
+/// processor. Returns the number of operations, and a number that depends on all of them.
+pub fn peak_flops(simd: Simd, rounds: u64) -> (u64, f64) {
     simd.run(Chains { rounds })
 }
 
@@ -165,23 +198,23 @@ struct Chains {
     rounds: u64,
 }
 
-/// Chains at a time: enough to hide the latency of an addition.
+/// Independent chains: enough to hide the latency of an addition.
 const CHAINS: usize = 12;
 
 impl Kernel for Chains {
     type Output = (u64, f64);
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> (u64, f64) {
+    fn run<L: SimdF64>(self) -> (u64, f64) {
         let mut chains = [L::splat(1.0); CHAINS];
-        // Unknown to the compiler, which would else see through it.
-        let (by, plus) = (L::splat(black_box(0.999_999)), L::splat(black_box(1e-6)));
+        // Hidden from the compiler, which would otherwise simplify the loop.
+        let (factor, addend) = (L::splat(black_box(0.999_999)), L::splat(black_box(1e-6)));
         for _ in 0..self.rounds {
             for chain in &mut chains {
-                *chain = chain.mul_add(by, plus);
+                *chain = chain.mul_add(factor, addend);
             }
         }
-        let mut last = [0.0; BLOCK];
+        let mut last = [0.0; BLOCK_SIZE];
         let mut sum = 0.0;
         for chain in chains {
             chain.store(&mut last, 0);
@@ -198,17 +231,10 @@ mod tests {
     #[test]
     fn a_contact_with_more_physics_takes_more_operations() {
         let of = |friction: f64| {
-            let setting = Setting {
-                friction,
-                damping: 0.3,
-                drag: 0.0,
-                spin_drag: 0.0,
-                tangential: Tangential::Rescaled,
-                time_step: TimeStep::Fixed(1e-8),
-                skin: 0.0,
-                speed_cap: None,
-            };
-            operations_per_contact(&setting)
+            operations_per_contact(
+                ContactLaw::HertzMindlin,
+                &EngineSettings { friction, damping: 0.3, ..EngineSettings::default() },
+            )
         };
         assert!(of(0.0) > 30.0);
         assert!(of(f64::INFINITY) > 2.0 * of(0.0));

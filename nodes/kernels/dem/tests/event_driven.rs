@@ -3,21 +3,20 @@
 
 use grainlab_core::{Cell, Mat3, Vec3};
 use grainlab_dem::DemError;
-use grainlab_dem::event_driven::{HardSpheres, mean_free_time};
-use grainlab_dem::gas;
+use grainlab_dem::gas::{self, HardSpheres, mean_free_time};
 
 const DIAMETER: f64 = 2e-4;
 
 /// `grains` equal spheres compressed from a random placement to `solid_fraction`.
 fn fluid(grains: u32, solid_fraction: f64, seed: u64) -> HardSpheres {
-    let g = gas::place(grains, DIAMETER, solid_fraction.min(0.3), 1.0, seed).unwrap();
+    let g = gas::random_sequential_addition(grains, DIAMETER, solid_fraction.min(0.3), 1.0, seed).unwrap();
     let radii = vec![0.5 * DIAMETER; grains as usize];
     let mut spheres = HardSpheres::new(g.cell, radii, g.positions, g.velocities).unwrap();
     let rate = -40.0;
     while spheres.solid_fraction() < solid_fraction * (1.0 - 1e-9) {
         let needed = (solid_fraction / spheres.solid_fraction()).ln() / 3.0 / -rate;
         spheres.advance(rate, needed.min(1e-4)).unwrap();
-        spheres.limit_speed(1.0);
+        spheres.apply_thermostat(1.0);
     }
     spheres
 }
@@ -146,12 +145,12 @@ fn energy_and_momentum_are_kept_through_a_hundred_thousand_collisions() {
 
 #[test]
 fn no_overlap_on_the_way_to_a_dense_gas() {
-    let g = gas::place(200, DIAMETER, 0.3, 1.0, 2).unwrap();
+    let g = gas::random_sequential_addition(200, DIAMETER, 0.3, 1.0, 2).unwrap();
     let radii = vec![0.5 * DIAMETER; 200];
     let mut s = HardSpheres::new(g.cell, radii.clone(), g.positions, g.velocities).unwrap();
     while s.solid_fraction() < 0.607 {
         s.advance(-40.0, 5e-5).unwrap();
-        s.limit_speed(1.0);
+        s.apply_thermostat(1.0);
         let overlap = deepest(&s, &radii);
         assert!(overlap < 1e-12, "{overlap:e} at {}", s.solid_fraction());
     }
@@ -220,7 +219,8 @@ fn small_cells_and_unequal_grains_follow_brute_force() {
 
 #[test]
 fn two_grains_in_a_cell_barely_above_two_diameters_never_overlap() {
-    let g = gas::place(2, DIAMETER, 2.0 * std::f64::consts::PI / 6.0 / 8.01, 1.0, 4).unwrap();
+    let g = gas::random_sequential_addition(2, DIAMETER, 2.0 * std::f64::consts::PI / 6.0 / 8.01, 1.0, 4)
+        .unwrap();
     let radii = [0.5 * DIAMETER; 2];
     let mut s = HardSpheres::new(g.cell, radii.to_vec(), g.positions, g.velocities).unwrap();
     assert!(s.cell().width(0) < 2.01 * DIAMETER);
@@ -233,7 +233,7 @@ fn two_grains_in_a_cell_barely_above_two_diameters_never_overlap() {
     // On to where images of the same pair crowd each grain.
     while s.solid_fraction() < 0.5 {
         s.advance(-40.0, 5e-5).unwrap();
-        s.limit_speed(1.0);
+        s.apply_thermostat(1.0);
         assert!(deepest(&s, &radii) < 1e-12);
     }
     assert!(s.cell().width(0) < 1.3 * DIAMETER);
@@ -242,7 +242,7 @@ fn two_grains_in_a_cell_barely_above_two_diameters_never_overlap() {
 #[test]
 fn sizes_one_to_five_share_the_energy_equally() {
     // 20 grains five times as large as the other 480.
-    let large = gas::place(20, 5.0, 0.1, 1.0, 5).unwrap();
+    let large = gas::random_sequential_addition(20, 5.0, 0.1, 1.0, 5).unwrap();
     let mut positions = large.positions.clone();
     let edge = large.cell.width(0);
     let mut lattice =
@@ -254,7 +254,7 @@ fn sizes_one_to_five_share_the_energy_equally() {
         positions.extend(free.then_some(x));
     }
     let radii: Vec<f64> = (0..500).map(|i| if i < 20 { 2.5 } else { 0.5 }).collect();
-    let mut velocities = gas::place(500, 1.0, 0.1, 1.0, 6).unwrap().velocities;
+    let mut velocities = gas::random_sequential_addition(500, 1.0, 0.1, 1.0, 6).unwrap().velocities;
     // At rest as a whole: the motion of the centre of mass takes no part in equipartition.
     let mass: f64 = radii.iter().map(|r| r.powi(3)).sum();
     let drift = velocities.iter().zip(&radii).map(|(v, r)| v * r.powi(3)).sum::<Vec3>() / mass;
@@ -313,13 +313,13 @@ fn a_gas_that_can_get_no_denser_is_refused_and_left_as_it_was() {
             assert_eq!(s, before);
             break error;
         }
-        s.limit_speed(1.0);
+        s.apply_thermostat(1.0);
         assert!(s.solid_fraction() < 0.7405, "denser than any packing of spheres");
     };
     let DemError::Jammed { solid_fraction, .. } = error else { panic!("{error}") };
     assert!((0.6..0.7405).contains(&solid_fraction), "{error}");
     // One grain, whose images come nearer until they touch at φ = π/6.
-    let g = gas::place(1, DIAMETER, 0.3, 1.0, 1).unwrap();
+    let g = gas::random_sequential_addition(1, DIAMETER, 0.3, 1.0, 1).unwrap();
     let mut s = HardSpheres::new(g.cell, vec![0.5 * DIAMETER], g.positions, g.velocities).unwrap();
     let error = loop {
         if let Err(error) = s.advance(-40.0, 1e-4) {

@@ -1,22 +1,22 @@
 //! Grains in motion: collisions, the deforming cell, its periodic images, and what is refused.
 
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Mat3, Material, Vec3};
-use grainlab_dem::{DemError, Engine, Setting, TimeStep};
-use grainlab_scene::Tangential;
+use grainlab_dem::{DemError, Engine, EngineSettings, TimeStep};
 use nalgebra::Rotation3;
 
 const RADIUS: f64 = 1e-4;
 
-fn setting(friction: f64, time_step: f64) -> Setting {
-    Setting {
+fn setting(friction: f64, time_step: f64) -> EngineSettings {
+    EngineSettings {
         friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: Tangential::Incremental,
+        tangential: TangentialLaw::Incremental,
         time_step: TimeStep::Fixed(time_step),
         skin: 1e-5,
-        speed_cap: None,
+        thermostat_speed: None,
     }
 }
 
@@ -42,12 +42,12 @@ fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
     let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, setting(0.0, 2e-10));
     let speed = 0.5;
     e.set_velocities(&[Vec3::x() * speed, -Vec3::x() * speed]);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let before = energy(&e);
     let mut touching = 0u32;
     for _ in 0..100_000 {
         e.step().unwrap();
-        touching += e.snapshot().unwrap().contacts;
+        touching += e.observables().unwrap().contacts;
     }
     let p = e.packing(Mat3::identity());
     assert!((p.velocities[0] + p.velocities[1]).norm() < 1e-13 * speed);
@@ -64,10 +64,10 @@ fn a_collision_keeps_momentum_and_energy_and_lasts_as_long_as_hertz_says() {
 
 #[test]
 fn an_undamped_gas_keeps_its_energy() {
-    let gas = grainlab_dem::gas::place(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
+    let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.3, 0.5, 3).unwrap();
     let mut e = Engine::new(gas.cell, Material::GLASS, vec![RADIUS; 60], &gas.positions, setting(0.0, 5e-9));
     e.set_velocities(&gas.velocities);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let before = energy(&e);
     for _ in 0..60_000 {
         e.step().unwrap();
@@ -87,7 +87,7 @@ fn cubic(overlap: f64, friction: f64) -> (Engine, f64) {
         &[Vec3::new(0.3, 0.1, -0.2) * RADIUS],
         setting(friction, 1e-9),
     );
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     (e, edge)
 }
 
@@ -95,7 +95,7 @@ fn cubic(overlap: f64, friction: f64) -> (Engine, f64) {
 fn a_cubic_lattice_has_the_stress_of_its_three_contacts() {
     let overlap = 4e-8;
     let (e, edge) = cubic(overlap, 0.5);
-    let s = e.snapshot().unwrap();
+    let s = e.observables().unwrap();
     // σ = F l/V, one contact a face.
     let expected = Material::GLASS.normal_force(RADIUS / 2.0, overlap) / (edge * edge);
     for v in &s.stress.tensor.voigt()[..3] {
@@ -116,14 +116,14 @@ fn the_stress_along_the_way_is_the_momentum_that_contacts_carry_dashpots_include
     // Across a face of the cell, and not.
     for x in [[0.0, 1.9998 * RADIUS], [0.02 * RADIUS, edge - 1.9798 * RADIUS]] {
         let positions = x.map(|x| Vec3::new(x, 0.3 * RADIUS, -0.2 * RADIUS));
-        let damped = Setting { damping: 0.5, ..setting(0.3, 1e-9) };
+        let damped = EngineSettings { damping: 0.5, ..setting(0.3, 1e-9) };
         let cell = Cell::cube(edge).unwrap();
         let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, damped);
         let towards = if x[1] < 0.5 * edge { 0.5 } else { -0.5 };
         e.set_velocities(&[Vec3::x() * towards, -Vec3::x() * towards]);
         let mut stress = 0.0;
-        e.run_measured(10, |s| stress = s.xx).unwrap();
-        let elastic = e.snapshot().unwrap().stress.tensor.xx;
+        e.run_with_stress(10, |s| stress = s.xx).unwrap();
+        let elastic = e.observables().unwrap().stress.tensor.xx;
         let p = e.packing(Mat3::identity());
         e.step().unwrap();
         // F = m dv/dt over the step that follows.
@@ -160,7 +160,7 @@ fn affine_shear_loads_tangential_springs_across_periodic_images() {
         assert!((c.tangential_force - expected).norm() < 1e-5 * slip, "{c:?} {expected:?}");
     }
     // σ_xz = −2 C44 E_xz with C44 = k_t/(2a), and the normal forces of both contacts, turned by E_xz.
-    let stress = e.snapshot().unwrap().stress.tensor;
+    let stress = e.observables().unwrap().stress.tensor;
     let expected = (2.0 * stress.xx - k_t / edge) * strain;
     assert!((stress.xz / expected - 1.0).abs() < 1e-5, "{} {expected}", stress.xz);
     assert!(p.spins[0].norm() < 1e-6 * rate, "symmetric shear does not turn the grain");
@@ -176,7 +176,7 @@ fn two_grains_that_touch_only_through_an_image_feel_the_affine_velocity() {
     let positions = [Vec3::zeros(), top];
     let mut e =
         Engine::new(Cell::cube(height).unwrap(), heavy, vec![RADIUS; 2], &positions, setting(0.5, 1e-9));
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).unwrap();
     for _ in 0..1000 {
         e.step().unwrap();
@@ -190,15 +190,15 @@ fn two_grains_that_touch_only_through_an_image_feel_the_affine_velocity() {
 
 /// A gas of 40 grains being pressed together, in a turned cell.
 fn pressed(turn: &Rotation3<f64>, time_step: f64) -> Engine {
-    let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, 11).unwrap();
+    let gas = grainlab_dem::gas::random_sequential_addition(40, 2.0 * RADIUS, 0.35, 0.3, 11).unwrap();
     let cell = Cell::new(turn.matrix() * gas.cell.matrix());
     let rotate = |v: &[Vec3]| v.iter().map(|x| turn * x).collect::<Vec<_>>();
     let mut s = setting(0.3, time_step);
     s.damping = 0.2;
-    s.tangential = Tangential::Rescaled;
+    s.tangential = TangentialLaw::Rescaled;
     let mut e = Engine::new(cell.unwrap(), Material::GLASS, vec![RADIUS; 40], &rotate(&gas.positions), s);
     e.set_velocities(&rotate(&gas.velocities));
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let rate = Mat3::new(-900.0, 100.0, 0.0, 100.0, -700.0, -200.0, 0.0, -200.0, -800.0);
     let rate = grainlab_core::SymTensor::symmetric_part(&(turn.matrix() * rate * turn.matrix().transpose()));
     e.set_rate(&rate.voigt()).unwrap();
@@ -213,8 +213,8 @@ fn the_whole_dynamics_is_objective() {
         (0..3_500).for_each(|_| e.step().map(|_| ()).unwrap());
     }
     let expected =
-        turn.matrix() * plain.snapshot().unwrap().stress.tensor.matrix() * turn.matrix().transpose();
-    let found = turned.snapshot().unwrap();
+        turn.matrix() * plain.observables().unwrap().stress.tensor.matrix() * turn.matrix().transpose();
+    let found = turned.observables().unwrap();
     assert!(found.contacts >= 2, "{} contacts", found.contacts);
     let difference = (found.stress.tensor.matrix() - expected).norm() / expected.norm();
     // Round-off grows by collisions; this few of them keep it far below.
@@ -240,7 +240,7 @@ fn every_contact_is_found_in_thin_and_sheared_cells() {
         let (mut cell, mut positions, mut counts) = (cell, positions, Vec::new());
         for _ in 0..9 {
             let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; n as usize], &positions, s);
-            e.prepare().unwrap();
+            e.initialise().unwrap();
             let p = e.packing(Mat3::identity());
             let found: Vec<_> = p.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
             assert_eq!(found, brute_force(&p.cell, &p.positions), "{shape}");
@@ -291,14 +291,14 @@ fn too_long_a_time_step_is_refused_with_grain_and_contact_named() {
 
 #[test]
 fn grains_that_do_not_fit_are_refused() {
-    let error = grainlab_dem::gas::place(3000, 2.0 * RADIUS, 0.60, 1.0, 1).unwrap_err();
+    let error = grainlab_dem::gas::random_sequential_addition(3000, 2.0 * RADIUS, 0.60, 1.0, 1).unwrap_err();
     assert!(matches!(error, DemError::Placement { grains: 3000, .. }), "{error}");
 }
 
 #[test]
 fn grains_placed_at_random_do_not_overlap() {
     for seed in [0, 1, 2, 3, 11] {
-        let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.3, seed).unwrap();
+        let gas = grainlab_dem::gas::random_sequential_addition(40, 2.0 * RADIUS, 0.35, 0.3, seed).unwrap();
         assert_eq!(brute_force(&gas.cell, &gas.positions), []);
     }
 }
@@ -312,7 +312,7 @@ fn a_grain_held_by_two_contacts_spins_for_ever_unless_spins_are_damped() {
         (s.spin_drag, s.damping) = (spin_drag, 0.3);
         let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS], &[Vec3::zeros()], s);
         e.set_spins(&[Vec3::z() * 1300.0]);
-        e.prepare().unwrap();
+        e.initialise().unwrap();
         (0..1000).for_each(|_| e.step().map(|_| ()).unwrap());
         e.packing(Mat3::identity()).spins[0]
     };
@@ -333,7 +333,7 @@ fn chain(time_step: TimeStep, damping: f64) -> (Engine, f64) {
     let mut e = Engine::new(cell, Material::GLASS, vec![RADIUS; 2], &positions, s);
     // An amplitude far below the overlap: linear to 1e-5.
     e.set_velocities(&[Vec3::z() * 1e-7, -Vec3::z() * 1e-7]);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let k_n = Material::GLASS.normal_stiffness(RADIUS / 2.0, overlap);
     let critical = (Material::GLASS.sphere_mass(RADIUS) / k_n).sqrt();
     (e, critical)
@@ -341,7 +341,7 @@ fn chain(time_step: TimeStep, damping: f64) -> (Engine, f64) {
 
 #[test]
 fn the_stability_bound_is_the_critical_time_step_of_a_chain() {
-    let (e, critical) = chain(TimeStep::Safety(1.0), 0.0);
+    let (e, critical) = chain(TimeStep::FractionOfStable(1.0), 0.0);
     // Rounded down to the grid of 2^(1/16).
     let chosen = e.time_step();
     assert!(chosen <= critical && chosen > critical / 2f64.powf(1.0 / 16.0) * 0.999, "{chosen} {critical}");
@@ -361,7 +361,7 @@ fn the_stability_bound_is_the_critical_time_step_of_a_chain() {
     assert!(growth(1.02) > 1e4, "unstable just above: {}", growth(1.02));
     // With damping the bound is shorter, and what it promises holds.
     for damping in [0.3, 0.6, 1.0] {
-        let (mut e, _) = chain(TimeStep::Safety(1.0), damping);
+        let (mut e, _) = chain(TimeStep::FractionOfStable(1.0), damping);
         assert!(e.time_step() < chosen);
         (0..2000).for_each(|_| e.step().map(|_| ()).unwrap());
         assert!(e.speed() < 1e-9, "damping {damping}: {}", e.speed());

@@ -1,30 +1,30 @@
 //! Results do not depend on instruction set, threads, or how steps are grouped.
 
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Mat3, Material, Packing, Vec3};
-use grainlab_dem::{Compute, Engine, Setting, Simd, TimeStep, gas};
-use grainlab_scene::Tangential;
+use grainlab_dem::{Compute, Engine, EngineSettings, Simd, TimeStep, gas};
 
 const RADIUS: f64 = 1e-4;
 
 /// Grains enough for several threads to have something to do: more than two of the parts that they work on.
 const PARTS: u32 = 4500;
 
-fn setting(friction: f64, tangential: Tangential) -> Setting {
-    Setting {
+fn setting(friction: f64, tangential: TangentialLaw) -> EngineSettings {
+    EngineSettings {
         friction,
         damping: 0.2,
         drag: 0.0,
         spin_drag: 0.0,
         tangential,
-        time_step: TimeStep::Safety(0.5),
+        time_step: TimeStep::FractionOfStable(0.5),
         skin: 0.1 * RADIUS,
-        speed_cap: None,
+        thermostat_speed: None,
     }
 }
 
 /// A gas that is strained into contact; `unequal` mixes sizes.
-fn start(grains: u32, setting: Setting, unequal: bool, compute: Compute) -> Engine {
-    let gas = gas::place(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
+fn start(grains: u32, setting: EngineSettings, unequal: bool, compute: Compute) -> Engine {
+    let gas = gas::random_sequential_addition(grains, 2.0 * RADIUS, 0.35, 0.2, 7).unwrap();
     let radius = |i: u32| if unequal && i.is_multiple_of(3) { 0.8 * RADIUS } else { RADIUS };
     let radii = (0..grains).map(radius).collect();
     let mut engine = Engine::new(gas.cell, Material::GLASS, radii, &gas.positions, setting);
@@ -32,8 +32,8 @@ fn start(grains: u32, setting: Setting, unequal: bool, compute: Compute) -> Engi
     engine.set_velocities(&gas.velocities);
     engine.set_spins(&gas.velocities.iter().map(|v| v.cross(&Vec3::x()) * 1e4).collect::<Vec<_>>());
     engine.set_rate(&[-900.0, -1100.0, -1000.0, 60.0, -50.0, 90.0]).unwrap();
-    engine.sort();
-    engine.prepare().unwrap();
+    engine.sort_spatially();
+    engine.initialise().unwrap();
     engine
 }
 
@@ -52,7 +52,7 @@ fn bits(p: &Packing) -> Vec<u64> {
 
 fn end(mut engine: Engine, steps: u32) -> Vec<u64> {
     let compute = engine.compute().clone();
-    compute.within(|| engine.run(steps)).unwrap();
+    compute.install(|| engine.run(steps)).unwrap();
     let packing = engine.packing(Mat3::identity());
     assert!(packing.contacts.len() > 50, "{} contacts", packing.contacts.len());
     bits(&packing)
@@ -65,7 +65,7 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
         "nothing to compare on this processor"
     );
     for friction in [0.0, 0.3, f64::INFINITY] {
-        for tangential in [Tangential::Rescaled, Tangential::Incremental] {
+        for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {
             for unequal in [false, true] {
                 // Small grains take longer to meet.
                 let steps = if unequal { 6000 } else { 3000 };
@@ -86,7 +86,7 @@ fn every_instruction_set_gives_the_same_bits_in_every_feature_set() {
 fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() {
     let run = |threads| {
         let compute = Compute::new(Simd::best(), threads).unwrap();
-        end(start(PARTS, setting(0.3, Tangential::Rescaled), false, compute), 10_000)
+        end(start(PARTS, setting(0.3, TangentialLaw::Rescaled), false, compute), 10_000)
     };
     let one = run(1);
     for threads in [2, 4] {
@@ -98,26 +98,26 @@ fn states_after_ten_thousand_steps_are_the_same_with_one_two_and_four_threads() 
 /// many threads as each leg of the way is told; everything seen along it.
 fn journey(threads: &[usize], unequal: bool) -> Vec<u64> {
     let compute = |leg: usize| Compute::new(Simd::best(), threads[leg % threads.len()]).unwrap();
-    let gas = Setting { speed_cap: Some(0.15), ..setting(0.0, Tangential::Rescaled) };
+    let gas = EngineSettings { thermostat_speed: Some(0.15), ..setting(0.0, TangentialLaw::Rescaled) };
     let mut engine = start(PARTS, gas, unequal, compute(0));
     let (mut seen, mut contacts) = (Vec::new(), 0);
     for leg in 0..12 {
         engine.set_compute(compute(leg));
         match leg {
-            4 => engine.set(setting(0.3, Tangential::Rescaled)),
+            4 => engine.set_settings(setting(0.3, TangentialLaw::Rescaled)),
             6 => {
                 let spins: Vec<Vec3> = (0..PARTS).map(|i| Vec3::y() * f64::from(i % 7)).collect();
                 engine.set_spins(&spins);
             }
-            8 => engine.sort(),
+            8 => engine.sort_spatially(),
             10 => engine.set_rate(&[-500.0, 0.0, 0.0, 0.0, 0.0, 100.0]).unwrap(),
             _ => {}
         }
         let steps = if leg % 3 == 0 { 1 } else { 211 };
         let pool = engine.compute().clone();
-        let run = || engine.run_measured(steps, |s| seen.extend(s.voigt().map(f64::to_bits)));
-        pool.within(run).unwrap();
-        let look = engine.snapshot().unwrap();
+        let run = || engine.run_with_stress(steps, |s| seen.extend(s.voigt().map(f64::to_bits)));
+        pool.install(run).unwrap();
+        let look = engine.observables().unwrap();
         seen.extend(look.stress.tensor.voigt().iter().chain(&look.tangent).map(|v| v.to_bits()));
         seen.extend([look.unbalanced.to_bits(), engine.speed().to_bits()]);
         let packing = engine.packing(Mat3::identity());
@@ -140,7 +140,7 @@ fn threads_may_come_and_go_along_the_way() {
 
 #[test]
 fn steps_one_by_one_and_steps_together_are_the_same() {
-    let engine = || start(300, setting(0.3, Tangential::Rescaled), false, Compute::default());
+    let engine = || start(300, setting(0.3, TangentialLaw::Rescaled), false, Compute::default());
     let mut single = engine();
     for _ in 0..2500 {
         single.step().unwrap();
@@ -150,15 +150,15 @@ fn steps_one_by_one_and_steps_together_are_the_same() {
 
 #[test]
 fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damped() {
-    let undamped = Setting { damping: 0.0, ..setting(0.3, Tangential::Rescaled) };
+    let undamped = EngineSettings { damping: 0.0, ..setting(0.3, TangentialLaw::Rescaled) };
     let compute = |threads| Compute::new(Simd::best(), threads).unwrap();
     let mut ends = Vec::new();
     for threads in [1, 2] {
         let mut engine = start(PARTS, undamped, true, compute(threads));
         let mut measured = Vec::new();
-        engine.run_measured(3000, |s| measured.push(s.voigt())).unwrap();
+        engine.run_with_stress(3000, |s| measured.push(s.voigt())).unwrap();
         assert_eq!(measured.len(), 3000);
-        let seen = engine.snapshot().unwrap().stress.tensor.voigt();
+        let seen = engine.observables().unwrap().stress.tensor.voigt();
         let size = seen.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         assert!(size > 0.0);
         for (a, b) in measured[2999].iter().zip(seen) {
@@ -172,11 +172,11 @@ fn the_stress_measured_along_the_way_is_that_of_a_snapshot_where_nothing_is_damp
 #[test]
 fn the_order_of_grains_in_memory_does_not_change_what_happens() {
     let short = |sorted: bool| {
-        let mut engine = start(PARTS, setting(0.3, Tangential::Rescaled), true, Compute::default());
+        let mut engine = start(PARTS, setting(0.3, TangentialLaw::Rescaled), true, Compute::default());
         engine.run(1500).unwrap();
         if sorted {
-            engine.sort();
-            engine.prepare().unwrap();
+            engine.sort_spatially();
+            engine.initialise().unwrap();
         }
         engine.run(100).unwrap();
         let packing = engine.packing(Mat3::identity());
@@ -204,7 +204,7 @@ fn an_instruction_set_that_is_not_there_is_refused_by_name() {
 
 #[test]
 fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
-    let setting = setting(0.3, Tangential::Incremental);
+    let setting = setting(0.3, TangentialLaw::Incremental);
     for threads in [1, 3] {
         let compute = Compute::new(Simd::best(), threads).unwrap();
         let mut kicked = start(PARTS, setting, false, compute);
@@ -212,7 +212,7 @@ fn kicked_grains_go_on_as_if_they_had_been_that_fast() {
         let mut set = kicked.clone();
         let by = Vec3::new(1e-3, -2e-3, 5e-4);
         let hit = |grain: &usize| grain.is_multiple_of(5);
-        kicked.kick((0..PARTS as usize).filter(hit).map(|grain| (grain, by)));
+        kicked.add_velocities((0..PARTS as usize).filter(hit).map(|grain| (grain, by)));
         let mut velocities = set.velocities();
         velocities.iter_mut().enumerate().filter(|(grain, _)| hit(grain)).for_each(|(_, v)| *v += by);
         set.set_velocities(&velocities);

@@ -1,106 +1,105 @@
-//! The state that the moduli belong to.
+//! The state in which the moduli were measured.
 
 use crate::error::EmtError;
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
 use std::fmt;
 
-/// Where a γ/Δ comes from.
+/// The source of a γ/Δ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GammaSource {
-    /// The total strain since the reference state: mostly plastic history. What the paper's Table II holds.
+pub enum StrainRatioSource {
+    /// The total strain since the reference state, which is mostly plastic. The one of the paper's Table II.
     Total,
     /// The elastic strain of an isotropic stress increment.
     Elastic,
     /// A fit to the overlaps of the contacts.
     Contact,
-    /// Given by whoever asks.
+    /// Given by the user.
     Given,
     /// Not known, and set to zero.
     Zero,
 }
 
-impl GammaSource {
-    /// As messages, parameters and results name it.
+impl StrainRatioSource {
+    /// Its name in messages, parameters and results.
     pub const fn name(self) -> &'static str {
         match self {
-            GammaSource::Total => "total",
-            GammaSource::Elastic => "elastic",
-            GammaSource::Contact => "contact",
-            GammaSource::Given => "given",
-            GammaSource::Zero => "zero",
+            StrainRatioSource::Total => "total",
+            StrainRatioSource::Elastic => "elastic",
+            StrainRatioSource::Contact => "contact",
+            StrainRatioSource::Given => "given",
+            StrainRatioSource::Zero => "zero",
         }
     }
 }
 
-/// The strain ratio g = γ/Δ that a model is fed with.
+/// The strain ratio g = γ/Δ given to a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gamma {
+pub struct StrainRatio {
     /// g, dimensionless.
     pub value: f64,
     /// Standard deviation, dimensionless; 0 takes the value as exact.
     pub stddev: f64,
-    /// Where it comes from.
-    pub source: GammaSource,
+    /// Its source.
+    pub source: StrainRatioSource,
 }
 
-impl Gamma {
+impl StrainRatio {
     /// Not known: zero.
-    pub const ZERO: Gamma = Gamma { value: 0.0, stddev: 0.0, source: GammaSource::Zero };
+    pub const ZERO: StrainRatio = StrainRatio { value: 0.0, stddev: 0.0, source: StrainRatioSource::Zero };
 
     /// A value given, taken as exact.
     pub const fn given(value: f64) -> Self {
-        Self { value, stddev: 0.0, source: GammaSource::Given }
+        Self { value, stddev: 0.0, source: StrainRatioSource::Given }
     }
 
-    /// Whether the ratio that `source` names was measured.
-    pub fn is_known(measured: &StrainRatios, source: GammaSource) -> bool {
+    /// Whether the ratio of this source was measured.
+    pub fn is_known(measured: &StrainRatios, source: StrainRatioSource) -> bool {
         match source {
-            GammaSource::Total => measured.total.is_some(),
-            GammaSource::Elastic => measured.elastic.is_some(),
-            GammaSource::Contact => measured.contact.is_some(),
-            GammaSource::Given | GammaSource::Zero => false,
+            StrainRatioSource::Total => measured.total.is_some(),
+            StrainRatioSource::Elastic => measured.elastic.is_some(),
+            StrainRatioSource::Contact => measured.contact.is_some(),
+            StrainRatioSource::Given | StrainRatioSource::Zero => false,
         }
     }
 
-    /// What the paper's models take of a measured packing: the total ratio where it is known, else the one of the
-    /// contacts, else zero.
+    /// The ratio for the paper's models: the total one if it is known, else that of the contacts, else zero.
     pub fn preferred(measured: &StrainRatios) -> Self {
-        Self::of(measured, GammaSource::Total)
+        Self::of(measured, StrainRatioSource::Total)
     }
 
-    /// The ratio of a measured packing that `source` names; where it is not known, the one of the contacts, else zero.
-    pub fn of(measured: &StrainRatios, source: GammaSource) -> Self {
-        let with = |value: Option<f64>, source| value.map(|value| Gamma { value, stddev: 0.0, source });
+    /// The ratio of this source; if it is not known, that of the contacts, else zero.
+    pub fn of(measured: &StrainRatios, source: StrainRatioSource) -> Self {
+        let with = |value: Option<f64>, source| value.map(|value| StrainRatio { value, stddev: 0.0, source });
         let wanted = match source {
-            GammaSource::Total => with(measured.total, source),
-            GammaSource::Elastic => with(measured.elastic, source),
-            GammaSource::Contact => with(measured.contact, source),
-            GammaSource::Given | GammaSource::Zero => Some(Self::ZERO),
+            StrainRatioSource::Total => with(measured.total, source),
+            StrainRatioSource::Elastic => with(measured.elastic, source),
+            StrainRatioSource::Contact => with(measured.contact, source),
+            StrainRatioSource::Given | StrainRatioSource::Zero => Some(Self::ZERO),
         };
-        wanted.or(with(measured.contact, GammaSource::Contact)).unwrap_or(Self::ZERO)
+        wanted.or(with(measured.contact, StrainRatioSource::Contact)).unwrap_or(Self::ZERO)
     }
 }
 
-impl fmt::Display for Gamma {
+impl fmt::Display for StrainRatio {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let source = match self.source {
-            GammaSource::Total => "total strain since the reference state",
-            GammaSource::Elastic => "elastic increment",
-            GammaSource::Contact => "contact overlaps",
-            GammaSource::Given => "given",
-            GammaSource::Zero => "not known, taken as 0",
+            StrainRatioSource::Total => "total strain since the reference state",
+            StrainRatioSource::Elastic => "elastic increment",
+            StrainRatioSource::Contact => "contact overlaps",
+            StrainRatioSource::Given => "given",
+            StrainRatioSource::Zero => "not known, taken as 0",
         };
         write!(f, "gamma/Delta = {:.4} ({source})", self.value)
     }
 }
 
-/// A number with the standard deviation of its error; 0 takes it as exact.
+/// A number with its standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// The number.
     pub value: f64,
-    /// One sigma, in the unit of the number.
+    /// Standard deviation in the unit of the number; 0 takes the number as exact.
     pub stddev: f64,
 }
 
@@ -111,23 +110,28 @@ impl Measured {
     }
 }
 
-/// Everything but moduli that a model may ask for.
+/// The inputs of a model besides the moduli.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Confining pressure, Pa, positive in compression.
     pub pressure: Measured,
     /// γ/Δ of the state.
-    pub gamma: Gamma,
+    pub gamma: StrainRatio,
     /// Solid fraction φ; `None` if not known.
     pub solid_fraction: Option<Measured>,
-    /// What the grains are made of; `None` takes those of the calibration.
+    /// Material of the grains; `None` takes that of the calibration.
     pub material: Option<Material>,
 }
 
 impl Conditions {
-    /// At this pressure, Pa, and nothing else known.
+    /// At this pressure, Pa, with nothing else known.
     pub const fn at(pressure: f64) -> Self {
-        Self { pressure: Measured::exact(pressure), gamma: Gamma::ZERO, solid_fraction: None, material: None }
+        Self {
+            pressure: Measured::exact(pressure),
+            gamma: StrainRatio::ZERO,
+            solid_fraction: None,
+            material: None,
+        }
     }
 
     /// The first fault, if any.

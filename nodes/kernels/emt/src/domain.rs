@@ -1,4 +1,4 @@
-//! Where a model's forward map is one to one.
+//! The range of a model.
 
 use crate::conditions::Conditions;
 use crate::error::EmtError;
@@ -7,12 +7,12 @@ use crate::structure::{QUANTITIES, Quantity, Structure};
 /// Lowest and highest value, both included.
 pub type Range = [f64; 2];
 
-/// The structures and states that a model predicts for, and whose prediction it inverts.
+/// The structures and states for which a model predicts moduli and inverts its prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
     /// Name of the model.
     pub model: &'static str,
-    /// Range of each quantity that the model predicts from; `None` for those that it does not use.
+    /// Range of each quantity in the order of [`Quantity::ALL`]; `None` for those that the model does not use.
     pub structure: [Option<Range>; QUANTITIES],
     /// Range of g = γ/Δ.
     pub gamma: Range,
@@ -23,9 +23,9 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The values of `structure` that the model predicts from, in the order of [`Quantity::ALL`] and zero where it uses
-    /// none, if all of them and the state lie inside.
-    pub fn take(
+    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`] with zero for the others; an
+    /// error if one of them is missing, or one of them or of `conditions` lies outside.
+    pub fn validate(
         &self,
         structure: &Structure,
         conditions: &Conditions,
@@ -57,7 +57,7 @@ impl Domain {
     }
 
     fn within(&self, quantity: &'static str, value: f64, [low, high]: Range) -> Result<(), EmtError> {
-        // NaN is in no range.
+        // False for NaN.
         if (low..=high).contains(&value) {
             return Ok(());
         }

@@ -1,12 +1,12 @@
-//! What makes an inversion impossible.
+//! Why an inversion or a prediction is impossible.
 
 use crate::moduli::Modulus;
 
-/// Why a model has no estimate for an observation, or no prediction for a structure.
+/// Why a model cannot invert an observation or predict moduli for a structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EmtError {
-    /// An input, or what follows from it, is not finite.
-    #[error("{quantity} = {value} is not finite: check the numbers given and their units")]
+    /// An input, or a number computed from it, is not finite.
+    #[error("{quantity} = {value} is not finite: check the given numbers and their units")]
     NotFinite {
         /// Which quantity.
         quantity: &'static str,
@@ -14,7 +14,9 @@ pub enum EmtError {
         value: f64,
     },
     /// A modulus or the pressure is not positive.
-    #[error("{quantity} = {value:e} Pa must be positive: there is no network, or the unit or sign is wrong")]
+    #[error(
+        "{quantity} = {value:e} Pa must be positive: the packing is not jammed, or the unit or sign is wrong"
+    )]
     NotPositive {
         /// Which input.
         quantity: &'static str,
@@ -29,9 +31,9 @@ pub enum EmtError {
         /// The value found.
         value: f64,
     },
-    /// Not a covariance.
+    /// An invalid covariance.
     #[error(
-        "the covariance of the moduli is not one: {fault} ({value:e} Pa2); leave it out if it is not known"
+        "the covariance of the moduli is invalid: {fault} ({value:e} Pa2); leave it out if it is not known"
     )]
     Covariance {
         /// What is wrong with it.
@@ -39,21 +41,21 @@ pub enum EmtError {
         /// The offending value, Pa².
         value: f64,
     },
-    /// Not a solid fraction.
+    /// An invalid solid fraction.
     #[error("the solid fraction {phi} is outside (0, 1)")]
     SolidFraction {
         /// The value found.
         phi: f64,
     },
-    /// Not a Poisson ratio of a grain.
+    /// An invalid Poisson ratio of the grains.
     #[error("the Poisson ratio of the grains, {nu}, is outside [0, 1/2]")]
     PoissonRatio {
         /// The value found.
         nu: f64,
     },
-    /// The moduli given leave a value to another that no stable medium has.
+    /// A modulus that follows from the others is not that of a stable medium.
     #[error(
-        "the moduli given leave {modulus} = {value:e} Pa: they are not of one medium, or not of one state"
+        "from the other moduli follows {modulus} = {value:e} Pa: they are not of one medium, or not of one state"
     )]
     Unstable {
         /// The modulus that follows from the others.
@@ -61,7 +63,7 @@ pub enum EmtError {
         /// Its value, Pa.
         value: f64,
     },
-    /// Something that the model cannot do without is not known.
+    /// An input that the model needs is not known.
     #[error("model {model} needs {missing}, which is not given")]
     Missing {
         /// Name of the model.
@@ -70,7 +72,7 @@ pub enum EmtError {
         missing: &'static str,
     },
     /// A structure or a state outside the model's domain.
-    #[error("{quantity} = {value} is outside [{low}, {high}], where model {model} lives")]
+    #[error("{quantity} = {value} is outside [{low}, {high}], the domain of model {model}")]
     OutsideDomain {
         /// Name of the model.
         model: &'static str,
@@ -83,30 +85,30 @@ pub enum EmtError {
         /// Highest value of the domain.
         high: f64,
     },
-    /// The calibration does not hold what the model needs.
-    #[error("calibration `{calibration}` does not hold the constants of model {model}: take another")]
+    /// The calibration lacks the constants of the model.
+    #[error("calibration `{calibration}` has no constants for model {model}: use another calibration")]
     NotCalibrated {
         /// Name of the model.
         model: &'static str,
         /// Name of the calibration.
         calibration: String,
     },
-    /// The strain ratio leaves contacts open, or makes their stiffness negative.
+    /// The strain ratio opens contacts, or makes their stiffness negative.
     #[error(
-        "gamma/Delta = {g} is outside {range}: beyond it {law} leaves some contacts without a positive stiffness; \
-         give the elastic or the contact-fitted ratio, or 0"
+        "gamma/Delta = {g} is outside {range}, where {law} gives every contact a positive stiffness; give the elastic or \
+         the contact-fitted ratio, or 0"
     )]
     GammaOutOfRange {
         /// g = γ/Δ.
         g: f64,
-        /// The range it must be in.
+        /// The valid range.
         range: &'static str,
-        /// The overlap law that says so.
+        /// The overlap law with this range.
         law: &'static str,
     },
-    /// The shear ratio is one that no distribution of contacts has.
+    /// No contact distribution has this shear ratio.
     #[error(
-        "G13/G12 = {ratio:.4} is outside (0, 2), where the theory lives: check that G13 is the shear along the axis"
+        "G13/G12 = {ratio:.4} is outside (0, 2), the range of the theory: check that G13 is the shear modulus along the axis"
     )]
     RatioOutOfRange {
         /// r = G13/G12.
@@ -114,8 +116,8 @@ pub enum EmtError {
     },
     /// No contact anisotropy gives this shear ratio at this strain ratio.
     #[error(
-        "no contact anisotropy gives G13/G12 = {ratio:.4} at gamma/Delta = {g}: the strain ratio is too far from that of \
-         the contacts; give the elastic or the contact-fitted ratio, or 0"
+        "no contact anisotropy gives G13/G12 = {ratio:.4} at gamma/Delta = {g}: the strain ratio differs too much from that \
+         of the contacts; give the elastic or the contact-fitted ratio, or 0"
     )]
     NoAnisotropy {
         /// r = G13/G12.
@@ -123,10 +125,10 @@ pub enum EmtError {
         /// g = γ/Δ.
         g: f64,
     },
-    /// The shear modulus is too large beside the bulk modulus.
+    /// The shear modulus is too large relative to the bulk modulus.
     #[error(
-        "G12/Theta = {ratio:.4} is not below {limit:.4}, which calibration `{calibration}` reaches only at infinite \
-         coordination: check the units, that both moduli are of one state, or use another calibration"
+        "G12/Theta = {ratio:.4} is not below {limit:.4}, the limit of calibration `{calibration}` at infinite coordination: \
+         check the units and that both moduli are of one state, or use another calibration"
     )]
     ShearTooStiff {
         /// G12/Θ.
@@ -136,13 +138,13 @@ pub enum EmtError {
         /// Name of the calibration.
         calibration: String,
     },
-    /// No coordination of the calibration has such moduli.
+    /// No coordination number of the calibration gives such moduli.
     #[error(
-        "no coordination number in [{low:.3}, {high:.3}], where calibration `{calibration}` lives, fits the moduli ({nearest:.3} \
-         comes nearest): check units, pressure and material"
+        "no coordination number in [{low:.3}, {high:.3}], the range of calibration `{calibration}`, fits the moduli \
+         ({nearest:.3} is nearest): check units, pressure and material"
     )]
     NoCoordination {
-        /// Coordination that comes nearest.
+        /// The coordination number with the best fit.
         nearest: f64,
         /// Lowest of the domain.
         low: f64,
@@ -153,8 +155,8 @@ pub enum EmtError {
     },
     /// Two microstructures explain the observation almost equally well.
     #[error(
-        "coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more moduli, or more \
-         exact ones"
+        "coordination numbers {first:.3} and {second:.3} explain the moduli almost equally well: give more, or more accurate, \
+         moduli"
     )]
     Ambiguous {
         /// One of them.
@@ -165,8 +167,8 @@ pub enum EmtError {
 }
 
 impl EmtError {
-    /// Whether the data are too few, or are no data, rather than at odds with the theory.
-    pub fn is_of_input(&self) -> bool {
+    /// Whether the data are missing or invalid, rather than inconsistent with the theory.
+    pub fn is_input_error(&self) -> bool {
         match self {
             EmtError::NotFinite { .. }
             | EmtError::NotPositive { .. }
@@ -187,7 +189,7 @@ impl EmtError {
         }
     }
 
-    /// Of `model`, which works with `modulus`.
+    /// `model` needs `modulus`, which is not given.
     pub(crate) fn missing(model: &'static str, modulus: Modulus) -> Self {
         EmtError::Missing { model, missing: modulus.name() }
     }

@@ -1,13 +1,14 @@
-//! What a model infers, and how sure it is.
+//! What a model infers, with its uncertainty.
 
 use crate::calibration::Calibration;
-use crate::conditions::Gamma;
+use crate::checks;
+use crate::conditions::StrainRatio;
 use crate::domain::Domain;
 use crate::error::EmtError;
-use crate::model::{Misfit, Slopes, Solution};
 use crate::observation::{INPUTS, InputCovariance, Observation};
+use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
 use crate::structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
-use crate::warning::{self, Warning};
+use crate::warning::Warning;
 use nalgebra::SMatrix;
 
 /// Level of the intervals of an [`Estimate`].
@@ -16,12 +17,12 @@ pub const CREDIBLE_LEVEL: f64 = 0.95;
 /// Half width, in standard deviations, of the central interval of a normal distribution at [`CREDIBLE_LEVEL`].
 pub(crate) const HALF_WIDTH: f64 = 1.959_963_984_540_054;
 
-/// Whether an estimate stays inside what its model and calibration were made for.
+/// Whether an estimate lies in the range of its model and calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It does.
+    /// Inside.
     Ok,
-    /// It does not; the warnings say where.
+    /// Outside; see the warnings.
     Extrapolated,
 }
 
@@ -32,25 +33,24 @@ pub struct Estimate {
     pub model: &'static str,
     /// Name of the calibration.
     pub calibration: String,
-    /// The γ/Δ it was fed with; `None` if the model does not use it.
-    pub gamma: Option<Gamma>,
+    /// The γ/Δ given to the model; `None` if it uses none.
+    pub gamma: Option<StrainRatio>,
     /// The most probable values; `None` is undetermined, or not part of the model.
     pub structure: Structure,
-    /// How they depend on the data, first order.
-    pub slopes: Slopes,
+    /// Their derivatives with respect to the data.
+    pub jacobian: Jacobian,
     /// Covariance from the errors of the observation; `None` if those are not known.
     pub data_covariance: Option<StructureCovariance>,
-    /// Covariance from what the model leaves out, as learned from the packings of the calibration; `None` if the
-    /// calibration has learned nothing of the model.
+    /// Covariance of the model's own error, learned from the packings of the calibration; `None` if it was not learned.
     pub model_covariance: Option<StructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
     /// Whether model and calibration were used inside their range.
     pub status: Status,
-    /// What to keep in mind.
+    /// Warnings.
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
-    /// The quantities that the model is made of; the others follow from them.
+    /// The independent quantities of the model; the others follow from them.
     unknowns: [bool; QUANTITIES],
 }
 
@@ -63,7 +63,7 @@ impl Estimate {
         }
     }
 
-    /// What the model is made of and the data do not determine.
+    /// The unknowns of the model that the data do not determine.
     pub fn undetermined(&self) -> impl Iterator<Item = Quantity> + '_ {
         let is_open = |q: &Quantity| self.unknowns[*q as usize] && self.structure.get(*q).is_none();
         Quantity::ALL.into_iter().filter(is_open)
@@ -76,22 +76,23 @@ impl Estimate {
         Some(self.covariance()?[(i, i)].max(0.0).sqrt())
     }
 
-    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, errors taken as normal.
+    /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors.
     pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
         let middle = self.structure.get(quantity)?;
         let half = HALF_WIDTH * self.stddev(quantity)?;
         Some([middle - half, middle + half])
     }
 
-    /// Ratio of the largest to the smallest singular value of the slopes of the model's unknowns, coordination numbers by
-    /// their relative change: how much more one combination suffers from errors of the data than another.
+    /// Condition number: ratio of the largest to the smallest singular value of the Jacobian of the model's unknowns,
+    /// with relative changes for coordination numbers. It compares how strongly errors of the data act on different
+    /// combinations.
     pub fn condition_number(&self) -> Option<f64> {
         let mut scaled = SMatrix::<f64, QUANTITIES, INPUTS>::zeros();
         let mut determined = 0;
         for (i, quantity) in Quantity::ALL.into_iter().enumerate() {
             let Some(value) = self.structure.get(quantity).filter(|_| self.unknowns[i]) else { continue };
             let scale = if quantity.is_coordination() { 1.0 / value } else { 1.0 };
-            scaled.set_row(determined, &(self.slopes.row(i) * scale));
+            scaled.set_row(determined, &(self.jacobian.row(i) * scale));
             determined += 1;
         }
         let mut singular: Vec<f64> =
@@ -102,53 +103,53 @@ impl Estimate {
         Some(largest / smallest)
     }
 
-    /// Share of each input in the variance of a quantity that the errors of the data cause, in the order of
-    /// [`crate::INPUT_NAMES`]; correlated errors share what they have in common, and may so have a negative part. Where
-    /// the errors are not known, all inputs are taken to have the same relative one. `None` if undetermined.
+    /// Contribution of each input to the variance of a quantity from the errors of the data, as fractions of it, in the
+    /// order of [`crate::INPUT_NAMES`]. Correlated errors divide their covariance equally, so that a fraction may be
+    /// negative. Where the errors are not known, all inputs are given the same relative error. `None` if the quantity
+    /// is undetermined.
     pub fn information(&self, quantity: Quantity) -> Option<[f64; INPUTS]> {
         self.structure.get(quantity)?;
-        let slopes = self.slopes.row(quantity as usize);
+        let row = self.jacobian.row(quantity as usize);
         let inputs = self.inputs.filter(|c| c.amax() > 0.0).unwrap_or_else(InputCovariance::identity);
-        let with_all = slopes * inputs;
-        let parts: [f64; INPUTS] = std::array::from_fn(|i| slopes[i] * with_all[i]);
+        let with_all = row * inputs;
+        let parts: [f64; INPUTS] = std::array::from_fn(|i| row[i] * with_all[i]);
         let total: f64 = parts.iter().sum();
         (total > 0.0).then(|| parts.map(|p| p / total))
     }
 }
 
-/// Puts an estimate together.
+/// Propagates the errors of a point estimate and adds the warnings.
 pub(crate) fn assemble(
     model: &'static str,
     uses_gamma: bool,
     domain: &Domain,
     observation: &Observation,
     calibration: &Calibration,
-    solution: Solution,
-    slopes: Slopes,
+    point: PointEstimate,
+    jacobian: Jacobian,
 ) -> Result<Estimate, EmtError> {
-    let Solution { structure, discrepancy, misfit, warnings: own, .. } = solution;
+    let PointEstimate { structure, discrepancy, misfit, mut warnings, .. } = point;
     let inputs = observation.input_covariance();
-    let data_covariance = inputs.map(|input| slopes * input * slopes.transpose());
+    let data_covariance = inputs.map(|input| jacobian * input * jacobian.transpose());
     let gamma = observation.conditions.gamma;
     let model_covariance = discrepancy
         .or_else(|| calibration.discrepancy(model, uses_gamma.then_some(gamma.source), structure.eps));
     let model_covariance = model_covariance.map(|c| of_determined(c, &structure));
-    // Finite inputs of absurd scale can still overflow.
+    // Finite inputs of extreme scale can still overflow.
     let values = structure.values();
     for value in values.iter().flatten().chain(data_covariance.iter().flatten()) {
         if !value.is_finite() {
             return Err(EmtError::NotFinite { quantity: "the estimate", value: *value });
         }
     }
-    let mut warnings = own;
-    warnings.extend(warning::common(observation, &structure, calibration, uses_gamma));
+    warnings.extend(checks::common(observation, &structure, calibration, uses_gamma));
     let extrapolated = warnings.iter().any(Warning::is_extrapolation) || !domain.contains(&structure);
     Ok(Estimate {
         model,
         calibration: calibration.name().to_owned(),
         gamma: uses_gamma.then_some(gamma),
         structure,
-        slopes,
+        jacobian,
         data_covariance,
         model_covariance,
         misfit,

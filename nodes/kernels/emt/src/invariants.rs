@@ -1,9 +1,10 @@
-//! A transversely isotropic stiffness by what each part of it can depend on.
+//! Decomposition of a transversely isotropic stiffness into irreducible parts.
 //!
-//! An elastic tensor is two scalars, two deviators and one harmonic tensor of fourth order. To first order, contacts that
-//! differ from an isotropic distribution by a deviator (ε of Eq. 6) change nothing but the two deviators: the scalars
-//! belong to the coordination number, the harmonic part to the fourth-order fabric. A ratio such as G13/G12 mixes all
-//! three, which is why the fourth-order fabric of a sample, unknown to any acoustic measurement, spoils it.
+//! An elastic tensor consists of two scalars, two deviators and one harmonic tensor of fourth order. To first order, a
+//! contact distribution that differs from an isotropic one by a deviator (ε of Eq. 6) changes the two deviators alone:
+//! the scalars depend on the coordination number, the harmonic part on the fourth-order fabric. A ratio such as G13/G12
+//! depends on all three, so that the fourth-order fabric of a sample, which no acoustic measurement gives, is an error
+//! in it.
 
 use crate::moduli::{Moduli, Modulus};
 use nalgebra::SMatrix;
@@ -11,7 +12,7 @@ use nalgebra::SMatrix;
 /// Number of invariants.
 pub(crate) const INVARIANTS: usize = 5;
 
-/// The five numbers of a medium that is isotropic about e3, dimensionless but for the unit of the first two.
+/// The five invariants of a medium that is isotropic about e3, dimensionless but for the unit of the first two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Invariants {
     /// ln Θ, Θ = C_iikk/9.
@@ -22,8 +23,8 @@ pub struct Invariants {
     pub dilatation: f64,
     /// V = 3 (C_3k3k − C_1k1k)/C_ikik, of the Voigt deviator.
     pub voigt: f64,
-    /// H = 3 (C11 + C33 − 2 C13 − 4 C44)/C_ikik, of the harmonic part: how P speeds at 45° differ from the mean of those
-    /// along and across the axis.
+    /// H = 3 (C11 + C33 − 2 C13 − 4 C44)/C_ikik, of the harmonic part: how P speeds at 45° differ from the mean of
+    /// those along and across the axis.
     pub harmonic: f64,
 }
 
@@ -68,7 +69,7 @@ impl Invariants {
         moduli
     }
 
-    /// Slopes of the moduli by the invariants.
+    /// Derivatives of the moduli with respect to the invariants.
     pub(crate) fn slopes(&self) -> SMatrix<f64, 6, INVARIANTS> {
         let (theta, voigt) = self.scales();
         // voigt = (30 G + 9 Θ)/9 changes with both scalars.

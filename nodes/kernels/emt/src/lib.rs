@@ -1,28 +1,30 @@
 //! Effective medium theory: forward models from microstructure to moduli, and their inversion.
 //!
-//! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012), and inverts them in
-//! closed form, or by a root that its bracket makes unique, with errors propagated to first order or by sampling. SI at
-//! every interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there is more (of contacts, of
-//! extension) along it.
+//! Implements Eqs. 10–18, 21 and 22 of La Ragione & Magnanimo, Phys. Rev. E 85, 031304 (2012). The inversion is closed,
+//! or a root that is unique in its bracket; errors are propagated to first order or by sampling. SI units at every
+//! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
+//! along it.
 //!
-//! - [`structure`], [`moduli`], [`conditions`]: what is inferred, what it is inferred from, and at what state
-//! - [`observation`], [`estimate`], [`warning`], [`error`]: what goes into an inversion and what comes out
-//! - [`mod@model`], [`domain`]: what a model is, where it lives, and the list of them
-//! - [`mod@calibration`]: what packings have taught the models
-//! - [`moments`], [`form`]: the tensor that every modulus is made of; the printed equations against the corrected ones
-//! - [`medium`]: absolute moduli of the effective medium
-//! - [`effective`]: the plain theory, with the pressure closing the strain
-//! - [`mod@christoffel`], [`WaveModuli`]: moduli from the speeds of waves
-//! - [`ratio`]: the paper's model, corrected, as printed, and at the same volume
-//! - [`full`], [`sqrt`](mod@sqrt): the same with K_N ≠ K_T, and with the overlap law not linear in g
-//! - [`directional`]: each modulus by a coordination number of its own
-//! - [`invariants`], [`relaxed`]: our own model, and the parts of a stiffness that it rests on
-//! - [`sampling`]: the distribution of what is inferred, where errors are too large for slopes
+//! - `structure`, `moduli`, `conditions`: what is inferred, what it is inferred from, and at what state
+//! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion
+//! - `model`, `point_estimate`, `domain`: what a model is, what it returns, and where it applies
+//! - `registry`: the list of the models
+//! - `models`: a file for each model
+//!   - `effective_medium`: the plain theory, at given pressure
+//!   - `ratio`: the paper's model, corrected, as printed, and at fixed volume
+//!   - `unequal_springs`: the same with K_N ≠ K_T, and with the overlap law linear in g or not
+//!   - `directional`: each modulus with its own coordination number
+//!   - `relaxed`: the relaxed network
+//! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
+//! - `moments`, `eq16`, `overlap`, `medium`, `invariants`: the theory that the models share
+//! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
+//! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
-//! use grainlab_emt::{Calibration, Gamma, Observation, Quantity};
+//! use grainlab_emt::{Calibration, Observation, Quantity, StrainRatio};
 //! // The first row of the paper's Table III: k = 5.73, k_hat = 5.63, eps = 0.016.
-//! let s1 = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50.0e3, Gamma::given(-0.0623)).with_relative_error(0.01);
+//! let gamma = StrainRatio::given(-0.0623);
+//! let s1 = Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50.0e3, gamma).with_relative_error(0.01);
 //! let estimate = grainlab_emt::model("ratio").unwrap().infer(&s1, &Calibration::PAPER).unwrap();
 //! let near = |found: Option<f64>, value: f64| (found.unwrap() - value).abs() < 1e-3;
 //! assert!(near(estimate.structure.k, 5.73) && near(estimate.structure.k_hat, 5.63));
@@ -30,47 +32,52 @@
 //! assert!((estimate.stddev(Quantity::K).unwrap() - 0.056).abs() < 1e-2);
 //! ```
 
-pub mod calibration;
+mod calibration;
+mod checks;
 pub mod christoffel;
-pub mod conditions;
-pub mod directional;
-pub mod domain;
-pub mod effective;
-mod equivalent;
-pub mod error;
-pub mod estimate;
-pub mod form;
-pub mod full;
-pub mod invariants;
-pub mod medium;
-pub mod model;
-pub mod moduli;
-pub mod moments;
-pub mod observation;
+mod conditions;
+mod domain;
+mod eq16;
+mod error;
+mod estimate;
+mod invariants;
+mod learn;
+mod medium;
+mod model;
+mod models;
+mod moduli;
+mod moments;
+mod observation;
+mod overlap;
+mod point_estimate;
 mod propagation;
-pub mod ratio;
-pub mod relaxed;
+mod registry;
 mod root;
-pub mod sampling;
-pub mod sqrt;
-pub mod structure;
-pub mod warning;
+mod sampling;
+mod structure;
+mod warning;
 mod wave_moduli;
 
-pub use calibration::{Calibration, CalibrationError, Isotropic, Sample, learn};
-pub use christoffel::ChristoffelError;
-pub use conditions::{Conditions, Gamma, GammaSource, Measured};
-pub use domain::Domain;
+pub use calibration::{
+    AmplitudeLaw, Calibration, CalibrationError, IsotropicCalibration, ModelDiscrepancy,
+    RelaxationCalibration, ScalingLaw,
+};
+pub use conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
+pub use domain::{Domain, Range};
+pub use eq16::Eq16Reading;
 pub use error::EmtError;
 pub use estimate::{CREDIBLE_LEVEL, Estimate, Status};
-pub use form::Form;
 pub use invariants::Invariants;
-pub use medium::{Medium, Psi};
-pub use model::{Misfit, Model, Slopes, Solution, model, models};
+pub use learn::{CalibrationSample, learn};
+pub use medium::{Medium, MediumModuli};
+pub use model::Model;
+pub use models::relaxed::Relaxed;
 pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
 pub use observation::{INPUT_NAMES, INPUTS, Observation};
-pub use sampling::{Samples, sample};
+pub use point_estimate::{Jacobian, Misfit, PointEstimate};
+pub use registry::{model, models};
+pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

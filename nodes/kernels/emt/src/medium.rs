@@ -1,14 +1,13 @@
-//! The effective medium itself: absolute moduli, Eqs. 12–15.
+//! The effective medium: absolute moduli, Eqs. 12–15.
 //!
-//! These over-predict the shear moduli of real packings several times; the ratio models are built on the hope that
-//! their ratios do better.
+//! They over-predict the shear moduli of real packings several times; the ratio models use their ratios alone.
 
-use crate::form::Form;
+use crate::eq16::Eq16Reading;
 use crate::moments::Moments;
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
 use std::f64::consts::PI;
 
-/// A random aggregate of equal spheres, axis e3, strained from its first touch by Δ and γ (plain effective medium
+/// A random aggregate of equal spheres, axis e3, strained by Δ and γ since the grains touched (plain effective medium
 /// theory with the mean spin, Eqs. 3–15; K_N taken as K_T in the increment, Eq. 11).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
@@ -28,26 +27,26 @@ pub struct Medium {
 
 /// The elastic moduli of Eq. 12, Pa; ψ2 = ψ4 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Psi {
+pub struct MediumModuli {
     /// ψ1, of h_i h_j h_k h_l (Eq. 13), Pa.
     pub psi1: f64,
     /// ψ3, of δ_ik δ_jl + δ_il δ_jk (Eq. 14), Pa: G12.
     pub psi3: f64,
-    /// ψ5, of δ_ik h_j h_l and its like (Eq. 15), Pa: G13 − G12.
+    /// ψ5, of δ_ik h_j h_l and its permutations (Eq. 15), Pa: G13 − G12.
     pub psi5: f64,
 }
 
 impl Medium {
-    /// C0 = n D³ G/(4−2ν) √(Δ/3), Pa: the scale of Eqs. 13–15, for one contact a grain.
+    /// C0 = n D³ G/(4−2ν) √(Δ/3), Pa: the scale of Eqs. 13–15, for one contact per grain.
     pub fn scale(&self) -> f64 {
         let m = &self.material;
         6.0 * self.solid_fraction / PI * m.shear_modulus / (4.0 - 2.0 * m.poisson_ratio)
             * (self.volume_strain / 3.0).sqrt()
     }
 
-    /// The same strained until the pressure is `pressure`, Pa: the Δ of [`Medium::pressure`], whose own one is not read.
+    /// The same at the Δ that gives `pressure`, Pa, by [`Medium::pressure`]; its own Δ is ignored.
     #[must_use]
-    pub fn under(self, pressure: f64) -> Self {
+    pub fn at_pressure(self, pressure: f64) -> Self {
         let unit = Self { volume_strain: 1.0, ..self }.pressure();
         Self { volume_strain: (pressure / unit).cbrt().powi(2), ..self }
     }
@@ -55,8 +54,8 @@ impl Medium {
     /// Mean of the normal stresses, Pa, from Eq. 4: p = (2/3π) φ k E* (Δ/3)^{3/2} J.
     ///
     /// Every contact carries the Hertz force of the overlap whose root is Eq. 10, (4/3) E* √R* (√δ)³ ∝ (1 + g − 3gx²)³,
-    /// and so the force that belongs to its own stiffness. J is the mean of that cube over the contacts of Eq. 6; to
-    /// first order in g it is 1 − 12εg/5, as any reading of Eq. 10 has it.
+    /// which is consistent with its stiffness. J is the mean of that cube over the contacts of Eq. 6. To first order in
+    /// g it is 1 − 12εg/5 in any reading of Eq. 10.
     pub fn pressure(&self) -> f64 {
         let (eps, g) = (self.eps, self.gamma_over_delta);
         let mean_cube = 1.0 + g * g * (12.0 / 5.0 - 16.0 / 35.0 * g)
@@ -71,18 +70,18 @@ impl Medium {
     }
 
     /// ψ1, ψ3 and ψ5, Eqs. 13–15.
-    pub fn psi(&self, form: Form) -> Psi {
+    pub fn moduli(&self, reading: Eq16Reading) -> MediumModuli {
         let m = Moments::new(self.eps, self.gamma_over_delta);
         let unit = self.scale() * self.k;
-        Psi {
-            psi1: unit * form.psi1_factor(self.eps, self.gamma_over_delta),
+        MediumModuli {
+            psi1: unit * reading.psi1_factor(self.eps, self.gamma_over_delta),
             psi3: unit * m.m1,
             psi5: unit * m.m1 * m.spin(),
         }
     }
 }
 
-impl Psi {
+impl MediumModuli {
     /// The 6×6 stiffness of Eq. 12, axis e3, Pa.
     pub fn stiffness(&self) -> Stiffness {
         TransverseIsotropy {

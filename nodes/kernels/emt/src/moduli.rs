@@ -32,7 +32,7 @@ impl Modulus {
     pub const ALL: [Modulus; MODULI] =
         [Modulus::G12, Modulus::G13, Modulus::Theta, Modulus::C11, Modulus::C33, Modulus::C13];
 
-    /// As people write it.
+    /// Its symbol.
     pub const fn name(self) -> &'static str {
         match self {
             Modulus::G12 => "G12",

@@ -1,8 +1,8 @@
-//! The tensor of moments that every modulus is made of.
+//! Moments of the contact distribution, from which all moduli follow.
 
 /// Moments of the stiffness-weighted contact distribution,
 /// M_jk = ∫ (1/4π) [(1−ε) + 3εx²] [(1+g) − 3gx²] d_j d_k dΩ = m1 δ_jk + m2 h_j h_k, with x = d·h: contact anisotropy ε
-/// (Eq. 6) times the linear overlap law (Eq. 10) with g = γ/Δ. This is Appendix A in its shortest form.
+/// (Eq. 6) times the linear overlap law (Eq. 10) with g = γ/Δ. Equivalent to Appendix A.
 ///
 /// ```
 /// // Isotropic: a third of the unit tensor.
@@ -37,8 +37,8 @@ impl Moments {
     }
 }
 
-/// The ε whose moments have spin `a` at strain ratio `g`: ε = [a(35−7g) + 21g] / [(21−12g) − a(7−32g)]. `None` where no ε
-/// with M11 > 0 and M33 > 0 has it.
+/// The ε whose moments have spin `a` at strain ratio `g`: ε = [a(35−7g) + 21g] / [(21−12g) − a(7−32g)]. `None` if there is no
+/// such ε with M11 > 0 and M33 > 0.
 pub(crate) fn eps_of_spin(a: f64, g: f64) -> Option<f64> {
     let numerator = a * (35.0 - 7.0 * g) + 21.0 * g;
     let denominator = (21.0 - 12.0 * g) - a * (7.0 - 32.0 * g);

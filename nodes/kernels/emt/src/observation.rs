@@ -1,22 +1,22 @@
-//! What is observed of a packing.
+//! What is observed on a packing.
 
-use crate::conditions::{Conditions, Gamma};
+use crate::conditions::{Conditions, StrainRatio};
 use crate::error::EmtError;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 use grainlab_core::{Mat3, Stiffness};
 use nalgebra::{SMatrix, SymmetricEigen};
 
-/// Number of things an inversion may depend on: the moduli, the pressure, γ/Δ and the solid fraction.
+/// Number of inputs of an inversion: the moduli, the pressure, γ/Δ and the solid fraction.
 pub const INPUTS: usize = MODULI + 3;
 
-/// Names of the inputs, in the order of every row of slopes.
+/// Names of the inputs, in the order of the columns of a Jacobian.
 pub const INPUT_NAMES: [&str; INPUTS] =
     ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction"];
 
-/// Covariance of the inputs: of the relative errors of moduli, pressure and solid fraction and the error of γ/Δ.
+/// Covariance of the relative errors of moduli, pressure and solid fraction and of the error of γ/Δ.
 pub(crate) type InputCovariance = SMatrix<f64, INPUTS, INPUTS>;
 
-/// Moduli of one transversely isotropic packing, as far as known, and the state they belong to.
+/// The known moduli of one transversely isotropic packing, and the state in which they were measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
     /// The moduli, Pa.
@@ -25,23 +25,29 @@ pub struct Observation {
     pub covariance: Option<ModuliCovariance>,
     /// The state.
     pub conditions: Conditions,
-    /// Part of the stiffness that no medium isotropic about the axis has, relative (Mandel norm); `None` if only the
-    /// moduli are known.
+    /// Relative part of the stiffness that is not isotropic about the axis (Mandel norm); `None` if only the moduli are
+    /// known.
     pub asymmetry: Option<f64>,
-    /// Grains in the sample, which decide how much of that is its own scatter; `None` if not known, or as good as infinite.
+    /// Number of grains of the sample, on which the scatter depends; `None` if not known, or very large.
     pub grains: Option<u32>,
-    /// The one of the moduli that was not measured but follows from the others ([`Observation::checked`]).
+    /// The modulus that was not measured but follows from the others ([`Observation::checked`]).
     pub derived: Option<Modulus>,
 }
 
 impl Observation {
-    /// Of unknown uncertainty.
+    /// Moduli of unknown uncertainty.
     pub const fn new(moduli: Moduli, conditions: Conditions) -> Self {
         Self { moduli, covariance: None, conditions, asymmetry: None, grains: None, derived: None }
     }
 
-    /// The paper's three moduli and the pressure, Pa.
-    pub const fn paper(g12: f64, g13: f64, theta: f64, pressure: f64, gamma: Gamma) -> Self {
+    /// The three moduli that the paper uses and the pressure, all Pa.
+    pub const fn from_g12_g13_theta(
+        g12: f64,
+        g13: f64,
+        theta: f64,
+        pressure: f64,
+        gamma: StrainRatio,
+    ) -> Self {
         let mut conditions = Conditions::at(pressure);
         conditions.gamma = gamma;
         Self::new(Moduli::paper(g12, g13, theta), conditions)
@@ -53,7 +59,7 @@ impl Observation {
         Self { asymmetry: Some(t.residual), ..Self::new(Moduli::of_medium(&t), conditions) }
     }
 
-    /// The same with an independent one-sigma relative error on each of the moduli: 0.01 is one percent.
+    /// The same with independent errors of this relative standard deviation for all moduli: 0.01 is one percent.
     #[must_use]
     pub fn with_relative_error(mut self, relative: f64) -> Self {
         let variance = self.moduli.values().map(|m| m.map_or(0.0, |m| (relative * m).powi(2)));
@@ -70,7 +76,7 @@ impl Observation {
 
     /// The same with this covariance of (G12, G13, Θ), Pa²; the others are taken as exact.
     #[must_use]
-    pub fn with_paper_covariance(self, covariance: &Mat3) -> Self {
+    pub fn with_g12_g13_theta_covariance(self, covariance: &Mat3) -> Self {
         let mut all = ModuliCovariance::zeros();
         all.fixed_view_mut::<3, 3>(0, 0).copy_from(covariance);
         self.with_covariance(all)
@@ -81,7 +87,7 @@ impl Observation {
         self.conditions.pressure.value
     }
 
-    /// The same with the modulus that follows from the others, after a look at every number.
+    /// Checks every number and adds the modulus that follows from the others.
     pub fn checked(&self) -> Result<Self, EmtError> {
         self.check_values()?;
         if let Some(covariance) = &self.covariance {
@@ -101,7 +107,7 @@ impl Observation {
         Ok(Self { moduli, covariance, derived, ..self.clone() })
     }
 
-    /// The first number that is none, the covariance apart.
+    /// Refuses the first value that is not finite or out of range, the covariance excepted.
     pub(crate) fn check_values(&self) -> Result<(), EmtError> {
         for (modulus, value) in self.moduli.known() {
             if !value.is_finite() {
@@ -135,7 +141,7 @@ impl Observation {
         Some(relative)
     }
 
-    /// The same with one input changed: `by` is the relative change, of γ/Δ the change itself. `None` if the input is not
+    /// The same with one input changed by the relative amount `by`, γ/Δ by the absolute one. `None` if the input is not
     /// known.
     pub(crate) fn moved(&self, input: usize, by: f64) -> Option<Self> {
         let mut moved = self.clone();
@@ -153,7 +159,7 @@ impl Observation {
     }
 }
 
-/// A covariance is finite, symmetric and has no negative eigenvalue, to the rounding of a file or a message.
+/// Checks that a covariance is finite, symmetric and positive semidefinite, to the rounding of a file or a message.
 fn check_covariance(covariance: &ModuliCovariance) -> Result<(), EmtError> {
     if let Some(&value) = covariance.iter().find(|v| !v.is_finite()) {
         return Err(EmtError::NotFinite { quantity: "covariance of the moduli", value });
@@ -163,7 +169,7 @@ fn check_covariance(covariance: &ModuliCovariance) -> Result<(), EmtError> {
     if asymmetry > slack {
         return Err(EmtError::Covariance { fault: "it is not symmetric", value: asymmetry });
     }
-    // The common case needs no eigenvalues: no correlation, no negative variance.
+    // A diagonal matrix, the common case, needs no eigenvalues.
     let diagonal = ModuliCovariance::from_diagonal(&covariance.diagonal());
     let lowest = if *covariance == diagonal {
         covariance.diagonal().min()

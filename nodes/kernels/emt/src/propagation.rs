@@ -1,23 +1,23 @@
 //! First-order propagation of errors.
 
 use crate::error::EmtError;
-use crate::model::Slopes;
 use crate::observation::{INPUTS, Observation};
+use crate::point_estimate::Jacobian;
 use crate::structure::Structure;
 use nalgebra::SVector;
 
-/// Relative step: central differences are off by its square times a third derivative, and by rounding over it.
+/// Relative step. The error of central differences is its square times a third derivative, plus rounding over it.
 const STEP: f64 = 1e-5;
 
-/// Slopes of `solve` at `observation`, where it gives `structure`, by central differences; one-sided at the edge of what
-/// can be solved.
-pub(crate) fn numerical_slopes(
+/// Derivatives of `solve` at `observation`, where it gives `structure`, by central differences, or one-sided ones where
+/// an observation beside it has no solution.
+pub(crate) fn numerical_jacobian(
     observation: &Observation,
     structure: &Structure,
     solve: impl Fn(&Observation) -> Result<Structure, EmtError>,
-) -> Slopes {
+) -> Jacobian {
     let here = column(structure);
-    let mut slopes = Slopes::zeros();
+    let mut jacobian = Jacobian::zeros();
     for input in 0..INPUTS {
         let at = |by: f64| {
             let moved = observation.moved(input, by)?;
@@ -29,9 +29,9 @@ pub(crate) fn numerical_slopes(
             (None, Some(down)) => (here - down) / STEP,
             (None, None) => continue,
         };
-        slopes.set_column(input, &slope);
+        jacobian.set_column(input, &slope);
     }
-    slopes
+    jacobian
 }
 
 fn column(structure: &Structure) -> SVector<f64, { crate::structure::QUANTITIES }> {

@@ -1,18 +1,17 @@
 //! The root of a function of one variable inside a bracket.
 
-/// Bisection alone needs 53 steps; with interpolation between, no function tried needed twice that.
+/// Bisection alone needs 53 steps; with interpolation, no tested function needed twice as many.
 const STEPS: usize = 200;
 
 /// The root of a continuous `f` in [`low`, `high`] to the rounding of the larger end, by Chandrupatla's method: inverse
 /// quadratic interpolation where three points allow it, bisection elsewhere (Adv. Eng. Software 28, 145 (1997)).
 ///
-/// `None` unless `f` changes sign between the ends, or is zero at one of them: where it has one root only, as a monotone
-/// function does, no answer is a local one.
+/// `None` unless `f` changes sign between the ends or is zero at one of them. The root is unique if `f` is monotone.
 pub(crate) fn bracketed(f: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> Option<f64> {
     // The root lies between a, the latest point, and b; c is the one before.
     let (mut a, mut b) = (high, low);
     let (mut at_a, mut at_b) = (f(a), f(b));
-    // NaN has no sign.
+    // False for NaN.
     if !(at_a.min(at_b) <= 0.0 && at_a.max(at_b) >= 0.0) {
         return None;
     }
@@ -38,7 +37,7 @@ pub(crate) fn bracketed(f: impl Fn(f64) -> f64, [low, high]: [f64; 2]) -> Option
             (b, at_b) = (a, at_a);
         }
         (a, at_a) = (x, at_x);
-        // Where the parabola through the three points as x of f is single-valued inside the bracket.
+        // Interpolate where the inverse parabola through the three points is single-valued inside the bracket.
         let xi = (a - b) / (c - b);
         let phi = (at_a - at_b) / (at_c - at_b);
         share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {

@@ -1,9 +1,9 @@
-//! The posterior by sampling: propagation of distributions (JCGM 101:2008), where errors are too large for slopes.
+//! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
 //! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a draw of
-//! what the model leaves out is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals
-//! become lopsided, and some draws have no solution at all. Those are counted: every number here is of the draws that
-//! have one, and means little where many have none.
+//! the model's own error is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals
+//! become asymmetric, and some draws have no solution. Those are counted. Every number here is of the draws with a
+//! solution, and is not meaningful where many have none.
 
 use crate::calibration::Calibration;
 use crate::error::EmtError;
@@ -19,31 +19,32 @@ use std::f64::consts::TAU;
 
 /// How to sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// Number of draws. An end of a 95 % interval is sure to 3 % of its distance from the middle at 10,000.
+pub struct SamplingSettings {
+    /// Number of draws. With 10,000 draws the end of a 95 % interval is accurate to 3 % of its distance from the
+    /// middle.
     pub draws: usize,
-    /// Seed: the same one gives the same samples.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-impl Default for Settings {
+impl Default for SamplingSettings {
     fn default() -> Self {
         Self { draws: 20_000, seed: 0 }
     }
 }
 
-/// What one model infers from one observation, as a sample of its distribution.
+/// What one model infers from one observation, as draws from its distribution.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Samples {
+pub struct MonteCarlo {
     /// Name of the model.
     pub model: &'static str,
     /// Name of the calibration.
     pub calibration: String,
     /// Number of draws.
     pub draws: usize,
-    /// How many of them have no solution.
+    /// Number of draws without a solution.
     pub unsolved: usize,
-    /// Why the first of those has none.
+    /// The fault of the first of those.
     pub first_fault: Option<EmtError>,
     /// Means; `None` is undetermined, or not part of the model.
     pub mean: Structure,
@@ -53,9 +54,9 @@ pub struct Samples {
     sorted: [Vec<f64>; QUANTITIES],
 }
 
-impl Samples {
-    /// Share of the draws that have no solution.
-    pub fn unsolved_share(&self) -> f64 {
+impl MonteCarlo {
+    /// Fraction of the draws without a solution, 0 to 1.
+    pub fn failed_fraction(&self) -> f64 {
         self.unsolved as f64 / self.draws.max(1) as f64
     }
 
@@ -66,7 +67,7 @@ impl Samples {
         Some(self.covariance?[(i, i)].sqrt())
     }
 
-    /// The value that a share `level` of the draws stays below, 0 to 1.
+    /// The quantile of a quantity at `level`, 0 to 1.
     pub fn quantile(&self, quantity: Quantity, level: f64) -> Option<f64> {
         let sorted = &self.sorted[quantity as usize];
         let last = sorted.len().checked_sub(1)?;
@@ -81,8 +82,8 @@ impl Samples {
         Some([self.quantile(quantity, outside)?, self.quantile(quantity, 1.0 - outside)?])
     }
 
-    /// How lopsided the interval is about the median: 0 where both parts are as long, 1 where all of it lies above, −1
-    /// where all lies below. Moments of higher order need not exist.
+    /// Skewness of the interval about the median: 0 if symmetric, 1 if all of it lies above, −1 if all lies below.
+    /// Higher moments need not exist.
     pub fn skewness(&self, quantity: Quantity) -> Option<f64> {
         let [low, high] = self.interval(quantity)?;
         let median = self.quantile(quantity, 0.5)?;
@@ -90,20 +91,20 @@ impl Samples {
     }
 }
 
-/// Samples what `model` infers from `observation`, whose covariance of the moduli must be known.
+/// Draws from the distribution of what `model` infers from `observation`, whose covariance of the moduli must be known.
 ///
-/// The observation itself must have a solution. What the model leaves out is taken as it is there.
-pub fn sample(
+/// The observation itself must have a solution; the model's own error is that of this solution for every draw.
+pub fn monte_carlo(
     model: &dyn Model,
     observation: &Observation,
     calibration: &Calibration,
-    settings: Settings,
-) -> Result<Samples, EmtError> {
+    settings: SamplingSettings,
+) -> Result<MonteCarlo, EmtError> {
     let missing = EmtError::Missing { model: model.name(), missing: "the covariance of the moduli" };
     let covariance = observation.covariance.ok_or(missing)?;
     let estimate = model.infer(observation, calibration)?;
     let observation = observation.checked()?;
-    // With the modulus that follows from the others, which has errors of its own.
+    // Includes the modulus that follows from the others.
     let of_data = root(&observation.covariance.unwrap_or(covariance));
     let of_model = root(&estimate.model_covariance.unwrap_or_default());
 
@@ -111,7 +112,7 @@ pub fn sample(
     let mut solved: Vec<SVector<f64, QUANTITIES>> = Vec::with_capacity(settings.draws);
     let mut first_fault = None;
     for _ in 0..settings.draws {
-        // All are drawn before any can fail, so that what one draw meets changes no other.
+        // All numbers are drawn before the inversion can fail, so that no draw depends on the outcome of another.
         let drawn = draw(&observation, &of_data, &mut normal);
         let left_out = of_model * normal.vector();
         match solve(model, &drawn, calibration, &estimate.structure) {
@@ -133,7 +134,7 @@ pub fn sample(
         column.sort_by(f64::total_cmp);
         column
     });
-    Ok(Samples {
+    Ok(MonteCarlo {
         model: model.name(),
         calibration: calibration.name().to_owned(),
         draws: settings.draws,
@@ -147,7 +148,7 @@ pub fn sample(
     })
 }
 
-/// One draw of the data; the errors stay what they are, so that a model that weighs by them weighs alike.
+/// One draw of the data. The covariance stays that of the observation, so that all draws are weighted alike.
 fn draw(
     observation: &Observation,
     of_data: &SMatrix<f64, MODULI, MODULI>,
@@ -192,16 +193,16 @@ fn solve(
     Ok(values)
 }
 
-/// A lower triangular R with R Rᵀ the covariance, of any rank: Cholesky's, with a column of zeros where an error follows
-/// from those before it.
+/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an error
+/// depends on those before it.
 fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    /// Share of a variance that is rounding.
-    const NOTHING: f64 = 1e-12;
+    /// Fraction of a variance that is rounding.
+    const ROUNDING: f64 = 1e-12;
     let mut root = SMatrix::<f64, N, N>::zeros();
     for j in 0..N {
         let rest = |i: usize| covariance[(i, j)] - (0..j).map(|k| root[(i, k)] * root[(j, k)]).sum::<f64>();
         let pivot = rest(j);
-        if pivot <= NOTHING * covariance[(j, j)] {
+        if pivot <= ROUNDING * covariance[(j, j)] {
             continue;
         }
         let mut column = SVector::<f64, N>::zeros();
@@ -231,7 +232,7 @@ impl Normal {
         v
     }
 
-    /// Box and Muller's two.
+    /// Two of them, by Box and Muller's method.
     fn pair(&mut self) -> (f64, f64) {
         // In (0, 1], where the logarithm is finite.
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();

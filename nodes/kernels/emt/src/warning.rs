@@ -1,32 +1,10 @@
-//! What to keep in mind about an estimate.
+//! Warnings about an estimate.
 
-use crate::calibration::Calibration;
-use crate::conditions::GammaSource;
 use crate::moduli::Modulus;
-use crate::observation::Observation;
-use crate::structure::{Quantity, Structure};
+use crate::structure::Quantity;
 use std::fmt;
 
-/// Coordination number of a close packing of equal spheres: more contacts than that find no room.
-const CLOSE_PACKING: f64 = 12.0;
-
-/// Asymmetry of a stiffness beyond which it is no medium isotropic about e3, whatever the number of grains.
-const ASYMMETRY: f64 = 0.05;
-
-/// Asymmetry times the root of the number of grains that packings which are isotropic about e3 stay below.
-const SCATTER: f64 = 2.2;
-
-/// Imbalance of moduli that were rounded to three or four digits.
-const ROUNDING: f64 = 5e-3;
-
-/// Standard deviations that chance does not reach once in a thousand.
-const CERTAIN: f64 = 3.3;
-
-/// Relative error of a modulus beyond which slopes no longer tell the error of an estimate: at 5 % the intervals still hold
-/// what they promise, at 30 % they do not.
-const LARGE_ERROR: f64 = 0.1;
-
-/// What to keep in mind about an estimate.
+/// A limitation of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// A coordination number lies outside the packings of the calibration.
@@ -45,12 +23,12 @@ pub enum Warning {
         /// Lowest and highest of the calibration, Pa.
         range: [f64; 2],
     },
-    /// A coordination number is more than equal spheres find room for.
+    /// A coordination number is larger than equal spheres can have.
     CoordinationImpossible {
         /// The largest.
         coordination: f64,
     },
-    /// G13/G12 is outside [2/3, 3/2], the range that contact anisotropy alone can give.
+    /// G13/G12 is outside [2/3, 3/2], the range of packings whose only anisotropy is that of the contacts.
     RatioUnusual {
         /// r = G13/G12.
         ratio: f64,
@@ -84,7 +62,7 @@ pub enum Warning {
         /// Their mean.
         phi: f64,
     },
-    /// The solid fraction is outside the packings of the calibration: of k more than of z or ε it decides the rattlers.
+    /// The solid fraction is outside the packings of the calibration. It determines the rattlers, and with them k.
     SolidFractionOutsideFit {
         /// φ.
         phi: f64,
@@ -100,37 +78,37 @@ pub enum Warning {
     },
     /// The stiffness is not isotropic about the axis.
     NotTransverselyIsotropic {
-        /// Relative part that is not.
+        /// Relative part that is not isotropic.
         asymmetry: f64,
     },
     /// No stable medium has these moduli.
     NotOneMedium,
-    /// Θ is not what C11, C33, C13 and G12 make it, by more than the errors.
+    /// Θ differs from the value that follows from C11, C33, C13 and G12 by more than the errors.
     Imbalance {
         /// Difference in parts of Θ.
         relative: f64,
     },
-    /// A coordination number is less than one contact a grain.
+    /// A coordination number is less than one contact per grain.
     CoordinationAbsurd {
         /// Which one.
         quantity: Quantity,
         /// Its value.
         value: f64,
     },
-    /// The error of a modulus is too large for intervals that are linear in it.
+    /// The error of a modulus is too large for linear error propagation.
     ErrorsLarge {
-        /// The modulus of the largest.
+        /// The modulus with the largest error.
         modulus: Modulus,
-        /// One sigma, in parts of the modulus.
+        /// Its relative standard deviation.
         relative: f64,
     },
     /// The data contradict each other, or the model.
     Conflict {
-        /// Misfit by the errors of data and model.
+        /// Sum of squares weighted by the errors of data and model.
         chi_square: f64,
-        /// Data less unknowns.
+        /// Number of data minus number of unknowns.
         degrees_of_freedom: usize,
-        /// The modulus furthest from what the others say, and by how many sigma.
+        /// The modulus furthest from its prediction by the others, and by how many standard deviations.
         worst: (Modulus, f64),
     },
 }
@@ -152,17 +130,17 @@ impl fmt::Display for Warning {
                 if value < low {
                     return write!(
                         f,
-                        "{quantity} = {value:.3} is below {low:.3}, the lowest that the calibration was fitted to"
+                        "{quantity} = {value:.3} is below {low:.3}, the lowest of the calibration's packings"
                     );
                 }
                 write!(
                     f,
-                    "{quantity} = {value:.3} is above {high:.3}, the highest that the calibration was fitted to"
+                    "{quantity} = {value:.3} is above {high:.3}, the highest of the calibration's packings"
                 )
             }
             Warning::PressureOutsideFit { pressure, range: [low, high] } => write!(
                 f,
-                "a pressure of {:.4} kPa is outside {:.4} to {:.4} kPa, which the calibration was fitted to",
+                "a pressure of {:.4} kPa is outside {:.4} to {:.4} kPa, the range of the calibration's packings",
                 pressure / 1e3,
                 low / 1e3,
                 high / 1e3
@@ -170,27 +148,27 @@ impl fmt::Display for Warning {
             Warning::CoordinationImpossible { coordination } => {
                 write!(
                     f,
-                    "a coordination number of {coordination:.3} is more than equal spheres find room for (12): check the units (Pa)"
+                    "a coordination number of {coordination:.3} is larger than equal spheres can have (12): check the units (Pa)"
                 )
             }
             Warning::RatioUnusual { ratio } => {
-                write!(
-                    f,
-                    "G13/G12 = {ratio:.4} is outside [2/3, 3/2], what contact anisotropy alone can give"
-                )
+                write!(f, "G13/G12 = {ratio:.4} is outside [2/3, 3/2], the range of contact anisotropy alone")
             }
             Warning::EpsOutOfRange { eps } => {
                 write!(
                     f,
-                    "eps = {eps:.4} is outside [-1/2, 1]: some directions would have fewer than no contacts"
+                    "eps = {eps:.4} is outside [-1/2, 1]: the contact density would be negative in some directions"
                 )
             }
             Warning::EpsOutsideFit { eps, range: [low, high] } => write!(
                 f,
-                "eps = {eps:.4} is outside [{low:.3}, {high:.3}], which the calibration was fitted to"
+                "eps = {eps:.4} is outside [{low:.3}, {high:.3}], the range of the calibration's packings"
             ),
             Warning::GammaLarge { g } => {
-                write!(f, "gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is good to 0.005 in eps")
+                write!(
+                    f,
+                    "gamma/Delta = {g:.4} is outside [-0.3, 0.1], where Eq. 10 is accurate to 0.005 in eps"
+                )
             }
             Warning::ContactsOpen { g } => {
                 write!(
@@ -202,22 +180,22 @@ impl fmt::Display for Warning {
             Warning::SolidFractionAssumed { phi } => {
                 write!(
                     f,
-                    "the solid fraction is not known: {phi:.3} was taken, with the scatter of the calibration's packings"
+                    "the solid fraction is not known: taken as {phi:.3}, with the scatter of the calibration's packings"
                 )
             }
             Warning::SolidFractionOutsideFit { phi, range: [low, high] } => write!(
                 f,
-                "the solid fraction {phi:.4} is outside {low:.3} to {high:.3}, which the calibration was fitted to: k is not to \
-                 be trusted"
+                "the solid fraction {phi:.4} is outside {low:.3} to {high:.3}, the range of the calibration's packings: k is \
+                 not reliable"
             ),
             Warning::OtherGrains { nu, calibrated } => write!(
                 f,
-                "the grains have a Poisson ratio of {nu}, the calibration is for {calibrated}: its moduli are scaled by \
-                 the Hertz modulus alone"
+                "the Poisson ratio of the grains is {nu}, that of the calibration {calibrated}: moduli are scaled by the \
+                 Hertz modulus alone"
             ),
             Warning::NotTransverselyIsotropic { asymmetry } => write!(
                 f,
-                "{:.1} % of the stiffness is not isotropic about the axis: the sample is not, or the axis is another",
+                "{:.1} % of the stiffness is not isotropic about the axis: the sample is not, or the axis is wrong",
                 100.0 * asymmetry
             ),
             Warning::NotOneMedium => {
@@ -228,88 +206,24 @@ impl fmt::Display for Warning {
             }
             Warning::Imbalance { relative } => write!(
                 f,
-                "Theta is {:.1} % off what C11, C33, C13 and G12 make it: they are not of one state, or one of them is wrong",
+                "Theta is {:.1} % off the value that follows from C11, C33, C13 and G12: they are not of one state, or one of \
+                 them is wrong",
                 100.0 * relative.abs()
             ),
             Warning::CoordinationAbsurd { quantity, value } => write!(
                 f,
-                "{quantity} = {value:.3} is less than one contact a grain: check the units of moduli and pressure (Pa)"
+                "{quantity} = {value:.3} is less than one contact per grain: check the units of moduli and pressure (Pa)"
             ),
             Warning::ErrorsLarge { modulus, relative } => write!(
                 f,
-                "{modulus} is known to {:.0} % only: intervals are linear in the errors and too narrow here, draw samples",
+                "{modulus} is known to {:.0} % only: intervals from linear error propagation are too narrow, use sampling",
                 100.0 * relative
             ),
             Warning::Conflict { chi_square, degrees_of_freedom, worst: (modulus, sigma) } => write!(
                 f,
                 "the moduli contradict each other or the model: chi-square {chi_square:.1} for {degrees_of_freedom} \
-                 degrees of freedom, {modulus} is {sigma:.1} sigma from what the others say"
+                 degrees of freedom, {modulus} is {sigma:.1} sigma from its prediction by the others"
             ),
         }
     }
-}
-
-/// What can be said of every model's estimate from the observation and the structure alone.
-pub(crate) fn common(
-    observation: &Observation,
-    structure: &Structure,
-    calibration: &Calibration,
-    uses_gamma: bool,
-) -> Vec<Warning> {
-    let conditions = &observation.conditions;
-    let mut warnings = Vec::new();
-    let mut add = |applies: bool, warning: Warning| {
-        if applies {
-            warnings.push(warning);
-        }
-    };
-    let outside = |v: f64, [low, high]: [f64; 2]| !(low..=high).contains(&v);
-    let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
-    let highest = coordinations.fold(0.0, f64::max);
-    add(highest > CLOSE_PACKING, Warning::CoordinationImpossible { coordination: highest });
-    if let Some(range) = calibration.pressures() {
-        let pressure = observation.pressure();
-        // The rounding of a servo is no extrapolation.
-        let wide = [0.99 * range[0], 1.01 * range[1]];
-        add(outside(pressure, wide), Warning::PressureOutsideFit { pressure, range });
-    }
-    if let Some(nu) = conditions.material.map(|m| m.poisson_ratio) {
-        let calibrated = calibration.material().poisson_ratio;
-        add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
-    }
-    if let Some(asymmetry) = observation.asymmetry {
-        let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
-        add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });
-    }
-    add(observation.moduli.unstable(), Warning::NotOneMedium);
-    if let Some(relative) = observation.moduli.imbalance() {
-        let errors = observation.covariance.as_ref();
-        let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
-        add(relative.abs() > ROUNDING + CERTAIN * stddev, Warning::Imbalance { relative });
-    }
-    for quantity in [Quantity::K, Quantity::Z] {
-        let Some(value) = structure.get(quantity) else { continue };
-        add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
-    }
-    if let Some(covariance) = &observation.covariance {
-        let relative = |(modulus, value): (Modulus, f64)| {
-            let i = modulus as usize;
-            (modulus, covariance[(i, i)].max(0.0).sqrt() / value.abs())
-        };
-        // C13 is a small difference, and its error tells nothing.
-        let given = observation.moduli.known().filter(|(m, _)| *m != Modulus::C13).map(relative);
-        if let Some((modulus, relative)) = given.max_by(|a, b| a.1.total_cmp(&b.1)) {
-            add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
-        }
-    }
-    if let Some(eps) = structure.eps {
-        add(outside(eps, [-0.5, 1.0]), Warning::EpsOutOfRange { eps });
-    }
-    if uses_gamma {
-        let g = conditions.gamma.value;
-        add(outside(g, [-0.3, 0.1]), Warning::GammaLarge { g });
-        add(outside(g, [-0.5, 0.25]), Warning::ContactsOpen { g });
-        add(conditions.gamma.source == GammaSource::Zero, Warning::GammaAssumedZero);
-    }
-    warnings
 }

@@ -1,6 +1,6 @@
 //! The medium that wave speeds tell, where the axis may not be named.
 
-use crate::christoffel::{self, ChristoffelError, Fitted};
+use crate::christoffel::{self, ChristoffelError, SpeedFit};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::Modulus;
 use grainlab_core::{Vec3, WaveSpeed};
@@ -11,7 +11,7 @@ pub struct WaveModuli {
     /// The axis named, else the one that the speeds tell, else e3; unit.
     pub axis: Vec3,
     /// The moduli about it, or why the speeds are those of no medium.
-    pub fitted: Result<Fitted, ChristoffelError>,
+    pub fitted: Result<SpeedFit, ChristoffelError>,
 }
 
 impl WaveModuli {
@@ -24,7 +24,7 @@ impl WaveModuli {
     ) -> Self {
         let told = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
         let axis = named.or_else(told).unwrap_or_else(Vec3::z);
-        Self { axis, fitted: christoffel::observation(speeds, density, Some(axis), conditions) }
+        Self { axis, fitted: christoffel::moduli_from_speeds(speeds, density, Some(axis), conditions) }
     }
 
     /// One of the moduli, Pa; `None` where the speeds do not determine it.

@@ -12,7 +12,7 @@ const LARGEST: f64 = 0.05;
 /// Of 60 packings prepared isotropically (500 grains, μ = .1, z 5.3, 50 kPa) the residual of the isotropic class times √500
 /// had a median of .89 and exceeded 1.07 in one of ten; that of the transversely isotropic one had .59. Of 24 with 2,000
 /// grains, times √2000: .90, 1.01 and .59.
-/// `cargo run --release -p grainlab_dem --example fabric_noise nodes/scenes/demo.toml 1-60 gas,rest,load,settle` repeats it. A network
+/// `cargo run --release -p grainlab_experiment --example fabric_noise nodes/scenes/demo.toml 1-60 gas,rest,load,settle` repeats it. A network
 /// closer to isostaticity scatters more. A lattice of few grains does not scatter at all, hence the bound.
 pub fn sampling_tolerance(grains: u32) -> f64 {
     (SCATTER / f64::from(grains.max(1)).sqrt()).min(LARGEST)

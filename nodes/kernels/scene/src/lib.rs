@@ -1,18 +1,50 @@
 //! What to simulate: grains, material, numerics and a loading path, parsed from text.
 //!
-//! - [`model`]: the scene as a value
-//! - [`parse`]: text (TOML) to [`Scene`], with every fault reported at once
-//! - [`path`]: the loading path as a state machine
+//! - `model`: the scene as a value
+//! - `keys`: every key of the format, with unit, range and default; `reference`: the same as a page
+//! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`, as it is typed
+//! - `parse`, `phases`, `servo`, `until`: a table to [`Scene`], with every fault reported at once
+//! - `canonical`: the scene as text again
+//! - `path`: the loading path as a state machine
 //!
 //! A scene is data: the same text and seed always mean the same run.
 
-pub mod fault;
-pub mod model;
-pub mod parse;
-pub mod path;
+mod assignment;
+mod built_in;
+mod canonical;
+mod compose;
+mod contact;
+mod fault;
+mod grains;
+mod key;
+mod keys;
+mod model;
+mod nearest;
+mod overlay;
+mod parse;
+mod path;
 mod phases;
-mod table;
+mod reader;
+mod record;
+mod reference;
+mod servo;
+mod sizes;
+mod start;
+mod template;
+mod until;
 
+pub use assignment::assignment;
+pub use built_in::{BUILT_IN, built_in};
+pub use compose::{Draft, Library, Source, StartFile};
 pub use fault::{Fault, SceneError};
-pub use model::{Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Scene, Tangential};
+pub use key::{DefaultValue, Domain, Interval, Key};
+pub use keys::KEYS;
+pub use model::{
+    Condition, Conditions, GasMethod, Measure, Numerics, Phase, PhaseKind, Record, Scene, Start,
+};
+pub use parse::Resolved;
 pub use path::{Observation, PathError, PathEvent, PathState};
+pub use record::Travelled;
+pub use reference::reference;
+pub use sizes::{Sizes, Species};
+pub use template::template;

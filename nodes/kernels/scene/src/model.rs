@@ -1,5 +1,7 @@
 //! The scene as a value.
 
+use crate::sizes::Sizes;
+use grainlab_core::contact::{ContactLaw, TangentialLaw};
 use grainlab_core::{ComponentControl, Material, ServoLaw};
 
 /// A whole experiment: what is simulated and along which loading path.
@@ -11,12 +13,16 @@ pub struct Scene {
     pub description: String,
     /// Seed of every random choice.
     pub seed: u64,
+    /// The packing that the run starts from; `None` for a gas.
+    pub start: Option<Start>,
     /// Number of grains.
     pub grains: u32,
-    /// Diameter of every grain, m.
-    pub diameter: f64,
+    /// Their sizes.
+    pub sizes: Sizes,
     /// Material of every grain.
     pub material: Material,
+    /// Contact law.
+    pub law: ContactLaw,
     /// Numerical settings.
     pub numerics: Numerics,
     /// Phases in the order they run; cycles are already unrolled.
@@ -32,22 +38,15 @@ pub struct Numerics {
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
     /// How the tangential force follows a change of normal stiffness.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
+    /// Whether the energy balance of each phase is summed, which makes steps several times slower.
+    pub energy_balance: bool,
 }
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { time_step_safety: 0.8, skin: 0.05, tangential: Tangential::Rescaled }
+        Self { time_step_safety: 0.8, skin: 0.05, tangential: TangentialLaw::Rescaled, energy_balance: false }
     }
-}
-
-/// How the tangential force follows a change of normal stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tangential {
-    /// Scaled down with the tangential stiffness on unloading: a closed cycle never creates energy.
-    Rescaled,
-    /// Kept on unloading: the increments of the stuck network, and LAMMPS's `mindlin/force`.
-    Incremental,
 }
 
 /// One phase of the loading path.
@@ -72,8 +71,30 @@ pub struct Phase {
     pub reference: bool,
     /// Publish the packing at the end.
     pub publish: bool,
+    /// How often a packing within the phase is published; never at its end, which is what `publish` is for.
+    pub record: Option<Record>,
     /// When the phase is over.
     pub until: Conditions,
+}
+
+/// A packing to start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Path of its file.
+    pub packing: String,
+    /// Its solver step.
+    pub step: Option<u64>,
+}
+
+/// How often a packing is published.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Record {
+    /// Solver steps of the run.
+    EverySteps(u64),
+    /// Strain since the phase began.
+    EveryStrain(f64),
+    /// Simulated time since the phase began, s.
+    EveryTime(f64),
 }
 
 /// What drives the cell during a phase.

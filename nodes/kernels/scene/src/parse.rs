@@ -1,89 +1,105 @@
-//! Text (TOML) to [`Scene`], with every fault reported at once.
+//! A scene's table to [`Scene`], with every fault reported at once.
 
-use crate::fault::{Fault, SceneError};
-use crate::model::{Numerics, Scene, Tangential};
-use crate::phases;
-use crate::table::Reader;
-use grainlab_core::Material;
+use crate::canonical;
+use crate::contact;
+use crate::fault::SceneError;
+use crate::grains;
+use crate::keys;
+use crate::model::{Numerics, Scene};
+use crate::phases::{self, Inherited};
+use crate::reader::Reader;
+use crate::sizes::Sizes;
+use crate::start;
+use grainlab_core::contact::{ContactLaw, TangentialLaw};
+use grainlab_core::{Material, Packing};
+use toml::Table;
 
-impl Scene {
-    /// Parses a scene; every fault of the text is in the error.
-    ///
-    /// ```
-    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
-    /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
-    /// ```
-    pub fn parse(text: &str) -> Result<Scene, SceneError> {
-        let table: toml::Table = match text.parse() {
-            Ok(table) => table,
-            Err(e) => {
-                let message = e.to_string().trim_end().to_string();
-                return Err(SceneError { faults: vec![Fault { place: "scene".into(), message }] });
-            }
-        };
-        let mut r = Reader::new("", &table);
-        let scene = read_scene(&mut r);
-        let faults = r.finish();
-        if faults.is_empty() { Ok(scene) } else { Err(SceneError { faults }) }
+/// A scene that holds, as a value and as text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolved {
+    /// The scene.
+    pub scene: Scene,
+    /// The same as TOML that needs no other file: bases and overrides applied, every default written out. Its own
+    /// resolution is the same text.
+    pub toml: String,
+}
+
+/// Reads a table without base.
+pub(crate) fn read(table: &Table, packing: Option<&Packing>) -> Result<Resolved, SceneError> {
+    let mut r = Reader::new("", table);
+    let scene = read_scene(&mut r, packing);
+    let (entries, faults) = r.finish();
+    if faults.is_empty() {
+        Ok(Resolved { scene, toml: canonical::write(&entries) })
+    } else {
+        Err(SceneError { faults })
     }
 }
 
-fn read_scene(r: &mut Reader<'_>) -> Scene {
-    let name = r.text("name", None);
+fn read_scene(r: &mut Reader<'_>, packing: Option<&Packing>) -> Scene {
+    for key in [&keys::BASE, &keys::REMOVE, &keys::APPEND] {
+        if r.get(key).is_some() {
+            r.fault(key.name(), "changes a base, and this scene has none");
+        }
+    }
+    let name = r.text(&keys::NAME);
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
-    if r.has("name") && name.is_empty() || !name.chars().all(plain) {
-        r.fault("name", format!("is {name:?}; use lower case letters, digits, _ and - (it names files)"));
+    if r.has(&keys::NAME) && name.is_empty() || !name.chars().all(plain) {
+        let message = format!("is {name:?}; use lower case letters, digits, _ and - (it names files)");
+        r.fault("name", message);
     }
-    let description = r.text("description", Some(""));
-    let seed = r.integer("seed", Some(1), 0, u64::MAX >> 1);
-    let (grains, diameter) = r
-        .sub("grains", |r| {
-            let count = r.integer("count", None, 1, 10_000_000);
-            (
-                count as u32,
-                r.number("diameter", None, "a length in m, more than 0", |v| v > 0.0 && v.is_finite()),
-            )
-        })
-        .unwrap_or_else(|| {
-            r.fault("grains", "is missing; it must be a table with count and diameter");
-            (1, 1.0)
-        });
-    let material = r.sub("material", read_material).unwrap_or(Material::GLASS);
-    let numerics = r.sub("numerics", read_numerics).unwrap_or_default();
-    let phases = phases::read(r, phases::spin_drag(&material, diameter));
-    Scene { name, description, seed, grains, diameter, material, numerics, phases }
+    let description = r.text(&keys::DESCRIPTION);
+    let seed = r.whole(&keys::SEED);
+    let friction = r.optional(&keys::FRICTION);
+    let start = start::read(r);
+    if start.is_some() && packing.is_none() {
+        r.fault("start", "names a packing, which has not been read");
+    }
+    let packing = packing.filter(|_| start.is_some());
+    let (grains, sizes) = match packing {
+        Some(packing) => start::grains(r, packing),
+        None if start.is_some() => (1, Sizes::Equal(1.0)),
+        None => r.section("grains", grains::read),
+    };
+    let default = packing.map_or(Material::GLASS, |p| p.material);
+    let material = r.section("material", |r| read_material(r, &default));
+    if let Some(packing) = packing {
+        r.adopt(start::differing(&material, packing));
+    }
+    let law = packing.map_or_else(ContactLaw::default, |p| p.law);
+    let law = r.section("contact", |r| contact::read(r, &law));
+    if let Some(message) = packing.and_then(|p| start::other_law(&law, p)) {
+        r.fault("contact", message);
+    }
+    let numerics = r.section("numerics", read_numerics);
+    let mut inherited =
+        Inherited { friction, taken: false, spin_drag: phases::spin_drag(&material, sizes.mean()) };
+    let phases = phases::read(r, &mut inherited, start.is_none());
+    if let (Some(packing), Some(first)) = (packing, phases.first()) {
+        start::refused(first, packing).into_iter().for_each(|m| r.fault("phase", m));
+    }
+    if friction.is_some() && !inherited.taken && !phases.is_empty() {
+        let message =
+            "is taken by no phase: each names its own; set phase.NAME.friction, or phase.*.friction";
+        r.fault("friction", message);
+    }
+    Scene { name, description, seed, start, grains, sizes, material, law, numerics, phases }
 }
 
-fn read_material(r: &mut Reader<'_>) -> Material {
-    let glass = Material::GLASS;
-    let positive = |v: f64| v > 0.0 && v.is_finite();
+fn read_material(r: &mut Reader<'_>, default: &Material) -> Material {
     Material {
-        shear_modulus: r.number(
-            "shear_modulus",
-            Some(glass.shear_modulus),
-            "a modulus in Pa, more than 0",
-            positive,
-        ),
-        poisson_ratio: r.number("poisson_ratio", Some(glass.poisson_ratio), "from 0 to 0.5", |v| {
-            (0.0..=0.5).contains(&v)
-        }),
-        density: r.number("density", Some(glass.density), "a density in kg/m3, more than 0", positive),
+        shear_modulus: r.number_or(&keys::SHEAR_MODULUS, Some(default.shear_modulus)),
+        poisson_ratio: r.number_or(&keys::POISSON_RATIO, Some(default.poisson_ratio)),
+        density: r.number_or(&keys::DENSITY, Some(default.density)),
     }
 }
 
 fn read_numerics(r: &mut Reader<'_>) -> Numerics {
-    let d = Numerics::default();
-    let tangential = [("rescaled", Tangential::Rescaled), ("incremental", Tangential::Incremental)];
+    let tangential = [("rescaled", TangentialLaw::Rescaled), ("incremental", TangentialLaw::Incremental)];
     Numerics {
-        time_step_safety: r.number(
-            "time_step_safety",
-            Some(d.time_step_safety),
-            "more than 0, at most 1",
-            |v| v > 0.0 && v <= 1.0,
-        ),
-        skin: r.number("skin", Some(d.skin), "in grain diameters, more than 0, at most 1", |v| {
-            v > 0.0 && v <= 1.0
-        }),
-        tangential: r.choice("tangential", d.tangential, &tangential),
+        time_step_safety: r.number(&keys::TIME_STEP_SAFETY),
+        skin: r.number(&keys::SKIN),
+        tangential: r.choice(&keys::TANGENTIAL, "rescaled", &tangential),
+        energy_balance: r.flag(&keys::ENERGY_BALANCE),
     }
 }

@@ -1,8 +1,10 @@
 //! Scenes as their authors write them, right and wrong.
 
-use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
+use grainlab_core::contact::ContactLaw;
+use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
-    Condition, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Scene,
+    Condition, Draft, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Record,
+    Scene, Sizes, Species,
 };
 
 const GOOD: &str = r#"
@@ -190,4 +192,107 @@ fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
     let ended = PathEvent::PhaseEnded { reference: false, publish: true, finished: true };
     assert_eq!(state.observe(&scene, &on), Ok(ended));
     assert!(state.phase(&scene).is_none());
+}
+
+#[test]
+fn grains_have_one_size_or_a_law() {
+    let of =
+        |diameter: &str| Scene::parse(&GOOD.replace("diameter = 2e-4", &format!("diameter = {diameter}")));
+    let sizes = |diameter: &str| of(diameter).unwrap().sizes;
+    assert_eq!(sizes("2e-4"), Sizes::Equal(2e-4));
+    assert_eq!(sizes("{ min = 1e-4, max = 2e-4 }"), Sizes::Uniform { min: 1e-4, max: 2e-4 });
+    assert_eq!(sizes("{ median = 2e-4, spread = 0.2 }"), Sizes::Lognormal { median: 2e-4, spread: 0.2 });
+    let two = "[{ diameter = 1e-4, share = 3 }, { diameter = 2e-4, share = 1 }]";
+    let species = |diameter, share| Species { diameter, share };
+    assert_eq!(sizes(two), Sizes::Mixture(vec![species(1e-4, 0.75), species(2e-4, 0.25)]));
+    // Counts are those of the list, or agree with it.
+    let list = "[{ diameter = 1e-4, count = 30 }, { diameter = 2e-4, count = 70 }]";
+    assert_eq!(sizes(list), Sizes::Mixture(vec![species(1e-4, 0.3), species(2e-4, 0.7)]));
+    let without = GOOD.replace("count = 100\ndiameter = 2e-4", &format!("diameter = {list}"));
+    assert_eq!(Scene::parse(&without).unwrap().grains, 100);
+    for (wrong, expected) in [
+        ("[{ diameter = 1e-4, count = 30 }]", "count: is 100, but the counts in diameter sum to 30"),
+        ("{ min = 2e-4, max = 1e-4 }", "diameter: is a table; it must be a length above 0"),
+        ("{ min = 1e-6, max = 1e-4 }", "a factor of 100.0; at most 20"),
+        ("[{ diameter = 1e-4, share = -1 }]", "diameter: is an array; it must be"),
+        ("[]", "diameter: is an array; it must be"),
+        ("-1", "diameter: is -1; it must be a length above 0"),
+    ] {
+        let error = of(wrong).unwrap_err().to_string();
+        assert!(error.contains(expected), "{wrong}: {error}");
+    }
+}
+
+#[test]
+fn a_phase_records_packings_by_steps_by_strain_or_by_time() {
+    let of = |record: &str| {
+        Scene::parse(&GOOD.replace("name = \"unload\"", &format!("name = \"unload\"\nrecord = {record}")))
+    };
+    let record = |text: &str| of(text).unwrap().phases[2].record;
+    assert_eq!(record("{ every_strain = 1e-3 }"), Some(Record::EveryStrain(1e-3)));
+    assert_eq!(record("{ every_steps = 500 }"), Some(Record::EverySteps(500)));
+    assert_eq!(record("{ every_time = 1e-6 }"), Some(Record::EveryTime(1e-6)));
+    assert_eq!(Scene::parse(GOOD).unwrap().phases[2].record, None);
+    for wrong in ["{}", "{ every_strain = 1e-3, every_time = 1e-6 }", "{ every_strain = 0 }", "5"] {
+        let error = of(wrong).unwrap_err().to_string();
+        assert!(error.contains("(unload).record"), "{wrong}: {error}");
+    }
+}
+
+#[test]
+fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
+    let (head, rest) = (
+        "name = 'x'\n[start]\npacking = 'p.csv'\n",
+        "[[phase]]\nkind = 'relax'\nfriction = 0.1\nuntil = { elapsed = 1e-6 }\n",
+    );
+    let packing = pair();
+    let of = |text: &str| Draft::of_text(text).unwrap().resolve_from(&packing);
+    let scene = of(&format!("{head}{rest}")).unwrap().scene;
+    assert!(scene.grains == 2 && (scene.sizes.mean() - 3e-4).abs() < 1e-18);
+    assert_eq!((scene.material, scene.start.unwrap().packing.as_str()), (packing.material, "p.csv"));
+    let gas = "[[phase]]\nkind = 'gas'\nrate = -1\nuntil = { elapsed = 1e-6 }\n";
+    for (text, expected) in [
+        (
+            format!("{head}[grains]\ncount = 2\ndiameter = 1\n{rest}"),
+            "grains: is there, but the grains are those",
+        ),
+        (format!("{head}[material]\ndensity = 3000\n{rest}"), "material.density: is 3000, but the packing"),
+        (format!("{head}{gas}{rest}"), "a path that starts from a packing has no gas phase"),
+        (format!("{head}{}", rest.replace("0.1", "0.0")), "has no friction, and the packing"),
+    ] {
+        let error = of(&text).unwrap_err().to_string();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+    let unread = Scene::parse(&format!("{head}{rest}")).unwrap_err().to_string();
+    assert!(unread.contains("start: names a packing, which has not been read"), "{unread}");
+}
+
+/// Two unequal grains that touch, with a tangential force.
+fn pair() -> Packing {
+    let overlap = 1e-8;
+    let contact = Contact {
+        i: 0,
+        j: 1,
+        image: [0; 3],
+        overlap,
+        normal: Vec3::x(),
+        normal_force: 1e-4,
+        tangential_force: Vec3::y() * 1e-6,
+    };
+    Packing {
+        step: 0,
+        time: 0.0,
+        cell: Cell::cube(1e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0, 1],
+        radii: vec![1e-4, 2e-4],
+        positions: vec![Vec3::zeros(), Vec3::x() * (3e-4 - overlap)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: vec![contact],
+        material: Material { density: 2000.0, ..Material::GLASS },
+        law: ContactLaw::default(),
+        friction: 0.3,
+        time_step: 0.0,
+    }
 }

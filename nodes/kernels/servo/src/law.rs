@@ -1,36 +1,36 @@
-//! The two laws, for one component.
+//! The three laws, for one component.
 
 use grainlab_core::ServoLaw;
 
-/// What one component's law works on.
+/// The input of a law for one component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Component {
     /// σ − σ*, Pa; infinite where the difference overflows.
     pub(crate) error: f64,
-    /// Strain rate in force, 1/s.
+    /// Present strain rate, 1/s.
     pub(crate) rate: f64,
-    /// Stress gained per unit of this tensor strain component alone, Pa.
-    pub(crate) own_stiffness: f64,
-    /// The same when every servoed component of its kind strains along, Pa.
-    pub(crate) loop_stiffness: f64,
-    /// Simulated time until the next request, s.
+    /// Change of stress per unit of this tensor strain component alone, Pa.
+    pub(crate) diagonal_stiffness: f64,
+    /// The same with all servoed components of its kind strained together, Pa.
+    pub(crate) closed_loop_stiffness: f64,
+    /// Simulated time until the next input, s.
     pub(crate) interval: f64,
 }
 
-/// Stress gained per unit of the tensor strain component `index`, Pa: an off-diagonal strain enters twice.
+/// Change of stress per unit of the tensor strain component `index`, Pa: an off-diagonal strain counts twice.
 pub(crate) fn stiffness(tangent: &[f64; 6], index: usize) -> f64 {
     if index < 3 { tangent[index] } else { 2.0 * tangent[index] }
 }
 
-/// Rate before the limit, 1/s; may be infinite, never NaN for finite arguments.
+/// Rate before the limit, 1/s; possibly infinite, but not NaN for finite arguments.
 pub(crate) fn rate(law: &ServoLaw, c: &Component) -> f64 {
-    // The difference of two finite stresses can overflow, and ∞/∞ would be NaN.
+    // The difference of two finite stresses can overflow, and ∞/∞ is NaN.
     let error = c.error.clamp(-f64::MAX, f64::MAX);
     match *law {
-        ServoLaw::Scaled { response_time } => over(error, c.own_stiffness * response_time),
+        ServoLaw::Scaled { response_time } => over(error, c.diagonal_stiffness * response_time),
         ServoLaw::Normalised { share, leak } => {
-            let kick = over(error, c.loop_stiffness * c.interval);
-            (1.0 - leak) * c.rate + share * (4.0 - 2.0 * leak) * kick
+            let change = over(error, c.closed_loop_stiffness * c.interval);
+            (1.0 - leak) * c.rate + share * (4.0 - 2.0 * leak) * change
         }
         ServoLaw::Integral { gain, leak } => (1.0 - leak) * c.rate + gain * error,
     }

@@ -1,14 +1,14 @@
 //! The laws closed around one elastic component without inertia: dσ = −K rate dt.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
-use grainlab_servo::{Request, answer};
+use grainlab_servo::{ServoInput, control};
 
 const K: f64 = 200.0e6;
 const TARGET: f64 = 50.0e3;
 const DT: f64 = 1.0e-6;
 
-/// Stress errors σ − σ* before each of `periods` control periods, Pa, from 1 kPa too little compression. Eq. 1 is told a
-/// tenth of the stiffness K that the others are, else it would be refused beyond its limit.
+/// Stress errors σ − σ* before each of `periods` control periods, Pa, from 1 kPa too little compression. Eq. 1 is told
+/// a tenth of the stiffness K that the others are, else it would be refused beyond its limit.
 fn errors(law: ServoLaw, stiffness: f64, dt: f64, periods: usize) -> Vec<f64> {
     let known = if matches!(law, ServoLaw::Integral { .. }) { 0.1 * K } else { K };
     errors_with(law, stiffness, known, dt, periods)
@@ -16,7 +16,7 @@ fn errors(law: ServoLaw, stiffness: f64, dt: f64, periods: usize) -> Vec<f64> {
 
 /// The same, with the stiffness that the law is told.
 fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usize) -> Vec<f64> {
-    let mut request = Request {
+    let mut request = ServoInput {
         stress: SymTensor { zz: TARGET - 1.0e3, ..SymTensor::default() },
         controls: std::array::from_fn(|i| {
             if i == 2 { ComponentControl::Stress(TARGET) } else { ComponentControl::Held }
@@ -30,7 +30,7 @@ fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usiz
     let mut errors = Vec::with_capacity(periods);
     for _ in 0..periods {
         errors.push(request.stress.zz - TARGET);
-        request.rate = answer(&request).unwrap().rate;
+        request.rate = control(&request).unwrap().rate;
         request.stress.zz -= stiffness * request.rate[2] * dt;
     }
     errors

@@ -10,10 +10,9 @@ mod outlet;
 
 use super::packings::import::{self, in_range};
 use super::packings::{files, printer::Printer};
-use crate::failure::Failure;
-use crate::output::{Format, print};
 use crate::results::quantities::help;
 use crate::tape::Tape;
+use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
 use grainlab_core::results::QUANTITIES;
 use grainlab_micromechanics::network::{self, Springs};

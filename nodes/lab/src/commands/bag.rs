@@ -1,27 +1,30 @@
-//! `grainlab bag`: recordings, as `ros2 bag`.
+//! `grainlab bag`: commands for recordings, as `ros2 bag`.
 
 mod check;
+mod export;
 mod info;
 mod play;
 mod record;
 mod recover;
 
-use crate::failure::Failure;
 use clap::Subcommand;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
-/// What to do with a recording.
+/// Commands for recordings.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Record topics until SIGINT or SIGTERM.
     Record(record::Args),
-    /// Publish what was recorded.
+    /// Publish the messages of a recording.
     Play(play::Args),
-    /// Show what a recording holds.
+    /// Show the content of a recording.
     Info(info::Args),
-    /// Read every record of a recording and name all that is wrong.
+    /// Read every record of a recording and list all faults.
     Check(check::Args),
-    /// Finish the recording of a recorder that was killed, so that other tools read it.
+    /// Write the packings of a recording as LAMMPS dump or CSV files.
+    Export(export::Args),
+    /// Complete the recording of a recorder that was killed, so that other tools read it.
     Recover(recover::Args),
 }
 
@@ -32,6 +35,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Play(args) => play::run(args),
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
+        Command::Export(args) => export::run(args),
         Command::Recover(args) => recover::run(args),
     }
 }

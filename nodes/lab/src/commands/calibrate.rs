@@ -6,8 +6,7 @@
 mod packings;
 mod report;
 
-use crate::failure::Failure;
-use crate::output::{print, say};
+use grainlab_console::{Failure, print, say};
 use grainlab_emt::learn;
 use grainlab_node_kit::Exit;
 use packings::Naming;

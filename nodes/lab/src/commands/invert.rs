@@ -21,10 +21,9 @@ mod state;
 mod table;
 mod way;
 
-use crate::failure::Failure;
-use crate::output::{Format, print, say};
 use answer::{Answer, More};
 pub(super) use columns::{BadRow, Defaults, Row};
+use grainlab_console::{Failure, Format, print, say};
 use grainlab_emt::{Measured, Modulus};
 use grainlab_node_kit::Exit;
 use print::Printer;

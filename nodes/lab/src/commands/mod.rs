@@ -2,10 +2,10 @@
 
 pub(crate) mod analyze;
 pub(crate) mod bag;
-pub(crate) mod bench;
 pub(crate) mod calibrate;
 pub(crate) mod invert;
 pub(crate) mod launch;
 pub(crate) mod packings;
 pub(crate) mod probe;
 pub(crate) mod run;
+pub(crate) mod scene;

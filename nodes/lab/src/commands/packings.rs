@@ -11,8 +11,8 @@ pub(crate) mod import;
 pub(crate) mod printer;
 pub(crate) mod sink;
 
-use crate::failure::Failure;
 use bar::Bar;
+use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::Imported;
 

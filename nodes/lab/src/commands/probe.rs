@@ -8,12 +8,11 @@ mod measure;
 mod outlet;
 
 use super::packings::{files, import, printer::Printer};
-use crate::failure::Failure;
-use crate::output::Format;
 use crate::results::acoustic::ACOUSTIC;
 use crate::results::quantities::help;
 use crate::tape::Tape;
 use flags::Flags;
+use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use measure::Probe;

@@ -1,10 +1,10 @@
-//! One process of a run, which cannot outlive the launcher.
+//! One process of a run, which ends with the launcher.
 
 use super::Run;
 use super::plan::NodePlan;
-use crate::failure::Failure;
-use crate::lifeline::VARIABLE;
-use grainlab_node_kit::identity::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
+use crate::launcher_pipe::VARIABLE;
+use grainlab_console::Failure;
+use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,33 +16,33 @@ use tokio::sync::mpsc::UnboundedSender;
 /// A process that ended.
 #[derive(Debug)]
 pub(crate) struct Ended {
-    /// Its place in the plan.
+    /// Its index in the plan.
     pub(crate) index: usize,
-    /// How it ended.
+    /// Its exit status.
     pub(crate) status: io::Result<ExitStatus>,
 }
 
 /// A node and the process that runs it.
 #[derive(Debug)]
 pub(crate) struct Child {
-    /// What was planned.
+    /// Its entry in the plan.
     pub(crate) plan: NodePlan,
     /// Process id while it runs.
     pub(crate) pid: Option<u32>,
-    /// Its place in the run: the same for each process that runs it.
+    /// Its member number in the run: the same after a restart.
     pub(crate) member: u8,
     /// Process id of the latest process.
     pub(crate) last_pid: u32,
     /// Exit code of the last process that ended by itself; `None` if it runs or a signal ended it.
     pub(crate) code: Option<i32>,
-    /// The recording that a simulator goes on from, where it takes the place of one that died.
+    /// The recording from which a restarted simulator resumes.
     pub(crate) resume_from: Option<PathBuf>,
-    /// When it was started again.
+    /// Times of its restarts.
     pub(crate) restarts: Vec<Instant>,
 }
 
 impl Child {
-    /// Nothing is started yet.
+    /// A child that is not started yet.
     pub(crate) fn new(plan: NodePlan, member: u8) -> Self {
         Self { plan, member, pid: None, last_pid: 0, code: None, resume_from: None, restarts: Vec::new() }
     }
@@ -79,7 +79,7 @@ impl Child {
             .stdin(Stdio::piped())
             .stdout(log.try_clone().map_err(failed)?)
             .stderr(log)
-            // A group of its own: Ctrl-C reaches the launcher alone, which ends the children in their order.
+            // A group of its own: Ctrl-C reaches the launcher only, which ends the children in order.
             .process_group(0);
         let mut process = command.spawn().map_err(failed)?;
         self.pid = process.id();
@@ -87,17 +87,17 @@ impl Child {
         self.code = None;
         let ended = ended.clone();
         // Held open as long as the process runs; `wait` alone would close it at once.
-        let lifeline = process.stdin.take();
+        let pipe = process.stdin.take();
         tokio::spawn(async move {
             let status = process.wait().await;
-            drop(lifeline);
-            // Nobody listens any more only when the launcher itself ends.
+            drop(pipe);
+            // The receiver is closed only when the launcher itself ends.
             let _ = ended.send(Ended { index, status });
         });
         Ok(())
     }
 
-    /// The last line of its log from `words` on, if it holds them: what it does at this moment.
+    /// The last line of its log from `words` on, if it contains them.
     pub(crate) fn last_line_if(&self, logs: &Path, words: &str) -> Option<String> {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).ok()?;
         let line = text.lines().last()?;
@@ -109,21 +109,22 @@ impl Child {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
         let errors: Vec<&str> =
             text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
-        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| crate::output::say!("  {l}"));
+        errors.iter().skip(errors.len().saturating_sub(3)).for_each(|l| grainlab_console::say!("  {l}"));
     }
 
     /// Sends `signal` if it runs.
     pub(crate) fn signal(&self, signal: i32) {
         if let Some(pid) = self.pid.and_then(|p| i32::try_from(p).ok()) {
-            // SAFETY: kill takes two integers. The process is ours and its end was not reported yet, so the id is its own.
+            // SAFETY: kill takes two integers. The process is a child and was not waited for, so the id is still its
+            // own.
             unsafe { libc::kill(pid, signal) };
         }
     }
 }
 
-/// A program that is not ours does not watch its standard input: the kernel ends it when the launcher is gone.
+/// A third-party program does not watch its standard input: the kernel ends it when the launcher has ended.
 fn end_with_launcher(command: &mut Command) {
-    // SAFETY: prctl takes integers, touches no memory of ours, and may be called between fork and exec.
+    // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.
     unsafe {
         command.pre_exec(|| {
             libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);

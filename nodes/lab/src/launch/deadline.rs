@@ -1,55 +1,72 @@
-//! How long the end of a run waits for what is due.
+//! Time limits at the end of a run for its pending results.
 
-use super::debts::{INSTRUMENT, Standing};
 use super::patience::Patience;
-use super::supervisor::{INVERSION, PROBE};
+use super::pending_results::{ResultState, Source};
+use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 
-/// How long the last packing may take to be measured, what was measured to be inverted, and moduli to follow a structure.
+/// Time limit for the measurement of the last packing, for the inversion of a measurement, and for moduli after a
+/// structure.
 const MEASURED_WITHIN: Duration = Duration::from_secs(600);
 const INVERTED_WITHIN: Duration = Duration::from_secs(30);
 const MODULI_WITHIN: Duration = Duration::from_secs(5);
 
-/// How long the last packing may take to be measured by a program that is not ours and measured others.
+/// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
-/// What is waited for, and for how long.
+/// The result that is waited for, and its time limit.
 pub(super) struct Deadline {
-    pub(super) of: Standing,
+    pub(super) of: ResultState,
     pub(super) patience: Patience,
     pub(super) exit: Exit,
     pub(super) message: String,
 }
 
 impl Deadline {
-    pub(super) fn of(standing: Standing) -> Self {
+    /// For a last packing that was published within a phase: it need not have anything to measure.
+    pub(super) fn within_a_phase(standing: ResultState) -> Self {
+        let whole = Self::of(standing);
+        match standing {
+            ResultState::Measured(_) => whole,
+            ResultState::Open(_) => {
+                Self { patience: Patience::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
+            }
+            _ => Self { exit: Exit::Done, ..whole },
+        }
+    }
+
+    pub(super) fn of(standing: ResultState) -> Self {
         let (time, exit, message) = match standing {
-            Standing::Bare(node) => {
+            ResultState::Bare(node) => {
                 (MODULI_WITHIN, Exit::PhysicsInvalid, format!("the last packing has no {}", nothing(node)))
             }
-            Standing::Measured(node) => {
+            ResultState::Measured(node) => {
                 let message = format!(
-                    "what {node} measured of the last packing was not inverted: see logs/{INVERSION}.log"
+                    "what {node} measured of the last packing was not inverted: see logs/{}.log",
+                    NodeKind::EmtInversion
                 );
                 (INVERTED_WITHIN, Exit::Failure, message)
             }
-            Standing::Open(INSTRUMENT) => {
+            ResultState::Open(Source::Instrument) => {
                 let message = "a program that the launch file lists sent wave speeds of other packings, and none of the last";
                 (INSTRUMENT_WITHIN, Exit::DataLoss, message.to_owned())
             }
-            Standing::Open(node) | Standing::Declined(node) => {
+            ResultState::Open(node) | ResultState::Declined(node) => {
                 let message = format!("the last packing was not measured: see logs/{node}.log");
                 (MEASURED_WITHIN, Exit::Failure, message)
             }
-            Standing::Complete => (Duration::ZERO, Exit::Done, String::new()),
+            ResultState::Complete => (Duration::ZERO, Exit::Done, String::new()),
         };
         Self { of: standing, patience: Patience::new(time), exit, message }
     }
 }
 
 /// What a node did not find of a packing, and where it says why.
-pub(super) fn nothing(node: &str) -> String {
-    let data = if node == PROBE { "wave speeds" } else { "stiffness" };
-    format!("{data} to invert: see logs/{node}.log")
+pub(super) fn nothing(source: Source) -> String {
+    let data = match source {
+        Source::Node(NodeKind::AcousticProbe) => "wave speeds",
+        _ => "stiffness",
+    };
+    format!("{data} to invert: see logs/{source}.log")
 }

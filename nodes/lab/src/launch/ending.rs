@@ -1,26 +1,27 @@
-//! In which order the processes of a run end.
+//! Ends the processes of a run in order.
 
 use super::child::{Child, Ended};
-use super::supervisor::{RECORDER, Supervisor};
+use super::supervisor::Supervisor;
 use super::watch::{Event, Watch};
+use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::time::{sleep_until, timeout};
 
-/// How long a process may take to die of SIGKILL.
+/// Time limit for the end of a process after SIGKILL.
 const KILLED_WITHIN: Duration = Duration::from_secs(1);
 
-/// How often it is looked whether a process is stopped.
+/// Period of the check for stopped processes.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// How long a run that ends by itself waits for a stopped process, beyond the usual time.
+/// Additional time that a complete run waits for a stopped process.
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
 /// The three steps of an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
-    /// Every node is asked to end and sends its last report, which belongs into the recording.
+    /// Every node ends and sends its last report, which is recorded.
     Farewell,
     /// The recorder ends.
     Record,
@@ -47,7 +48,7 @@ impl Ending {
 }
 
 impl Supervisor {
-    /// Ends every process; true if the user asked to hurry.
+    /// Ends every process; true if the user interrupted again.
     pub(super) async fn end_all(
         &mut self,
         exit: Exit,
@@ -56,10 +57,10 @@ impl Supervisor {
     ) -> bool {
         let mut hurried = false;
         for ending in [Ending::Farewell, Ending::Record, Ending::Exit] {
-            // Who asked for the end wants it now; a run that ends by itself waits for who is stopped.
+            // An interrupted run ends at once; a complete run waits for stopped processes.
             let waits = exit != Exit::Interrupted && !hurried;
             hurried |= self.end(ending, waits, events).await;
-            // It leaves while the processes do.
+            // It ends together with the processes.
             watch.stop();
         }
         hurried
@@ -67,7 +68,7 @@ impl Supervisor {
 
     /// Whether an end still waits for this child.
     fn awaits(&self, child: &Child, ending: Ending) -> bool {
-        let recorder = child.plan.is(RECORDER);
+        let recorder = child.plan.is(NodeKind::Recorder);
         match (ending, child.pid) {
             (_, None) => false,
             (Ending::Farewell, Some(pid)) => !recorder && !self.left.contains(&pid),
@@ -76,13 +77,13 @@ impl Supervisor {
         }
     }
 
-    /// Takes one step of the end: SIGINT, SIGTERM, SIGKILL, each a while after the other. True if the user asked to hurry,
-    /// which kills what is left.
+    /// One step of the end: SIGINT, SIGTERM, SIGKILL at intervals. True if the user interrupted again,
+    /// which kills all remaining processes.
     async fn end(&mut self, ending: Ending, waits: bool, events: &mut UnboundedReceiver<Event>) -> bool {
         let mut hurried = false;
         for (signal, time) in ending.signals() {
             let signal = if hurried { libc::SIGKILL } else { signal };
-            // Who sent its last report was asked already, and a second signal would end it at once.
+            // A process that sent its last report has received the signal, and a second one would end it at once.
             if ending != Ending::Exit || signal != libc::SIGINT {
                 self.children.iter().filter(|c| self.awaits(c, ending)).for_each(|c| c.signal(signal));
             }
@@ -120,7 +121,7 @@ impl Supervisor {
         hurried
     }
 
-    /// Books an end and says how it came.
+    /// Notes the end of a process and describes it.
     pub(super) fn note_end(&mut self, ended: &Ended) -> String {
         use std::os::unix::process::ExitStatusExt;
         let child = &mut self.children[ended.index];

@@ -1,11 +1,11 @@
-//! How long something may take, by the time that this process was awake.
+//! A time limit that counts only while this process runs.
 
 use std::time::{Duration, Instant};
 
-/// A step between two looks that is longer than this is not all counted: the launcher itself was stopped meanwhile.
+/// A longer interval between two calls is not fully counted: the launcher itself was stopped meanwhile.
 const STEP: Duration = Duration::from_millis(500);
 
-/// Time that is left for something.
+/// The remaining time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patience {
     left: Duration,
@@ -13,12 +13,12 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// So much time, from now.
+    /// A time limit from now on.
     pub(super) fn new(time: Duration) -> Self {
         Self { left: time, looked: Instant::now() }
     }
 
-    /// To be called several times a second; true when the time is over. Time `suspended` does not count.
+    /// True when the time is over; call it several times a second. Time with `suspended` does not count.
     pub(super) fn is_over(&mut self, suspended: bool) -> bool {
         self.passes(Instant::now(), suspended)
     }

@@ -1,5 +1,6 @@
-//! Launch files: the YAML form of ROS 2 launch, as much of it as starts processes: nodes of ours, and any other program.
+//! Launch files: the part of the YAML form of ROS 2 launch that starts processes: our nodes and other programs.
 
+use crate::nodes::{NodeKind, UnknownNode};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,39 +10,42 @@ pub(crate) const BUILT_IN: [(&str, &str); 2] = [
     ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
 ];
 
-/// Why a launch file cannot be run here.
+/// Errors of a launch file.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub(crate) enum PlanError {
     /// Not YAML, or not this subset of ROS 2 launch.
     #[error("not a launch file that can be run here: {0}")]
     Format(String),
-    /// Another command of ours than one that runs a node, or none at all.
+    /// A `grainlab` command that does not run a node, or no command.
     #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
     Command { cmd: String },
+    /// A node that there is not.
+    #[error("executable {name}: there is {unknown}")]
+    Node { name: String, unknown: UnknownNode },
     /// A substitution other than `$(var NAME)`.
     #[error("`{text}`: only $(var NAME) is supported of the substitutions of ROS 2 launch")]
     Substitution { text: String },
     /// A variable that no `arg` declares.
     #[error("`{text}`: no arg declares the variable {name:?}; declared are: {known}")]
     Undeclared { text: String, name: String, known: String },
-    /// A value for an argument that is not declared.
+    /// A value for an undeclared argument.
     #[error("the launch file declares no arg {name:?}; declared are: {known}")]
     NoSuchArgument { name: String, known: String },
-    /// An argument without default and value.
+    /// An argument without a default and a value.
     #[error("arg {0:?} has no default and no value was given")]
     NoValue(String),
     /// A value of `output` or `respawn` that is not supported.
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
-    /// A name that could not be the name of a log.
+    /// A name that cannot be a file name of a log.
     #[error("executable name {0:?}: use lower case letters, digits, _ and - (it names a file)")]
     Name(String),
-    /// Two processes would write one log.
+    /// Two processes with the same name would write one log.
     #[error("two executables are called {0:?}: give one of them another name")]
     Twice(String),
-    /// A node that no laboratory works without, or with two of.
+    /// A required node is missing, or a node occurs too often.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
-    Count { node: &'static str, count: usize, allowed: &'static str },
+    Count { node: NodeKind, count: usize, allowed: &'static str },
     /// More than a run has places for.
     #[error("the launch file starts {count} processes; a run has at most {most}")]
     Many { count: usize, most: usize },
@@ -78,42 +82,33 @@ struct Executable {
     respawn: Option<String>,
 }
 
-/// Most processes of a run. The place of a process is one byte: 0 means no place, and 255 is the launcher.
+/// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
 const PLACES: usize = 254;
-
-/// How many of each node a run may have: two of those that one run has one of would contradict each other.
-const COUNTS: [(&str, std::ops::RangeInclusive<usize>, &str); 5] = [
-    ("recorder", 1..=1, "one"),
-    ("dem_simulator", 1..=1, "one"),
-    ("servo_controller", 0..=1, "at most one"),
-    ("fabric_analyzer", 0..=1, "at most one"),
-    ("acoustic_probe", 0..=1, "at most one"),
-];
 
 /// One process to start.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct NodePlan {
-    /// Name of the process: its log is called so.
+    /// Name of the process and of its log.
     pub(crate) name: String,
     /// Which of our nodes; `None` for a program that is not ours.
-    pub(crate) node: Option<String>,
+    pub(crate) node: Option<NodeKind>,
     /// The program; of a node of ours, whatever `grainlab` this is.
     pub(crate) program: String,
-    /// Its arguments. Of a node: `run`, the node, its ROS arguments.
+    /// Its arguments; for a node: `run`, the node, its ROS arguments.
     pub(crate) arguments: Vec<String>,
-    /// Started again when it ends by itself.
+    /// Whether it is restarted when it ends by itself.
     pub(crate) respawn: bool,
 }
 
 impl NodePlan {
     /// Whether it is this node of ours.
-    pub(crate) fn is(&self, node: &str) -> bool {
-        self.node.as_deref() == Some(node)
+    pub(crate) fn is(&self, node: NodeKind) -> bool {
+        self.node == Some(node)
     }
 
-    /// A simulator of a launched run has no rivals to look for, unless it is told to.
+    /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
     pub(crate) fn do_not_look_around(&mut self) {
-        if self.is("dem_simulator") {
+        if self.is(NodeKind::DemSimulator) {
             // Behind `run NODE`: a value of the launch file comes later and wins.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
@@ -121,7 +116,7 @@ impl NodePlan {
     }
 }
 
-/// A launch file that was read, with what its arguments default to.
+/// A parsed launch file, with the defaults of its arguments.
 #[derive(Debug)]
 pub(crate) struct LaunchFile {
     text: String,
@@ -143,12 +138,12 @@ impl LaunchFile {
         Ok(Self { text: text.to_owned(), arguments, executables })
     }
 
-    /// What it was read from.
+    /// Its text.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
-    /// The default of an argument without the quotes that keep an empty string a word; `None` if it has none.
+    /// The default of an argument, without the quotes of an empty string; `None` if it has no default.
     pub(crate) fn default_of(&self, name: &str) -> Option<&str> {
         let (_, default) = self.arguments.iter().find(|(n, _)| n == name)?;
         default.as_deref().map(|d| d.trim_matches('\''))
@@ -174,7 +169,8 @@ impl LaunchFile {
         if nodes.len() > PLACES {
             return Err(PlanError::Many { count: nodes.len(), most: PLACES });
         }
-        for (node, counts, allowed) in COUNTS {
+        for node in NodeKind::all() {
+            let (counts, allowed) = node.per_run();
             let count = nodes.iter().filter(|n| n.is(node)).count();
             if !counts.contains(&count) {
                 return Err(PlanError::Count { node, count, allowed });
@@ -188,17 +184,17 @@ impl Executable {
     fn plan(&self, variables: &BTreeMap<&str, String>) -> Result<NodePlan, PlanError> {
         let command = || PlanError::Command { cmd: self.cmd.clone() };
         let words = words(&self.cmd).ok_or_else(command)?;
-        let node = match words.as_slice() {
-            [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.clone()),
+        let named = match words.as_slice() {
+            [program, run, node, ..] if program == "grainlab" && run == "run" => Some(node.as_str()),
             [program, ..] if program != "grainlab" && !program.is_empty() => None,
             _ => return Err(command()),
         };
         let value = |name: &str| {
             let value = variables.get(name)?;
-            // Parameters of nodes are YAML, in which a path is quoted; a program of anybody's gets the path.
+            // Parameters of nodes are YAML, in which a path is quoted; a third-party program gets the plain path.
             let plain =
                 || serde_json::from_str(value).unwrap_or_else(|_| value.trim_matches('\'').to_owned());
-            Some(if node.is_some() { value.clone() } else { plain() })
+            Some(if named.is_some() { value.clone() } else { plain() })
         };
         let known = || variables.keys().copied().collect::<Vec<_>>().join(", ");
         let words: Vec<String> =
@@ -210,7 +206,7 @@ impl Executable {
             let stem = file.map_or_else(|| program.clone(), |f| f.to_string_lossy().into_owned());
             stem.to_ascii_lowercase().chars().map(|c| if plain(c) { c } else { '_' }).collect()
         };
-        let name = self.name.clone().or_else(|| node.clone()).unwrap_or_else(by_itself);
+        let name = self.name.clone().or_else(|| named.map(str::to_owned)).unwrap_or_else(by_itself);
         if name.is_empty() || !name.chars().all(plain) {
             return Err(PlanError::Name(name));
         }
@@ -229,11 +225,13 @@ impl Executable {
             Some("false" | "False") => false,
             Some(other) => return Err(refuse("respawn", other, "true or false")),
         };
+        let node = named.map(str::parse).transpose();
+        let node = node.map_err(|unknown| PlanError::Node { name: name.clone(), unknown })?;
         Ok(NodePlan { node, program, arguments, respawn, name })
     }
 }
 
-/// Words of a command line, split at blanks outside quotes; `None` where a quote is left open.
+/// Words of a command line, split at spaces outside quotes; `None` if a quote is not closed.
 fn words(cmd: &str) -> Option<Vec<String>> {
     let mut words = Vec::new();
     // Two quotes with nothing between them are an empty word.
@@ -267,7 +265,7 @@ fn words(cmd: &str) -> Option<Vec<String>> {
     quote.is_none().then_some(words)
 }
 
-/// Puts the values of variables in. A value is never split.
+/// Substitutes the values of variables. A value is never split.
 fn substitute(
     word: &str,
     value: impl Fn(&str) -> Option<String>,

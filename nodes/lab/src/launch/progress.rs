@@ -1,9 +1,9 @@
-//! What the user sees of a run under way: a line for each phase, on stderr.
+//! Progress of a run for the user: a line for each phase, on stderr.
 
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use std::time::{Duration, Instant};
 
-/// A phase that takes longer says so this often.
+/// Interval of the lines during a long phase.
 const STILL: Duration = Duration::from_secs(10);
 
 /// Prints lines with the time since the start.
@@ -17,18 +17,18 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of a path with this many phases.
+    /// For a path with this many phases.
     pub(crate) fn new(phases: usize) -> Self {
         let now = Instant::now();
         Self { begin: now, phases, phase: None, finished: false, said: now }
     }
 
-    /// A line, with the time.
+    /// Prints a line with the time.
     pub(crate) fn say(&self, text: &str) {
-        crate::output::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
+        grainlab_console::say!("[{:7.2} s] {text}", self.begin.elapsed().as_secs_f64());
     }
 
-    /// A line, unless there was one for what takes long just now.
+    /// Prints a line, at most once per interval.
     pub(crate) fn still(&mut self, text: &str) {
         if self.said.elapsed() >= STILL {
             self.said = Instant::now();
@@ -36,7 +36,7 @@ impl Progress {
         }
     }
 
-    /// A line if a phase began or takes long.
+    /// Prints a line if a phase began or takes long.
     pub(crate) fn show(&mut self, state: &RunStateReading) {
         let step = state.step;
         if state.status == RunStatus::Finished {
@@ -54,6 +54,11 @@ impl Progress {
         self.phase = Some(state.phase);
         self.said = Instant::now();
         let (number, of) = (state.phase + 1, self.phases);
-        self.say(&format!("phase {number} of {of}, {} {verb} step {step}", state.phase_name));
+        let left_out = if verb == "from" && !state.message.is_empty() {
+            format!(", {}", state.message)
+        } else {
+            String::new()
+        };
+        self.say(&format!("phase {number} of {of}, {} {verb} step {step}{left_out}", state.phase_name));
     }
 }

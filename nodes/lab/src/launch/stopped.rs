@@ -1,28 +1,28 @@
-//! Processes of a run that are stopped by a signal: Ctrl-Z, a debugger, `kill -STOP`.
+//! Detects processes of a run that were stopped by a signal: Ctrl-Z, a debugger, `kill -STOP`.
 
 use super::child::Child;
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
-/// Which processes were stopped at the last look.
+/// The processes that were stopped at the last check.
 #[derive(Debug, Default)]
 pub(super) struct Stopped {
     pids: BTreeSet<u32>,
-    /// When one of them was last seen to go on.
+    /// Time at which one of them was last found to continue.
     resumed: Option<Instant>,
 }
 
-/// What changed since the look before.
+/// Changes since the previous check.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Changes {
-    /// Names and process ids of those that are stopped now.
+    /// Names and process ids of newly stopped processes.
     pub(super) stopped: Vec<(String, u32)>,
-    /// Names of those that go on.
+    /// Names of the processes that continue.
     pub(super) resumed: Vec<String>,
 }
 
 impl Stopped {
-    /// Looks at every process that runs.
+    /// Checks every running process.
     pub(super) fn look(&mut self, children: &[Child]) -> Changes {
         let running = children.iter().filter_map(|c| Some((c.plan.name.clone(), c.pid?)));
         let mut changes = Changes::default();
@@ -46,7 +46,7 @@ impl Stopped {
         changes
     }
 
-    /// Whether any process was stopped at the last look, or within this time before it.
+    /// Whether any process was stopped at the last check, or within this time before it.
     pub(super) fn any_within(&self, time: Duration) -> bool {
         self.any() || self.resumed.is_some_and(|at| at.elapsed() < time)
     }
@@ -73,7 +73,7 @@ mod tests {
         let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
         let pid = child.id();
         let signal = |signal| {
-            // SAFETY: kill takes two integers. The child is ours and was not waited for.
+            // SAFETY: kill takes two integers. The child was not waited for, so the id is its own.
             assert_eq!(unsafe { libc::kill(pid as i32, signal) }, 0);
             std::thread::sleep(std::time::Duration::from_millis(100));
         };

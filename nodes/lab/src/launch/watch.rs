@@ -1,16 +1,16 @@
-//! What the run says of itself over DDS, brought to the supervisor.
+//! Passes the run's messages over DDS to the supervisor.
 
 use super::Run;
-use crate::failure::Failure;
-use crate::network::bus_as;
-use crate::results::strangers::name;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
+use grainlab_console::Failure;
+use grainlab_console::network::bus_as;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
 use grainlab_msgs::{Topic, topics};
-use grainlab_node_kit::identity::member_of;
+use grainlab_node_kit::member_of;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Identity, Report, Stranger, Subscription, watchdog};
+use grainlab_recorder::strangers::name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,25 +18,25 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-/// Messages that may wait; one comes a second and at each end of a phase.
+/// Maximum number of queued messages; one arrives per second and at each end of a phase.
 const BACKLOG: u32 = 256;
 
-/// How often the thread looks whether it is to end.
+/// Period at which the thread checks whether to end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How often it looks whether its DDS threads are there, and who else is in the domain.
+/// Period at which it checks its DDS threads and the other processes in the domain.
 const LOOK_AROUND: Duration = Duration::from_secs(1);
 
-/// How long its end is waited for: RustDDS may wait for threads that are gone.
+/// Time limit for its end: RustDDS may wait for threads that have ended.
 const LEAVE_WITHIN: Duration = Duration::from_secs(2);
 
-/// The place of the launcher in its run: no process that it starts has it.
+/// The member number of the launcher: none of its processes has it.
 const LAUNCHER: u8 = u8::MAX;
 
-/// Strangers that are named one by one.
+/// Maximum number of messages about processes outside the run.
 const NAMED: usize = 32;
 
-/// Topics on which another process could say something about the run.
+/// Topics on which a process outside the run could publish.
 const OF_THE_RUN: [Topic; 9] = [
     topics::STRESS,
     topics::STRAIN_RATE,
@@ -49,32 +49,33 @@ const OF_THE_RUN: [Topic; 9] = [
     topics::RUN_STATE,
 ];
 
-/// Something the supervisor has to know.
+/// An event for the supervisor.
 #[derive(Debug)]
 pub(crate) enum Event {
-    /// Where the run stands.
+    /// The state of the run.
     State(RunStateReading),
     /// The structure of the packing of this step was measured.
     Structure(u64),
-    /// The packing of this step was measured: its data of this topic are there.
+    /// The packing of this step was measured: its data were published on this topic.
     Measured(&'static str, u64),
-    /// The packing of this step has nothing of this topic.
+    /// The packing of this step has no data on this topic.
     Declined(&'static str, u64),
     /// An acoustic probe measures the packing of this step, which may take long.
     Probing(u64),
-    /// The process in this place inferred the microstructure of the packing of this step from data of this topic.
+    /// The process with this member number inferred the microstructure of the packing of this step from data of this
+    /// topic.
     Microstructure { source: String, step: u64, member: u8 },
-    /// The process of this id sent its last report.
+    /// The process with this id sent its last report.
     Goodbye(u32),
-    /// The bus is open: what the processes say is heard from now on.
+    /// The bus is open: messages are received from now on.
     Open,
-    /// A process that is not of this run publishes on its topics.
+    /// A process outside the run publishes on its topics.
     Stranger(String),
     /// The watch itself failed.
     Failed(String),
 }
 
-/// A thread with a bus of its own.
+/// A thread with its own bus.
 #[derive(Debug)]
 pub(crate) struct Watch {
     stop: Arc<AtomicBool>,
@@ -82,21 +83,21 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Joins the domain as a process of the run, and listens until it is dropped.
+    /// Joins the domain as a process of the run, and receives until it is dropped.
     pub(crate) fn start(run: Run) -> Result<(Self, UnboundedReceiver<Event>), Failure> {
         let (events, receiver) = unbounded_channel();
         let stop = Arc::new(AtomicBool::new(false));
         let asked = Arc::clone(&stop);
         watchdog::watch_dds_threads();
         let thread = std::thread::Builder::new().name("watch".into()).spawn(move || {
-            // The programs that the launcher started are below it.
+            // The programs of the launcher are its descendants.
             let root = Some(std::process::id());
             let identity = Identity { root, ..Identity::member_of(run.id, LAUNCHER) };
             let bus = bus_as(run.domain, "launcher", identity);
             let watched = bus.map_err(|e| e.to_string()).and_then(|mut bus| {
                 let watched = watch(&mut bus, &events, &asked);
                 if watched.is_err() {
-                    // Dropping the bus would wait for threads that are gone.
+                    // Dropping the bus would wait for threads that have ended.
                     std::mem::forget(bus);
                 }
                 watched
@@ -109,7 +110,7 @@ impl Watch {
         Ok((Self { stop, thread }, receiver))
     }
 
-    /// Asks the thread to end; dropping waits for that.
+    /// Stops the thread; dropping waits for its end.
     pub(crate) fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -129,7 +130,7 @@ impl Drop for Watch {
     }
 }
 
-/// Subscriptions to what a run says of itself.
+/// Subscriptions to the run's messages.
 struct Ears {
     states: Subscription<RunState>,
     fabrics: Subscription<Fabric>,
@@ -216,7 +217,7 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
     Ok(())
 }
 
-/// Who publishes on the topics of the run and is not of it.
+/// Processes outside the run that publish on its topics.
 fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
     let of = |topic: &Topic| {
         bus.strange_writers(topic).into_iter().map(|w| (topic.name, bus.describe(w))).collect()
@@ -224,7 +225,7 @@ fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 
-/// The step that an acoustic probe reports under this key, if it does.
+/// The step that an acoustic probe reports under this key.
 fn step_under(key: &str, report: &Report) -> Option<u64> {
     let (_, step) = report.health.values.iter().find(|(k, _)| k == key)?;
     step.parse().ok()

@@ -70,7 +70,7 @@ impl AcousticReport {
     }
 
     pub(crate) fn departure(&self) -> Option<f64> {
-        Some(self.medium.fitted.as_ref().ok()?.departure?.scatter)
+        Some(self.medium.fitted.as_ref().ok()?.anisotropy_scatter?.scatter)
     }
 
     /// Θ, Pa, where all other moduli are known: a table cannot say that Θ follows from moduli of which one is missing.
@@ -171,6 +171,7 @@ mod tests {
             spins: vec![Vec3::zeros()],
             contacts: Vec::new(),
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.3,
             time_step: 0.0,
         }

@@ -2,7 +2,7 @@
 
 use super::acoustic::AcousticReport;
 use super::packing_text::indented;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
 use grainlab_emt::Modulus;

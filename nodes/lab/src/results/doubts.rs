@@ -56,7 +56,8 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     if notes.iter().any(|w| w.contains("are not listed")) {
         return None;
     }
-    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, &packing.material).ok()?;
+    let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
+    let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, force).ok()?;
     let listed: BTreeSet<_> = packing.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
     // Of a contact with an own image, either of the two names may be listed.
     let has = |c: &grainlab_core::Contact| {
@@ -102,6 +103,7 @@ mod tests {
             spins: vec![Vec3::zeros()],
             contacts: [2, 1, 0].map(contact).to_vec(),
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.3,
             time_step: 0.0,
         }

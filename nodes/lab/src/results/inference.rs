@@ -183,7 +183,7 @@ impl Inference {
 mod tests {
     use super::*;
     use grainlab_core::Material;
-    use grainlab_emt::{Calibration, Gamma, Measured, Observation};
+    use grainlab_emt::{Calibration, Measured, Observation, StrainRatio};
     use grainlab_msgs::boundary::MicrostructureReading;
     use grainlab_msgs::msg::Moduli;
 
@@ -208,7 +208,8 @@ mod tests {
         let reading = MicrostructureReading::try_from(&sent).unwrap();
         let at = reading.estimates.iter().position(|e| e.model == "ratio").unwrap();
         let read = Inference::of_reading("moduli", &reading.estimates[at]);
-        let mut observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::ZERO);
+        let mut observation =
+            Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, StrainRatio::ZERO);
         observation.conditions.solid_fraction = Some(Measured::exact(0.636));
         observation.conditions.material = Some(Material::GLASS);
         let observation = observation.with_relative_error(0.01);

@@ -1,7 +1,7 @@
 //! What the models infer, as cells of a table or of a CSV.
 
 use super::inference::Inference;
-use crate::output::{Table, exact, fixed};
+use grainlab_console::{Table, exact, fixed};
 use grainlab_emt::Quantity;
 
 impl Inference {
@@ -72,11 +72,12 @@ pub(crate) fn table(results: &[Inference]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_emt::{Calibration, Gamma, Observation};
+    use grainlab_emt::{Calibration, Observation, StrainRatio};
 
     fn s1(modulus_error: f64) -> Inference {
-        let observation = Observation::paper(121.71e6, 127.37e6, 144.38e6, 50e3, Gamma::given(-0.0623))
-            .with_relative_error(modulus_error);
+        let observation =
+            Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, StrainRatio::given(-0.0623))
+                .with_relative_error(modulus_error);
         Inference::of(
             "ratio",
             "paper",

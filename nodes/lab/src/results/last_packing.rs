@@ -1,6 +1,6 @@
 //! The last packing of a recording: what a run goes on from.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_core::Packing;
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_recordings::{Recording, Selection};

@@ -2,7 +2,7 @@
 
 use super::probe::{ProbeView, ScanView};
 use super::quantities::{cells, columns, entries};
-use crate::output::Table;
+use grainlab_console::Table;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES};
@@ -86,6 +86,7 @@ pub(crate) mod tests {
             spins: vec![Vec3::zeros()],
             contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
             material: Material::GLASS,
+            law: Default::default(),
             friction: 0.3,
             time_step: 0.0,
         }

@@ -13,6 +13,5 @@ pub(crate) mod probe;
 pub(crate) mod probed;
 pub(crate) mod quantities;
 pub(crate) mod read_back;
-pub(crate) mod strangers;
 pub(crate) mod summary;
 pub(crate) mod summary_text;

@@ -1,7 +1,7 @@
 //! A measured packing for people.
 
 use super::measured_packing::MeasuredPacking;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
 

@@ -1,6 +1,6 @@
 //! How an explicit probe went, for the results of `grainlab analyze`.
 
-use crate::output::Table;
+use grainlab_console::Table;
 use grainlab_core::Stiffness;
 use grainlab_micromechanics::probe::{AmplitudeSweep, StrainProbeResult};
 use serde::Serialize;

@@ -6,7 +6,7 @@ use super::measured_packing::{MeasuredPacking, ORIGIN};
 use super::packing_text;
 use super::quantities::{cells, columns};
 use crate::commands::packings::printer::Printed;
-use crate::output::Table;
+use grainlab_console::Table;
 use grainlab_core::quantity::{Quantity, by_key};
 use grainlab_core::results::{PackingReport, QUANTITIES};
 use serde::Serialize;

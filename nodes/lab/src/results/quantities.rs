@@ -1,6 +1,6 @@
 //! Results as JSON and CSV, from their table of quantities.
 
-use crate::output::exact;
+use grainlab_console::exact;
 use grainlab_core::quantity::{Quantity, Shape, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 

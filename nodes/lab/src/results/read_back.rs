@@ -3,14 +3,15 @@
 use super::acoustic::AcousticReport;
 use super::inference::Inference;
 use super::measured_packing::MeasuredPacking;
-use super::strangers::{self, Authors, StrangerView};
 use grainlab_core::Packing;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
+use grainlab_experiment::is_frame;
 use grainlab_micromechanics::{PackingView, ReportParts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::Report;
+use grainlab_recorder::strangers::{self, Authors, StrangerView};
 use grainlab_recordings::{Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,6 +42,8 @@ pub(crate) struct ReadBack {
     pub(crate) not_inverted: usize,
     /// Packings without a structure.
     pub(crate) not_analysed: usize,
+    /// Packings published within phases, and those of them that were measured. They are in the recording alone.
+    pub(crate) film: Film,
     /// Microstructures, by the topic of their data and the step of the packing.
     pub(crate) inverted: BTreeSet<(String, u64)>,
     /// Steps of the packings of which there is a result, by topic.
@@ -51,9 +54,22 @@ pub(crate) struct ReadBack {
     pub(crate) complaints: Vec<String>,
 }
 
+/// Packings published within phases.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Film {
+    /// How many.
+    pub(crate) packings: usize,
+    /// Those with a structure.
+    pub(crate) structures: usize,
+    /// Those with moduli.
+    pub(crate) moduli: usize,
+}
+
 /// The messages about one packing; a repeated one says the same.
 #[derive(Default)]
 struct About {
+    /// It was published within a phase: it need not be at rest, and may have nothing to measure.
+    within: bool,
     packing: Option<Packing>,
     fabric: Option<FabricReading>,
     stiffness: Option<ElasticStiffness>,
@@ -111,7 +127,14 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         }
     }
     let source = recording.path().display().to_string();
+    let film: BTreeSet<u64> = about.iter().filter(|(_, a)| a.within).map(|(step, _)| *step).collect();
     for (step, about) in about {
+        if about.within {
+            back.film.packings += 1;
+            back.film.structures += usize::from(about.fabric.is_some());
+            back.film.moduli += usize::from(about.stiffness.is_some());
+            continue;
+        }
         match (about.packing, about.fabric) {
             (Some(packing), Some(fabric)) => {
                 let report = reported(&packing, fabric, about.stiffness);
@@ -130,7 +153,7 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         }
     }
     for (topic, steps) in back.results.iter().filter(|(topic, _)| INVERTED.contains(topic)) {
-        for step in steps.iter().filter(|step| **step > 0) {
+        for step in steps.iter().filter(|step| **step > 0 && !film.contains(step)) {
             if !back.inverted.contains(&((*topic).to_owned(), *step)) {
                 back.not_inverted += 1;
                 back.complaints.push(format!("the {topic} of step {step} were not inverted"));
@@ -164,9 +187,12 @@ fn enter(
     let text = |e: grainlab_msgs::boundary::BoundaryError| e.to_string();
     match topic.name {
         name if name == topics::PACKING.name => {
-            let packing = Packing::try_from(&decoded::<msg::Packing>(payload)?).map_err(text)?;
+            let message: msg::Packing = decoded(payload)?;
+            let packing = Packing::try_from(&message).map_err(text)?;
             let step = packing.step;
-            about.entry(step).or_default().packing = Some(packing);
+            let about = about.entry(step).or_default();
+            about.within = is_frame(&message.run_state);
+            about.packing = Some(packing);
             Ok(step)
         }
         name if name == topics::FABRIC.name => {

@@ -1,8 +1,8 @@
 //! What a launched run came to, with the stable keys of `summary.json`.
 
-use super::read_back::{InvertedPacking, ReadBack};
-use super::strangers::StrangerView;
+use super::read_back::{Film, InvertedPacking, ReadBack};
 use grainlab_node_kit::{Exit, Report};
+use grainlab_recorder::strangers::StrangerView;
 use grainlab_recordings::TopicTally;
 use serde::Serialize;
 
@@ -26,6 +26,8 @@ pub(crate) struct Summary {
     /// While computing.
     pub(crate) particle_steps_per_second: Option<f64>,
     pub(crate) states: Vec<InvertedPacking>,
+    /// Packings published within phases.
+    pub(crate) film: Film,
     pub(crate) recording: Option<String>,
     pub(crate) exit: u8,
     pub(crate) warnings: Vec<String>,
@@ -110,6 +112,7 @@ impl Summary {
             waiting_fraction: per_wall(counters.waiting),
             particle_steps_per_second: counters.particle_steps,
             states: back.states,
+            film: back.film,
             recording: launched.recording,
             exit: launched.exit.code(),
             warnings: back.complaints,

@@ -2,10 +2,11 @@
 
 use super::acoustic_text;
 use super::inference::{Inference, warning_lines};
-use super::packing_text::{self, indented};
-use super::read_back::InvertedPacking;
+use super::packing_text;
+use super::packing_text::indented;
+use super::read_back::{Film, InvertedPacking};
 use super::summary::Summary;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
@@ -21,6 +22,13 @@ pub(crate) fn text(s: &Summary) -> String {
         }
         text += &inferred(state);
         text.push('\n');
+    }
+    if s.film.packings > 0 {
+        let Film { packings, structures, moduli } = s.film;
+        text += &format!(
+            "Within phases: {packings} packings recorded, {structures} with a structure, {moduli} with moduli: \
+             grainlab analyze RECORDING --format csv\n\n"
+        );
     }
     text += "Run\n";
     text += &format!("  wall time {:.2} s", s.wall_seconds);

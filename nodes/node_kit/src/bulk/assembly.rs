@@ -1,17 +1,17 @@
-//! The parts of one body, put together as they come.
+//! Assembles the parts of one body.
 
 use super::part::{PartError, Shape};
 use grainlab_msgs::msg::PackingChunk;
 
-/// Parts kept beyond the first missing one: as many as a credit can name.
+/// Maximum number of parts kept beyond the first missing one: as many as a credit has bits for.
 const AHEAD: u32 = u64::BITS;
 
-/// A body that is not complete yet. Memory is taken only for what came, and for gaps of a few parts.
+/// An incomplete body. Memory is allocated only for received parts and for gaps of a few parts.
 #[derive(Debug)]
 pub(super) struct Assembly {
     pub(super) shape: Shape,
     bytes: Vec<u8>,
-    /// First part that is missing.
+    /// First missing part.
     next: u32,
     /// Bit i: part `next + 1 + i` is held.
     held: u64,
@@ -22,23 +22,23 @@ impl Assembly {
         Self { shape, bytes: Vec::new(), next: 0, held: 0 }
     }
 
-    /// First part that is missing, and which of the 64 after that are held.
+    /// The first missing part, and a bit for each of the 64 parts after it: whether it is held.
     pub(super) fn credit(&self) -> (u32, u64) {
         (self.next, self.held)
     }
 
-    /// Parts that came.
+    /// Number of parts received.
     pub(super) fn parts(&self) -> u64 {
         u64::from(self.next) + u64::from(self.held.count_ones())
     }
 
-    /// Takes a part of this body in, which was checked on its own; true if it is new.
+    /// Adds a part, already checked on its own. Returns true if it is new.
     pub(super) fn add(&mut self, part: &PackingChunk, shape: &Shape) -> Result<bool, PartError> {
         let (body, index) = (part.body, part.index);
         if *shape != self.shape {
             return Err(PartError::Contradiction { body, index });
         }
-        // What is too far ahead is asked for when its turn comes.
+        // A part too far ahead is requested again later.
         let Some(ahead) = index.checked_sub(self.next).filter(|ahead| *ahead <= AHEAD) else {
             return Ok(false);
         };
@@ -54,7 +54,7 @@ impl Assembly {
         if ahead > 0 {
             self.held |= 1 << (ahead - 1);
         } else {
-            // The gap is closed: past this part, and past those that waited behind it.
+            // The gap is closed: advance past this part and past the held ones that follow it.
             let waited = self.held.trailing_ones();
             self.next += 1 + waited;
             self.held = self.held.checked_shr(waited + 1).unwrap_or(0);
@@ -62,12 +62,12 @@ impl Assembly {
         Ok(true)
     }
 
-    /// Whether every part is there.
+    /// Whether every part was received.
     pub(super) fn is_complete(&self) -> bool {
         self.next == self.shape.count
     }
 
-    /// The body, complete; or what its crc is, if it is not what was sent.
+    /// The complete body, or its CRC if this is not the CRC that the parts state.
     pub(super) fn into_body(self) -> Result<Vec<u8>, u32> {
         let found = crc32fast::hash(&self.bytes);
         if found == self.shape.body_crc { Ok(self.bytes) } else { Err(found) }

@@ -1,83 +1,83 @@
 //! One part of a body.
 
-use super::{LONGEST, STRIDE};
+use super::limits::{LONGEST, STRIDE};
 use grainlab_msgs::msg::PackingChunk;
 
-/// Longest part that a reader accepts, bytes: it holds some dozens of them out of order.
+/// Largest part that a reader accepts, bytes: it holds some dozens of them out of order.
 const LONGEST_PART: u32 = 1 << 20;
 
-/// What is wrong with a part, or with the body that the parts make. The part is refused and asked for again.
+/// Errors of a part, or of the body assembled from parts. The part is refused and requested again.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PartError {
-    /// It is not what was sent.
-    #[error("part {index} of body {body} is corrupt: its crc is {found:08x}, and it says {said:08x}")]
+pub(crate) enum PartError {
+    /// The part was changed in transit.
+    #[error(
+        "part {index} of body {body} is corrupt: its CRC is {found:08x}, and its field crc is {stated:08x}"
+    )]
     Corrupt {
-        /// Which body it says it is of.
+        /// Number of the body, as stated in the part.
         body: u64,
-        /// Which part it says it is.
+        /// Number of the part, as stated in the part.
         index: u32,
-        /// What its bytes give.
+        /// CRC of the part's bytes.
         found: u32,
-        /// What it says.
-        said: u32,
+        /// CRC stated in the part.
+        stated: u32,
     },
-    /// A length that no body has.
-    #[error("body {body} says length = {length}: it must be 1 to {LONGEST}")]
+    /// The length of the body is out of range.
+    #[error("body {body} has length = {length}: it must be 1 to {LONGEST}")]
     Length {
-        /// Which body.
+        /// Number of the body.
         body: u64,
-        /// The length it says.
+        /// Stated length, bytes.
         length: u64,
     },
-    /// Numbers that do not fit together.
-    #[error("part {index} of body {body} says {field} = {found}: it must be {expected}")]
+    /// A field is inconsistent with the others.
+    #[error("part {index} of body {body} has {field} = {found}: it must be {expected}")]
     Shape {
-        /// Which body.
+        /// Number of the body.
         body: u64,
-        /// Which part.
+        /// Number of the part.
         index: u32,
         /// Name of the field.
         field: &'static str,
         /// Its value.
         found: u64,
-        /// What it must be, the others being right.
+        /// The value that the other fields imply.
         expected: String,
     },
-    /// It contradicts the parts before it.
-    #[error(
-        "part {index} of body {body} contradicts the parts before it in length, body_crc, stride or count"
-    )]
+    /// The part contradicts earlier parts of its body.
+    #[error("part {index} of body {body} contradicts earlier parts in length, body_crc, stride or count")]
     Contradiction {
-        /// Which body.
+        /// Number of the body.
         body: u64,
-        /// Which part.
+        /// Number of the part.
         index: u32,
     },
-    /// All parts are there, and together they are not the body.
-    #[error("body {body} is corrupt: its crc is {found:08x}, and the parts say {said:08x}; {what}")]
+    /// All parts were received, and the body has another CRC.
+    #[error("body {body} is corrupt: its CRC is {found:08x}, and its parts state {stated:08x}; {action}")]
     Body {
-        /// Which body.
+        /// Number of the body.
         body: u64,
-        /// What its bytes give.
+        /// CRC of the assembled body.
         found: u32,
-        /// What the parts say.
-        said: u32,
-        /// What is done about it.
-        what: &'static str,
+        /// CRC stated in the parts.
+        stated: u32,
+        /// How the receiver reacts.
+        action: &'static str,
     },
-    /// The writer went on to another body.
-    #[error("body {body} was given up by its writer when {held} of {count} parts were here")]
+    /// The writer began another body.
+    #[error("the writer gave up body {body} after {held} of {count} parts")]
     GivenUp {
-        /// Which body.
+        /// Number of the body.
         body: u64,
-        /// Parts that had come.
+        /// Number of parts received.
         held: u64,
-        /// Parts that it has.
+        /// Number of parts of the body.
         count: u32,
     },
 }
 
-/// What all parts of one body have in common.
+/// The fields that all parts of one body share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shape {
     pub(super) body: u64,
@@ -88,7 +88,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// Of a body that is to be sent.
+    /// The shape of a body to send.
     pub(super) fn of(body: u64, bytes: &[u8]) -> Self {
         Self {
             body,
@@ -99,12 +99,15 @@ impl Shape {
         }
     }
 
-    /// Of the body that a part belongs to, the part being as it was sent and possible.
+    /// The shape of the body of a received part.
+    ///
+    /// # Errors
+    /// The part is corrupt, or its fields are inconsistent.
     pub(super) fn checked(part: &PackingChunk) -> Result<Self, PartError> {
         let (body, index) = (part.body, part.index);
         let found = crc_of(part);
         if found != part.crc {
-            return Err(PartError::Corrupt { body, index, found, said: part.crc });
+            return Err(PartError::Corrupt { body, index, found, stated: part.crc });
         }
         if !(1..=LONGEST).contains(&part.length) {
             return Err(PartError::Length { body, length: part.length });
@@ -132,17 +135,17 @@ impl Shape {
         Ok(this)
     }
 
-    /// Where a part begins in the body.
+    /// Offset of a part in the body, bytes.
     pub(super) fn start_of(&self, index: u32) -> usize {
         index as usize * self.stride as usize
     }
 
-    /// Bytes of a part.
+    /// Size of a part, bytes.
     pub(super) fn bytes_of(&self, index: u32) -> usize {
         (self.length as usize - self.start_of(index)).min(self.stride as usize)
     }
 
-    /// A part of `bytes`, which this is the shape of.
+    /// Part `index` of the body `bytes`, which has this shape.
     pub(super) fn cut(&self, bytes: &[u8], index: u32) -> PackingChunk {
         let start = self.start_of(index);
         let mut part = PackingChunk {

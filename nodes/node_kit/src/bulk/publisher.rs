@@ -1,22 +1,26 @@
-//! The writing end on a bus.
+//! The sender on a bus.
 
+use super::limits::{LIMIT, LOOK, WINDOW};
+use super::part_topics::beside;
 use super::sender::Sender;
-use super::{LIMIT, LOOK, WINDOW, beside};
-use crate::bus::{Bus, BusError, Demand, PublisherId, WriterId};
+use crate::bus::{Bus, PublisherId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::WriterId;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Topic, topics};
 use std::time::Duration;
 
-/// Credits that may wait while a node computes: what the latest ones say is all that counts.
+/// Credits queued while a node computes: only the latest of each reader matters.
 const CREDITS: u32 = 256;
 
-/// Parts handed to the bus at a time: more would hold the caller up.
+/// Parts handed to the bus per call: more would block the caller.
 const AT_ONCE: u32 = WINDOW;
 
 /// Publishes messages of any length on one topic, in order: small ones as they are, large ones in parts.
 ///
-/// [`BulkPublisher::advance`] moves the parts on; a node calls it in each step while it says that something is under way.
+/// [`BulkPublisher::advance`] sends the parts; a node calls it in each step until it returns true.
 #[derive(Debug)]
 pub struct BulkPublisher {
     topic: Topic,
@@ -32,7 +36,7 @@ pub struct BulkPublisher {
 }
 
 impl BulkPublisher {
-    /// Offers `topic` and the topic of its parts, and listens to the credits.
+    /// Advertises `topic` and the topic of its parts, and subscribes to the credits.
     pub fn advertise(bus: &mut dyn Bus, topic: &Topic) -> Result<Self, BusError> {
         let resolved = bus.resolve(topic)?;
         let plain = bus.advertise(topic)?;
@@ -59,13 +63,15 @@ impl BulkPublisher {
         self.plain
     }
 
-    /// Readers that were left behind so far.
+    /// Number of times that a reader was not waited for any longer.
     pub fn left_behind(&self) -> u64 {
         self.left_behind
     }
 
-    /// Publishes one serialized message, encapsulation included. [`BusError::Full`] while the one before is under way:
-    /// the caller keeps the message and comes again.
+    /// Publishes one serialized message, encapsulation included.
+    ///
+    /// # Errors
+    /// [`BusError::Full`] while the previous message is in transit: the caller keeps the message and tries again.
     pub fn publish(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
         if !self.advance(bus)? {
             return Err(BusError::Full { topic: self.resolved.clone(), window: WINDOW });
@@ -73,8 +79,8 @@ impl BulkPublisher {
         self.supersede(bus, body)
     }
 
-    /// The same, without regard to readers that do not have the message before it: they do not get that any more. For
-    /// last words.
+    /// The same without waiting for readers that lack the previous message: they never receive it. For the last message
+    /// of a process.
     pub fn supersede(&mut self, bus: &mut dyn Bus, body: &[u8]) -> Result<(), BusError> {
         if body.len() <= LIMIT {
             bus.publish(self.plain, body)?;
@@ -87,21 +93,21 @@ impl BulkPublisher {
         self.advance(bus).map(|_| ())
     }
 
-    /// Hears the readers and sends what they may get; true if nothing is under way to any of them. Never waits.
+    /// Receives credits and sends parts. Returns true if nothing is in transit to any reader. Never waits.
     pub fn advance(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
         let (now, wall) = (bus.now(), bus.wall_nanos());
         while let Some((credit, info)) = self.credits.take_valid(bus)? {
-            // It may have waited here while the node computed.
+            // The credit may have been queued while the node computed.
             let age = Duration::from_nanos(wall.saturating_sub(info.received));
-            self.sender.hear(now.saturating_sub(age), info.writer, info.sequence, &credit);
+            self.sender.receive(now.saturating_sub(age), info.writer, info.sequence, &credit);
         }
         if now >= self.next_look {
             self.next_look = now + LOOK;
             self.present = bus.foreign_writers(&self.credit_topic);
-            for left in self.sender.tend(now, &self.present) {
+            for left in self.sender.apply_time_limits(now, &self.present) {
                 self.left_behind += 1;
                 log::warn!(
-                    "{}: the reader with credits of writer {} is not waited for any more: {}",
+                    "{}: not waiting any longer for the reader with credits of writer {}: {}",
                     self.resolved,
                     left.reader,
                     left.reason
@@ -123,18 +129,18 @@ impl BulkPublisher {
         Ok(!self.sender.is_busy(now, &self.present, matched))
     }
 
-    /// How long a node may wait before it calls [`BulkPublisher::advance`] again while something is under way; a credit
-    /// ends its wait by itself.
+    /// Longest wait between two calls of [`BulkPublisher::advance`] while something is in transit; a credit ends the
+    /// wait.
     pub const fn patience() -> Duration {
         LOOK
     }
 
-    /// Readers that lack parts of the latest message and are waited for.
+    /// Number of active readers that lack parts of the latest message.
     pub fn waited_for(&self) -> usize {
         self.sender.waited_for()
     }
 
-    /// Parts that were sent more than once: for late readers, and where some were lost.
+    /// Number of repeated parts: for late readers, and where parts were lost.
     pub fn repeated_parts(&self) -> u64 {
         self.sender.repeated()
     }

@@ -1,60 +1,60 @@
-//! The reading end: parts of any number of writers become bodies, and credits say what is missing.
+//! The receiver: assembles the parts of several writers into bodies, and reports missing parts in credits.
 
 use super::assembly::Assembly;
+use super::limits::{REPEAT, REST};
 use super::part::{PartError, Shape};
-use super::{REPEAT, REST};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Writers that are listened to at once; of more, the ones silent for longest are forgotten.
+/// Maximum number of writers; beyond it, the one silent for longest is forgotten.
 const WRITERS: usize = 8;
 
-/// A writer that is not in the graph and sends nothing for this long is forgotten.
+/// A writer that is not in the graph and has sent nothing for this long is forgotten.
 const FORGET: Duration = Duration::from_secs(10);
 
-/// A body that comes whole and corrupt so often is given up.
+/// A body is given up after it was complete and corrupt this many times.
 const ATTEMPTS: u32 = 3;
 
-/// Least time between two credits for parts that are here already.
+/// Minimum time between two credits in response to parts received before.
 const NOT_AGAIN: Duration = Duration::from_millis(10);
 
-/// A body, as its writer had it.
+/// A complete body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Whole {
-    /// Its place among the bodies that the writer sent in parts.
+    /// Sequence number among the bodies that the writer sent in parts.
     pub(super) number: i64,
     pub(super) body: Vec<u8>,
 }
 
-/// What a part led to.
+/// The result of one received part.
 #[derive(Debug, Default)]
-pub(super) struct Heard {
-    /// It was the last one missing.
+pub(super) struct PartOutcome {
+    /// The body, if this part completes it.
     pub(super) whole: Option<Whole>,
-    /// It, or what it belongs to, was refused.
+    /// The error, if the part or its body was refused.
     pub(super) fault: Option<PartError>,
-    /// It is the first of its body.
+    /// Whether it is the first part of its body.
     pub(super) begins: bool,
 }
 
-/// When a credit is said again.
+/// The schedule of a repeated credit.
 #[derive(Debug)]
 struct Repetition {
-    said: Duration,
+    sent: Duration,
     due: Duration,
     pause: Duration,
 }
 
 impl Repetition {
-    /// At once, then ever more rarely.
+    /// Due at once, then at growing intervals.
     fn new(now: Duration) -> Self {
-        Self { said: Duration::ZERO, due: now, pause: REPEAT }
+        Self { sent: Duration::ZERO, due: now, pause: REPEAT }
     }
 
-    fn said(&mut self, now: Duration, missing: bool) {
-        self.said = now;
+    fn mark_sent(&mut self, now: Duration, missing: bool) {
+        self.sent = now;
         self.due = now + self.pause;
         self.pause = if missing { REPEAT } else { (2 * self.pause).min(REST) };
     }
@@ -63,92 +63,97 @@ impl Repetition {
 /// One writer.
 #[derive(Debug)]
 struct Source {
-    heard: Duration,
-    /// The latest body that is done with, and its count of parts.
+    latest_part: Duration,
+    /// The latest complete or abandoned body, and its number of parts.
     done: (u64, u32),
     assembly: Option<Assembly>,
     attempts: u32,
     credit: Repetition,
 }
 
-/// All writers of one topic of parts. It has no clock and no bus: the caller brings both.
+/// All writers of one topic of parts. It has no clock and no bus: the caller provides both.
 #[derive(Debug)]
 pub(super) struct Receiver {
     sources: BTreeMap<WriterId, Source>,
     ready: bool,
-    /// What is said to everybody while no writer was heard.
-    greeting: Repetition,
+    /// The credit to all writers while none has sent a part.
+    broadcast: Repetition,
 }
 
 impl Receiver {
     pub(super) fn new(now: Duration) -> Self {
-        Self { sources: BTreeMap::new(), ready: true, greeting: Repetition::new(now) }
+        Self { sources: BTreeMap::new(), ready: true, broadcast: Repetition::new(now) }
     }
 
-    /// Whether more is taken. What is under way is finished in any case.
+    /// Sets whether new bodies are accepted. A body in transit is completed in any case.
     pub(super) fn set_ready(&mut self, now: Duration, ready: bool) {
         if self.ready != ready {
             self.ready = ready;
-            self.greet(now);
+            self.send_credits_now(now);
         }
     }
 
-    /// Says at once to everybody how things stand.
-    pub(super) fn greet(&mut self, now: Duration) {
+    /// Makes the credits to all writers due at once.
+    pub(super) fn send_credits_now(&mut self, now: Duration) {
         self.sources.values_mut().for_each(|source| source.credit = Repetition::new(now));
-        self.greeting = Repetition::new(now);
+        self.broadcast = Repetition::new(now);
     }
 
-    /// Takes in one part.
-    pub(super) fn hear(&mut self, now: Duration, from: WriterId, part: &PackingChunk) -> Heard {
+    /// Processes one part.
+    pub(super) fn receive(&mut self, now: Duration, from: WriterId, part: &PackingChunk) -> PartOutcome {
         let shape = match Shape::checked(part) {
             Ok(shape) => shape,
-            Err(fault) => return Heard { fault: Some(fault), ..Heard::default() },
+            Err(fault) => return PartOutcome { fault: Some(fault), ..PartOutcome::default() },
         };
         self.make_room_for(from);
-        let new =
-            Source { heard: now, done: (0, 0), assembly: None, attempts: 0, credit: Repetition::new(now) };
+        let new = Source {
+            latest_part: now,
+            done: (0, 0),
+            assembly: None,
+            attempts: 0,
+            credit: Repetition::new(now),
+        };
         let source = self.sources.entry(from).or_insert(new);
-        source.heard = now;
-        source.hear(now, part, shape)
+        source.latest_part = now;
+        source.receive(now, part, shape)
     }
 
-    /// The credits to say now.
+    /// The credits that are due, marked as sent.
     pub(super) fn credits(&mut self, now: Duration) -> Vec<PackingCredit> {
         if self.sources.is_empty() {
-            if self.greeting.due > now {
+            if self.broadcast.due > now {
                 return Vec::new();
             }
-            self.greeting.said(now, false);
+            self.broadcast.mark_sent(now, false);
             return vec![PackingCredit { ready: self.ready, ..PackingCredit::default() }];
         }
         let due = self.sources.iter_mut().filter(|(_, source)| source.credit.due <= now);
-        let say = |(id, source): (&WriterId, &mut Source)| {
-            source.credit.said(now, source.assembly.is_some());
+        let credit = |(id, source): (&WriterId, &mut Source)| {
+            source.credit.mark_sent(now, source.assembly.is_some());
             let (body, (next, held)) = match &source.assembly {
                 Some(assembly) => (assembly.shape.body, assembly.credit()),
                 None => (source.done.0, (source.done.1, 0)),
             };
             PackingCredit { writer: id.0, body, next, held, ready: self.ready }
         };
-        due.map(say).collect()
+        due.map(credit).collect()
     }
 
-    /// When the next credit is due.
+    /// The time at which the next credit is due.
     pub(super) fn due(&self) -> Duration {
-        self.sources.values().map(|source| source.credit.due).min().unwrap_or(self.greeting.due)
+        self.sources.values().map(|source| source.credit.due).min().unwrap_or(self.broadcast.due)
     }
 
-    /// Parts here and in all of the body that is under way, if one is.
+    /// Number of parts received and in total of the body in transit.
     pub(super) fn under_way(&self) -> Option<(u64, u32)> {
         let assemblies = self.sources.values().filter_map(|source| source.assembly.as_ref());
         assemblies.map(|assembly| (assembly.parts(), assembly.shape.count)).next()
     }
 
-    /// Forgets writers that went.
-    pub(super) fn tend(&mut self, now: Duration, present: &[WriterId]) {
+    /// Forgets writers that left.
+    pub(super) fn forget_absent(&mut self, now: Duration, present: &[WriterId]) {
         let stays = |id: &WriterId, source: &Source| {
-            present.contains(id) || now.saturating_sub(source.heard) < FORGET
+            present.contains(id) || now.saturating_sub(source.latest_part) < FORGET
         };
         self.sources.retain(|id, source| stays(id, source));
     }
@@ -157,7 +162,7 @@ impl Receiver {
         if self.sources.len() < WRITERS || self.sources.contains_key(&new) {
             return;
         }
-        let quietest = self.sources.iter().min_by_key(|(_, source)| source.heard).map(|(id, _)| *id);
+        let quietest = self.sources.iter().min_by_key(|(_, source)| source.latest_part).map(|(id, _)| *id);
         if let Some(id) = quietest {
             self.sources.remove(&id);
         }
@@ -165,19 +170,19 @@ impl Receiver {
 }
 
 impl Source {
-    fn hear(&mut self, now: Duration, part: &PackingChunk, shape: Shape) -> Heard {
-        let mut heard = Heard::default();
+    fn receive(&mut self, now: Duration, part: &PackingChunk, shape: Shape) -> PartOutcome {
+        let mut outcome = PartOutcome::default();
         let current = self.assembly.as_ref().map_or(self.done.0, |a| a.shape.body);
         if part.body < current || part.body == self.done.0 {
-            // The writer has not heard that we have it.
-            if now.saturating_sub(self.credit.said) >= NOT_AGAIN {
+            // The writer has not received the credit for it.
+            if now.saturating_sub(self.credit.sent) >= NOT_AGAIN {
                 self.credit = Repetition::new(now);
             }
-            return heard;
+            return outcome;
         }
         if part.body > current {
             let before = self.assembly.take();
-            heard.fault = before.map(|old| PartError::GivenUp {
+            outcome.fault = before.map(|old| PartError::GivenUp {
                 body: old.shape.body,
                 held: old.parts(),
                 count: old.shape.count,
@@ -185,32 +190,33 @@ impl Source {
             self.attempts = 0;
         }
         let assembly = self.assembly.get_or_insert_with(|| {
-            heard.begins = true;
+            outcome.begins = true;
             Assembly::new(shape)
         });
         match assembly.add(part, &shape) {
             Ok(true) => self.credit = Repetition::new(now),
             Ok(false) => {}
-            Err(fault) => heard.fault = Some(fault),
+            Err(fault) => outcome.fault = Some(fault),
         }
         if let Some(complete) = self.assembly.take_if(|a| a.is_complete()) {
-            self.finish(complete, &mut heard);
+            self.finish(complete, &mut outcome);
         }
-        heard
+        outcome
     }
 
-    fn finish(&mut self, assembly: Assembly, heard: &mut Heard) {
+    fn finish(&mut self, assembly: Assembly, outcome: &mut PartOutcome) {
         let shape = assembly.shape;
         match assembly.into_body() {
             Ok(body) => {
                 self.done = (shape.body, shape.count);
-                heard.whole = Some(Whole { number: i64::try_from(shape.body).unwrap_or(i64::MAX), body });
+                outcome.whole = Some(Whole { number: i64::try_from(shape.body).unwrap_or(i64::MAX), body });
             }
             Err(found) => {
                 self.attempts += 1;
                 let again = self.attempts < ATTEMPTS;
-                let what = if again { "it is asked for again" } else { "it is given up" };
-                heard.fault = Some(PartError::Body { body: shape.body, found, said: shape.body_crc, what });
+                let action = if again { "requested again" } else { "given up" };
+                outcome.fault =
+                    Some(PartError::Body { body: shape.body, found, stated: shape.body_crc, action });
                 if again {
                     self.assembly = Some(Assembly::new(shape));
                 } else {

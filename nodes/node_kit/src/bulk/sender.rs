@@ -1,54 +1,56 @@
-//! The writing end: what to send next, and who still lacks what.
+//! The sender: the next part to send, and the progress of each reader.
 
+use super::limits::{FIRST_WORD, LOST, SILENCE, STALLED, WINDOW};
 use super::part::Shape;
-use super::{FIRST_WORD, LOST, SILENCE, STALLED, WINDOW};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-/// One reader, by the writer of its credits.
+/// One reader, identified by the writer of its credits.
 #[derive(Clone, Copy, Debug)]
 struct Reader {
-    /// Of its latest credit, in its writer's sequence.
+    /// Sequence number of its latest credit.
     sequence: i64,
-    heard: Duration,
-    /// When it last got anything it lacked.
+    /// Time of its latest credit.
+    latest_credit: Duration,
+    /// Time at which it last received a missing part.
     progress: Duration,
-    /// As in the credit, of the current body.
+    /// The credit's `next` for the current body.
     next: u32,
     held: u64,
     ready: bool,
-    /// It is waited for. Not any more once it was left behind, until it is heard again.
-    live: bool,
-    /// It was in the graph.
+    /// Whether the sender waits for it: false from a time limit until its next credit.
+    active: bool,
+    /// Whether it was in the graph.
     seen: bool,
 }
 
-/// Why a reader is not waited for any more.
+/// A reader that the sender does not wait for any longer, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct LeftBehind {
     pub(super) reader: WriterId,
     pub(super) reason: String,
 }
 
-/// The latest body and everyone who reads it. It has no clock and no bus: the caller brings both.
+/// The latest body and its readers. It has no clock and no bus: the caller provides both.
 #[derive(Debug)]
 pub(super) struct Sender {
     own: WriterId,
-    /// Bodies sent so far; the latest has this number.
+    /// Number of bodies so far, which is the number of the latest one.
     bodies: u64,
     bytes: Vec<u8>,
-    /// Of the latest body; `None` if there is none, or it is out of date.
+    /// Shape of the latest body; `None` if there is none, or it is out of date.
     shape: Option<Shape>,
     offered: Duration,
-    /// Parts below this were sent at least once; when each was sent last.
+    /// Parts below this index were sent at least once.
     sent: u32,
+    /// Time at which each part was last sent.
     when: Vec<Duration>,
     /// Parts to send again.
     again: BTreeSet<u32>,
     readers: BTreeMap<WriterId, Reader>,
-    /// Parts sent more than once.
+    /// Number of repeated parts.
     repeated: u64,
 }
 
@@ -68,12 +70,12 @@ impl Sender {
         }
     }
 
-    /// Parts that were sent more than once.
+    /// Number of repeated parts.
     pub(super) fn repeated(&self) -> u64 {
         self.repeated
     }
 
-    /// The next body. It takes the place of the one before.
+    /// Sets the next body, which replaces the previous one.
     pub(super) fn offer(&mut self, now: Duration, bytes: Vec<u8>) {
         self.bodies += 1;
         let shape = Shape::of(self.bodies, &bytes);
@@ -85,22 +87,22 @@ impl Sender {
         }
     }
 
-    /// The latest message went another way: nobody shall get the body before it instead.
+    /// Drops the body: a newer message was sent as one sample.
     pub(super) fn retire(&mut self) {
         (self.bytes, self.shape) = (Vec::new(), None);
         self.again.clear();
     }
 
-    /// Takes in one credit. A credit that was overtaken by a later one says nothing.
-    pub(super) fn hear(&mut self, now: Duration, from: WriterId, sequence: i64, credit: &PackingCredit) {
+    /// Processes one credit. A credit that arrives after a later one is ignored.
+    pub(super) fn receive(&mut self, now: Duration, from: WriterId, sequence: i64, credit: &PackingCredit) {
         let new = Reader {
             sequence,
-            heard: now,
+            latest_credit: now,
             progress: now,
             next: 0,
             held: 0,
             ready: true,
-            live: true,
+            active: true,
             seen: false,
         };
         let known = self.readers.get(&from).copied();
@@ -108,9 +110,9 @@ impl Sender {
         if known.is_some_and(|known| sequence <= known.sequence) {
             return;
         }
-        (reader.sequence, reader.heard, reader.ready) = (sequence, now, credit.ready);
-        if !reader.live || !reader.ready {
-            (reader.live, reader.progress) = (true, now);
+        (reader.sequence, reader.latest_credit, reader.ready) = (sequence, now, credit.ready);
+        if !reader.active || !reader.ready {
+            (reader.active, reader.progress) = (true, now);
         }
         if let Some(shape) = self.shape {
             if credit.writer == self.own.0 {
@@ -129,7 +131,7 @@ impl Sender {
         self.readers.insert(from, reader);
     }
 
-    /// The next part to send now, if there is one to send.
+    /// The next part that may be sent now.
     pub(super) fn next_part(&mut self, now: Duration) -> Option<PackingChunk> {
         let shape = self.shape?;
         let index = match self.again.pop_first() {
@@ -147,22 +149,23 @@ impl Sender {
         Some(shape.cut(&self.bytes, index))
     }
 
-    /// The bus did not take a part after all.
+    /// Schedules a part that the bus refused.
     pub(super) fn put_back(&mut self, index: u32) {
         self.again.insert(index);
     }
 
-    /// Parts below this may be sent: a window beyond the slowest reader that lives and is not done.
+    /// Parts below this index may be sent: a window beyond the slowest active reader with missing parts.
     fn frontier(&self) -> u32 {
         let Some(shape) = self.shape else { return 0 };
-        let waiting = self.readers.values().filter(|r| r.live && r.next < shape.count);
+        let waiting = self.readers.values().filter(|r| r.active && r.next < shape.count);
         let ends = waiting.map(|r| if r.ready { r.next.saturating_add(WINDOW) } else { r.next });
         ends.min().map_or(0, |end| end.min(shape.count))
     }
 
-    /// Looks after who is there (`present`: writers of credits in the graph) and who is silent; who is not waited for
-    /// any more, and lacks something, is returned.
-    pub(super) fn tend(&mut self, now: Duration, present: &[WriterId]) -> Vec<LeftBehind> {
+    /// Removes readers that left the graph (`present`: writers of credits in the graph) and applies the time limits.
+    ///
+    /// Returns the readers with missing parts that are not waited for any longer.
+    pub(super) fn apply_time_limits(&mut self, now: Duration, present: &[WriterId]) -> Vec<LeftBehind> {
         let count = self.shape.map_or(0, |shape| shape.count);
         let mut left = Vec::new();
         self.readers.retain(|id, reader| {
@@ -171,16 +174,17 @@ impl Sender {
             reader.seen |= there;
             !gone
         });
-        for (id, reader) in self.readers.iter_mut().filter(|(_, r)| r.live) {
-            let (silent, stuck) = (now.saturating_sub(reader.heard), now.saturating_sub(reader.progress));
+        for (id, reader) in self.readers.iter_mut().filter(|(_, r)| r.active) {
+            let (silent, stuck) =
+                (now.saturating_sub(reader.latest_credit), now.saturating_sub(reader.progress));
             let reason = if silent > SILENCE {
-                format!("it has said nothing for {:.0} s", silent.as_secs_f64())
+                format!("no credit for {:.0} s", silent.as_secs_f64())
             } else if reader.ready && reader.next < count && stuck > STALLED {
-                format!("it has got nothing for {:.0} s", stuck.as_secs_f64())
+                format!("no progress for {:.0} s", stuck.as_secs_f64())
             } else {
                 continue;
             };
-            reader.live = false;
+            reader.active = false;
             if reader.next < count {
                 let reason = format!("{reason}; it has {} of {count} parts", reader.next);
                 left.push(LeftBehind { reader: *id, reason });
@@ -189,24 +193,24 @@ impl Sender {
         left
     }
 
-    /// Whether a reader that lives, or may, does not have the latest body yet. Some are in the graph before they are heard:
-    /// `present`, and the count of readers that are `matched`.
+    /// Whether an active reader lacks parts of the latest body. Readers in the graph that have not sent a credit yet
+    /// count for a short time: those of `present`, and the number of `matched` readers.
     pub(super) fn is_busy(&self, now: Duration, present: &[WriterId], matched: usize) -> bool {
         let Some(shape) = self.shape else { return false };
-        let lacking = self.readers.values().any(|r| r.live && r.next < shape.count);
+        let lacking = self.readers.values().any(|r| r.active && r.next < shape.count);
         let unheard =
             || matched > self.readers.len() || present.iter().any(|id| !self.readers.contains_key(id));
         lacking || (now.saturating_sub(self.offered) < FIRST_WORD && unheard())
     }
 
-    /// Readers that are waited for.
+    /// Number of active readers with missing parts.
     pub(super) fn waited_for(&self) -> usize {
         let count = self.shape.map_or(0, |shape| shape.count);
-        self.readers.values().filter(|r| r.live && r.next < count).count()
+        self.readers.values().filter(|r| r.active && r.next < count).count()
     }
 }
 
-/// Parts within its window that a reader lacks, of those that were sent.
+/// The sent parts within its window that a reader lacks.
 fn missing(reader: &Reader, sent: u32) -> impl Iterator<Item = u32> {
     let Reader { next, held, .. } = *reader;
     let lacks = move |part: &u32| *part == next || held >> (part - next - 1) & 1 == 0;

@@ -1,24 +1,28 @@
-//! The reading end on a bus.
+//! The receiver on a bus.
 
+use super::limits::REST;
+use super::part_topics::beside;
 use super::receiver::Receiver;
-use super::{REST, beside};
-use crate::bus::{Bus, BusError, Demand, Sample, SubscriptionId};
+use crate::bus::{Bus, SubscriptionId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::Sample;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use grainlab_msgs::{Topic, topics};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-/// Parts that may wait between two looks.
+/// Maximum number of parts queued between two calls.
 const PARTS: u32 = 64;
 
-/// While more bytes than this wait to be taken, the writers of large messages wait, too.
+/// While more bytes than this are queued, the reader accepts no further large message.
 const ENOUGH: usize = 64 << 20;
 
-/// Receives messages of any length of one topic, undecoded and in order, whichever way they came.
+/// Receives messages of any length on one topic, undecoded and in order, whether sent as one sample or in parts.
 ///
-/// It has to be looked at every so often, or the writers take the reader for dead: [`BulkSubscription::take`] in each
-/// step, and no wait beyond [`BulkSubscription::patience`].
+/// A node calls [`BulkSubscription::take`] in each step and waits no longer than [`BulkSubscription::patience`];
+/// otherwise the writers stop waiting for this reader.
 #[derive(Debug)]
 pub struct BulkSubscription {
     resolved: String,
@@ -27,22 +31,22 @@ pub struct BulkSubscription {
     part_topic: Topic,
     credits: Publisher<PackingCredit>,
     receiver: Receiver,
-    /// What came and was not taken yet.
+    /// Received messages that were not taken yet.
     queue: VecDeque<Sample>,
     depth: usize,
-    /// Times of the body under way of each writer: when its first part was written.
-    written: BTreeMap<crate::bus::WriterId, Option<u64>>,
-    /// Writers of parts that are matched.
+    /// For each writer, the source time of the first part of the body in transit.
+    written: BTreeMap<crate::sample::WriterId, Option<u64>>,
+    /// Number of matched writers of parts.
     writers: usize,
     next_look: Duration,
     overrun: u64,
 }
 
 impl BulkSubscription {
-    /// Subscribes to `topic` with `demand`, and to its parts; at most the demand's depth of messages wait to be taken.
+    /// Subscribes to `topic` with `demand`, and to its parts. The queue holds at most `demand.depth` messages.
     pub fn subscribe(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
         let resolved = bus.resolve(topic)?;
-        // A writer that sees the plain subscription sees this one, too: endpoints become known in their order.
+        // Endpoints are discovered in this order, so a writer that sees the plain subscription sees this one, too.
         let part_topic = beside(&resolved, &topics::PACKING_CHUNK);
         let parts = Subscription::subscribe(bus, &part_topic, Demand::best_effort(PARTS))?;
         let credits = Publisher::advertise(bus, &beside(&resolved, &topics::PACKING_CREDIT))?;
@@ -66,48 +70,49 @@ impl BulkSubscription {
 
     /// The next message, if there is one. Never waits.
     ///
-    /// A large one has the writer of its parts for a writer, and its place among that writer's large messages for a
-    /// sequence number: 1, 2, 3, …, as if the parts were fragments below the bus.
+    /// The writer of a large message is the writer of its parts; its sequence number counts that writer's large
+    /// messages from 1.
     pub fn take(&mut self, bus: &mut dyn Bus) -> Result<Option<Sample>, BusError> {
         self.advance(bus)?;
         Ok(self.queue.pop_front())
     }
 
-    /// Takes in what arrived and says what is missing. For a reader that takes nothing now.
+    /// Processes what arrived and sends the credits that are due, without taking a message.
     pub fn advance(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
         let now = bus.now();
-        // Small ones first: their writer sends one only when the large one before it is here, but a large one at once.
+        // Small messages first: a writer sends one only after the large one before it was received, but a large one
+        // after a small one at once.
         while let Some(sample) = bus.take(self.plain)? {
             self.push(sample);
         }
         while let Some((part, info)) = self.parts.take_valid(bus)? {
-            let heard = self.receiver.hear(now, info.writer, &part);
-            if heard.begins {
+            let outcome = self.receiver.receive(now, info.writer, &part);
+            if outcome.begins {
                 self.written.insert(info.writer, info.source_time);
             }
-            if let Some(fault) = heard.fault {
+            if let Some(fault) = outcome.fault {
                 bus.count_refused(self.parts.id());
                 log::warn!("{}: from writer {}: {fault}", self.resolved, info.writer);
             }
-            if let Some(whole) = heard.whole {
+            if let Some(whole) = outcome.whole {
                 let source_time = self.written.remove(&info.writer).flatten().or(info.source_time);
-                let info = crate::bus::SampleInfo { sequence: whole.number, source_time, ..info };
+                let info = crate::sample::SampleInfo { sequence: whole.number, source_time, ..info };
                 self.push(Sample { body: whole.body, info });
             }
         }
         let writers = bus.writers(self.parts.id());
         if std::mem::replace(&mut self.writers, writers) != writers {
-            self.receiver.greet(now);
+            self.receiver.send_credits_now(now);
         }
         let waiting: usize = self.queue.iter().map(|sample| sample.body.len()).sum();
         self.receiver.set_ready(now, waiting <= ENOUGH);
         if now >= self.next_look {
             self.next_look = now + REST;
-            self.receiver.tend(now, &bus.foreign_writers(&self.part_topic));
+            self.receiver.forget_absent(now, &bus.foreign_writers(&self.part_topic));
         }
         for credit in self.receiver.credits(now) {
             match self.credits.publish(bus, &credit) {
-                // It is said again.
+                // A refused credit is repeated later.
                 Ok(_) | Err(BusError::Full { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -115,22 +120,22 @@ impl BulkSubscription {
         Ok(())
     }
 
-    /// How long a node may wait at `now` before it looks here again; what arrives ends its wait by itself.
+    /// Longest wait from `now` until the next call; an arriving message ends the wait.
     pub fn patience(&self, now: Duration) -> Duration {
         self.receiver.due().saturating_sub(now)
     }
 
-    /// The resolved name of the plain topic, which is what messages are of.
+    /// The resolved name of the plain topic.
     pub fn topic(&self) -> &str {
         &self.resolved
     }
 
-    /// Messages that wait to be taken.
+    /// Number of queued messages.
     pub fn waiting(&self) -> usize {
         self.queue.len()
     }
 
-    /// Parts here and in all of a large message under way, if one is.
+    /// Number of parts received and in total of a large message in transit.
     pub fn under_way(&self) -> Option<(u64, u32)> {
         self.receiver.under_way()
     }
@@ -140,13 +145,13 @@ impl BulkSubscription {
         self.plain
     }
 
-    /// Keep last: the oldest gives way.
+    /// Queues a message; a full queue drops its oldest one.
     fn push(&mut self, sample: Sample) {
         if self.queue.len() >= self.depth {
             self.queue.pop_front();
             self.overrun += 1;
             if self.overrun.is_power_of_two() {
-                log::warn!("{}: {} messages came too fast and were dropped", self.resolved, self.overrun);
+                log::warn!("{}: {} messages arrived too fast and were dropped", self.resolved, self.overrun);
             }
         }
         self.queue.push_back(sample);

@@ -1,10 +1,10 @@
-//! Both ends on a network that is made of lists: it loses, repeats, reorders and corrupts, in virtual time.
+//! Sender and receivers on a simulated network that loses, repeats, reorders and corrupts parts, in virtual time.
 
+use super::limits::{LONGEST, SILENCE, STRIDE, WINDOW};
 use super::part::{PartError, Shape};
 use super::receiver::Receiver;
 use super::sender::Sender;
-use super::{LONGEST, SILENCE, STRIDE, WINDOW};
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::time::Duration;
 
@@ -141,20 +141,21 @@ impl World {
         for (_, packet) in due {
             match packet {
                 Packet::Credit { from, sequence, credit } => {
-                    self.sender.hear(self.now, from, sequence, &credit)
+                    self.sender.receive(self.now, from, sequence, &credit)
                 }
                 Packet::Part { to, from, part } => {
                     let Some(end) = self.ends.iter_mut().find(|end| end.id == to && !end.deaf) else {
                         continue;
                     };
-                    let heard = end.receiver.hear(self.now, from, &part);
-                    end.bodies.extend(heard.whole.map(|whole| whole.body));
-                    end.faults.extend(heard.fault);
+                    let outcome = end.receiver.receive(self.now, from, &part);
+                    end.bodies.extend(outcome.whole.map(|whole| whole.body));
+                    end.faults.extend(outcome.fault);
                 }
             }
         }
         let present = self.present();
-        self.left.extend(self.sender.tend(self.now, &present).into_iter().map(|left| left.reason));
+        self.left
+            .extend(self.sender.apply_time_limits(self.now, &present).into_iter().map(|left| left.reason));
         while let Some(part) = self.sender.next_part(self.now) {
             self.most_ahead = self.most_ahead.max(part.index);
             for to in present.clone() {
@@ -217,7 +218,7 @@ fn every_body_arrives_once_whole_and_in_order_whatever_the_network_does() {
         assert!(world.left.is_empty(), "seed {seed}: {:?}", world.left);
         repeated += world.sender.repeated();
     }
-    assert!(faults > 0 && repeated > 0, "the network did something");
+    assert!(faults > 0 && repeated > 0, "the network had faults");
 }
 
 #[test]
@@ -232,18 +233,18 @@ fn a_quiet_network_carries_every_part_once() {
 }
 
 #[test]
-fn no_more_than_the_window_is_on_its_way_to_the_slowest_reader_that_lives() {
+fn no_more_than_the_window_is_in_transit_to_the_slowest_active_reader() {
     let mut world = World::new(0, 2, Weather::default());
     (0..100).for_each(|_| world.tick());
     world.ends[1].deaf = true;
     world.offer(&body(2, 40 * STRIDE));
     (0..2000).for_each(|_| world.tick());
-    assert_eq!(world.most_ahead, WINDOW - 1, "the deaf one counts as alive");
+    assert_eq!(world.most_ahead, WINDOW - 1, "the silent one counts as active");
     assert!(world.is_busy() && world.left.is_empty());
 }
 
 #[test]
-fn a_reader_that_dies_is_left_behind_with_a_reason_and_the_others_get_everything() {
+fn the_sender_stops_waiting_for_a_silent_reader_and_the_others_receive_everything() {
     let mut world = World::new(0, 2, Weather::default());
     (0..100).for_each(|_| world.tick());
     let bodies = [body(3, 40 * STRIDE), body(4, 3 * STRIDE)];
@@ -251,11 +252,11 @@ fn a_reader_that_dies_is_left_behind_with_a_reason_and_the_others_get_everything
     (0..3).for_each(|_| world.tick());
     world.ends[0].deaf = true;
     let died = world.now;
-    world.run_until("the dead one is left behind", 60, |w| !w.is_busy());
+    world.run_until("the silent one is no longer waited for", 60, |w| !w.is_busy());
     assert!(world.now - died <= SILENCE + Duration::from_secs(1));
     assert_eq!(world.left.len(), 1);
-    assert!(world.left[0].contains("said nothing"), "{:?}", world.left);
-    // It was only asleep: it is told the latest.
+    assert!(world.left[0].contains("no credit for"), "{:?}", world.left);
+    // It was only suspended: it receives the latest.
     world.ends[0].deaf = false;
     world.offer(&bodies[1]);
     world.run_until("both have it", 10, |w| w.ends.iter().all(|end| end.bodies.last() == Some(&bodies[1])));
@@ -263,7 +264,7 @@ fn a_reader_that_dies_is_left_behind_with_a_reason_and_the_others_get_everything
 }
 
 #[test]
-fn a_reader_that_leaves_is_not_waited_for_and_not_complained_about() {
+fn a_reader_that_leaves_is_not_waited_for_and_causes_no_warning() {
     let mut world = World::new(0, 1, Weather::default());
     (0..100).for_each(|_| world.tick());
     world.offer(&body(3, 40 * STRIDE));
@@ -274,7 +275,7 @@ fn a_reader_that_leaves_is_not_waited_for_and_not_complained_about() {
 }
 
 #[test]
-fn a_reader_that_is_there_and_not_heard_yet_is_waited_for_a_while() {
+fn a_reader_without_a_credit_yet_is_waited_for_a_while() {
     let mut world = World::new(0, 0, Weather::default());
     world.sender.offer(world.now, body(3, 2 * STRIDE));
     assert!(!world.is_busy(), "nobody is there");
@@ -286,7 +287,7 @@ fn a_reader_that_is_there_and_not_heard_yet_is_waited_for_a_while() {
 }
 
 #[test]
-fn a_late_or_restarted_reader_gets_the_latest_body_and_nobody_gets_it_twice() {
+fn a_late_or_restarted_reader_receives_the_latest_body_once() {
     let weather = Weather { lost: 0.1, twice: 0.1, corrupt: 0.05, delay: 10 };
     for seed in 0..10 {
         let mut world = World::new(seed, 2, weather);
@@ -338,7 +339,7 @@ fn a_body_that_is_out_of_date_is_not_sent_to_late_readers() {
 }
 
 #[test]
-fn a_reader_that_takes_no_more_holds_the_writer_and_goes_on_when_it_does() {
+fn a_reader_that_is_not_ready_stops_the_writer_until_it_is() {
     let mut world = World::new(0, 1, Weather::default());
     (0..100).for_each(|_| world.tick());
     let now = world.now;
@@ -346,7 +347,7 @@ fn a_reader_that_takes_no_more_holds_the_writer_and_goes_on_when_it_does() {
     (0..100).for_each(|_| world.tick());
     world.offer(&body(10, 20 * STRIDE));
     (0..60_000).for_each(|_| world.tick());
-    assert!(world.is_busy() && world.left.is_empty(), "it lives, so it is waited for");
+    assert!(world.is_busy() && world.left.is_empty(), "it is active, so it is waited for");
     assert!(world.ends[0].bodies.is_empty());
     let now = world.now;
     world.ends[0].receiver.set_ready(now, true);
@@ -364,24 +365,24 @@ fn forged(change: impl Fn(&mut PackingChunk)) -> PartError {
     };
     part.crc = found;
     let mut receiver = Receiver::new(Duration::ZERO);
-    let heard = receiver.hear(Duration::ZERO, SENDER, &part);
-    assert!(heard.whole.is_none() && receiver.under_way().is_none(), "nothing is kept of it");
-    heard.fault.expect("a fault")
+    let outcome = receiver.receive(Duration::ZERO, SENDER, &part);
+    assert!(outcome.whole.is_none() && receiver.under_way().is_none(), "no part of it is kept");
+    outcome.fault.expect("a fault")
 }
 
 #[test]
-fn parts_that_cannot_be_are_refused_by_the_name_of_the_field_and_take_no_memory() {
-    let says = |change: fn(&mut PackingChunk)| forged(change).to_string();
+fn invalid_parts_are_refused_with_the_name_of_the_field_and_allocate_nothing() {
+    let message = |change: fn(&mut PackingChunk)| forged(change).to_string();
     for (error, word) in [
-        (says(|p| p.length = LONGEST + 1), "length = 1073741825"),
-        (says(|p| p.length = u64::MAX), "length = 18446744073709551615"),
-        (says(|p| p.length = 0), "length = 0"),
-        (says(|p| p.stride = 0), "stride = 0"),
-        (says(|p| p.stride = u32::MAX), "stride = 4294967295"),
-        (says(|p| p.count = u32::MAX), "count = 4294967295"),
-        (says(|p| p.index = 4), "index = 4"),
-        (says(|p| p.body = 0), "body = 0"),
-        (says(|p| p.data.truncate(131_071)), "data length = 131071"),
+        (message(|p| p.length = LONGEST + 1), "length = 1073741825"),
+        (message(|p| p.length = u64::MAX), "length = 18446744073709551615"),
+        (message(|p| p.length = 0), "length = 0"),
+        (message(|p| p.stride = 0), "stride = 0"),
+        (message(|p| p.stride = u32::MAX), "stride = 4294967295"),
+        (message(|p| p.count = u32::MAX), "count = 4294967295"),
+        (message(|p| p.index = 4), "index = 4"),
+        (message(|p| p.body = 0), "body = 0"),
+        (message(|p| p.data.truncate(131_071)), "data length = 131071"),
     ] {
         assert!(error.contains(word), "{error}");
     }
@@ -392,45 +393,45 @@ fn parts_that_cannot_be_are_refused_by_the_name_of_the_field_and_take_no_memory(
 }
 
 #[test]
-fn a_part_that_contradicts_those_before_it_is_refused_and_they_are_kept() {
+fn a_part_that_contradicts_earlier_ones_is_refused_and_those_are_kept() {
     let (bytes, other) = (body(12, 3 * STRIDE), body(13, 3 * STRIDE));
     let (shape, wrong) = (Shape::of(1, &bytes), Shape::of(1, &other));
     let mut receiver = Receiver::new(Duration::ZERO);
-    let mut hear = |part: PackingChunk| receiver.hear(Duration::ZERO, SENDER, &part);
-    assert!(hear(shape.cut(&bytes, 2)).begins);
-    let fault = hear(wrong.cut(&other, 0)).fault;
+    let mut receive = |part: PackingChunk| receiver.receive(Duration::ZERO, SENDER, &part);
+    assert!(receive(shape.cut(&bytes, 2)).begins);
+    let fault = receive(wrong.cut(&other, 0)).fault;
     assert_eq!(fault, Some(PartError::Contradiction { body: 1, index: 0 }));
-    hear(shape.cut(&bytes, 0));
-    assert_eq!(hear(shape.cut(&bytes, 1)).whole.expect("complete").body, bytes);
+    receive(shape.cut(&bytes, 0));
+    assert_eq!(receive(shape.cut(&bytes, 1)).whole.expect("complete").body, bytes);
 }
 
 #[test]
-fn a_body_whose_parts_do_not_make_it_is_asked_for_again_and_then_given_up() {
+fn a_corrupt_body_is_requested_again_and_then_given_up() {
     let bytes = body(14, 2 * STRIDE);
     let wrong = Shape { body_crc: 1, ..Shape::of(1, &bytes) };
     let mut receiver = Receiver::new(Duration::ZERO);
     let mut faults = Vec::new();
     for round in 0..3 {
         for index in 0..2 {
-            let heard = receiver.hear(round * 100 * MS, SENDER, &wrong.cut(&bytes, index));
-            assert!(heard.whole.is_none());
-            faults.extend(heard.fault.map(|fault| fault.to_string()));
+            let outcome = receiver.receive(round * 100 * MS, SENDER, &wrong.cut(&bytes, index));
+            assert!(outcome.whole.is_none());
+            faults.extend(outcome.fault.map(|fault| fault.to_string()));
         }
         let credit = &receiver.credits(round * 100 * MS + 50 * MS)[0];
         assert_eq!(credit.next, if round < 2 { 0 } else { 2 }, "all of it again, or no more of it");
     }
     assert_eq!(faults.len(), 3);
-    assert!(faults[1].contains("asked for again") && faults[2].contains("given up"), "{faults:?}");
+    assert!(faults[1].contains("requested again") && faults[2].contains("given up"), "{faults:?}");
 }
 
 #[test]
-fn a_body_that_its_writer_gives_up_is_told_and_the_next_one_is_read() {
+fn a_body_given_up_by_its_writer_is_reported_and_the_next_one_is_received() {
     let (old, new) = (body(15, 4 * STRIDE), body(16, STRIDE));
     let mut receiver = Receiver::new(Duration::ZERO);
-    receiver.hear(Duration::ZERO, SENDER, &Shape::of(1, &old).cut(&old, 2));
-    let heard = receiver.hear(Duration::ZERO, SENDER, &Shape::of(2, &new).cut(&new, 0));
-    assert_eq!(heard.fault, Some(PartError::GivenUp { body: 1, held: 1, count: 4 }));
-    assert_eq!(heard.whole.map(|whole| (whole.number, whole.body)), Some((2, new)));
-    let late = receiver.hear(Duration::ZERO, SENDER, &Shape::of(1, &old).cut(&old, 3));
+    receiver.receive(Duration::ZERO, SENDER, &Shape::of(1, &old).cut(&old, 2));
+    let outcome = receiver.receive(Duration::ZERO, SENDER, &Shape::of(2, &new).cut(&new, 0));
+    assert_eq!(outcome.fault, Some(PartError::GivenUp { body: 1, held: 1, count: 4 }));
+    assert_eq!(outcome.whole.map(|whole| (whole.number, whole.body)), Some((2, new)));
+    let late = receiver.receive(Duration::ZERO, SENDER, &Shape::of(1, &old).cut(&old, 3));
     assert!(late.whole.is_none() && late.fault.is_none() && receiver.under_way().is_none());
 }

@@ -1,20 +1,22 @@
 //! The bus over DDS.
 
-use super::caretaker::{Caretaker, Inboxes, lock};
+use super::background_reader::{BackgroundReader, Inboxes, lock};
+use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
-use super::presence::Presence;
+use super::network::Network;
+use super::qos;
 use super::raw::{RawAdapter, RawPayload};
+use super::ros_graph::RosGraph;
 use super::writer::Writer;
-use super::{Network, create_error, qos};
 use crate::admission::Stranger;
-use crate::bus::{
-    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleId, SampleInfo,
-    SubscriptionId, Wake, WriterId,
-};
+use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use crate::signals::Signals;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
@@ -39,7 +41,7 @@ struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: GUID,
     topic: String,
-    /// A notification came and the reader was not seen empty since.
+    /// A notification arrived, and the reader was not found empty since.
     ready: bool,
     /// That notification is still to be cleared.
     notified: bool,
@@ -52,20 +54,21 @@ struct Subscriber {
     refused: u64,
 }
 
-/// A participant of its own, for one node.
+/// The participant of one node.
 ///
-/// Dropping it tells the peers that the node leaves; a process that ends without that stays matched for up to a minute.
+/// Dropping it informs the peers that the node leaves; a process that ends without that stays matched for up to a
+/// minute.
 pub struct DdsBus {
-    // Fields are dropped in this order, and endpoints have to go before their participant.
-    caretaker: Caretaker,
+    // Fields are dropped in this order, and endpoints have to be dropped before their participant.
+    background_reader: BackgroundReader,
     writers: Vec<Writer>,
     subscribers: Vec<Subscriber>,
     readers: Vec<Reader>,
     inboxes: Inboxes,
     waker: Arc<Waker>,
-    /// Another thread called, and no wait has said so yet.
+    /// Another thread called, and no wait has returned it yet.
     called: Arc<AtomicBool>,
-    presence: Presence,
+    ros_graph: RosGraph,
     signals: Option<Signals>,
     poll: Poll,
     events: Events,
@@ -82,8 +85,8 @@ pub struct DdsBus {
 }
 
 impl DdsBus {
-    /// Joins the domain as a process of the run that the environment names, or hears everyone where it names none. Peers
-    /// are known some 0.2 s later.
+    /// Joins the domain as a process of the run in the environment; without one it accepts the samples of all runs.
+    /// Peers are known some 0.2 s later.
     pub fn open(network: Network, names: Names) -> Result<Self, BusError> {
         Self::join(network, names, Identity::from_env(Scope::Everyone))
     }
@@ -101,18 +104,18 @@ impl DdsBus {
                 .participant_listener(move |peer| {
                     listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
                 })
-                // Who is not of the run gets what is there, and is not waited for.
+                // Readers outside the run receive what is sent, and are not waited for.
                 .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
                 .build()
         };
-        // RustDDS gives its threads ten seconds to start; a process that is stopped meanwhile tries once more.
+        // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
         let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
         let open = OpenParticipant::new();
         let none = QosPolicyBuilder::new().build();
         let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
         let subscriber =
             participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
-        let presence = Presence::new(&participant, &publisher, &names)?;
+        let ros_graph = RosGraph::new(&participant, &publisher, &names)?;
 
         let io = |e: std::io::Error| create_error("poll", &e);
         let poll = Poll::new().map_err(io)?;
@@ -120,17 +123,18 @@ impl DdsBus {
         poll.registry().register(status.as_status_source_mio1(), STATUS, Interest::READABLE).map_err(io)?;
         let inboxes = Inboxes::default();
         let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
-        let caretaker = Caretaker::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
+        let background_reader =
+            BackgroundReader::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
         let graph = Graph::new(participant.guid());
         Ok(Self {
-            caretaker,
+            background_reader,
             writers: Vec::new(),
             subscribers: Vec::new(),
             readers: Vec::new(),
             inboxes,
             waker,
             called: Arc::default(),
-            presence,
+            ros_graph,
             signals: None,
             poll,
             events: Events::with_capacity(64),
@@ -147,7 +151,7 @@ impl DdsBus {
         })
     }
 
-    /// Lets signals end a [`Bus::wait`].
+    /// Makes signals end a [`Bus::wait`].
     pub fn watch(&mut self, mut signals: Signals) -> Result<(), BusError> {
         self.poll
             .registry()
@@ -175,7 +179,7 @@ impl DdsBus {
         Ok(created)
     }
 
-    /// The reader that serves `demand` on a topic, made if there is none.
+    /// The reader for `demand` on a topic, made if there is none.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
         let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
         if let Some(index) = self.readers.iter().position(serves) {
@@ -194,15 +198,15 @@ impl DdsBus {
             .map_err(|e| create_error(&resolved, &e))?;
         let guid = inbox.guid();
         self.gate.add_reader(guid, &resolved);
-        self.presence.add_reader(guid);
+        self.ros_graph.add_reader(guid);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
         self.readers.push(Reader { inbox, guid, topic: resolved, ready: false, notified: false });
         Ok(index)
     }
 
-    /// Hands what we published to our own subscriptions: a participant without multicast does not find itself,
-    /// and DDS would bring it nothing of its own.
+    /// Passes published samples to our own subscriptions: a participant without multicast does not discover itself,
+    /// and DDS would not deliver its own samples.
     fn echo(&self, topic: &str, id: SampleId, about: Option<SampleId>, body: &[u8]) {
         for reader in self.readers.iter().filter(|r| r.topic == topic) {
             let now = self.wall_nanos();
@@ -212,7 +216,7 @@ impl DdsBus {
         }
     }
 
-    /// Takes in what discovery reported; true if something changed.
+    /// Processes the events of discovery; true if something changed.
     fn follow_graph(&mut self) -> bool {
         let mut changed = false;
         while let Some(event) = self.status.try_recv_status() {
@@ -230,7 +234,7 @@ impl DdsBus {
         self.readers.iter().any(|r| r.ready || lock(&r.inbox).has_data())
     }
 
-    /// Polls once. Reports in the order of urgency; what is not reported now is found at the next call.
+    /// Polls once. Returns the most urgent event; the others are found at the next call.
     fn poll_once(&mut self, timeout: Duration) -> Option<Wake> {
         if let Err(error) = self.poll.poll(&mut self.events, Some(timeout)) {
             // Interrupted by a signal handler: the signal's own event follows.
@@ -283,7 +287,7 @@ impl Bus for DdsBus {
             .publisher
             .create_datawriter_no_key(&dds_topic, Some(qos::offered(topic)))
             .map_err(|e| create_error(&resolved, &e))?;
-        self.presence.add_writer(data.guid());
+        self.ros_graph.add_writer(data.guid());
         self.writers.push(Writer::new(data, resolved, qos::window(topic)));
         Ok(PublisherId(self.writers.len() - 1))
     }
@@ -310,7 +314,7 @@ impl Bus for DdsBus {
     }
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
-        self.caretaker.seen();
+        self.background_reader.seen();
         let subscriber = self.subscribers.get_mut(subscription.0).ok_or(BusError::Handle("take"))?;
         let reader = &mut self.readers[subscriber.reader];
         let mut inbox = lock(&reader.inbox);
@@ -326,9 +330,9 @@ impl Bus for DdsBus {
     }
 
     fn wait(&mut self, timeout: Duration) -> Wake {
-        self.presence.announce();
-        self.caretaker.seen();
-        // A caller may mean for ever; a day is as good and cannot overflow.
+        self.ros_graph.announce();
+        self.background_reader.seen();
+        // A caller may pass an unlimited time; a day cannot overflow.
         let timeout = timeout.min(Duration::from_secs(86_400));
         let deadline = Instant::now() + timeout;
         let at_once = self.has_data() || self.called.load(Ordering::Acquire);
@@ -344,7 +348,7 @@ impl Bus for DdsBus {
                 wake = self.poll_once(deadline - now);
             }
         }
-        self.caretaker.seen();
+        self.background_reader.seen();
         wake.unwrap_or(Wake::Timeout)
     }
 

@@ -1,10 +1,10 @@
-//! Between RustDDS's threads and the rules of admission.
+//! Applies the rules of admission in RustDDS's threads.
 
-use super::caretaker::lock;
+use super::background_reader::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::WriterId;
 use crate::identity::{Identity, Scope};
+use crate::sample::WriterId;
 use rustdds::GUID;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -15,7 +15,7 @@ use std::sync::Mutex;
 pub(super) struct Gate {
     identity: Identity,
     admission: Mutex<Admission>,
-    /// Resolved topics by our readers.
+    /// The resolved topic of each of our readers.
     topics: Mutex<BTreeMap<[u8; 16], String>>,
 }
 
@@ -32,12 +32,12 @@ impl Gate {
         self.identity
     }
 
-    /// A reader of ours is to be filtered and counted under its topic.
+    /// Registers one of our readers under its topic.
     pub(super) fn add_reader(&self, reader: GUID, topic: &str) {
         lock(&self.topics).insert(reader.to_bytes(), topic.to_owned());
     }
 
-    /// Whether a reader of ours takes a sample of this writer.
+    /// Whether one of our readers accepts a sample of this writer.
     pub(super) fn takes(&self, writer: GUID, reader: GUID) -> bool {
         let mut admission = lock(&self.admission);
         if admission.admits(&prefix(&writer)) {
@@ -48,7 +48,7 @@ impl Gate {
         if new {
             let stranger = admission.describe(&prefix(&writer));
             drop(admission);
-            log::info!("{topic}: {stranger} is not of this run: what it publishes is ignored");
+            log::info!("{topic}: {stranger} is not of this run: its samples are ignored");
         }
         taken
     }
@@ -63,10 +63,10 @@ impl Gate {
         <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }
 
-    /// A participant was discovered, which listens there.
+    /// Notes a discovered participant and its addresses.
     pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
-        // The process of a participant is looked up only where it decides on admission, or names a stranger.
+        // The process of a participant is looked up only where admission or a message needs it.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);
         if self.identity.scope == Scope::Everyone || ours {
             return;
@@ -76,7 +76,7 @@ impl Gate {
         }
     }
 
-    /// A participant is gone.
+    /// Forgets a participant that left.
     pub(super) fn lost(&self, participant: &Participant) {
         lock(&self.admission).lost(participant);
     }

@@ -1,16 +1,16 @@
-//! Who else is there: endpoints and matches, followed through the participant's own event channel.
+//! The endpoints of other processes and their matches, followed through the participant's event channel.
 //!
 //! The endpoints' own status channels hold four events and drop the rest; the participant's holds 2048.
 
-use crate::bus::WriterId;
+use crate::sample::WriterId;
 use rustdds::{DomainParticipantStatusEvent as Event, GUID};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Endpoints of other processes, and what ours are matched with.
+/// Endpoints of other processes, and the matches of ours.
 #[derive(Default)]
 pub(super) struct Graph {
     own: [u8; 12],
-    /// Remote writers by topic as it is named on the wire.
+    /// Remote writers by DDS topic name.
     writers: BTreeMap<GUID, String>,
     /// Local endpoint to matched remote endpoints.
     matches: BTreeMap<GUID, BTreeSet<GUID>>,
@@ -25,7 +25,7 @@ impl Graph {
         Self { own: prefix(&participant), ..Self::default() }
     }
 
-    /// Takes one event in; true if it changed what is known.
+    /// Processes one event; true if it changed the graph.
     pub(super) fn apply(&mut self, event: Event) -> bool {
         match event {
             Event::WriterDetected { writer } => {
@@ -48,7 +48,7 @@ impl Graph {
             }
             Event::RemoteWriterQosIncompatible { remote_writer, requested_qos, offered_qos, .. } => {
                 log::warn!(
-                    "a writer ({}) offers less than we ask and will not be heard: requested {requested_qos:?}, offered {offered_qos:?}",
+                    "a writer ({}) offers less than we request, so its samples are not received: requested {requested_qos:?}, offered {offered_qos:?}",
                     WriterId(remote_writer.to_bytes())
                 );
                 false
@@ -67,7 +67,7 @@ impl Graph {
         prefix(guid) == self.own
     }
 
-    /// A participant also matches itself; that is no peer.
+    /// A participant also matches itself; that does not count as a peer.
     fn matched(&mut self, local: GUID, remote: GUID) -> bool {
         !self.is_ours(&remote) && self.matches.entry(local).or_default().insert(remote)
     }
@@ -86,7 +86,7 @@ impl Graph {
         self.matches.get(&local).map_or(0, |remotes| remotes.iter().filter(|guid| counts(guid)).count())
     }
 
-    /// Remote writers of a topic as named on the wire, sorted, of those that count.
+    /// Remote writers of a DDS topic name, sorted, of those that count.
     pub(super) fn writers_of(&self, dds_topic: &str, counts: impl Fn(&GUID) -> bool) -> Vec<WriterId> {
         self.writers
             .iter()

@@ -1,22 +1,24 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
 use super::raw::{RawAdapter, RawBody};
-use crate::bus::{BusError, Demand, Sample, SampleId, SampleInfo, WriterId};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
 use rustdds::{GUID, Timestamp};
 use std::collections::VecDeque;
 
 pub(super) type RawReader = SimpleDataReader<RawBody, RawAdapter>;
 
-/// A reader shared by every subscription to its topic, one queue for each of them.
+/// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
     reader: RawReader,
     topic: String,
     demand: Demand,
     queues: Vec<VecDeque<Sample>>,
-    /// Our own participant: what it publishes is delivered by the bus, and DDS's echo of it is dropped.
+    /// Our own participant: the bus delivers its samples, and the copies from DDS are dropped.
     own: [u8; 12],
-    /// Samples that RustDDS could not hand over: a representation that is not CDR.
+    /// Number of samples that RustDDS could not return: their representation is not CDR.
     refused: u64,
 }
 
@@ -25,7 +27,7 @@ impl Inbox {
         Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
     }
 
-    /// A sample that did not come through DDS.
+    /// Adds a sample that did not come through DDS.
     pub(super) fn deliver(&mut self, sample: Sample) {
         for queue in &mut self.queues {
             push_bounded(queue, sample.clone(), self.demand.depth);
@@ -44,7 +46,7 @@ impl Inbox {
         &mut self.reader
     }
 
-    /// Adds a subscriber and returns its place.
+    /// Adds a subscriber and returns its index.
     pub(super) fn add_queue(&mut self) -> usize {
         self.queues.push(VecDeque::new());
         self.queues.len() - 1
@@ -68,7 +70,7 @@ impl Inbox {
         if let Some(sample) = self.queues[place].pop_front() {
             return Ok(Some(sample));
         }
-        // With one subscriber a sample goes straight through; with more, the others find it in their queues.
+        // With one subscriber a sample is returned directly; with more, it is also queued for the others.
         let Some(sample) = self.read()? else { return Ok(None) };
         for (other, queue) in self.queues.iter_mut().enumerate() {
             if other != place {
@@ -78,7 +80,7 @@ impl Inbox {
         Ok(Some(sample))
     }
 
-    /// Moves everything that arrived into the queues; true if there was anything.
+    /// Moves all samples that arrived into the queues; true if there were any.
     pub(super) fn collect(&mut self) -> Result<bool, BusError> {
         self.acknowledge();
         let mut moved = false;
@@ -114,7 +116,7 @@ impl Inbox {
     }
 }
 
-/// Keep last: the oldest gives way.
+/// Queues a sample; a full queue drops its oldest one.
 fn push_bounded(queue: &mut VecDeque<Sample>, sample: Sample, depth: u32) {
     if queue.len() >= depth as usize {
         queue.pop_front();

@@ -1,32 +1,27 @@
 //! The bus over DDS, through RustDDS.
 //!
-//! - `bus`: the [`crate::Bus`] itself and its one place to wait
-//! - `inbox`: a reader and what was read but not taken; `caretaker`: empties readers while a node computes
-//! - `gate`: whose samples are taken; `processes`: which process runs a participant
-//! - `graph`: who else is there; `presence`: this node in the ROS graph
-//! - `network`: domain and reach; `claim`: domains for tests; `qos`: the contract as policies; `raw`: bytes in and out
+//! - `bus`: the [`crate::Bus`] itself, with its single wait
+//! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
+//! - `gate`: which samples are accepted; `processes`: the process of a participant
+//! - `graph`: endpoints of other processes; `ros_graph`: announces this node in the ROS graph
+//! - `network`: domain and reach; `test_domain`: domains for tests; `qos`: the contract as policies; `raw`: bytes in
+//!   and out
 //! - `writer`: one writer
 
+mod background_reader;
 mod bus;
-mod caretaker;
-mod claim;
+mod error;
 mod gate;
 mod graph;
 mod inbox;
 mod network;
-mod presence;
 mod processes;
 mod qos;
 mod raw;
+mod ros_graph;
+mod test_domain;
 mod writer;
 
 pub use bus::DdsBus;
-pub use claim::ClaimedDomain;
-pub use network::{MAX_DOMAIN, Network, NetworkError, Range};
-
-use crate::bus::BusError;
-
-/// RustDDS could not create something.
-fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
-    BusError::Network { what: format!("create {what}"), reason: error.to_string() }
-}
+pub use network::{MAX_DOMAIN, Network, NetworkError, Reach};
+pub use test_domain::ClaimedDomain;

@@ -1,30 +1,30 @@
-//! Which network and which domain: the ROS 2 environment variables, as far as RustDDS can honour them.
+//! Domain and discovery range from the ROS 2 environment variables, as far as RustDDS supports them.
 
 use rustdds::DomainParticipantBuilder;
 use std::net::Ipv4Addr;
 
-/// How far discovery reaches.
+/// The range of discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
-    /// This host alone, over the loopback interface. Our default.
+pub enum Reach {
+    /// This host only, over the loopback interface. The default.
     Localhost,
-    /// Whatever multicast reaches, as ROS 2 does by default.
+    /// All hosts that multicast reaches, the default of ROS 2.
     Subnet,
 }
 
-/// Domain and reach of a participant.
+/// Domain and range of discovery of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Network {
     /// DDS domain, 0 to 232; participants of different domains do not see each other.
     pub domain: u16,
-    /// How far discovery reaches.
-    pub range: Range,
+    /// The range of discovery.
+    pub reach: Reach,
 }
 
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
 pub const MAX_DOMAIN: u16 = 232;
 
-/// A variable that cannot be honoured. The process then ends with [`crate::Exit::Usage`].
+/// A variable with an unsupported value. The process then ends with [`crate::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{variable}={value:?}: {reason}")]
 pub struct NetworkError {
@@ -32,14 +32,14 @@ pub struct NetworkError {
     pub variable: &'static str,
     /// Its value.
     pub value: String,
-    /// Why not, and what to do.
+    /// Why it is not supported, and what to do.
     pub reason: &'static str,
 }
 
 impl Network {
-    /// This host alone, in the given domain.
+    /// This host only, in the given domain.
     pub const fn localhost(domain: u16) -> Self {
-        Self { domain, range: Range::Localhost }
+        Self { domain, reach: Reach::Localhost }
     }
 
     /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and `ROS_STATIC_PEERS`.
@@ -47,7 +47,7 @@ impl Network {
         Self::from_variables(|name| std::env::var(name).ok())
     }
 
-    /// The same from any source of variables; unset and empty are the same.
+    /// The same from any source of variables; an empty one counts as unset.
     pub fn from_variables(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, NetworkError> {
         let get =
             |variable: &'static str| lookup(variable).map(|v| v.trim().to_owned()).filter(|v| !v.is_empty());
@@ -68,13 +68,13 @@ impl Network {
             ));
         }
         let localhost_only = get("ROS_LOCALHOST_ONLY");
-        let range = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
-            // ROS_LOCALHOST_ONLY is deprecated in ROS 2, but still wins when it is 1.
-            _ if localhost_only.as_deref() == Some("1") => Range::Localhost,
-            None => Range::Localhost,
+        let reach = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
+            // ROS_LOCALHOST_ONLY is deprecated in ROS 2, but 1 still overrides the range.
+            _ if localhost_only.as_deref() == Some("1") => Reach::Localhost,
+            None => Reach::Localhost,
             Some(text) => match text.to_ascii_uppercase().as_str() {
-                "LOCALHOST" => Range::Localhost,
-                "SUBNET" | "SYSTEM_DEFAULT" => Range::Subnet,
+                "LOCALHOST" => Reach::Localhost,
+                "SUBNET" | "SYSTEM_DEFAULT" => Reach::Subnet,
                 "OFF" => {
                     return Err(refuse(
                         "ROS_AUTOMATIC_DISCOVERY_RANGE",
@@ -91,15 +91,15 @@ impl Network {
                 }
             },
         };
-        Ok(Self { domain, range })
+        Ok(Self { domain, reach })
     }
 
-    /// What a participant of this network is made with.
+    /// The settings of a participant in this network.
     pub(crate) fn participant(&self) -> DomainParticipantBuilder {
         let builder = DomainParticipantBuilder::new(self.domain);
-        match self.range {
-            Range::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Range::Subnet => builder,
+        match self.reach {
+            Reach::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+            Reach::Subnet => builder,
         }
     }
 }
@@ -116,13 +116,13 @@ mod tests {
     fn everything_stays_on_this_host_unless_asked() {
         assert_eq!(read(&[]), Ok(Network::localhost(0)));
         assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "")]), Ok(Network::localhost(0)));
-        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().range, Range::Subnet);
+        assert_eq!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "subnet")]).unwrap().reach, Reach::Subnet);
         assert_eq!(
-            read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().range,
-            Range::Subnet
+            read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT")]).unwrap().reach,
+            Reach::Subnet
         );
         let both = [("ROS_LOCALHOST_ONLY", "1"), ("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET")];
-        assert_eq!(read(&both).unwrap().range, Range::Localhost);
+        assert_eq!(read(&both).unwrap().reach, Reach::Localhost);
         assert_eq!(read(&[("ROS_LOCALHOST_ONLY", "0")]), Ok(Network::localhost(0)));
     }
 

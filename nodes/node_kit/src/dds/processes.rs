@@ -1,4 +1,4 @@
-//! Which process of this host listens on a port: who runs a participant of any vendor.
+//! Finds the process of this host that listens on a port: the owner of a participant of any vendor.
 
 use crate::admission::Process;
 use std::collections::BTreeMap;
@@ -6,11 +6,11 @@ use std::fs;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::path::Path;
 
-/// Ancestors looked at: more than any chain of launchers and shells is long.
+/// Maximum number of ancestors that are checked, more than any chain of launchers and shells has.
 const GENERATIONS: usize = 32;
 
-/// The process that listens on one of these addresses, and whether `root` started it; `None` if it is on another host, or
-/// another user's.
+/// The process that listens on one of these addresses, and whether it descends from `root`; `None` if it is on another
+/// host, or belongs to another user.
 pub(super) fn listening_on(addresses: &[SocketAddr], root: Option<u32>) -> Option<Process> {
     let local = addresses.iter().filter(|a| is_local(a.ip()));
     let inodes = inodes_by_port()?;
@@ -57,7 +57,7 @@ fn is_below(pid: u32, root: u32) -> bool {
     parents.take(GENERATIONS).any(|ancestor| ancestor == root)
 }
 
-/// The fourth field of `/proc/PID/stat`; the second, the name, may hold blanks and brackets.
+/// The fourth field of `/proc/PID/stat`; the second, the name, may contain spaces and brackets.
 fn parent_of(pid: u32) -> Option<u32> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     let (_, behind_name) = stat.rsplit_once(')')?;

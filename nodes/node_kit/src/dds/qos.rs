@@ -1,22 +1,22 @@
-//! From the contract table to RustDDS policies.
+//! The QoS of the topic table as policies of RustDDS.
 
-use crate::bus::Demand;
+use crate::demand::Demand;
 use grainlab_msgs::Topic;
 use rustdds::policy::{Deadline, Durability, History, Lifespan, Liveliness, Reliability, ResourceLimits};
 use rustdds::{Duration, QosPolicies, QosPolicyBuilder};
 
-/// How long a reliable write waits while its window is full. Longer than one repair round (10 ms), short beside a step of
-/// the slowest node, so that a dead reader delays a writer but never stops it.
+/// How long a reliable write waits while its window is full. Longer than one repair round (10 ms), much shorter than a
+/// step of the slowest node, so that a crashed reader delays a writer but never stops it.
 const MAX_BLOCKING: Duration = Duration::from_millis(20);
 
-/// Unacknowledged samples of a stream. A dead reader stays matched for up to a minute; at a servo's worst rate of some
-/// kHz the window fills within seconds, and then each sample costs [`MAX_BLOCKING`].
+/// Unacknowledged samples of a stream. A crashed reader stays matched for up to a minute; at a servo's highest rate of
+/// some kHz the window fills within seconds, and then each sample costs [`MAX_BLOCKING`].
 const STREAM_WINDOW: u32 = 8192;
 
-/// Unacknowledged samples of a latched topic: these are megabytes each, and some a minute.
+/// Unacknowledged samples of a latched topic: these are megabytes each, and a few per minute.
 const LATCHED_WINDOW: u32 = 256;
 
-/// Samples that a writer of `topic` may have unacknowledged.
+/// Maximum number of unacknowledged samples of a writer of `topic`.
 pub(super) fn window(topic: &Topic) -> u32 {
     let window = if topic.qos.transient_local && topic.qos.depth < LATCHED_WINDOW {
         LATCHED_WINDOW
@@ -26,13 +26,13 @@ pub(super) fn window(topic: &Topic) -> u32 {
     window.max(topic.qos.depth)
 }
 
-/// What a writer of `topic` offers.
+/// The policies that a writer of `topic` offers.
 pub(super) fn offered(topic: &Topic) -> QosPolicies {
     let qos = topic.qos;
     policies(qos.reliable, qos.transient_local, qos.depth, window(topic))
 }
 
-/// What a reader asks, the demand being within the topic's QoS already.
+/// The policies that a reader requests; `demand` is within the topic's QoS already.
 pub(super) fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
     // RustDDS keeps 64 samples unless told otherwise: too few for a recorder, too many for packings of megabytes.
     policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)

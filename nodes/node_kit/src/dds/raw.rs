@@ -1,4 +1,4 @@
-//! Samples through RustDDS as bytes: nothing is decoded, and nothing is encoded twice.
+//! Adapter that passes samples through RustDDS as bytes, without decoding or encoding.
 
 use rustdds::RepresentationIdentifier;
 use rustdds::bytes::Bytes;
@@ -19,7 +19,7 @@ pub(super) struct RawPayload(pub(super) Bytes);
 /// The adapter between RustDDS and bytes.
 pub(super) struct RawAdapter;
 
-/// Puts the header back that RustDDS took off, so that a body is what travelled.
+/// Restores the header that RustDDS removed, so that a body has all bytes of the sample.
 #[derive(Clone)]
 pub(super) struct KeepBytes;
 

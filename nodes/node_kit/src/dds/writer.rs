@@ -1,14 +1,16 @@
 //! One DDS writer of this process.
 
 use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
-use crate::bus::{BusError, Published, SampleId, WriterId};
+use crate::bus::Published;
+use crate::bus_error::BusError;
+use crate::sample::{SampleId, WriterId};
 use rustdds::bytes::Bytes;
 use rustdds::dds::WriteError;
 use rustdds::no_key::DataWriter;
 use rustdds::{GUID, RTPSEntity, SampleIdentity, SequenceNumber, Timestamp, WriteOptionsBuilder};
 use std::collections::BTreeMap;
 
-/// A writer, and what it published.
+/// A writer and its statistics.
 pub(super) struct Writer {
     pub(super) data: DataWriter<RawPayload, RawAdapter>,
     pub(super) guid: GUID,
@@ -22,7 +24,7 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Of a resolved topic; `window` samples may be unacknowledged.
+    /// A writer of a resolved topic; at most `window` samples may be unacknowledged.
     pub(super) fn new(data: DataWriter<RawPayload, RawAdapter>, topic: String, window: u32) -> Self {
         let guid = data.guid();
         Self { data, guid, topic, window, count: 0, full: 0, wholes: BTreeMap::new() }
@@ -32,7 +34,7 @@ impl Writer {
         WriterId(self.guid.to_bytes())
     }
 
-    /// Publishes a body with its encapsulation header; its sequence number.
+    /// Publishes a body with its encapsulation header and returns the sequence number.
     pub(super) fn write(&mut self, body: &[u8], about: Option<SampleId>) -> Result<i64, BusError> {
         if body.len() < HEADER || body[..2] != CDR_LE {
             let found = body[..body.len().min(HEADER)].to_vec();
@@ -69,7 +71,7 @@ impl Writer {
         }
     }
 
-    /// What it published: messages sent in parts before its own.
+    /// Its statistics: messages sent in parts come before its own.
     pub(super) fn published(&self) -> Vec<Published> {
         let writer = self.id();
         let whole = |(topic, count): (&String, &u64)| Published {

@@ -1,59 +1,66 @@
 //! One participant of the network in memory.
 
-use super::hub::{Hub, State};
+use super::state::{Reader, State, Writer};
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::{
-    Bus, BusError, Caller, Demand, Published, PublisherId, Received, Sample, SampleId, SubscriptionId, Wake,
-    WriterId,
-};
+use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::identity::Identity;
 use crate::names::Names;
+use crate::sample::{Sample, SampleId, WriterId};
 use grainlab_msgs::Topic;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::time::Duration;
 
-/// A bus over a [`Hub`]. Waiting lets virtual time pass.
+/// A bus of a [`crate::Hub`]. Waiting advances virtual time.
 #[derive(Debug)]
 pub struct MemoryBus {
-    hub: Hub,
+    state: Rc<RefCell<State>>,
     participant: Participant,
     admission: Admission,
     names: Names,
-    /// Places in the hub.
+    /// Indices in the hub.
     writers: Vec<usize>,
     readers: Vec<usize>,
-    /// Messages that a writer, by its place in the hub, sent in parts.
+    /// Number of messages that a writer, by its index in the hub, sent in parts.
     wholes: BTreeMap<(usize, String), u64>,
     interrupted: bool,
 }
 
 impl MemoryBus {
-    pub(super) fn new(hub: Hub, participant: Participant, names: Names, identity: Identity) -> Self {
+    pub(super) fn new(
+        state: Rc<RefCell<State>>,
+        participant: Participant,
+        names: Names,
+        identity: Identity,
+    ) -> Self {
         let admission = Admission::new(identity, participant);
         let (writers, readers, wholes) = (Vec::new(), Vec::new(), BTreeMap::new());
-        Self { hub, participant, admission, names, writers, readers, wholes, interrupted: false }
+        Self { state, participant, admission, names, writers, readers, wholes, interrupted: false }
     }
 
-    /// What a signal does on the real bus: the next wait says [`Wake::Shutdown`], once.
+    /// Acts as a signal on the real bus: the next wait returns [`Wake::Shutdown`], once.
     pub fn interrupt(&mut self) {
         self.interrupted = true;
     }
 
-    /// Whether a sample is there to be taken now.
+    /// Whether a sample can be taken now.
     pub fn has_arrivals(&self) -> bool {
         self.has_data()
     }
 
     pub(super) fn has_data(&self) -> bool {
-        let state = self.hub.state.borrow();
+        let state = self.state.borrow();
         self.readers.iter().any(|r| state.readers[*r].has_data(state.now))
     }
 
     fn endpoints(&self, topic: &str, count: impl Fn(&State, &str) -> usize) -> usize {
-        count(&self.hub.state.borrow(), topic)
+        count(&self.state.borrow(), topic)
     }
 
-    /// Another process's writer that is not a stranger's.
+    /// Whether it is an admitted writer of another process.
     fn counts(&self, writer: WriterId) -> bool {
         let participant = writer.participant();
         participant != self.participant && self.admission.admits(&participant)
@@ -67,14 +74,14 @@ impl Bus for MemoryBus {
 
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
-        self.writers.push(self.hub.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
+        self.writers.push(self.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
         Ok(PublisherId(self.writers.len() - 1))
     }
 
     fn subscribe(&mut self, topic: &Topic, demand: Demand) -> Result<SubscriptionId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let demand = demand.within(topic);
-        let mut state = self.hub.state.borrow_mut();
+        let mut state = self.state.borrow_mut();
         self.readers.push(state.add_reader(self.participant, resolved, demand));
         Ok(SubscriptionId(self.readers.len() - 1))
     }
@@ -86,7 +93,7 @@ impl Bus for MemoryBus {
         about: Option<SampleId>,
     ) -> Result<i64, BusError> {
         let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
-        let mut state = self.hub.state.borrow_mut();
+        let mut state = self.state.borrow_mut();
         if !body.starts_with(&[0, 1]) || body.len() < 4 {
             let found = body[..body.len().min(4)].to_vec();
             return Err(BusError::Encapsulation { topic: state.writers[writer].topic.clone(), found });
@@ -96,7 +103,7 @@ impl Bus for MemoryBus {
 
     fn take(&mut self, subscription: SubscriptionId) -> Result<Option<Sample>, BusError> {
         let reader = *self.readers.get(subscription.0).ok_or(BusError::Handle("take"))?;
-        let mut state = self.hub.state.borrow_mut();
+        let mut state = self.state.borrow_mut();
         let now = state.now;
         while let Some(sample) = state.readers[reader].take(now) {
             let (taken, _) = self.admission.takes(sample.info.writer, &state.readers[reader].topic);
@@ -112,7 +119,7 @@ impl Bus for MemoryBus {
         if std::mem::take(&mut self.interrupted) {
             return Wake::Shutdown;
         }
-        let mut state = self.hub.state.borrow_mut();
+        let mut state = self.state.borrow_mut();
         let deadline = state.now + timeout;
         let due = self.readers.iter().filter_map(|r| state.readers[*r].next_due()).min();
         match due {
@@ -133,8 +140,8 @@ impl Bus for MemoryBus {
 
     fn readers(&self, publisher: PublisherId) -> usize {
         let Some(writer) = self.writers.get(publisher.0) else { return 0 };
-        let topic = self.hub.state.borrow().writers[*writer].topic.clone();
-        let others = |r: &&super::hub::Reader| {
+        let topic = self.state.borrow().writers[*writer].topic.clone();
+        let others = |r: &&Reader| {
             r.alive && r.participant != self.participant && self.admission.admits(&r.participant)
         };
         self.endpoints(&topic, |s, topic| {
@@ -144,8 +151,8 @@ impl Bus for MemoryBus {
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let Some(reader) = self.readers.get(subscription.0) else { return 0 };
-        let topic = self.hub.state.borrow().readers[*reader].topic.clone();
-        let others = |w: &&super::hub::Writer| w.alive && self.counts(w.id);
+        let topic = self.state.borrow().readers[*reader].topic.clone();
+        let others = |w: &&Writer| w.alive && self.counts(w.id);
         self.endpoints(&topic, |s, topic| {
             s.writers.iter().filter(others).filter(|w| w.topic == topic).count()
         })
@@ -153,7 +160,7 @@ impl Bus for MemoryBus {
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
         let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
-        let state = self.hub.state.borrow();
+        let state = self.state.borrow();
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved);
         let mut ids: Vec<WriterId> = on_topic.map(|w| w.id).filter(|id| self.counts(*id)).collect();
         ids.sort();
@@ -162,7 +169,7 @@ impl Bus for MemoryBus {
 
     fn strange_writers(&self, topic: &Topic) -> Vec<WriterId> {
         let Ok(resolved) = self.names.resolve(topic.name) else { return Vec::new() };
-        let state = self.hub.state.borrow();
+        let state = self.state.borrow();
         let strange = |id: &WriterId| !self.admission.admits(&id.participant());
         let on_topic = state.writers.iter().filter(|w| w.alive && w.topic == resolved).map(|w| w.id);
         let mut ids: Vec<WriterId> = on_topic.filter(strange).collect();
@@ -178,7 +185,7 @@ impl Bus for MemoryBus {
     }
 
     fn published(&self) -> Vec<Published> {
-        let state = self.hub.state.borrow();
+        let state = self.state.borrow();
         let of = |place: &usize| {
             let w = &state.writers[*place];
             let one = |topic: &str, count| Published { topic: topic.into(), writer: w.id, count, full: 0 };
@@ -190,7 +197,7 @@ impl Bus for MemoryBus {
     }
 
     fn received(&self) -> Vec<Received> {
-        let state = self.hub.state.borrow();
+        let state = self.state.borrow();
         let of = |r: &usize| {
             let r = &state.readers[*r];
             Received { topic: r.topic.clone(), taken: r.taken, refused: r.refused }
@@ -200,7 +207,7 @@ impl Bus for MemoryBus {
 
     fn count_refused(&mut self, subscription: SubscriptionId) {
         if let Some(reader) = self.readers.get(subscription.0) {
-            self.hub.state.borrow_mut().readers[*reader].refused += 1;
+            self.state.borrow_mut().readers[*reader].refused += 1;
         }
     }
 
@@ -221,17 +228,17 @@ impl Bus for MemoryBus {
     }
 
     fn now(&self) -> Duration {
-        self.hub.now()
+        self.state.borrow().now
     }
 
     fn wall_nanos(&self) -> u64 {
-        self.hub.state.borrow().wall_nanos()
+        self.state.borrow().wall_nanos()
     }
 }
 
 impl Drop for MemoryBus {
     fn drop(&mut self) {
-        let mut state = self.hub.state.borrow_mut();
+        let mut state = self.state.borrow_mut();
         for writer in &self.writers {
             state.writers[*writer].alive = false;
         }

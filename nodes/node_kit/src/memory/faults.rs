@@ -1,4 +1,4 @@
-//! What can go wrong with a sample on its way.
+//! Faults of samples in transit.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ pub struct Faults {
     pub drop: f64,
     /// Share of samples that arrive twice, 0 to 1.
     pub duplicate: f64,
-    /// Longest delay; each sample's is drawn evenly from zero to this, so that samples overtake each other.
+    /// Longest delay; each sample's delay is uniform between zero and this, so that samples overtake each other.
     pub delay: Duration,
 }
 
@@ -18,7 +18,7 @@ pub struct Faults {
 pub struct Dice(u64);
 
 impl Dice {
-    /// The numbers of this seed.
+    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -31,22 +31,22 @@ impl Dice {
         z ^ (z >> 31)
     }
 
-    /// Evenly from 0 to 1, 1 excluded.
+    /// A uniform number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Evenly from 0 to `count`, that excluded; 0 for none.
+    /// A uniform integer in [0, `count`); 0 if `count` is 0.
     pub fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }
 
-    /// When the copies of one sample arrive, from now. Empty if it is lost. Draws the same count of numbers whatever the
-    /// outcome, so that one topic's faults do not shift another's.
+    /// The delays of the copies of one sample; empty if it is lost. Draws the same number of random numbers whatever
+    /// the outcome, so that one topic's faults do not shift another's.
     pub(super) fn arrivals(&mut self, faults: &Faults, reliable: bool) -> Vec<Duration> {
         let [lost, twice, first, second] = std::array::from_fn(|_| self.unit());
         if reliable {
-            // A lost sample is sent again: it only comes later.
+            // A lost sample is repeated: it only arrives later.
             let rounds = if lost < faults.drop { 2.0 } else { first };
             return vec![faults.delay.mul_f64(rounds)];
         }

@@ -1,90 +1,41 @@
-//! What all buses of one test share.
+//! The network that all buses of one test share.
 
 use super::bus::MemoryBus;
-use super::faults::{Dice, Faults};
+use super::faults::Faults;
+use super::state::State;
 use crate::admission::Participant;
-use crate::bus::{Demand, Sample, SampleId, SampleInfo, WriterId};
 use crate::identity::Identity;
 use crate::names::Names;
-use grainlab_msgs::topics::Qos;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 use std::time::Duration;
-
-/// Virtual time zero as wall-clock time, ns since 1970.
-const EPOCH_NANOS: u64 = 1_700_000_000_000_000_000;
 
 /// A network in memory. Cloning gives another handle to the same one.
 #[derive(Clone, Debug)]
 pub struct Hub {
-    pub(super) state: Rc<RefCell<State>>,
-}
-
-#[derive(Debug)]
-pub(super) struct State {
-    pub(super) now: Duration,
-    /// What the wall clock was set forward by, ns; negative for back.
-    wall_offset: i64,
-    dice: Dice,
-    faults: BTreeMap<String, Faults>,
-    participants: u32,
-    pub(super) writers: Vec<Writer>,
-    pub(super) readers: Vec<Reader>,
-}
-
-#[derive(Debug)]
-pub(super) struct Writer {
-    pub(super) id: WriterId,
-    pub(super) topic: String,
-    pub(super) qos: Qos,
-    pub(super) count: u64,
-    latched: VecDeque<Sample>,
-    pub(super) alive: bool,
-}
-
-#[derive(Debug)]
-pub(super) struct Reader {
-    pub(super) participant: Participant,
-    pub(super) topic: String,
-    pub(super) demand: Demand,
-    /// Due time and sample, in the order of due time.
-    queue: VecDeque<(Duration, Sample)>,
-    pub(super) taken: u64,
-    pub(super) refused: u64,
-    pub(super) alive: bool,
+    state: Rc<RefCell<State>>,
 }
 
 impl Hub {
-    /// An empty network at time zero. The seed decides every fault.
+    /// An empty network at time zero. The faults follow from the seed.
     pub fn new(seed: u64) -> Self {
-        let state = State {
-            now: Duration::ZERO,
-            wall_offset: 0,
-            dice: Dice::new(seed),
-            faults: BTreeMap::new(),
-            participants: 0,
-            writers: Vec::new(),
-            readers: Vec::new(),
-        };
-        Self { state: Rc::new(RefCell::new(state)) }
+        Self { state: Rc::new(RefCell::new(State::new(seed))) }
     }
 
-    /// A participant of its own, for one node. Dropping it is a clean leave and a crash alike.
+    /// A new participant for one node. Dropping it stands for a clean exit and for a crash.
     pub fn bus(&self, names: Names) -> MemoryBus {
         self.bus_as(names, Identity::default())
     }
 
-    /// The same with another identity than that of a tool.
+    /// The same with this identity instead of that of a tool.
     pub fn bus_as(&self, names: Names, identity: Identity) -> MemoryBus {
-        let mut state = self.state.borrow_mut();
-        state.participants += 1;
-        MemoryBus::new(self.clone(), participant_of(&identity, state.participants), names, identity)
+        let participant = participant_of(&identity, self.state.borrow_mut().count_participant());
+        MemoryBus::new(Rc::clone(&self.state), participant, names, identity)
     }
 
     /// Faults of one topic, by its resolved name, from now on.
     pub fn set_faults(&self, topic: &str, faults: Faults) {
-        self.state.borrow_mut().faults.insert(topic.into(), faults);
+        self.state.borrow_mut().set_faults(topic, faults);
     }
 
     /// Virtual time.
@@ -92,121 +43,25 @@ impl Hub {
         self.state.borrow().now
     }
 
-    /// Lets virtual time pass.
+    /// Advances virtual time.
     pub fn advance(&self, time: Duration) {
         self.state.borrow_mut().now += time;
     }
 
-    /// Sets the wall clock forward, or back; the time that only goes forward is not touched.
+    /// Sets the wall clock forward or back; the monotonic time does not change.
     pub fn set_wall_clock(&self, forward_nanos: i64) {
-        self.state.borrow_mut().wall_offset += forward_nanos;
+        self.state.borrow_mut().set_wall_clock(forward_nanos);
     }
 
-    /// When the next sample on its way arrives, if one is.
+    /// Time of the next arrival of a sample in transit, if any.
     pub fn next_arrival(&self) -> Option<Duration> {
-        let state = self.state.borrow();
-        let now = state.now;
-        let fronts = state
-            .readers
-            .iter()
-            .filter(|r| r.alive)
-            .filter_map(|r| r.queue.iter().map(|(due, _)| *due).find(|due| *due > now));
-        fronts.min()
+        self.state.borrow().next_arrival()
     }
 }
 
-/// The GUID prefix of the participant that came as the `number`th: as on the real bus, but without chance.
+/// The GUID prefix of the `number`th participant: as on the real bus, but without random bytes.
 fn participant_of(identity: &Identity, number: u32) -> Participant {
     let mut bytes = [0; 9];
     bytes[5..].copy_from_slice(&number.to_be_bytes());
     identity.guid_prefix_with(bytes)
-}
-
-/// The GUID of a participant's endpoint.
-pub(super) fn writer_id(participant: Participant, entity: usize) -> WriterId {
-    let mut bytes = [0; 16];
-    bytes[..12].copy_from_slice(&participant);
-    bytes[12..].copy_from_slice(&(entity as u32).to_be_bytes());
-    WriterId(bytes)
-}
-
-impl State {
-    pub(super) fn wall_nanos(&self) -> u64 {
-        (EPOCH_NANOS + self.now.as_nanos() as u64).saturating_add_signed(self.wall_offset)
-    }
-
-    pub(super) fn add_writer(&mut self, participant: Participant, topic: String, qos: Qos) -> usize {
-        let id = writer_id(participant, self.writers.len());
-        self.writers.push(Writer { id, topic, qos, count: 0, latched: VecDeque::new(), alive: true });
-        self.writers.len() - 1
-    }
-
-    pub(super) fn add_reader(&mut self, participant: Participant, topic: String, demand: Demand) -> usize {
-        let mut queue = VecDeque::new();
-        if demand.reliable {
-            for writer in self.writers.iter().filter(|w| w.alive && w.topic == topic) {
-                queue.extend(writer.latched.iter().map(|sample| (self.now, sample.clone())));
-            }
-        }
-        self.readers.push(Reader { participant, topic, demand, queue, taken: 0, refused: 0, alive: true });
-        self.readers.len() - 1
-    }
-
-    pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
-        let (now, received) = (self.now, self.wall_nanos());
-        let writer = &mut self.writers[writer];
-        writer.count += 1;
-        let info = SampleInfo {
-            writer: writer.id,
-            sequence: writer.count as i64,
-            source_time: Some(received),
-            received,
-            about,
-        };
-        let sample = Sample { body: body.to_vec(), info };
-        if writer.qos.transient_local {
-            writer.latched.push_back(sample.clone());
-            while writer.latched.len() > writer.qos.depth as usize {
-                writer.latched.pop_front();
-            }
-        }
-        let faults = self.faults.get(&writer.topic).copied().unwrap_or_default();
-        for reader in self.readers.iter_mut().filter(|r| r.alive && r.topic == writer.topic) {
-            let reliable = reader.demand.reliable && writer.qos.reliable;
-            for delay in self.dice.arrivals(&faults, reliable) {
-                reader.deliver(now + delay, sample.clone(), reliable);
-            }
-        }
-        info.sequence
-    }
-}
-
-impl Reader {
-    /// Puts a sample in its place. Reliable: never before an earlier one of the same writer.
-    fn deliver(&mut self, due: Duration, mut sample: Sample, reliable: bool) {
-        let writer = sample.info.writer;
-        let behind = self.queue.iter().filter(|(_, s)| s.info.writer == writer).map(|(due, _)| *due).max();
-        let due = if reliable { behind.map_or(due, |b| b.max(due)) } else { due };
-        sample.info.received = EPOCH_NANOS + due.as_nanos() as u64;
-        let place = self.queue.partition_point(|(other, _)| *other <= due);
-        self.queue.insert(place, (due, sample));
-        while self.queue.len() > self.demand.depth as usize {
-            self.queue.pop_front();
-        }
-    }
-
-    pub(super) fn has_data(&self, now: Duration) -> bool {
-        self.queue.front().is_some_and(|(due, _)| *due <= now)
-    }
-
-    pub(super) fn next_due(&self) -> Option<Duration> {
-        self.queue.front().map(|(due, _)| *due)
-    }
-
-    pub(super) fn take(&mut self, now: Duration) -> Option<Sample> {
-        if !self.has_data(now) {
-            return None;
-        }
-        self.queue.pop_front().map(|(_, sample)| sample)
-    }
 }

@@ -1,6 +1,7 @@
-//! Several nodes in one thread, in a fixed order and in virtual time.
+//! Steps several nodes in one thread, in a fixed order and in virtual time.
 
-use super::{Hub, MemoryBus};
+use super::bus::MemoryBus;
+use super::hub::Hub;
 use crate::exit::Exit;
 use crate::node::{Next, Node, NodeError};
 use std::time::Duration;
@@ -9,7 +10,7 @@ use std::time::Duration;
 pub struct Actor<'a> {
     node: &'a mut dyn Node,
     bus: MemoryBus,
-    /// When it wants its next step at the latest.
+    /// Latest time of its next step.
     due: Duration,
     ended: Option<Result<Exit, NodeError>>,
 }
@@ -20,7 +21,7 @@ impl<'a> Actor<'a> {
         Self { node, bus, due: Duration::ZERO, ended: None }
     }
 
-    /// How it ended, if it did.
+    /// Its exit, if it has ended.
     pub fn ended(&self) -> Option<&Result<Exit, NodeError>> {
         self.ended.as_ref()
     }
@@ -33,7 +34,8 @@ impl<'a> Actor<'a> {
 
 /// Steps all actors in turn until `done`, until all ended, or until virtual time `limit`; true in the first case.
 ///
-/// An actor is stepped when a sample arrived for it or its waiting time is over. Time passes only while nobody can step.
+/// An actor is stepped when a sample arrived for it or its waiting time is over. Time advances only when no actor can
+/// step.
 pub fn run_until(
     hub: &Hub,
     actors: &mut [Actor],

@@ -1,13 +1,15 @@
 //! ROS 2 parameter files: node keys (`/**`, `/ns/node`, nested namespaces), then `ros__parameters`.
 
-use super::{ParameterError, ParameterValue, yaml::Yaml};
+use super::error::ParameterError;
+use super::value::ParameterValue;
+use super::yaml::Yaml;
 use std::path::Path;
 
 const PARAMETERS_KEY: &str = "ros__parameters";
 
 /// The parameters that the file gives to `node` (fully qualified), in the order of the file, names joined by dots.
 ///
-/// A file none of whose keys is for the node is an error: it would be ignored without a word.
+/// A file without a key for the node is an error: it would be ignored without a message.
 pub(super) fn read(path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
     let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
     let text = std::fs::read_to_string(path).map_err(|e| file_error(format!("cannot read: {e}")))?;
@@ -40,7 +42,7 @@ fn collect_sections(key: &str, yaml: Yaml, sections: &mut Vec<(String, Yaml)>) -
         if name == PARAMETERS_KEY {
             if key.is_empty() {
                 return Err(format!(
-                    "{PARAMETERS_KEY} stands at the top: put a node key such as /** above it"
+                    "{PARAMETERS_KEY} is at the top level: put a node key such as /** above it"
                 ));
             }
             sections.push((key.into(), value));
@@ -138,7 +140,7 @@ mod tests {
     #[test]
     fn misshapen_files_say_where() {
         for (text, needle) in [
-            ("ros__parameters: {dt: 1}", "stands at the top"),
+            ("ros__parameters: {dt: 1}", "is at the top level"),
             ("- 1\n- 2\n", "node keys"),
             ("servo:\n  dt: 1\n", "/servo/dt"),
             ("/**:\n  ros__parameters:\n    a: [1, x]\n", "one type"),

@@ -1,6 +1,9 @@
-//! The values a node runs with.
+//! The parameter values of a node.
 
-use super::{ParameterError, ParameterSpec, ParameterValue, file, yaml::Yaml};
+use super::error::ParameterError;
+use super::spec::ParameterSpec;
+use super::value::ParameterValue;
+use super::{file, yaml::Yaml};
 use crate::{args::RosArgs, names::Names};
 use std::collections::BTreeMap;
 
@@ -13,8 +16,8 @@ pub struct Parameters {
 impl Parameters {
     /// Applies files and command line to the declared parameters; files first, later ones win.
     ///
-    /// Everything given must be for this node and declared by it, of its type and within its range. An integer is taken
-    /// where a double is declared.
+    /// Every given parameter must be for this node and declared by it, of its type and within its range. An integer is
+    /// accepted where a double is declared.
     pub fn resolve(
         specs: &[ParameterSpec],
         default_node: &str,
@@ -109,7 +112,7 @@ impl Parameters {
     }
 }
 
-/// Makes `value` the type of `like` where nothing is lost by it; else gives it back.
+/// Converts `value` to the type of `like` where this is exact; else returns it unchanged.
 fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue, ParameterValue> {
     use ParameterValue as V;
     match (value, like) {
@@ -117,7 +120,7 @@ fn coerce(value: ParameterValue, like: &ParameterValue) -> Result<ParameterValue
         (V::IntegerArray(v), V::DoubleArray(_)) => {
             Ok(V::DoubleArray(v.into_iter().map(|v| v as f64).collect()))
         }
-        // An empty list carries no type of its own.
+        // An empty list has no type.
         (V::IntegerArray(v), V::StringArray(_)) if v.is_empty() => Ok(V::StringArray(Vec::new())),
         (V::IntegerArray(v), V::BoolArray(_)) if v.is_empty() => Ok(V::BoolArray(Vec::new())),
         (value, like) if value.type_name() == like.type_name() => Ok(value),
@@ -158,7 +161,7 @@ from_parameter! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameters::Range;
+    use crate::parameters::spec::Range;
 
     fn specs() -> Vec<ParameterSpec> {
         vec![

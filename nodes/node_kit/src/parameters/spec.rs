@@ -1,9 +1,9 @@
-//! What a node declares about a parameter: name, type and default, range, meaning.
+//! The declaration of a parameter: name, type and default, range, description.
 
-use super::ParameterValue;
+use super::value::ParameterValue;
 use std::fmt;
 
-/// Which values a parameter may take.
+/// The valid values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Range {
     /// Any value of its type (a double is never NaN).
@@ -15,7 +15,7 @@ pub enum Range {
         /// Greatest value.
         max: i64,
     },
-    /// A double or every double of a list, bounds included; infinite bounds are none.
+    /// A double or every double of a list, bounds included; an infinite bound is no limit.
     Double {
         /// Least value.
         min: f64,
@@ -77,13 +77,13 @@ impl fmt::Display for Range {
 pub struct ParameterSpec {
     /// Its name, dots separating groups.
     pub name: &'static str,
-    /// Its value when nobody sets it; this also fixes its type.
+    /// Its default value, which also fixes its type.
     pub default: ParameterValue,
-    /// The values it may take.
+    /// Its valid values.
     pub range: Range,
-    /// What it does, with its unit.
+    /// Its description, with the unit.
     pub description: &'static str,
-    /// Whether it is fixed once the node runs.
+    /// Whether it cannot change while the node runs.
     pub read_only: bool,
 }
 
@@ -109,26 +109,4 @@ impl fmt::Display for ParameterSpec {
         }
         write!(f, "): {}", self.description)
     }
-}
-
-macro_rules! into_value {
-    ($($from:ty => $variant:ident),* $(,)?) => {$(
-        impl From<$from> for ParameterValue {
-            fn from(value: $from) -> Self {
-                ParameterValue::$variant(value.into())
-            }
-        }
-    )*};
-}
-
-into_value! {
-    bool => Bool,
-    i64 => Integer,
-    f64 => Double,
-    &str => String,
-    String => String,
-    Vec<bool> => BoolArray,
-    Vec<i64> => IntegerArray,
-    Vec<f64> => DoubleArray,
-    Vec<String> => StringArray,
 }

@@ -1,6 +1,6 @@
 //! YAML of any shape, and the parameter values in it.
 
-use super::ParameterValue;
+use super::value::ParameterValue;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
@@ -37,7 +37,7 @@ impl Yaml {
         }
     }
 
-    /// The parameter value this is. A list must hold values of one type; integers among doubles become doubles.
+    /// Converts it to a parameter value. A list must hold values of one type; integers among doubles become doubles.
     pub(super) fn into_value(self) -> Result<ParameterValue, String> {
         match self {
             Yaml::Bool(v) => Ok(ParameterValue::Bool(v)),

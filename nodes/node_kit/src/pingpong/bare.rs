@@ -1,7 +1,7 @@
 //! The exchange over ros2-client as any program would write it.
 
-use super::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
-use crate::bus::BusError;
+use super::exchange::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
+use crate::bus_error::BusError;
 use crate::dds::Network;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, topics};

@@ -1,7 +1,9 @@
 //! The exchange over our bus.
 
-use super::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
-use crate::bus::{Bus, BusError, Demand};
+use super::exchange::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
+use crate::bus::Bus;
+use crate::bus_error::BusError;
+use crate::demand::Demand;
 use crate::typed::{Publisher, Subscription};
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::topics;
@@ -10,8 +12,8 @@ use std::time::{Duration, Instant};
 /// Depth of the partner's best-effort reader.
 const PARTNER: Demand = Demand::best_effort(64);
 
-/// Asks `exchanges` times and returns the duration of each exchange in microseconds, encoding and decoding included.
-/// Fewer come back if the partner goes away.
+/// Makes `exchanges` exchanges and returns the duration of each in microseconds, encoding and decoding included.
+/// Returns fewer if the partner leaves.
 pub fn bus_ping(bus: &mut dyn Bus, exchanges: u64) -> Result<Vec<f64>, BusError> {
     let publisher = Publisher::<Stress>::advertise(bus, &topics::STRESS)?;
     let subscription = Subscription::<StrainRate>::subscribe(bus, &topics::STRAIN_RATE, PARTNER)?;
@@ -42,7 +44,7 @@ pub fn bus_ping(bus: &mut dyn Bus, exchanges: u64) -> Result<Vec<f64>, BusError>
     Ok(micros)
 }
 
-/// Answers until nothing was asked for some seconds after the first question; returns the count of answers.
+/// Answers until no request arrives for some seconds after the first one; returns the number of answers.
 pub fn bus_pong(bus: &mut dyn Bus) -> Result<u64, BusError> {
     let publisher = Publisher::<StrainRate>::advertise(bus, &topics::STRAIN_RATE)?;
     let subscription = Subscription::<Stress>::subscribe(bus, &topics::STRESS, PARTNER)?;
@@ -56,7 +58,7 @@ pub fn bus_pong(bus: &mut dyn Bus) -> Result<u64, BusError> {
     })
 }
 
-/// Reads both topics reliably, as the recorder does; returns the samples received and those missing by sequence numbers.
+/// Reads both topics reliably, as the recorder does; returns the numbers of samples received and missing.
 pub fn bus_listen(bus: &mut dyn Bus) -> Result<(u64, u64), BusError> {
     const RECORDER: Demand = Demand::reliable(20_000);
     let both = [bus.subscribe(&topics::STRESS, RECORDER)?, bus.subscribe(&topics::STRAIN_RATE, RECORDER)?];
@@ -76,7 +78,8 @@ pub fn bus_listen(bus: &mut dyn Bus) -> Result<(u64, u64), BusError> {
     Ok((received, missing))
 }
 
-/// Calls `take` whenever something arrived, until nothing did for [`IDLE`] after a first time, or for [`GIVE_UP`] at all.
+/// Calls `take` whenever something arrives, until nothing does for [`IDLE`] after the first time, or for [`GIVE_UP`]
+/// before it.
 fn listen(
     bus: &mut dyn Bus,
     mut take: impl FnMut(&mut dyn Bus) -> Result<u64, BusError>,

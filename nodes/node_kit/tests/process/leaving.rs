@@ -4,7 +4,7 @@ use super::{PATIENCE, Role, claim};
 use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
-    Bus, BusError, DdsBus, Demand, Exit, Life, Names, Network, PeerWatch, Report, WriterId,
+    Bus, BusError, DdsBus, Demand, Exit, Liveliness, Names, Network, PeerWatch, Report, WriterId,
 };
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -73,7 +73,7 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
         observer.until("the final report", |o| o.last.as_ref().is_some_and(Report::is_final));
         let (code, _, stderr) = child.end();
         assert_eq!(code, Some(i32::from(exit.code())), "{stderr}");
-        assert!(stderr.contains(&format!("[{role}]: asked to stop")), "{stderr}");
+        assert!(stderr.contains(&format!("[{role}]: stopping on request")), "{stderr}");
 
         observer.until("the leave", |o| o.bus.foreign_writers(&topics::RUN_STATE).is_empty());
         let last = observer.last.clone().unwrap();
@@ -84,7 +84,7 @@ fn a_signal_ends_a_node_cleanly_and_its_final_counts_balance_what_was_received()
             assert_eq!((highest as u64, count), (writer.count, writer.count), "{}", writer.topic);
         }
         let peer = observer.watch.peers().find(&format!("/{role}")).unwrap();
-        assert_eq!(peer.life(observer.bus.now()), Life::Left(exit));
+        assert_eq!(peer.liveliness(observer.bus.now()), Liveliness::Left(exit));
     }
 }
 
@@ -132,8 +132,8 @@ fn a_killed_process_falls_silent_while_dds_still_shows_it() {
     observer.until_third_report();
     child.signal(libc::SIGKILL);
     child.end();
-    let life = |o: &Observer| o.watch.peers().find("/talker").map(|p| p.life(o.bus.now()));
-    observer.until("silence", |o| matches!(life(o), Some(Life::Silent(_))));
+    let life = |o: &Observer| o.watch.peers().find("/talker").map(|p| p.liveliness(o.bus.now()));
+    observer.until("silence", |o| matches!(life(o), Some(Liveliness::Silent(_))));
     assert_eq!(observer.bus.foreign_writers(&topics::RUN_STATE).len(), 1, "its lease has not ended yet");
 }
 

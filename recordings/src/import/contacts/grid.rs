@@ -2,7 +2,7 @@
 
 use grainlab_core::{Cell, Vec3};
 
-use super::SearchError;
+use super::error::SearchError;
 
 /// Spheres of a packing fill less than the cell; overlapping ones that fill it this often are in the wrong units.
 const MOST_FULL: f64 = 20.0;
@@ -22,8 +22,8 @@ const MOST_BOXES: i64 = 1 << 20;
 /// Grains of one box that are no sign of a cluster.
 const CLUSTER: usize = 1000;
 
-/// The least edge of a box (m) with which there are no more than about four boxes a grain, in a cell of any shape: along
-/// an edge that is shorter than a box there is one box, and the others share what is allowed.
+/// The least edge of a box (m) with which there are no more than about four boxes a grain, in a cell of any shape:
+/// along an edge that is shorter than a box there is one box, and the others share what is allowed.
 fn least_edge(cell: &Cell, grains: usize) -> f64 {
     let mut widths: [f64; 3] = std::array::from_fn(|k| cell.width(k));
     widths.sort_by(f64::total_cmp);

@@ -1,6 +1,7 @@
 //! The JSON beside a CSV.
 
 use grainlab_core::Mat3;
+use grainlab_core::contact::ContactLaw;
 use serde::Deserialize;
 
 use crate::import::assemble::State;
@@ -13,6 +14,9 @@ pub(super) struct Sidecar {
     shear_modulus: Option<f64>,
     nu: Option<f64>,
     density: Option<f64>,
+    contact_law: Option<String>,
+    #[serde(default)]
+    contact_law_parameters: Vec<f64>,
     mu_prep: Option<Friction>,
     cell: Option<[[f64; 3]; 3]>,
     #[serde(rename = "box_L")]
@@ -47,12 +51,14 @@ impl Sidecar {
                 )));
             }
         };
+        let law = self.contact_law.as_deref().map(|name| ContactLaw::new(name, &self.contact_law_parameters));
         let diagonal = |l: [f64; 3]| Mat3::from_diagonal(&l.into());
         Ok(Known {
             cell: self.cell.map(matrix).or_else(|| self.box_lengths.map(diagonal)),
             shear_modulus: self.shear_modulus,
             poisson_ratio: self.nu,
             density: self.density,
+            law: law.transpose().map_err(|e| ImportError::Sidecar(e.to_string()))?,
             friction,
         })
     }

@@ -1,18 +1,19 @@
 //! The frozen network as an operator on Bloch waves.
 //!
-//! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. A contact with the
-//! branch l feels, up to a factor of modulus one, c (w_j − w_i) + is (w_j + w_i) of displacements and c (φ_j + φ_i) + is (φ_j − φ_i)
-//! of rotations times their levers, with c = cos(q·l/2) and s = sin(q·l/2). In these amplitudes a uniform motion is a plane wave, and a long
-//! wave changes little from grain to grain.
+//! Grain i moves as w_i exp(iq·x_i) with a complex amplitude w_i, the same in every repetition of the cell. The
+//! relative displacement at a contact with the branch l is, up to a factor of modulus one, c (w_j − w_i) + is (w_j +
+//! w_i) from displacements, and c (φ_j + φ_i) + is (φ_j − φ_i) times their levers from rotations, with c = cos(q·l/2)
+//! and s = sin(q·l/2). A uniform amplitude is a plane wave, and the amplitude of a long wave changes little between
+//! neighbours.
 
-use crate::dispersion::row::{Amplitude, Row};
-use crate::participation::Carrier;
+use crate::backbone::Backbone;
+use crate::dispersion::waves::{Amplitude, Row};
 use grainlab_core::Vec3;
 use grainlab_micromechanics::network::{Block, ContactSpring, generalised_inverse};
 
 /// One contact.
 #[derive(Clone, Copy, Debug)]
-struct Joint {
+struct BlochContact {
     i: u32,
     j: u32,
     normal: [f64; 3],
@@ -26,28 +27,38 @@ struct Joint {
     sin: f64,
 }
 
-/// K(q), with the inverses of its diagonal blocks.
+/// The operator K(q), with the inverses of its diagonal blocks.
 #[derive(Debug)]
 pub(crate) struct Bloch<'a> {
-    pub(crate) carrier: &'a Carrier,
+    pub(crate) backbone: &'a Backbone,
     q: Vec3,
-    joints: Vec<Joint>,
+    contacts: Vec<BlochContact>,
     inverses: Vec<Block>,
 }
 
 impl<'a> Bloch<'a> {
-    pub(crate) fn new(carrier: &'a Carrier, q: &Vec3) -> Self {
-        let joint = |l: ContactSpring| {
+    pub(crate) fn new(backbone: &'a Backbone, q: &Vec3) -> Self {
+        let contact = |l: ContactSpring| {
             let half = 0.5 * q.dot(&Vec3::from(l.branch));
             let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = l;
             let lever = 0.5 * (levers[0] + levers[1]);
             let share = levers.map(|own| own / lever);
-            Joint { i, j, normal, lever, share, tangential, kn_minus_kt, cos: half.cos(), sin: half.sin() }
+            BlochContact {
+                i,
+                j,
+                normal,
+                lever,
+                share,
+                tangential,
+                kn_minus_kt,
+                cos: half.cos(),
+                sin: half.sin(),
+            }
         };
-        let joints: Vec<Joint> = carrier.network.contact_springs().map(joint).collect();
-        let mut blocks = vec![[[0.0; 6]; 6]; carrier.mass.len()];
-        for joint in &joints {
-            for (grain, block) in joint.blocks() {
+        let contacts: Vec<BlochContact> = backbone.network.contact_springs().map(contact).collect();
+        let mut blocks = vec![[[0.0; 6]; 6]; backbone.mass.len()];
+        for contact in &contacts {
+            for (grain, block) in contact.blocks() {
                 let sum = &mut blocks[grain as usize];
                 for row in 0..6 {
                     for column in 0..6 {
@@ -56,16 +67,16 @@ impl<'a> Bloch<'a> {
                 }
             }
         }
-        Self { carrier, q: *q, joints, inverses: blocks.iter().map(generalised_inverse).collect() }
+        Self { backbone, q: *q, contacts, inverses: blocks.iter().map(generalised_inverse).collect() }
     }
 
     /// y = K x.
     #[inline(always)]
     pub(crate) fn apply(&self, x: &[Amplitude], y: &mut [Amplitude]) {
         y.fill(Amplitude::STILL);
-        for joint in &self.joints {
-            let (i, j) = (joint.i as usize, joint.j as usize);
-            let (on_i, on_j) = joint.forces(&x[i], &x[j]);
+        for contact in &self.contacts {
+            let (i, j) = (contact.i as usize, contact.j as usize);
+            let (on_i, on_j) = contact.forces(&x[i], &x[j]);
             for (grain, force) in [(i, on_i), (j, on_j)] {
                 for k in 0..6 {
                     y[grain].re[k] += force.re[k];
@@ -77,9 +88,9 @@ impl<'a> Bloch<'a> {
 
     /// y = M x.
     #[inline(always)]
-    pub(crate) fn weigh(&self, x: &[Amplitude], y: &mut [Amplitude]) {
+    pub(crate) fn apply_mass(&self, x: &[Amplitude], y: &mut [Amplitude]) {
         for (g, (x, y)) in x.iter().zip(y).enumerate() {
-            let (mass, inertia) = (self.carrier.mass[g], self.carrier.inertia[g]);
+            let (mass, inertia) = (self.backbone.mass[g], self.backbone.inertia[g]);
             for k in 0..6 {
                 let weight = if k < 3 { mass } else { inertia };
                 y.re[k] = weight * x.re[k];
@@ -103,18 +114,18 @@ impl<'a> Bloch<'a> {
         }
     }
 
-    /// Takes the motions that meet no resistance out of x. Those of several grains are Bloch waves, too: a phase from
-    /// grain to grain.
-    pub(crate) fn purge(&self, x: &mut [Amplitude]) {
-        let carrier = self.carrier;
-        for cluster in carrier.clusters.iter().filter(|c| c.motions.iter().any(|m| m.is_free)) {
+    /// Removes floppy modes from x. Those of several grains are Bloch waves, too: with a phase from grain to grain.
+    pub(crate) fn project_out_floppy_modes(&self, x: &mut [Amplitude]) {
+        let backbone = self.backbone;
+        for cluster in backbone.clusters.iter().filter(|c| c.motions.iter().any(|m| m.is_free)) {
             let turns: Vec<(f64, f64)> = cluster.offsets.iter().map(|o| self.q.dot(o).sin_cos()).collect();
             for z in cluster.motions.iter().filter(|m| m.is_free).map(|m| &m.shape) {
                 let (mut re, mut im) = (Row::ZERO, Row::ZERO);
                 for (at, g) in cluster.grains.iter().enumerate() {
                     let (g, (sin, cos)) = (*g as usize, turns[at]);
                     for k in 0..6 {
-                        let weight = z[6 * at + k] * if k < 3 { carrier.mass[g] } else { carrier.inertia[g] };
+                        let weight =
+                            z[6 * at + k] * if k < 3 { backbone.mass[g] } else { backbone.inertia[g] };
                         re += weight * (cos * x[g].re[k] - sin * x[g].im[k]);
                         im += weight * (cos * x[g].im[k] + sin * x[g].re[k]);
                     }
@@ -131,7 +142,7 @@ impl<'a> Bloch<'a> {
     }
 }
 
-impl Joint {
+impl BlochContact {
     /// K x of the two grains by this contact alone.
     #[inline(always)]
     fn forces(&self, a: &Amplitude, b: &Amplitude) -> (Amplitude, Amplitude) {
@@ -162,7 +173,7 @@ impl Joint {
         (on_i, on_j)
     }
 
-    /// Force and torque that what the contact feels makes.
+    /// Force and torque from the relative displacement.
     #[inline(always)]
     fn spring(&self, felt: &[Row; 6]) -> [Row; 6] {
         let [nx, ny, nz] = self.normal;
@@ -174,11 +185,12 @@ impl Joint {
         let fx = self.tangential * wx + nx * along;
         let fy = self.tangential * wy + ny * along;
         let fz = self.tangential * wz + nz * along;
-        // −m×f, the torque on either grain but for the share of its lever.
+        // −m×f: the torque on either grain, up to the ratio of its lever to the mean.
         [fx, fy, fz, mz * fy - my * fz, mx * fz - mz * fx, my * fx - mx * fy]
     }
 
-    /// What this contact adds to the diagonal blocks: real parts, which are not negative where the blocks are not.
+    /// Contribution of this contact to the diagonal blocks: real parts, which are positive semidefinite if the blocks
+    /// are.
     fn blocks(&self) -> Vec<(u32, Block)> {
         let unit = |moves: bool, column: usize| {
             let mut x = Amplitude::STILL;
@@ -188,7 +200,7 @@ impl Joint {
         let block = |on_i: bool, on_j: bool| -> Block {
             let own =
                 |moves: bool, force: &Amplitude, row: usize| if moves { force.re[row].0[0] } else { 0.0 };
-            // Column by column, which is row by row: real parts are symmetric.
+            // Columns are rows: real parts are symmetric.
             std::array::from_fn(|column| {
                 let (i, j) = self.forces(&unit(on_i, column), &unit(on_j, column));
                 std::array::from_fn(|row| own(on_i, &i, row) + own(on_j, &j, row))
@@ -205,14 +217,14 @@ impl Joint {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dispersion::row::WAVES;
     use crate::dispersion::subspace::product;
+    use crate::dispersion::waves::WAVES;
 
     #[test]
     fn the_operator_is_hermitian() {
         let packing = crate::dispersion::lattice_sample::lattice();
-        let carrier = Carrier::new(&packing).unwrap();
-        let bloch = Bloch::new(&carrier, &Vec3::new(3e3, -1e4, 5e3));
+        let backbone = Backbone::new(&packing).unwrap();
+        let bloch = Bloch::new(&backbone, &Vec3::new(3e3, -1e4, 5e3));
         let random = |seed: usize| -> Vec<Amplitude> {
             let value = |k: usize| ((seed * 7919 + k * 104_729) % 1009) as f64 / 1009.0 - 0.5;
             let rows =

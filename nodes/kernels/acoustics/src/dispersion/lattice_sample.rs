@@ -30,6 +30,7 @@ pub(crate) fn lattice() -> Packing {
         spins: vec![Vec3::zeros(); n],
         contacts: Vec::new(),
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.1,
         time_step: 0.0,
     };

@@ -1,12 +1,12 @@
-//! K y = M x by conjugate gradients, compiled for each instruction set. Every operation is rounded as it is written, so all
-//! give the same bits.
+//! K y = M x by conjugate gradients, compiled for each instruction set. No operation is contracted or reordered, so
+//! that all instruction sets give the same bits.
 
 use crate::dispersion::bloch::Bloch;
-use crate::dispersion::modes::Stopped;
-use crate::dispersion::row::{Amplitude, Block, Row, WAVES, products};
+use crate::dispersion::error::SolveError;
+use crate::dispersion::waves::{Amplitude, Block, Row, WAVES, products};
 use pulp::WithSimd;
 
-/// K y = M x, wave by wave, from y = x/ω²: conjugate gradients preconditioned by the blocks of single grains.
+/// Solves K y = M x for each wave, starting at y = x/ω²: conjugate gradients with a block Jacobi preconditioner.
 #[derive(Debug)]
 pub(crate) struct Solve<'a> {
     pub(crate) bloch: &'a Bloch<'a>,
@@ -20,7 +20,7 @@ pub(crate) struct Solve<'a> {
 }
 
 impl WithSimd for Solve<'_> {
-    type Output = Result<Block, Stopped>;
+    type Output = Result<Block, SolveError>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
@@ -30,7 +30,7 @@ impl WithSimd for Solve<'_> {
 
 impl Solve<'_> {
     #[inline(always)]
-    fn run(self) -> Result<Block, Stopped> {
+    fn run(self) -> Result<Block, SolveError> {
         let Self { bloch, x, squares, tolerance, budget } = self;
         let zero = || vec![Amplitude::STILL; x.len()];
         let (mut y, mut rest, mut image) = (x.clone(), zero(), zero());
@@ -38,7 +38,7 @@ impl Solve<'_> {
         for row in y.iter_mut().flat_map(|y| y.re.iter_mut().chain(&mut y.im)) {
             *row = softness * *row;
         }
-        bloch.weigh(x, &mut rest);
+        bloch.apply_mass(x, &mut rest);
         let loads = products(&rest, &rest);
         bloch.apply(&y, &mut image);
         advance(Row::of([-1.0; WAVES]), &image, &mut rest);
@@ -57,17 +57,17 @@ impl Solve<'_> {
                 break;
             }
             if *budget == 0 || residual.is_nan() {
-                return Err(Stopped::NotConverged { residual, iterations: start - *budget });
+                return Err(SolveError::NotConverged { residual, iterations: start - *budget });
             }
             *budget -= 1;
             bloch.apply(&search, &mut image);
             let energy = products(&search, &image);
             let mut alpha = [0.0; WAVES];
             for k in 0..WAVES {
-                // A wave that is done stands still.
+                // A wave that has converged is left unchanged.
                 if ratio(k) > 0.5 * tolerance && rho[k] > 0.0 {
                     if energy[k] <= 0.0 {
-                        return Err(Stopped::NoResistance);
+                        return Err(SolveError::Floppy);
                     }
                     alpha[k] = rho[k] / energy[k];
                 }
@@ -87,12 +87,12 @@ impl Solve<'_> {
                 }
             }
         }
-        bloch.purge(&mut y);
+        bloch.project_out_floppy_modes(&mut y);
         Ok(y)
     }
 }
 
-/// y += share × x, wave by wave.
+/// y += share × x, for each wave.
 #[inline(always)]
 fn advance(share: Row, x: &[Amplitude], y: &mut [Amplitude]) {
     for (x, y) in x.iter().zip(y) {

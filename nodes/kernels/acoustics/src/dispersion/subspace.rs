@@ -1,15 +1,15 @@
-//! The best modes that a few motions can be combined to (Rayleigh–Ritz).
+//! The Rayleigh–Ritz method: the best modes in the span of a few motions.
 
 use crate::dispersion::bloch::Bloch;
-use crate::dispersion::row::{Amplitude, Block, Row, WAVES};
+use crate::dispersion::waves::{Amplitude, Block, Row, WAVES};
 use nalgebra::{Complex, DMatrix, Matrix3, SymmetricEigen};
 
 type C = Complex<f64>;
 
-/// Combinations whose share of the motions is below this (squared norm, of unit motions) are rounding.
+/// Squared norm of a combination of unit motions below which it is rounding.
 const DEPENDENT: f64 = 1e-12;
 
-/// Softer modes that are kept at most.
+/// Maximum number of softer modes that are kept.
 const SOFTER: usize = 24;
 
 /// Blocks of waves with their images.
@@ -25,19 +25,19 @@ struct Held {
     /// K x.
     image: Block,
     /// M x.
-    weighed: Block,
+    mass_times: Block,
 }
 
-/// The modes found.
+/// The best modes.
 #[derive(Debug)]
 pub(crate) struct Ritz {
     /// ω², 1/s², of each wave.
     pub(crate) squares: [f64; WAVES],
     /// The modes, of unit kinetic energy: x* M x = 1.
     pub(crate) waves: Block,
-    /// What of each mode (column) is along each reference (row).
+    /// Overlap of each mode (column) with each reference (row).
     pub(crate) overlaps: Complex3,
-    /// Softer modes, of unit kinetic energy: nearly free motions of a few grains, which have to be kept apart.
+    /// Softer modes, of unit kinetic energy: nearly floppy motions of a few grains, which have to be separated.
     pub(crate) softer: Vec<Block>,
 }
 
@@ -46,10 +46,10 @@ pub(crate) struct Ritz {
 pub(crate) struct Complex3(Matrix3<C>);
 
 impl Complex3 {
-    /// Real part of Σ ω² p p* over the first `count` modes, with their motions p made perpendicular.
-    pub(crate) fn resistance(&self, squares: &[f64; WAVES], count: usize) -> Matrix3<f64> {
+    /// Real part of Σ ω² p p* over the first `count` modes, with their polarizations p orthogonalised.
+    pub(crate) fn acoustic_tensor(&self, squares: &[f64; WAVES], count: usize) -> Matrix3<f64> {
         let w = self.0.view((0, 0), (count, count)).into_owned();
-        // W (W*W)^-½: the nearest perpendicular motions.
+        // W (W*W)^-½: the nearest orthogonal polarizations.
         let eigen = SymmetricEigen::new(w.adjoint() * &w);
         let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| C::from(1.0 / v.sqrt())));
         let vectors = DMatrix::from_fn(count, count, |i, j| eigen.eigenvectors[(i, j)]);
@@ -72,23 +72,23 @@ impl Subspace {
         Self { waves, blocks: Vec::new() }
     }
 
-    /// Adds the waves of a block, each brought to unit kinetic energy; a wave of none stays zero.
+    /// Adds the waves of a block, each normalised to unit kinetic energy; a zero wave stays zero.
     pub(crate) fn add(&mut self, bloch: &Bloch<'_>, mut x: Block) {
         let zero = || vec![Amplitude::STILL; x.len()];
-        let (mut image, mut weighed) = (zero(), zero());
-        bloch.weigh(&x, &mut weighed);
-        let norm = |k: usize| product(&x, k, &weighed, k).re.sqrt();
+        let (mut image, mut mass_times) = (zero(), zero());
+        bloch.apply_mass(&x, &mut mass_times);
+        let norm = |k: usize| product(&x, k, &mass_times, k).re.sqrt();
         let inverse = |k: usize| Some(1.0 / norm(k)).filter(|s| s.is_finite()).unwrap_or(0.0);
         let share = Row::of([inverse(0), inverse(1), inverse(2)]);
-        for row in (x.iter_mut().chain(&mut weighed)).flat_map(|x| x.re.iter_mut().chain(&mut x.im)) {
+        for row in (x.iter_mut().chain(&mut mass_times)).flat_map(|x| x.re.iter_mut().chain(&mut x.im)) {
             *row = share * *row;
         }
         bloch.apply(&x, &mut image);
-        self.blocks.push(Held { x, image, weighed });
+        self.blocks.push(Held { x, image, mass_times });
     }
 
-    /// As many combinations as there are waves, of those that make ω² stationary: the ones that are most along the
-    /// references, whose M x is `references`. `None` where these are none, or meet no resistance.
+    /// Of the combinations that make ω² stationary, those with the largest overlap with the references, whose M x is
+    /// `references`; one per wave. `None` if there are too few, or one has no stiffness.
     pub(crate) fn best(&self, references: &[Amplitude]) -> Option<Ritz> {
         let (waves, size) = (self.waves, self.waves * self.blocks.len());
         let at = |k: usize| (&self.blocks[k / waves], k % waves);
@@ -99,7 +99,7 @@ impl Subspace {
             });
             (&full + full.adjoint()) * C::from(0.5)
         };
-        let (stiffness, mass) = (matrix(|h| &h.image), matrix(|h| &h.weighed));
+        let (stiffness, mass) = (matrix(|h| &h.image), matrix(|h| &h.mass_times));
         let gram = SymmetricEigen::new(mass);
         let kept: Vec<usize> = (0..size).filter(|k| gram.eigenvalues[*k] > DEPENDENT).collect();
         let basis = DMatrix::from_fn(size, kept.len(), |i, k| {
@@ -107,7 +107,7 @@ impl Subspace {
         });
         let eigen = SymmetricEigen::new(basis.adjoint() * stiffness * &basis);
         let combinations = basis * &eigen.eigenvectors;
-        // What of each combination is along each reference.
+        // Overlap of each combination with each reference.
         let along = DMatrix::from_fn(waves, size, |reference, b| {
             let (held, wave) = at(b);
             product(references, reference, &held.x, wave)
@@ -136,7 +136,7 @@ impl Subspace {
         Some(Ritz { squares, waves: combine(&order), overlaps: Complex3(overlaps), softer })
     }
 
-    /// The waves that the `chosen` columns of `combinations` make of the blocks.
+    /// The waves given by the `chosen` columns of `combinations`.
     fn combine(&self, combinations: &DMatrix<C>, chosen: &[usize]) -> Block {
         let mut x = vec![Amplitude::STILL; self.blocks[0].x.len()];
         for (wave, k) in chosen.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! Crystals of equal springs have dispersion relations in closed form.
 //!
-//! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of inertia I.
-//! Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
+//! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of
+//! inertia I. Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
 
 use grainlab_acoustics::dispersion::{Settings, curves};
-use grainlab_acoustics::{Curve, Ray};
+use grainlab_acoustics::{DispersionCurve, Ray};
 use grainlab_core::packing::Contact;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
@@ -27,6 +27,7 @@ fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
         spins: vec![Vec3::zeros(); n],
         contacts: Vec::new(),
         material: Material::GLASS,
+        law: Default::default(),
         friction: 0.3,
         time_step: 0.0,
     };
@@ -57,10 +58,10 @@ fn grid(n: usize) -> Vec<Vec3> {
     (0..n * n * n).map(|k| Vec3::new(at(k / n / n), at(k / n % n), at(k % n))).collect()
 }
 
-fn measured(packing: &Packing, direction: Vec3, motion: Vec3) -> Curve {
+fn measured(packing: &Packing, direction: Vec3, polarization: Vec3) -> DispersionCurve {
     let settings =
         Settings { wavelengths: vec![2.2, 3.0, 7.0, 40.0], tolerance: 1e-12, ..Settings::default() };
-    let ray = Ray { direction, indices: None, motions: vec![motion] };
+    let ray = Ray { direction, indices: None, polarizations: vec![polarization] };
     curves(packing, &[ray], &settings).unwrap().remove(0)
 }
 
@@ -87,7 +88,7 @@ impl Springs {
     }
 }
 
-fn assert_closed_form(curve: &Curve, what: &str, square: impl Fn(f64) -> f64) {
+fn assert_closed_form(curve: &DispersionCurve, what: &str, square: impl Fn(f64) -> f64) {
     for point in &curve.points {
         let (found, expected) = ((point.speed * point.wavenumber).powi(2), square(point.wavenumber));
         let error = (found / expected - 1.0).abs();
@@ -121,7 +122,7 @@ fn all_of_a_crystal_moves_however_few_grains_its_cell_has() {
         let packing = crystal(Mat3::identity() * branch * n as f64, &grid(n), branch);
         let measured =
             grainlab_acoustics::measure(&packing, &grainlab_acoustics::Settings::default()).unwrap();
-        assert!((measured.density / measured.participation.bulk - 1.0).abs() < 1e-12, "{measured:?}");
+        assert!((measured.density / measured.effective_density.bulk - 1.0).abs() < 1e-12, "{measured:?}");
     }
 }
 
@@ -161,7 +162,7 @@ fn a_chain_has_its_dispersion_relation_and_resists_nothing_across() {
     let k = Springs::of(&packing, branch);
     let along = measured(&packing, Vec3::z(), Vec3::z());
     assert_closed_form(&along, "P", |q| 4.0 * k.normal / k.mass * (0.5 * q * branch).sin().powi(2));
-    let ray = Ray { direction: Vec3::z(), indices: None, motions: vec![Vec3::x()] };
+    let ray = Ray { direction: Vec3::z(), indices: None, polarizations: vec![Vec3::x()] };
     let error = curves(&packing, &[ray], &Settings::default()).unwrap_err();
     assert!(matches!(error, grainlab_acoustics::AcousticsError::NotJammed(_)), "{error}");
 }

@@ -2,7 +2,9 @@
 
 use crate::sample;
 use grainlab_acoustics::dispersion::{self, curves};
-use grainlab_acoustics::{AcousticsError, Curve, Measurement, Modes, Ray, Settings, Survey, Way, measure};
+use grainlab_acoustics::{
+    AcousticsError, DispersionCurve, Measurement, MethodSettings, Modes, Ray, Settings, Survey, measure,
+};
 use grainlab_core::{Packing, Stiffness, Vec3};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use std::sync::LazyLock;
@@ -26,8 +28,8 @@ fn surveys() -> &'static [(Measurement, Stiffness); 2] {
 }
 
 /// ρ v² of the stiffness for this curve's direction and motion, Pa.
-fn modulus(c: &Stiffness, curve: &Curve) -> f64 {
-    curve.motion.dot(&(c.christoffel(&curve.direction) * curve.motion))
+fn modulus(c: &Stiffness, curve: &DispersionCurve) -> f64 {
+    curve.polarization.dot(&(c.christoffel(&curve.direction) * curve.polarization))
 }
 
 #[test]
@@ -49,7 +51,7 @@ fn christoffel_gives_the_moduli_of_the_transversely_isotropic_projection() {
     for (m, c) in surveys() {
         let speeds: Vec<_> = m.waves.iter().map(|w| w.wave).collect();
         let density = Measured { value: m.density, stddev: m.density_stddev };
-        let fitted = christoffel::observation(&speeds, density, m.axis, Conditions::at(50e3)).unwrap();
+        let fitted = christoffel::moduli_from_speeds(&speeds, density, m.axis, Conditions::at(50e3)).unwrap();
         let t = c.transverse_isotropy();
         for (modulus, expected) in [
             (Modulus::C33, t.c33),
@@ -67,7 +69,7 @@ fn christoffel_gives_the_moduli_of_the_transversely_isotropic_projection() {
 #[test]
 fn the_law_of_the_extrapolation_holds_at_all_long_waves() {
     let packing = sample::anisotropic();
-    let rays = Survey::Three.rays(&Vec3::z(), Modes::All);
+    let rays = Survey::Minimal.rays(&Vec3::z(), Modes::All);
     let far = dispersion::Settings::default();
     let near = dispersion::Settings { wavelengths: vec![60.0, 100.0, 130.0, 640.0], ..far.clone() };
     let (far, near) = (curves(&packing, &rays, &far).unwrap(), curves(&packing, &rays, &near).unwrap());
@@ -88,7 +90,7 @@ fn without_an_axis_every_mode_is_measured_as_it_is() {
     assert_eq!((m.curves.len(), m.axis), (39, None));
     let c = stiffness(&packing);
     for curve in &m.curves {
-        let mode = c.plane_waves(&curve.direction).meant_by(&curve.motion);
+        let mode = c.plane_waves(&curve.direction).meant_by(&curve.polarization);
         assert!(mode.share > 1.0 - 1e-4, "{curve:?} {mode:?}");
         let error = (m.density * curve.speed.powi(2) / mode.modulus - 1.0).abs();
         assert!(error < 1e-4, "{error:e} {curve:?}");
@@ -98,8 +100,9 @@ fn without_an_axis_every_mode_is_measured_as_it_is() {
 #[test]
 fn what_was_asked_for_is_measured_and_nothing_else() {
     let packing = sample::isotropic();
-    let of =
-        |modes| measure(&packing, &Settings { modes, survey: Survey::Three, ..Settings::default() }).unwrap();
+    let of = |modes| {
+        measure(&packing, &Settings { modes, survey: Survey::Minimal, ..Settings::default() }).unwrap()
+    };
     let (p, s) = (of(Modes::Compression), of(Modes::Shear));
     assert_eq!((p.waves.len(), s.waves.len()), (3, 6));
     assert!(p.waves.iter().all(|w| w.wave.direction.dot(&w.wave.polarization) > 0.99));
@@ -108,7 +111,7 @@ fn what_was_asked_for_is_measured_and_nothing_else() {
 
 #[test]
 fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
-    let p = surveys()[0].0.participation;
+    let p = surveys()[0].0.effective_density;
     assert_eq!(p.rattlers, 97);
     let without = p.bulk * f64::from(2000 - 97) / 2000.0;
     assert!(p.left_behind > 5 && p.mean() < without && p.mean() > 0.999 * without, "{p:?}");
@@ -117,7 +120,7 @@ fn rattlers_do_not_move_and_grains_that_turn_freely_move_less() {
 #[test]
 fn two_threads_give_the_bits_of_one() {
     let packing = sample::anisotropic();
-    let settings = Settings { survey: Survey::Three, ..Settings::default() };
+    let settings = Settings { survey: Survey::Minimal, ..Settings::default() };
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| measure(&packing, &settings).unwrap())
@@ -143,7 +146,8 @@ fn settings_out_of_range_are_refused_by_name() {
     let packing = sample::isotropic();
     let refused = |way: dispersion::Settings, what: &str| {
         let error =
-            measure(&packing, &Settings { way: Way::Dispersion(way), ..Settings::default() }).unwrap_err();
+            measure(&packing, &Settings { method: MethodSettings::Dispersion(way), ..Settings::default() })
+                .unwrap_err();
         assert!(
             matches!(error, AcousticsError::Setting { .. }) && error.to_string().contains(what),
             "{error}"
@@ -164,7 +168,7 @@ fn settings_out_of_range_are_refused_by_name() {
     let error = measure(&packing, &Settings { axis, ..Settings::default() }).unwrap_err();
     assert!(error.to_string().contains("|axis|"), "{error}");
     let short = dispersion::Settings { max_iterations: 3, ..usual() };
-    let ray = Ray { direction: Vec3::z(), indices: None, motions: vec![Vec3::z()] };
+    let ray = Ray { direction: Vec3::z(), indices: None, polarizations: vec![Vec3::z()] };
     let error = curves(&packing, &[ray], &short).unwrap_err();
     assert!(matches!(error, AcousticsError::NotConverged { .. }), "{error}");
 }

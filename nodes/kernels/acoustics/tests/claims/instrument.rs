@@ -1,23 +1,23 @@
 //! Claims about the instrument.
 
+use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::Instrument;
-use grainlab_acoustics::error::AcousticsError;
-use grainlab_acoustics::instrument::{Clock, Heard};
+use grainlab_acoustics::{ReceiverSignals, SamplingWindow};
 use std::f64::consts::TAU;
 
 const FREQUENCY: f64 = 1e5;
 
 /// A sine from the trigger on, 200 moments a period, at two receivers.
-fn sine() -> Heard {
+fn sine() -> ReceiverSignals {
     let interval = 1.0 / (200.0 * FREQUENCY);
     let tone = |phase: f64| {
         (0..8000).map(|k| (TAU * FREQUENCY * k as f64 * interval + phase).sin()).collect::<Vec<_>>()
     };
-    Heard { start: 0.0, interval, channels: vec![tone(0.0), tone(1.0)] }
+    ReceiverSignals { start: 0.0, interval, channels: vec![tone(0.0), tone(1.0)] }
 }
 
-fn clock() -> Clock {
-    Clock { start: -10.0 / (33.0 * FREQUENCY), rate: 33.0 * FREQUENCY, samples: 1000 }
+fn window() -> SamplingWindow {
+    SamplingWindow { start: -10.0 / (33.0 * FREQUENCY), rate: 33.0 * FREQUENCY, samples: 1000 }
 }
 
 fn rms(of: impl Iterator<Item = f64>) -> f64 {
@@ -27,10 +27,10 @@ fn rms(of: impl Iterator<Item = f64>) -> f64 {
 
 #[test]
 fn a_silent_instrument_writes_down_what_is_heard() {
-    let samples = Instrument::default().record(&sine(), &clock(), 1.0, &[0]);
+    let samples = Instrument::default().record(&sine(), &window(), 1.0, &[0]);
     for (channel, phase) in samples.iter().zip([0.0, 1.0]) {
         for (k, sample) in channel.iter().enumerate() {
-            let time = clock().start + k as f64 / clock().rate;
+            let time = window().start + k as f64 / window().rate;
             let truth = if time < 0.0 { 0.0 } else { (TAU * FREQUENCY * time + phase).sin() };
             assert!(
                 (sample - truth).abs() < 1e-5 || time.abs() < 1.0 / (100.0 * FREQUENCY),
@@ -42,10 +42,10 @@ fn a_silent_instrument_writes_down_what_is_heard() {
 
 #[test]
 fn noise_has_the_stated_level_and_shots_average_it() {
-    let quiet = Instrument::default().record(&sine(), &clock(), 0.5, &[3]);
+    let quiet = Instrument::default().record(&sine(), &window(), 0.5, &[3]);
     for (decibel, shots) in [(0.0, 1), (20.0, 1), (20.0, 16), (-20.0, 4)] {
         let instrument = Instrument { signal_to_noise: decibel, shots, ..Instrument::default() };
-        let noisy = instrument.record(&sine(), &clock(), 0.5, &[3]);
+        let noisy = instrument.record(&sine(), &window(), 0.5, &[3]);
         let off = rms(noisy.iter().flatten().zip(quiet.iter().flatten()).map(|(a, b)| a - b));
         let stated = 0.5 * 10f64.powf(-decibel / 20.0) / f64::from(shots).sqrt();
         // Of 2,000 samples the level is known to 1.6 %.
@@ -57,10 +57,10 @@ fn noise_has_the_stated_level_and_shots_average_it() {
 fn a_trigger_that_jitters_wears_an_average_down_as_a_gaussian_does() {
     let jitter = 0.15 / FREQUENCY;
     let instrument = Instrument { jitter, shots: 2000, ..Instrument::default() };
-    let samples = instrument.record(&sine(), &clock(), 1.0, &[0]);
+    let samples = instrument.record(&sine(), &window(), 1.0, &[0]);
     // Away from the trigger, where the jitter also cuts.
     let level = |s: &[f64]| rms(s[200..860].iter().copied());
-    let quiet = Instrument::default().record(&sine(), &clock(), 1.0, &[0]);
+    let quiet = Instrument::default().record(&sine(), &window(), 1.0, &[0]);
     let expected = (-0.5 * (TAU * FREQUENCY * jitter).powi(2)).exp();
     let found = level(&samples[0]) / level(&quiet[0]);
     assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
@@ -71,7 +71,7 @@ fn noise_is_that_of_seed_and_place() {
     let record = |seed, place: &[u64]| {
         let instrument =
             Instrument { signal_to_noise: 10.0, jitter: 1e-7, shots: 3, seed, ..Instrument::default() };
-        instrument.record(&sine(), &clock(), 1.0, place)
+        instrument.record(&sine(), &window(), 1.0, place)
     };
     let first = record(1, &[0, 1, 2]);
     let others = [record(2, &[0, 1, 2]), record(1, &[0, 2, 1]), record(1, &[1, 1, 2])];

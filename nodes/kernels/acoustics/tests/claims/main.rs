@@ -3,9 +3,9 @@
 mod chain;
 mod crystals;
 mod dispersion;
-mod flight;
 mod instrument;
 mod picks;
-mod repeat;
 mod sample;
-mod standing;
+mod standing_wave;
+mod supercell;
+mod time_of_flight;

@@ -1,11 +1,11 @@
 //! Claims about arrivals, on traces made on paper.
 
-use grainlab_acoustics::error::AcousticsError;
-use grainlab_acoustics::flight::arrival::Arrivals;
-use grainlab_acoustics::flight::{Pick, curve};
-use grainlab_acoustics::instrument::{Clock, Heard};
-use grainlab_acoustics::trace::Channel;
+use grainlab_acoustics::AcousticsError;
+use grainlab_acoustics::Channel;
+use grainlab_acoustics::time_of_flight::Arrivals;
+use grainlab_acoustics::time_of_flight::{ArrivalPick, curve};
 use grainlab_acoustics::{Instrument, Trace};
+use grainlab_acoustics::{ReceiverSignals, SamplingWindow};
 use grainlab_core::{Vec3, WaveMethod};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 const SPEED: f64 = 300.0;
 const DIAMETER: f64 = 2e-4;
 const CYCLES: f64 = 2.0;
-const PICKS: [Pick; 3] = [Pick::FirstArrival, Pick::CrossCorrelation, Pick::Peak];
+const PICKS: [ArrivalPick; 3] = [ArrivalPick::FirstArrival, ArrivalPick::CrossCorrelation, ArrivalPick::Peak];
 
 /// Wave number at the angular frequency `w` along a path that is a chain of grains, or no grains at all.
 type Law = fn(f64) -> f64;
@@ -27,7 +27,7 @@ fn even(w: f64) -> f64 {
 }
 
 /// A burst of waves of so many diameters, 1 to 3 wavelengths from its source, sum of its harmonics.
-fn heard(law: Law, wavelength: f64) -> (f64, Vec<f64>, Heard) {
+fn signals(law: Law, wavelength: f64) -> (f64, Vec<f64>, ReceiverSignals) {
     let frequency = SPEED / (wavelength * DIAMETER);
     let duration = CYCLES / frequency;
     let span = 16.0 / frequency;
@@ -66,36 +66,37 @@ fn heard(law: Law, wavelength: f64) -> (f64, Vec<f64>, Heard) {
     };
     let channels =
         distances.iter().map(|d| (0..moments).map(|k| at(*d, f64::from(k) * interval)).collect()).collect();
-    (frequency, distances, Heard { start: 0.0, interval, channels })
+    (frequency, distances, ReceiverSignals { start: 0.0, interval, channels })
 }
 
 /// As an instrument writes it down.
-fn trace(of: &(f64, Vec<f64>, Heard), instrument: &Instrument, place: &[u64]) -> Trace {
-    let (frequency, distances, heard) = of;
+fn trace(of: &(f64, Vec<f64>, ReceiverSignals), instrument: &Instrument, place: &[u64]) -> Trace {
+    let (frequency, distances, signals) = of;
     let rate = instrument.rate(*frequency).unwrap();
     let before = (CYCLES * rate / frequency).ceil();
-    let clock = Clock { start: -before / rate, rate, samples: (before + 5.6 * rate / frequency) as usize };
+    let window =
+        SamplingWindow { start: -before / rate, rate, samples: (before + 5.6 * rate / frequency) as usize };
     // A Hann window takes 3/8 of the square of a sine, whose mean is 1/2.
-    let samples = instrument.record(heard, &clock, (3.0f64 / 16.0).sqrt(), place);
+    let samples = instrument.record(signals, &window, (3.0f64 / 16.0).sqrt(), place);
     let channels = distances.iter().zip(samples).map(|(d, samples)| Channel { distance: *d, samples });
     Trace {
         direction: Vec3::z(),
-        motion: Vec3::z(),
+        polarization: Vec3::z(),
         method: WaveMethod::Peak,
         frequency: *frequency,
         sample_rate: rate,
-        start: clock.start,
+        start: window.start,
         channels: channels.collect(),
     }
 }
 
 #[test]
 fn without_dispersion_every_pick_has_the_speed() {
-    let burst = heard(even, 28.0);
+    let burst = signals(even, 28.0);
     for rate in [None, Some(200.0 * burst.0), Some(9.7 * burst.0)] {
         let trace = trace(&burst, &Instrument { sample_rate: rate, ..Instrument::default() }, &[0]);
         for pick in PICKS {
-            let found = Arrivals::picked(&trace, CYCLES, pick, 1).unwrap();
+            let found = Arrivals::pick(&trace, CYCLES, pick, 1).unwrap();
             let off = found.slowness * SPEED - 1.0;
             assert!(off.abs() < 1e-3, "{pick:?} at {rate:?}: {off:e}");
         }
@@ -105,14 +106,16 @@ fn without_dispersion_every_pick_has_the_speed() {
 #[test]
 fn crests_go_at_phase_speed_and_peaks_at_group_speed() {
     for wavelength in [12.0, 20.0, 40.0] {
-        let burst = heard(chain, wavelength);
+        let burst = signals(chain, wavelength);
         let trace = trace(&burst, &Instrument::default(), &[0]);
         let w = TAU * burst.0;
         let (phase, group) = (chain(w) / w, 1.0 / (SPEED * (0.5 * chain(w) * DIAMETER).cos()));
-        let found = |pick| Arrivals::picked(&trace, CYCLES, pick, 1).unwrap().slowness;
+        let found = |pick| Arrivals::pick(&trace, CYCLES, pick, 1).unwrap().slowness;
         // A short burst has a broad spectrum: its mean bends by more than its centre, by a fourth for crests.
         let long = 1.0 / SPEED;
-        for (pick, truth, slack) in [(Pick::CrossCorrelation, phase, 0.35), (Pick::Peak, group, 0.15)] {
+        for (pick, truth, slack) in
+            [(ArrivalPick::CrossCorrelation, phase, 0.35), (ArrivalPick::Peak, group, 0.15)]
+        {
             let off = (found(pick) - truth) / (truth - long);
             assert!(off.abs() < slack, "{pick:?} at {wavelength} D: {off}");
         }
@@ -121,7 +124,7 @@ fn crests_go_at_phase_speed_and_peaks_at_group_speed() {
 
 #[test]
 fn every_pick_extrapolates_to_the_speed_of_long_waves() {
-    let bursts = [20.0, 28.0, 40.0].map(|w| heard(chain, w));
+    let bursts = [20.0, 28.0, 40.0].map(|w| signals(chain, w));
     let traces: Vec<Trace> = bursts.iter().map(|b| trace(b, &Instrument::default(), &[0])).collect();
     for pick in PICKS {
         let found = curve(&traces, CYCLES, pick, DIAMETER, 1).unwrap();
@@ -137,7 +140,7 @@ fn every_pick_extrapolates_to_the_speed_of_long_waves() {
 #[test]
 fn the_speed_is_within_two_standard_deviations_whatever_the_noise() {
     const SEEDS: u64 = 20;
-    let bursts = [20.0, 28.0, 40.0].map(|w| heard(chain, w));
+    let bursts = [20.0, 28.0, 40.0].map(|w| signals(chain, w));
     for pick in PICKS {
         let mut before = f64::INFINITY;
         for decibel in [0.0, 6.0, 20.0] {
@@ -162,9 +165,9 @@ fn the_speed_is_within_two_standard_deviations_whatever_the_noise() {
             }
         }
         let most = match pick {
-            Pick::CrossCorrelation => 0.003,
-            Pick::Peak => 0.01,
-            Pick::FirstArrival => 0.03,
+            ArrivalPick::CrossCorrelation => 0.003,
+            ArrivalPick::Peak => 0.01,
+            ArrivalPick::FirstArrival => 0.03,
         };
         assert!(before < most, "{pick:?} at 20 dB: {before}");
     }
@@ -172,12 +175,12 @@ fn the_speed_is_within_two_standard_deviations_whatever_the_noise() {
 
 #[test]
 fn noise_alone_is_no_arrival() {
-    let burst = heard(even, 28.0);
+    let burst = signals(even, 28.0);
     for seed in 0..20 {
         let instrument = Instrument { signal_to_noise: -40.0, seed, ..Instrument::default() };
         let trace = trace(&burst, &instrument, &[0]);
         for pick in PICKS {
-            let found = Arrivals::picked(&trace, CYCLES, pick, 1);
+            let found = Arrivals::pick(&trace, CYCLES, pick, 1);
             assert!(matches!(found, Err(AcousticsError::NoSignal { .. })), "{pick:?} {seed} {found:?}");
         }
     }
@@ -185,9 +188,9 @@ fn noise_alone_is_no_arrival() {
 
 #[test]
 fn traces_that_cannot_be_picked_are_refused_by_name() {
-    let good = trace(&heard(even, 28.0), &Instrument::default(), &[0]);
+    let good = trace(&signals(even, 28.0), &Instrument::default(), &[0]);
     let refused = |name: &str, trace: &Trace, cycles: f64| {
-        let found = Arrivals::picked(trace, cycles, Pick::Peak, 1);
+        let found = Arrivals::pick(trace, cycles, ArrivalPick::Peak, 1);
         assert!(
             matches!(found, Err(AcousticsError::Setting { name: n, .. }) if n == name),
             "{name} {found:?}"

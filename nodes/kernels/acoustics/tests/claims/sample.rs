@@ -43,6 +43,7 @@ fn read(name: &str) -> Packing {
             poisson_ratio: number("nu"),
             density: number("density"),
         },
+        law: Default::default(),
         friction: number("mu_prep"),
         time_step: number("time_step"),
     };

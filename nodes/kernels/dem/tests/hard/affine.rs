@@ -4,9 +4,9 @@
 
 use crate::support::*;
 use grainlab_core::Packing;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_dem::Engine;
 use grainlab_micromechanics::{Settings, analyze};
-use grainlab_scene::Tangential;
 
 /// A packing at rest, to the last digits.
 fn sample() -> Packing {
@@ -16,16 +16,16 @@ fn sample() -> Packing {
 /// σ after `sample` was strained by `strain` in component `k` (tensor component) and brought to rest, stuck.
 fn probe(p: &Packing, k: usize, strain: f64) -> [f64; 6] {
     let mut s = setting(f64::INFINITY, p.time_step);
-    (s.tangential, s.damping, s.drag, s.spin_drag) = (Tangential::Incremental, 0.3, 5e4, 5e4);
+    (s.tangential, s.damping, s.drag, s.spin_drag) = (TangentialLaw::Incremental, 0.3, 5e4, 5e4);
     let mut e = Engine::from_packing(p, s);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let mut rate = [0.0; 6];
     rate[k] = strain / (1000.0 * p.time_step);
     e.set_rate(&rate).unwrap();
     steps(&mut e, 1000);
     e.set_rate(&[0.0; 6]).unwrap();
     steps(&mut e, 20_000);
-    e.snapshot().unwrap().stress.tensor.voigt()
+    e.observables().unwrap().stress.tensor.voigt()
 }
 
 /// Expected: all six columns of C within 0.3 % of C11: terms of the order of the pressure, 0.1 %, are left out of the
@@ -57,8 +57,8 @@ fn the_tangent_of_a_snapshot_is_the_affine_stiffness() {
     let p = sample();
     let affine = analyze(&p, &Settings::default()).unwrap().report.stiffness().unwrap().bounds.affine.0;
     let mut e = Engine::from_packing(&p, setting(0.3, p.time_step));
-    e.prepare().unwrap();
-    let seen = e.snapshot().unwrap();
+    e.initialise().unwrap();
+    let seen = e.observables().unwrap();
     for k in 0..6 {
         assert!(
             (seen.tangent[k] / affine[(k, k)] - 1.0).abs() < 1e-9,

@@ -1,9 +1,9 @@
 //! Run 2N is run N, save, load, run N, bit for bit; and looking changes nothing.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Packing, ServoLaw};
-use grainlab_dem::{Engine, Features, Setting, TimeStep};
-use grainlab_scene::Tangential;
+use grainlab_dem::{Engine, EngineSettings, Features, TimeStep};
 
 const PERIOD: usize = 7;
 const RATE: [f64; 6] = [-30.0, -20.0, -25.0, 4.0, -6.0, 5.0];
@@ -15,12 +15,12 @@ enum Drive {
     Servoed,
 }
 
-fn settings() -> Vec<Setting> {
+fn settings() -> Vec<EngineSettings> {
     let mut all = Vec::new();
     for friction in [0.0, 0.3, f64::INFINITY] {
-        for tangential in [Tangential::Rescaled, Tangential::Incremental] {
+        for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {
             let mut s = setting(friction, 0.0);
-            (s.tangential, s.time_step) = (tangential, TimeStep::Safety(0.8));
+            (s.tangential, s.time_step) = (tangential, TimeStep::FractionOfStable(0.8));
             (s.damping, s.drag, s.spin_drag) = (0.2, 3e3, 1e3);
             // Lists are renewed at other steps in the resumed run than in the one that went on.
             s.skin = 2e-3 * RADIUS;
@@ -31,12 +31,12 @@ fn settings() -> Vec<Setting> {
 }
 
 /// A packing on its way: pressed on from a loose one, so that contacts come, go and slide.
-fn start(p: &Packing, s: Setting) -> Engine {
+fn start(p: &Packing, s: EngineSettings) -> Engine {
     let mut e = Engine::from_packing(p, s);
     let mut random = Random(1);
     e.set_velocities(&(0..p.grains()).map(|_| random.vector(0.02)).collect::<Vec<_>>());
     e.set_rate(&RATE).unwrap();
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     e
 }
 
@@ -50,17 +50,17 @@ fn run(e: &mut Engine, drive: Drive, origin: u64, end: u64, look: bool) {
         }
         e.step().unwrap();
         if look {
-            let _ = (e.snapshot().unwrap(), packing(e), e.speed(), e.clone());
+            let _ = (e.observables().unwrap(), packing(e), e.speed(), e.clone());
         }
     }
 }
 
 /// What is saved of a run: the packing, and the rate that its forces arose under.
-fn reloaded(e: &Engine, s: Setting) -> Engine {
+fn reloaded(e: &Engine, s: EngineSettings) -> Engine {
     let (saved, rate) = (packing(e).validated().unwrap(), e.rate());
     let mut loaded = Engine::from_packing(&saved, s);
     loaded.set_rate(&rate).unwrap();
-    loaded.prepare().unwrap();
+    loaded.initialise().unwrap();
     loaded
 }
 
@@ -84,11 +84,11 @@ fn a_state_saved_and_loaded_goes_on_bit_for_bit() {
                 run(&mut second, drive, origin, end, false);
                 let what = format!("{:?} {:?} {drive:?}, N = {n}", s.features(), s.tangential);
                 assert!(bits(&packing(&second)) == bits(&packing(&whole)), "{what}");
-                assert_eq!(second.snapshot(), whole.snapshot(), "{what}");
+                assert_eq!(second.observables(), whole.observables(), "{what}");
             }
             let p = packing(&e);
             contacts += p.contacts.len();
-            if s.features() == Features::Coulomb {
+            if s.features() == Features::Sliding {
                 let slides = |c: &&grainlab_core::Contact| c.tangential_force.norm() > 0.299 * c.normal_force;
                 sliding += p.contacts.iter().filter(slides).count();
             }
@@ -115,14 +115,14 @@ fn looking_at_every_step_changes_nothing() {
 /// Expected: in a gas the thermostat and the time step that goes with it are part of the state, too.
 #[test]
 fn an_agitated_gas_saved_and_loaded_goes_on_bit_for_bit() {
-    let gas = grainlab_dem::gas::place(40, 2.0 * RADIUS, 0.35, 0.5, 9).unwrap();
+    let gas = grainlab_dem::gas::random_sequential_addition(40, 2.0 * RADIUS, 0.35, 0.5, 9).unwrap();
     let mut s = setting(0.0, 0.0);
-    (s.time_step, s.speed_cap, s.damping) = (TimeStep::Safety(0.8), Some(0.5), 0.002);
+    (s.time_step, s.thermostat_speed, s.damping) = (TimeStep::FractionOfStable(0.8), Some(0.5), 0.002);
     let begin = || {
         let mut e = Engine::new(gas.cell, GLASS, vec![RADIUS; 40], &gas.positions, s);
         e.set_velocities(&gas.velocities);
         e.set_rate(&[-60.0, -60.0, -60.0, 0.0, 0.0, 0.0]).unwrap();
-        e.prepare().unwrap();
+        e.initialise().unwrap();
         e
     };
     for n in [1, 333, 4000] {

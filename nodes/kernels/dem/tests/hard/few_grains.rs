@@ -1,9 +1,9 @@
 //! One grain, two grains, and a box barely above two diameters.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Vec3};
 use grainlab_dem::TimeStep;
-use grainlab_scene::Tangential;
 
 /// Expected: alone, it keeps its velocity relative to a resting cell; in a straining one v = exp(−L t) v0.
 #[test]
@@ -18,7 +18,7 @@ fn one_grain_that_touches_nothing_flies_freely() {
     let expected = start.component_mul(&Vec3::new(-0.01, 0.02, -0.03).map(f64::exp));
     // A first-order step: r² t dt/2 of each component, 4e-7 at most.
     assert!((p.velocities[0] - expected).norm() < 1e-6 * start.norm(), "{:?}", p.velocities[0]);
-    let s = e.snapshot().unwrap();
+    let s = e.observables().unwrap();
     assert_eq!((s.contacts, s.stress.tensor.voigt(), s.tangent), (0, [0.0; 6], [0.0; 6]));
     assert_eq!(s.unbalanced, 1.0, "nothing in contact is not a balance");
 }
@@ -52,7 +52,7 @@ fn one_grain_swings_on_the_contact_with_its_own_image() {
 /// the incremental law without sliding gains some.
 #[test]
 fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
-    for tangential in [Tangential::Rescaled, Tangential::Incremental] {
+    for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {
         for (friction, damping) in [(0.3, 0.0), (f64::INFINITY, 0.0), (0.5, 0.2)] {
             let mut s = setting(friction, 1e-9);
             (s.tangential, s.damping) = (tangential, damping);
@@ -71,7 +71,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
             let mut touched = false;
             for _ in 0..6000 {
                 e.step().unwrap();
-                touched |= e.snapshot().unwrap().contacts > 0;
+                touched |= e.observables().unwrap().contacts > 0;
             }
             let p = packing(&e);
             assert!(touched && p.contacts.is_empty(), "they met and parted");
@@ -83,7 +83,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
                 before.1
             );
             let gain = energy(&p) / before.0 - 1.0;
-            if tangential == Tangential::Rescaled || friction.is_finite() {
+            if tangential == TangentialLaw::Rescaled || friction.is_finite() {
                 assert!(gain < -1e-3, "{tangential:?}, friction {friction}: {gain}");
             } else {
                 // What "rescaled" is there for: this law gives back on parting what it was not given on approach.
@@ -97,7 +97,7 @@ fn two_grains_collide_obliquely_with_friction_and_keep_angular_momentum() {
 /// several images at once.
 #[test]
 fn a_box_barely_above_two_diameters_is_a_box_like_any_other() {
-    let gas = grainlab_dem::gas::place(5, 2.0 * RADIUS, 0.33, 5.0, 2).unwrap();
+    let gas = grainlab_dem::gas::random_sequential_addition(5, 2.0 * RADIUS, 0.33, 5.0, 2).unwrap();
     let edge = 4.02 * RADIUS;
     let scale = edge / gas.cell.matrix()[(0, 0)];
     assert!(scale > 1.0, "placed a little closer than they are used");
@@ -134,7 +134,7 @@ fn grains_without_a_contact_have_a_time_step() {
     let x = [Vec3::zeros(), Vec3::x() * (3.0 * RADIUS)];
     let of = |friction: f64| {
         let mut s = setting(friction, 0.0);
-        s.time_step = TimeStep::Safety(0.8);
+        s.time_step = TimeStep::FractionOfStable(0.8);
         engine(Cell::cube(8.0 * RADIUS).unwrap(), GLASS, &[RADIUS, 0.5 * RADIUS], &x, s).time_step()
     };
     let wave = std::f64::consts::PI * 0.5 * RADIUS * (GLASS.density / GLASS.shear_modulus).sqrt() / 0.90922;

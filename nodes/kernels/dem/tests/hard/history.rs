@@ -1,15 +1,15 @@
 //! The tangential history inside the engine: what changes it and what must not, and the work of closed cycles.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, SymTensor, Vec3};
 use grainlab_dem::Engine;
-use grainlab_scene::Tangential;
 
 const OVERLAP: f64 = 4e-8;
 const DT: f64 = 1e-9;
 
 /// Two heavy grains that touch along z across the boundary of a large cell, led by the strain alone.
-fn led(tangential: Tangential, friction: f64) -> Engine {
+fn led(tangential: TangentialLaw, friction: f64) -> Engine {
     let edge = 8.0 * RADIUS;
     let mut s = setting(friction, DT);
     s.tangential = tangential;
@@ -40,7 +40,7 @@ fn shear(by: f64) -> SymTensor {
 /// does not); falling overlap scales it with the stiffness where "rescaled", and leaves it alone where "incremental".
 #[test]
 fn the_tangential_force_does_not_change_when_only_the_normal_overlap_grows() {
-    for tangential in [Tangential::Rescaled, Tangential::Incremental] {
+    for tangential in [TangentialLaw::Rescaled, TangentialLaw::Incremental] {
         let mut e = led(tangential, f64::INFINITY);
         strain(&mut e, &shear(3e-9), 200);
         let loaded = packing(&e).contacts[0];
@@ -56,8 +56,8 @@ fn the_tangential_force_does_not_change_when_only_the_normal_overlap_grows() {
         let back = packing(&e).contacts[0];
         let kept = back.tangential_force.norm() / loaded.tangential_force.norm();
         let expected = match tangential {
-            Tangential::Rescaled => (back.overlap / deep.overlap).sqrt(),
-            Tangential::Incremental => 1.0,
+            TangentialLaw::Rescaled => (back.overlap / deep.overlap).sqrt(),
+            TangentialLaw::Incremental => 1.0,
         };
         assert!((kept / expected - 1.0).abs() < 1e-6, "{tangential:?}: {kept} {expected}");
     }
@@ -77,7 +77,7 @@ fn work(e: &mut Engine, legs: &[(f64, f64)]) -> f64 {
                 approach(e, depth / f64::from(pieces)).matrix() + shear(slip / f64::from(pieces)).matrix();
             let step = SymTensor::symmetric_part(&a);
             strain(e, &step, 8);
-            let after = e.snapshot().unwrap().stress.tensor.matrix();
+            let after = e.observables().unwrap().stress.tensor.matrix();
             work -= 0.5 * volume * ((before + after) * step.matrix()).trace();
         }
     }
@@ -89,8 +89,8 @@ fn work(e: &mut Engine, legs: &[(f64, f64)]) -> f64 {
 #[test]
 fn no_closed_cycle_of_strains_yields_work_with_the_rescaled_history() {
     let pump = [(2.0 * OVERLAP, 0.0), (0.0, 8e-9), (-2.0 * OVERLAP, 0.0), (0.0, -8e-9)];
-    let rescaled = work(&mut led(Tangential::Rescaled, f64::INFINITY), &pump);
-    let incremental = work(&mut led(Tangential::Incremental, f64::INFINITY), &pump);
+    let rescaled = work(&mut led(TangentialLaw::Rescaled, f64::INFINITY), &pump);
+    let incremental = work(&mut led(TangentialLaw::Incremental, f64::INFINITY), &pump);
     assert!(rescaled > 1e-3, "rescaled {rescaled}");
     assert!(incremental < -1e-3, "incremental {incremental}");
     let mut random = Random(11);
@@ -104,7 +104,7 @@ fn no_closed_cycle_of_strains_yields_work_with_the_rescaled_history() {
                 legs.extend([(depth, 0.0), (-depth, 0.0), (0.0, slip), (0.0, -slip)]);
             }
             (1..legs.len()).rev().for_each(|k| legs.swap(k, (random.unit() * (k + 1) as f64) as usize));
-            let mut e = led(Tangential::Rescaled, friction);
+            let mut e = led(TangentialLaw::Rescaled, friction);
             // Never out of contact, whatever the order: 1.5 overlaps at most are taken off three and a half.
             let closer = approach(&e, 2.5 * OVERLAP);
             strain(&mut e, &closer, 50);

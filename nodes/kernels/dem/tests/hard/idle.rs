@@ -2,16 +2,16 @@
 
 use crate::support::*;
 use grainlab_core::Packing;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_dem::Engine;
-use grainlab_scene::Tangential;
 
 /// A packing at the bottom: what is left of its preparation would else be taken for drift.
-fn at_rest(tangential: Tangential) -> Engine {
+fn at_rest(tangential: TangentialLaw) -> Engine {
     let p = Sample::Few.packing();
     let mut s = setting(0.3, p.time_step);
     (s.tangential, s.damping, s.drag, s.spin_drag) = (tangential, 0.3, 2e4, 2e4);
     let mut e = Engine::from_packing(&p, s);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     steps(&mut e, 100_000);
     e
 }
@@ -31,7 +31,7 @@ fn drift(start: &Packing, end: &Packing) -> (f64, f64, f64) {
 /// energy changes by more than 1e-12 of itself, no contact comes or goes.
 #[test]
 fn a_damped_packing_at_rest_stays_where_it_is_for_ten_million_steps() {
-    let mut e = at_rest(Tangential::Rescaled);
+    let mut e = at_rest(TangentialLaw::Rescaled);
     let start = packing(&e);
     steps(&mut e, 10_000_000);
     let end = packing(&e);
@@ -46,11 +46,11 @@ fn a_damped_packing_at_rest_stays_where_it_is_for_ten_million_steps() {
 /// rises: a millionth of the stress at most in a million steps, downhill.
 #[test]
 fn an_undamped_packing_at_rest_trembles_at_the_last_bit_and_does_not_heat() {
-    for (tangential, bound) in [(Tangential::Incremental, 1e-8), (Tangential::Rescaled, 5e-6)] {
+    for (tangential, bound) in [(TangentialLaw::Incremental, 1e-8), (TangentialLaw::Rescaled, 5e-6)] {
         let mut e = at_rest(tangential);
-        let mut s = *e.setting();
+        let mut s = *e.settings();
         (s.damping, s.drag, s.spin_drag) = (0.0, 0.0, 0.0);
-        e.set(s);
+        e.set_settings(s);
         let start = packing(&e);
         steps(&mut e, 1_000_000);
         let end = packing(&e);
@@ -58,7 +58,7 @@ fn an_undamped_packing_at_rest_trembles_at_the_last_bit_and_does_not_heat() {
         assert!(moved < 1e-9 && stress < bound && energies < bound, "{moved:e} {stress:e} {energies:e}");
         assert_eq!(found(&start), found(&end));
         assert!(e.speed() < 1e-8, "{}", e.speed());
-        if tangential == Tangential::Rescaled {
+        if tangential == TangentialLaw::Rescaled {
             assert!(energy(&end) < energy(&start), "downhill");
         }
     }

@@ -11,17 +11,17 @@ use grainlab_micromechanics::non_rattlers;
 fn a_frictionless_packing_at_ten_pascal_has_just_the_contacts_that_balance_needs() {
     let pressed = Sample::Frictionless.packing();
     let mut s = setting(0.0, 0.0);
-    s.time_step = TimeStep::Safety(0.8);
+    s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag) = (0.3, 2e3);
     let mut e = Engine::from_packing(&pressed, s);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let mut excess = Vec::new();
     for pressure in [1e5, 1e3, 10.0] {
         for period in 0..200_000 {
             let answer = servo(&e, isotropic(pressure), ServoLaw::Scaled { response_time: 3e-5 }, 10.0, 10);
             e.set_rate(&answer.rate).unwrap();
             steps(&mut e, 10);
-            let seen = e.snapshot().unwrap();
+            let seen = e.observables().unwrap();
             let error = isotropic_error(&seen.stress.tensor.voigt(), pressure);
             if error < 1e-3 && seen.unbalanced < 1e-3 {
                 break;

@@ -6,7 +6,7 @@ use grainlab_dem::Engine;
 
 fn cubic(overlap: f64) -> Engine {
     let mut s = setting(0.3, 0.0);
-    s.time_step = grainlab_dem::TimeStep::Safety(0.8);
+    s.time_step = grainlab_dem::TimeStep::FractionOfStable(0.8);
     engine(
         Cell::cube(2.0 * RADIUS - overlap).unwrap(),
         GLASS,
@@ -24,7 +24,7 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
     for exponent in 7..=18 {
         let overlap = 10f64.powi(-exponent);
         let e = cubic(overlap);
-        let s = e.snapshot().unwrap();
+        let s = e.observables().unwrap();
         let expected = GLASS.normal_force(0.5 * RADIUS, overlap) / (2.0 * RADIUS - overlap).powi(2);
         // Three roundings of lengths near a diameter, entering with the power 3/2.
         let error = 1.5 * 4.0 * f64::EPSILON * 2.0 * RADIUS / overlap;
@@ -39,7 +39,7 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
         assert!(e.time_step() > 0.0 && e.time_step() <= idle);
     }
     for overlap in [0.0, -1e-18, -1e-12] {
-        let s = cubic(overlap).snapshot().unwrap();
+        let s = cubic(overlap).observables().unwrap();
         assert!(s.stress.tensor.mean() < 1e-9 && s.stress.tensor.mean() >= 0.0, "{overlap}: {s:?}");
     }
 }
@@ -50,13 +50,13 @@ fn as_pressure_goes_to_zero_stress_follows_hertz_until_the_last_bit() {
 fn without_friction_there_is_neither_spin_nor_tangential_force() {
     let p = Sample::Pressed.packing();
     let mut e = Engine::from_packing(&p, setting(0.3, 2e-8));
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     e.set_rate(&[0.0, 0.0, 0.0, 0.0, 1.0, 0.5]).unwrap();
     steps(&mut e, 100);
     let loaded = packing(&e);
     assert!(loaded.contacts.iter().any(|c| c.tangential_force.norm() > 0.0));
     assert!(loaded.spins.iter().any(|w| w.norm() > 0.0));
-    e.set(setting(0.0, 2e-8));
+    e.set_settings(setting(0.0, 2e-8));
     steps(&mut e, 100);
     let p = packing(&e);
     assert!(!p.contacts.is_empty() && p.contacts.iter().all(|c| c.tangential_force == Vec3::zeros()));
@@ -68,12 +68,12 @@ fn without_friction_there_is_neither_spin_nor_tangential_force() {
 fn a_frictional_packing_taken_up_without_friction_drops_its_tangential_forces() {
     let p = Sample::Pressed.packing();
     let mut e = Engine::from_packing(&p, setting(0.0, 2e-8));
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     let mut bare = p.clone();
     bare.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
     let expected = grainlab_core::stress::stress(&bare).tensor.matrix();
     assert!((expected - grainlab_core::stress::stress(&p).tensor.matrix()).norm() > 1e-3 * expected.norm());
-    let seen = e.snapshot().unwrap().stress.tensor.matrix();
+    let seen = e.observables().unwrap().stress.tensor.matrix();
     assert!((seen - expected).norm() < 1e-12 * expected.norm(), "{seen} {expected}");
     assert!(packing(&e).contacts.iter().all(|c| c.tangential_force == Vec3::zeros()));
 }
@@ -87,10 +87,10 @@ fn infinite_friction_is_the_limit_of_large_friction_and_none_of_small() {
         // Small friction would cut off the history of this packing at once.
         q.contacts.iter_mut().for_each(|c| c.tangential_force = Vec3::zeros());
         let mut e = Engine::from_packing(&q, setting(friction, 2e-8));
-        e.prepare().unwrap();
+        e.initialise().unwrap();
         e.set_rate(&[-1.0, 0.5, 0.2, 0.0, 1.0, 0.5]).unwrap();
         steps(&mut e, 300);
-        e.snapshot().unwrap().stress.tensor.matrix()
+        e.observables().unwrap().stress.tensor.matrix()
     };
     let difference = |a: f64, b: f64| (after(a) - after(b)).norm() / after(b).norm();
     assert!(difference(1e9, f64::INFINITY) < 1e-12, "{}", difference(1e9, f64::INFINITY));
@@ -115,7 +115,7 @@ fn a_strain_step_larger_than_the_overlap_opens_and_closes_contacts_exactly() {
         e.step().unwrap();
     };
     jump(&mut e, 50.0);
-    assert!(packing(&e).contacts.is_empty() && e.snapshot().unwrap().stress.tensor.mean() == 0.0);
+    assert!(packing(&e).contacts.is_empty() && e.observables().unwrap().stress.tensor.mean() == 0.0);
     jump(&mut e, -75.0);
     let p = packing(&e);
     assert_eq!(found(&p), [(0, 1, [0, 0, -1])]);

@@ -2,10 +2,10 @@
 
 use crate::support::*;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{Engine, Setting};
+use grainlab_dem::{Engine, EngineSettings};
 
 /// Grains at random that pass through each other, so that lists alone decide: `count` of radii from `smallest` to 1.
-fn ghosts(cell: Cell, count: usize, smallest: f64, seed: u64, s: Setting) -> Engine {
+fn ghosts(cell: Cell, count: usize, smallest: f64, seed: u64, s: EngineSettings) -> Engine {
     let mut random = Random(seed);
     let radii: Vec<f64> = (0..count).map(|_| RADIUS * random.between(smallest, 1.0)).collect();
     // Unwrapped positions, up to three cells away.

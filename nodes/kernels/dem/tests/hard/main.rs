@@ -2,16 +2,13 @@
 
 mod affine;
 mod checkpoints;
-mod drag;
 mod few_grains;
 mod history;
 mod idle;
 mod isostatic;
 mod limits;
 mod lists;
-mod rattlers;
 mod refusals;
-mod scenes;
 mod sheared;
 mod sizes;
 mod support;

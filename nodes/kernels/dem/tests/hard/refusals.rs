@@ -13,7 +13,7 @@ fn coincident_centres_are_refused() {
             let x = [Vec3::zeros(), Vec3::x() * (5.0 * RADIUS), Vec3::x() * (5.0 * RADIUS + apart)];
             let cell = Cell::cube(20.0 * RADIUS).unwrap();
             let mut e = engine(cell, GLASS, &[RADIUS; 3], &x, setting(friction, 1e-8));
-            let seen = e.snapshot().unwrap_err();
+            let seen = e.observables().unwrap_err();
             assert!(matches!(seen, DemError::Overlap { first: 1, second: 2, .. }), "{seen}");
             let refused = e.step().unwrap_err();
             let DemError::Unstable { grain, .. } = refused else { panic!("{refused}") };
@@ -30,7 +30,7 @@ fn an_overlap_above_a_tenth_of_the_smaller_diameter_is_refused() {
         let look = |share: f64| {
             let x = [Vec3::zeros(), Vec3::z() * RADIUS * (1.0 + small - share * 2.0 * small)];
             let cell = Cell::cube(20.0 * RADIUS).unwrap();
-            engine(cell, GLASS, &[RADIUS, small * RADIUS], &x, setting(0.3, 1e-9)).snapshot()
+            engine(cell, GLASS, &[RADIUS, small * RADIUS], &x, setting(0.3, 1e-9)).observables()
         };
         assert!(look(0.0999).is_ok());
         let refused = look(0.1001).unwrap_err();
@@ -81,7 +81,7 @@ fn a_grain_more_than_a_hundred_cells_away_is_refused() {
     let cell = Cell::cube(4.0 * RADIUS).unwrap();
     let prepare = |far: f64| {
         let x = [Vec3::zeros(), Vec3::x() * (far * 4.0 * RADIUS)];
-        Engine::new(cell, GLASS, vec![RADIUS; 2], &x, setting(0.0, 1e-9)).prepare()
+        Engine::new(cell, GLASS, vec![RADIUS; 2], &x, setting(0.0, 1e-9)).initialise()
     };
     assert_eq!(prepare(98.4), Ok(()));
     assert_eq!(prepare(-98.4), Ok(()));

@@ -24,14 +24,14 @@ fn a_cell_sheared_past_one_half_answers_as_the_upright_cell_of_the_same_lattice(
     let p = Sample::Pressed.packing();
     let run = |u: &Mat3| {
         let mut e = recombined(&p, u);
-        e.prepare().unwrap();
+        e.initialise().unwrap();
         e.set_rate(&[-20.0, 10.0, 5.0, 15.0, -25.0, 30.0]).unwrap();
         (0..300).for_each(|_| {
             e.step().unwrap();
         });
         let q = packing(&e);
         assert_eq!(found(&q), brute_force(&q));
-        (e.snapshot().unwrap(), q)
+        (e.observables().unwrap(), q)
     };
     let (upright, q) = run(&Mat3::identity());
     for (xy, xz, yz) in [(1.0, 0.0, 0.0), (0.0, -2.0, 1.0), (3.0, 2.0, -3.0), (8.0, -3.0, 2.0)] {
@@ -49,7 +49,7 @@ fn a_cell_sheared_past_one_half_answers_as_the_upright_cell_of_the_same_lattice(
 #[test]
 fn a_cell_that_leans_by_more_than_a_hundred_vectors_is_refused() {
     let p = Sample::Pressed.packing();
-    let refused = recombined(&p, &shear(150.0, 0.0, 0.0)).prepare();
+    let refused = recombined(&p, &shear(150.0, 0.0, 0.0)).initialise();
     assert!(matches!(refused, Err(DemError::Image { .. })), "{refused:?}");
 }
 

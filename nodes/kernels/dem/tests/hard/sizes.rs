@@ -1,10 +1,10 @@
 //! Grains of size ratio 1 to 5.
 
 use crate::support::*;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::material::effective_radius;
 use grainlab_core::{Cell, Vec3};
 use grainlab_dem::Engine;
-use grainlab_scene::Tangential;
 
 const SMALL: f64 = 0.2 * RADIUS;
 
@@ -15,7 +15,7 @@ fn two_unequal_grains_have_the_stress_of_their_contact() {
     let length = RADIUS + SMALL - overlap;
     let cell = Cell::cube(10.0 * RADIUS).unwrap();
     let e = engine(cell, GLASS, &[SMALL, RADIUS], &[Vec3::zeros(), Vec3::z() * length], setting(0.3, 1e-9));
-    let s = e.snapshot().unwrap();
+    let s = e.observables().unwrap();
     let (r_eff, volume) = (effective_radius(SMALL, RADIUS), (10.0 * RADIUS).powi(3));
     let expected = GLASS.normal_force(r_eff, overlap) * length / volume;
     assert!((s.stress.tensor.zz / expected - 1.0).abs() < 1e-9, "{} {expected}", s.stress.tensor.zz);
@@ -41,7 +41,7 @@ fn mixture(seed: u64, friction: f64, time_step: f64) -> Engine {
         }
     }
     let mut s = setting(friction, time_step);
-    s.tangential = Tangential::Rescaled;
+    s.tangential = TangentialLaw::Rescaled;
     let mut e = engine(cell, GLASS, &radii, &x, s);
     e.set_velocities(&(0..60).map(|_| random.vector(1.0)).collect::<Vec<_>>());
     e

@@ -1,9 +1,9 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::material::effective_radius;
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
-use grainlab_dem::{Engine, Setting, TimeStep};
-use grainlab_scene::Tangential;
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 pub(crate) const RADIUS: f64 = 1e-4;
 pub(crate) const GLASS: Material = Material::GLASS;
@@ -11,23 +11,29 @@ pub(crate) const GLASS: Material = Material::GLASS;
 pub(crate) const HEAVY: Material = Material { density: 1e20, ..Material::GLASS };
 
 /// No dissipation, a fixed time step (s) and a skin of a twentieth of a diameter.
-pub(crate) fn setting(friction: f64, time_step: f64) -> Setting {
-    Setting {
+pub(crate) fn setting(friction: f64, time_step: f64) -> EngineSettings {
+    EngineSettings {
         friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: Tangential::Rescaled,
+        tangential: TangentialLaw::Rescaled,
         time_step: TimeStep::Fixed(time_step),
         skin: 0.1 * RADIUS,
-        speed_cap: None,
+        thermostat_speed: None,
     }
 }
 
 /// An engine that is ready to step.
-pub(crate) fn engine(cell: Cell, material: Material, radii: &[f64], x: &[Vec3], setting: Setting) -> Engine {
+pub(crate) fn engine(
+    cell: Cell,
+    material: Material,
+    radii: &[f64],
+    x: &[Vec3],
+    setting: EngineSettings,
+) -> Engine {
     let mut e = Engine::new(cell, material, radii.to_vec(), x, setting);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     e
 }
 
@@ -144,9 +150,9 @@ pub(crate) fn servo(
     law: ServoLaw,
     rate_limit: f64,
     period: u32,
-) -> grainlab_servo::Answer {
-    let seen = e.snapshot().unwrap();
-    grainlab_servo::answer(&grainlab_servo::Request {
+) -> grainlab_servo::ServoOutput {
+    let seen = e.observables().unwrap();
+    grainlab_servo::control(&grainlab_servo::ServoInput {
         stress: seen.stress.tensor,
         controls,
         rate: e.rate(),
@@ -207,6 +213,7 @@ impl Sample {
             radii,
             contacts: Vec::new(),
             material: GLASS,
+            law: Default::default(),
             friction: numerics[0],
             time_step: numerics[1],
         };

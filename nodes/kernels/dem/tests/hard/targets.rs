@@ -11,10 +11,10 @@ const SCALED: ServoLaw = ServoLaw::Scaled { response_time: 3e-6 };
 
 fn start() -> Engine {
     let mut s = setting(0.3, 0.0);
-    s.time_step = TimeStep::Safety(0.8);
+    s.time_step = TimeStep::FractionOfStable(0.8);
     (s.damping, s.drag, s.spin_drag) = (0.3, 2e4, 2e4);
     let mut e = Engine::from_packing(&Sample::Pressed.packing(), s);
-    e.prepare().unwrap();
+    e.initialise().unwrap();
     e
 }
 
@@ -24,8 +24,8 @@ fn servoed(
     controls: [ComponentControl; 6],
     law: ServoLaw,
     periods: usize,
-) -> grainlab_servo::Answer {
-    let mut last = grainlab_servo::Answer { rate: [0.0; 6], saturated: [false; 6] };
+) -> grainlab_servo::ServoOutput {
+    let mut last = grainlab_servo::ServoOutput { rate: [0.0; 6], saturated: [false; 6] };
     for _ in 0..periods {
         last = servo(e, controls, law, LIMIT, PERIOD);
         e.set_rate(&last.rate).unwrap();
@@ -35,13 +35,13 @@ fn servoed(
 }
 
 fn stress(e: &Engine) -> [f64; 6] {
-    e.snapshot().unwrap().stress.tensor.voigt()
+    e.observables().unwrap().stress.tensor.voigt()
 }
 
 /// Eq. 1 with a leak, its gain a tenth of what one control period of the affine stiffness allows.
 fn integral(e: &Engine) -> ServoLaw {
     let interval = e.time_step() * f64::from(PERIOD);
-    ServoLaw::Integral { gain: 0.05 / (e.snapshot().unwrap().tangent[0] * interval), leak: 0.5 }
+    ServoLaw::Integral { gain: 0.05 / (e.observables().unwrap().tangent[0] * interval), leak: 0.5 }
 }
 
 /// Expected: the shear stress follows its target from +5 to −5 kPa and back, all six components within 0.5 % of the
@@ -95,7 +95,7 @@ fn a_target_of_zero_unloads_and_stays() {
     let at_rest = packing(&e).cell.volume();
     assert!(at_rest > volume && at_rest < 1.02 * volume, "{}", at_rest / volume);
     servoed(&mut e, isotropic(0.0), SCALED, 10_000);
-    let (now, seen) = (packing(&e), e.snapshot().unwrap());
+    let (now, seen) = (packing(&e), e.observables().unwrap());
     assert!((now.cell.volume() / at_rest - 1.0).abs() < 2e-3, "{}", now.cell.volume() / at_rest - 1.0);
     assert!(seen.stress.tensor.is_finite() && now.validated().is_ok());
 }
@@ -106,7 +106,7 @@ fn a_pressure_that_cannot_be_reached_ends_at_the_overlap_that_hertz_allows() {
     let mut e = start();
     let (controls, limit) = (isotropic(1e12), 10.0 * LIMIT);
     let refused = (0..100_000).find_map(|_| {
-        let seen = e.snapshot().err();
+        let seen = e.observables().err();
         if seen.is_none() {
             let answer = servo(&e, controls, SCALED, limit, PERIOD);
             assert_eq!(&answer.rate[..3], &[-limit; 3]);

@@ -1,49 +1,72 @@
 //! Moduli of isotropic packings, Eqs. 21 and 22.
 
-use super::CalibrationError;
+use super::error::CalibrationError;
+use super::names::coordination_kind;
 use crate::structure::Quantity;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 const MEGA: f64 = 1.0e6;
 
 /// Isotropic packings: G = α(k̂ + β) p^⅓ and Θ = ρ(k̂ + ζ) p^⅓ with G, Θ, p in MPa (Eqs. 21 and 22). The methods take
-/// and give Pa.
+/// and return Pa.
 ///
-/// Built by [`Isotropic::new`], which is what makes the inversion unique: α, ρ > 0, β < ζ and β < 0.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Isotropic {
-    pub(super) alpha: f64,
-    pub(super) beta: f64,
-    pub(super) rho: f64,
-    pub(super) zeta: f64,
+/// Built by [`IsotropicCalibration::new`], which checks what makes the inversion unique: α, ρ > 0, β < ζ and β < 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", deny_unknown_fields)]
+pub struct IsotropicCalibration {
     /// Which coordination number k̂ is: [`Quantity::K`] or [`Quantity::Z`].
-    pub abscissa: Quantity,
-    /// Lowest and highest k̂ of the packings it was fitted to.
+    #[serde(rename = "abscissa", with = "coordination_kind")]
+    pub coordination_kind: Quantity,
+    alpha: f64,
+    beta: f64,
+    rho: f64,
+    zeta: f64,
+    /// Lowest and highest k̂ of the packings of the fit.
     pub fitted: [f64; 2],
-    /// Covariance of (α, β, ρ, ζ), α and ρ in MPa^⅔; `None` if not known.
-    pub covariance: Option<[[f64; 4]; 4]>,
     /// Relative scatter of G and Θ about the fit; `None` if not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scatter: Option<[f64; 2]>,
+    /// Covariance of (α, β, ρ, ζ), α and ρ in MPa^⅔; `None` if not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<[[f64; 4]; 4]>,
 }
 
-impl Isotropic {
+impl Serialize for IsotropicCalibration {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, to)
+    }
+}
+
+impl<'de> Deserialize<'de> for IsotropicCalibration {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        Self::deserialize(from)?.checked().map_err(D::Error::custom)
+    }
+}
+
+impl IsotropicCalibration {
     /// The paper's: α = 170, β = −3.66, ρ = 75, ζ = −0.5, fitted for k̂ > 4.8.
-    pub const PAPER: Isotropic = Isotropic {
+    pub const PAPER: IsotropicCalibration = IsotropicCalibration {
+        coordination_kind: Quantity::K,
         alpha: 170.0,
         beta: -3.66,
         rho: 75.0,
         zeta: -0.5,
-        abscissa: Quantity::K,
         fitted: [4.8, f64::INFINITY],
-        covariance: None,
         scatter: None,
+        covariance: None,
     };
 
     /// `alpha` and `rho` in MPa^⅔, `beta` and `zeta` dimensionless, `fitted` the lowest and highest k̂ of the packings.
     pub fn new(
         [alpha, beta, rho, zeta]: [f64; 4],
-        abscissa: Quantity,
+        coordination_kind: Quantity,
         fitted: [f64; 2],
     ) -> Result<Self, CalibrationError> {
+        Self { coordination_kind, alpha, beta, rho, zeta, fitted, scatter: None, covariance: None }.checked()
+    }
+
+    fn checked(self) -> Result<Self, CalibrationError> {
+        let Self { alpha, beta, rho, zeta, fitted, .. } = self;
         let positive = |v: f64| v > 0.0 && v.is_finite();
         for (field, value, valid, requirement) in [
             ("alpha", alpha, positive(alpha), "it must be positive and finite"),
@@ -60,13 +83,18 @@ impl Isotropic {
                 zeta > beta && zeta.is_finite(),
                 "shear must vanish before bulk does: zeta > beta",
             ),
-            ("fitted", fitted[0], fitted[0].is_finite() && fitted[0] < fitted[1], "a range, low and high"),
+            (
+                "fitted",
+                fitted[0],
+                fitted[0].is_finite() && fitted[0] < fitted[1],
+                "it must be a range, low and high",
+            ),
         ] {
             if !valid {
                 return Err(CalibrationError::Constant { field, value, requirement });
             }
         }
-        Ok(Self { alpha, beta, rho, zeta, abscissa, fitted, covariance: None, scatter: None })
+        Ok(self)
     }
 
     /// α, β, ρ, ζ; α and ρ in MPa^⅔.
@@ -74,7 +102,7 @@ impl Isotropic {
         [self.alpha, self.beta, self.rho, self.zeta]
     }
 
-    /// The same for grains whose contacts are `stiffer` times as stiff at the same pressure.
+    /// For grains whose contacts are `stiffer` times as stiff at the same pressure.
     #[must_use]
     pub(crate) fn scaled(&self, stiffer: f64) -> Self {
         Self { alpha: self.alpha * stiffer, rho: self.rho * stiffer, ..self.clone() }
@@ -84,7 +112,7 @@ impl Isotropic {
     ///
     /// ```
     /// // 170 (5.63 − 3.66) 0.05^⅓ MPa
-    /// let g = grainlab_emt::Isotropic::PAPER.shear_modulus(5.63, 50.0e3);
+    /// let g = grainlab_emt::IsotropicCalibration::PAPER.shear_modulus(5.63, 50.0e3);
     /// assert!((g / 1.0e6 - 123.378).abs() < 1e-3);
     /// ```
     pub fn shear_modulus(&self, k_hat: f64, pressure: f64) -> f64 {
@@ -101,7 +129,7 @@ impl Isotropic {
         self.rho / self.alpha * ratio
     }
 
-    /// k̂ of [`Isotropic::reduced`] s in (0, 1).
+    /// k̂ from [`IsotropicCalibration::reduced`] s in (0, 1).
     pub(crate) fn coordination(&self, s: f64) -> f64 {
         (self.zeta * s - self.beta) / (1.0 - s)
     }

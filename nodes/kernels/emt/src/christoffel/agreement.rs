@@ -2,30 +2,30 @@
 
 use super::chance::is_beyond_chance;
 
-/// Root mean square of the relative scatter of ρ v² up to which it is taken for the sample's own. Over the azimuths of
-/// packings of 2,000 grains it is 1 to 4 %, and it falls with the root of their number.
+/// Root mean square of the relative scatter of ρ v² up to which it is attributed to the sample. Over the azimuths of
+/// packings of 2,000 grains it is 1 to 4 %, and it is inversely proportional to the root of their number.
 pub(super) const OWN_SCATTER: f64 = 0.05;
 
-/// Standard deviations by which one speed must be off for it to be blamed, where all the others agree.
+/// Number of standard deviations by which a speed must be off to be the outlier where all others agree.
 const STANDS_OUT: f64 = 10.0;
 
-/// Speeds that no sample has, within their uncertainty (a chance of less than one in a thousand): either they scatter more
-/// than those of a packing do, or all but one agree.
+/// Speeds that contradict each other (by chance less than once in a thousand times): they scatter more than those of a
+/// packing, or all but one agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedConflict {
-    /// Index of the speed furthest from what the others say.
+    /// Index of the speed furthest from its prediction by the others.
     pub worst: usize,
-    /// How far, in its standard deviations.
+    /// Its distance, in its standard deviations.
     pub sigma: f64,
 }
 
-/// Speeds that differ from those of a transversely isotropic medium by more than their errors, as those of a sample of
-/// finitely many grains do.
+/// The scatter of speeds that differ from those of a transversely isotropic medium by more than their errors, as in a
+/// sample of finitely many grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Departure {
-    /// Root mean square of the relative differences of ρ v² that are the sample's own. Half of it is a relative error of every
-    /// speed, in quadrature with its own: then χ² is as large as the degrees of freedom (R. C. Paule & J. Mandel, J. Res.
-    /// Natl. Bur. Stand. 87, 377 (1982)). A speed that is known better than that has no more weight than another.
+pub struct AnisotropyScatter {
+    /// Root mean square of the relative differences of ρ v² that belong to the sample. Half of it is added in
+    /// quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R. C. Paule &
+    /// J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate speeds.
     pub scatter: f64,
 }
 
@@ -34,13 +34,13 @@ pub struct Departure {
 pub(super) enum Agreement {
     /// Within their errors.
     Within,
-    /// They scatter, which may be the sample's own scatter.
+    /// Beyond their errors, possibly by the scatter of the sample.
     Beyond(SpeedConflict),
-    /// Not at all.
+    /// With an outlier, or without degrees of freedom.
     Conflict(SpeedConflict),
 }
 
-/// Judges relative residuals of speeds with these relative errors.
+/// Classifies relative residuals of speeds with these relative errors.
 pub(super) fn agreement(
     residuals: &[f64],
     errors: &[f64],
@@ -49,11 +49,11 @@ pub(super) fn agreement(
 ) -> Agreement {
     let sigmas = residuals.iter().zip(errors).map(|(r, e)| (r / e).abs());
     let chi_square: f64 = sigmas.clone().map(|s| s * s).sum();
-    // Without a degree of freedom the fit is exact, or C13 + C44 = 0 stood in its way.
+    // Without a degree of freedom the fit is exact, unless C13 + C44 > 0 limited it.
     if !is_beyond_chance(chi_square, degrees_of_freedom.max(1)) {
         return Agreement::Within;
     }
-    // A residual is smaller than the error by what the speed itself pulled the fit.
+    // A speed pulls the fit towards itself: its residual is smaller than its error by its leverage.
     let own = sigmas.zip(leverages).map(|(s, h)| s / (1.0 - h).max(1e-6).sqrt());
     let Some((worst, sigma)) = own.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Agreement::Within;

@@ -1,58 +1,59 @@
 //! The axis of symmetry, from the speeds themselves.
 //!
-//! The best medium about every axis of a grid on the hemisphere is fitted, linearly; from the best axes the sum of squares
-//! goes down in moduli and axis together. The axis counts as found if the speeds prefer it to isotropy beyond chance, and
-//! to every other axis.
+//! For every axis of a grid on the hemisphere the best medium is fitted linearly; from the best axes, moduli and axis
+//! are refined together. An axis is found if it fits better than isotropy, and better than every other axis, beyond
+//! chance.
 
 use super::agreement::{Agreement, agreement};
 use super::axis_error::AxisError;
 use super::chance::score;
+use super::error::ChristoffelError;
 use super::hemisphere::{angle, hemisphere, upward, widest_gap};
 use super::profile::{Speeds, Stand};
 use super::ray::{Ray, paired};
 use super::search::seen;
-use super::{ChristoffelError, errors, weights};
+use super::weights::{errors, weights};
 use grainlab_core::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2};
 
-/// Axes of the grid: 10° apart; and directions to measure next, 5° apart.
+/// Number of axes of the grid (10° apart), and of directions proposed for the next measurement (5° apart).
 const GRID: usize = 200;
 const FINE: usize = 800;
 
-/// Axes that are refined, and the least angle between them, rad.
+/// Number of axes that are refined, and the least angle between them, rad.
 const REFINED: usize = 8;
 const APART: f64 = 0.35;
 
-/// Standard deviations by which an axis must be preferred to isotropy. That the axis is free makes chance find more than
-/// tables say.
+/// Number of standard deviations by which an axis must fit better than isotropy. It is above the usual three because
+/// the axis is chosen among many.
 const PREFERRED: f64 = 4.0;
 
-/// The same, by which it must be preferred to another axis.
+/// Number of standard deviations by which an axis must fit better than another.
 const UNIQUE: f64 = 4.0;
 
-/// Least angle between two axes that are not one, rad: 6°.
+/// Least angle between two distinct axes, rad: 6°.
 const DISTINCT: f64 = 0.1;
 
-/// Standard deviation of an axis beyond which its neighbours a radian away are looked at, rad: 17°.
+/// Standard deviation of an axis beyond which axes a radian away are tried too, rad: 17°.
 const LOOSE: f64 = 0.3;
 
-/// Relative misfit of a speed that is rounding.
+/// Relative misfit of a speed that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An axis of symmetry that the speeds tell.
+/// An axis of symmetry found from wave speeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisFound {
+pub struct AxisEstimate {
     /// The axis: a unit vector with z ≥ 0.
     pub axis: Vec3,
-    /// Covariance of its error, rad²; nothing along the axis. That of the speeds' errors, or of their scatter, whichever is
-    /// larger.
+    /// Covariance of its error, rad², zero along the axis; from the errors of the speeds or from their scatter,
+    /// whichever is larger.
     pub covariance: Mat3,
-    /// By how many standard deviations the speeds prefer the best medium about it to the best isotropic one.
+    /// Number of standard deviations by which the best medium about it fits better than the best isotropic one.
     pub sigma: f64,
 }
 
-impl AxisFound {
-    /// Standard deviation in the direction in which the axis is known worst, rad.
+impl AxisEstimate {
+    /// Largest standard deviation of the axis over all directions, rad.
     pub fn stddev(&self) -> f64 {
         SymmetricEigen::new(self.covariance).eigenvalues.max().max(0.0).sqrt()
     }
@@ -60,9 +61,9 @@ impl AxisFound {
 
 /// The axis about which a transversely isotropic medium fits `speeds` best.
 ///
-/// It takes a speed more than the moduli have combinations that the speeds see, and two: in general eight, for the moduli
-/// are five. Particle motions must be those of modes, as in [`super::observation`]; what it refuses of numbers is refused.
-/// If no speed has an uncertainty, equal relative ones are taken and found from their scatter.
+/// It needs more speeds than unknowns: the combinations of moduli that the speeds determine, and two for the axis; in
+/// general eight speeds. Polarizations must be those of modes, and numbers valid, as for [`super::moduli_from_speeds`].
+/// If no speed has an uncertainty, equal relative ones are estimated from the scatter.
 ///
 /// ```
 /// use grainlab_emt::christoffel;
@@ -81,7 +82,7 @@ impl AxisFound {
 /// let found = christoffel::find_axis(&speeds).unwrap();
 /// assert!(found.axis.x.abs() > 0.999_999 && found.stddev() < 0.02);
 /// ```
-pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
+pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisEstimate, AxisError> {
     if speeds.is_empty() {
         return Err(ChristoffelError::NoSpeeds.into());
     }
@@ -109,7 +110,7 @@ pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
     }
     let tilts = speeds.tilts(best).ok_or(ChristoffelError::NoMedium)?;
     let eigen = SymmetricEigen::new(tilts.curvature);
-    // An axis that is not known at all is a radian and a half off at most.
+    // The error of an axis is at most a right angle.
     let variances = eigen.eigenvalues.map(|c| (noise.variance / c.max(0.0)).min(2.5));
     let towards = eigen.eigenvectors.column_iter().zip(variances.iter());
     let loose = towards.filter(|(_, variance)| variance.sqrt() > LOOSE).flat_map(|(towards, _)| {
@@ -120,7 +121,7 @@ pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
     let others = stands[1..].iter().cloned().chain(loose.flatten());
     let rivals = others.filter(|s| noise.score(s.point.cost - best.point.cost, 2) < UNIQUE);
     if let Some(rival) = rivals.min_by(|a, b| a.point.cost.total_cmp(&b.point.cost)) {
-        let (direction, difference) = telling(&speeds, best, &rival);
+        let (direction, difference) = most_different(&speeds, best, &rival);
         return Err(AxisError::NotUnique {
             axes: [best, &rival].map(|s| upward(s.axis)),
             direction,
@@ -130,14 +131,14 @@ pub fn find_axis(speeds: &[WaveSpeed]) -> Result<AxisFound, AxisError> {
     let covariance = eigen.eigenvectors * Matrix2::from_diagonal(&variances) * eigen.eigenvectors.transpose();
     let frame = nalgebra::Matrix3x2::from_columns(&tilts.towards);
     let covariance: Mat3 = frame * covariance * frame.transpose();
-    Ok(AxisFound { axis: upward(best.axis), covariance, sigma })
+    Ok(AxisEstimate { axis: upward(best.axis), covariance, sigma })
 }
 
-/// How large a speed of weight 1 errs.
+/// The error of a speed of weight 1.
 struct Noise {
-    /// The square of it.
+    /// Its variance.
     variance: f64,
-    /// Of how many degrees of freedom it was found; `None` if it was stated.
+    /// Degrees of freedom of its estimate; `None` if it was given.
     freedom: Option<usize>,
 }
 
@@ -161,13 +162,13 @@ impl Noise {
         }
     }
 
-    /// How rare it is that so many needless unknowns lower the sum of squares by so much, in standard deviations.
+    /// How improbable it is, in standard deviations, that so many superfluous unknowns lower the sum of squares by `gain`.
     fn score(&self, gain: f64, unknowns: usize) -> f64 {
         score(gain / unknowns as f64 / self.variance, unknowns, self.freedom)
     }
 }
 
-/// The axes that fit better than their neighbours, the best first.
+/// The axes of locally best fit, the best first.
 fn minima(speeds: &Speeds<'_>) -> Vec<Stand> {
     let mut grid: Vec<_> = hemisphere(GRID)
         .filter_map(|axis| speeds.linear(&axis).map(|(medium, cost)| (axis, medium, cost)))
@@ -192,7 +193,7 @@ fn minima(speeds: &Speeds<'_>) -> Vec<Stand> {
     minima
 }
 
-/// Weighted sum of squares about the best isotropic medium, and how many moduli the speeds see of it.
+/// Weighted sum of squares of the best isotropic medium, and the number of its moduli that the speeds determine.
 fn isotropic(speeds: &Speeds<'_>) -> (f64, usize) {
     let (mut cost, mut kinds) = (0.0, 0);
     for compressional in [true, false] {
@@ -210,13 +211,13 @@ fn isotropic(speeds: &Speeds<'_>) -> (f64, usize) {
     (cost, kinds)
 }
 
-/// The direction in which two media differ most, by the relative difference of their P speeds if these are known; else the
-/// one furthest from all measured.
-fn telling(speeds: &Speeds<'_>, one: &Stand, other: &Stand) -> (Vec3, Option<f64>) {
+/// The direction in which two media differ most, with the relative difference of their P speeds; if no P speed was measured,
+/// the direction furthest from all measured ones.
+fn most_different(speeds: &Speeds<'_>, one: &Stand, other: &Stand) -> (Vec3, Option<f64>) {
     let square = |stand: &Stand, n: &Vec3| {
         let wave = WaveSpeed { direction: *n, polarization: *n, speed: 1.0, stddev: None };
         let (ray, _) = Ray::about(0, &wave, &stand.axis).ok()?;
-        ray.answer(&stand.point.specific).map(|answer| answer.square)
+        ray.response(&stand.point.specific).map(|response| response.square)
     };
     let difference = |n: &Vec3| Some((0.5 * (square(one, n)? / square(other, n)?).ln()).abs());
     let compressional = |s: &WaveSpeed| s.direction.dot(&s.polarization).powi(2) > 0.5;

@@ -1,52 +1,53 @@
-//! Why no axis is found.
+//! Why no axis was found.
 
-use super::ChristoffelError;
+use super::error::ChristoffelError;
 use grainlab_core::Vec3;
 
-/// Why wave speeds tell no axis of symmetry.
+/// Why wave speeds do not determine an axis of symmetry.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AxisError {
-    /// The speeds are none.
+    /// Invalid speeds.
     #[error(transparent)]
     Speeds(#[from] ChristoffelError),
     /// Fewer speeds than unknowns.
     #[error(
-        "{speeds} wave speeds cannot tell {unknowns} unknowns, the axis among them{}: add speeds in other directions, first \
-         along {}", if *scatter { " and the scatter of the speeds" } else { "" }, in_brackets(direction)
+        "{speeds} wave speeds cannot determine {unknowns} unknowns, including the axis{}: add speeds in other directions, \
+         first along {}", if *scatter { " and the scatter of the speeds" } else { "" }, in_brackets(direction)
     )]
     TooFew {
-        /// Speeds given.
+        /// Number of speeds.
         speeds: usize,
-        /// Combinations of moduli that they see, and two for the axis; one more if their error is not known.
+        /// Number of combinations of moduli that they determine, plus two for the axis, plus one if their error is not
+        /// known.
         unknowns: usize,
-        /// Whether that one is in it.
+        /// Whether the error of the speeds is one of the unknowns.
         scatter: bool,
-        /// The unit direction furthest from all measured.
+        /// The unit direction furthest from all measured ones.
         direction: Vec3,
     },
     /// An isotropic medium fits as well.
     #[error(
-        "the wave speeds do not tell the medium from an isotropic one ({sigma:.1} sigma, and {needed:.1} are needed): any axis \
-         would serve"
+        "the wave speeds do not distinguish the medium from an isotropic one ({sigma:.1} sigma, and {needed:.1} are needed): \
+         any axis would serve"
     )]
     Isotropic {
-        /// By how many standard deviations they prefer an axis.
+        /// Number of standard deviations by which the best axis fits better.
         sigma: f64,
-        /// How many it takes.
+        /// Number of standard deviations needed.
         needed: f64,
     },
-    /// Two axes fit alike.
+    /// Two axes fit equally well.
     #[error(
-        "the wave speeds fit the axes {} and {} alike: measure along {}, where {}",
+        "the wave speeds fit the axes {} and {} equally well: measure along {}, where {}",
         in_brackets(&axes[0]), in_brackets(&axes[1]), in_brackets(direction),
         difference.map_or_else(|| "nothing is known".to_owned(), |d| format!("their P speeds differ by {:.1} %", 100.0 * d))
     )]
     NotUnique {
-        /// The best two, unit vectors.
+        /// The best two axes, unit vectors.
         axes: [Vec3; 2],
-        /// The unit direction in which they differ most.
+        /// The unit direction in which their media differ most.
         direction: Vec3,
-        /// By which part of the P speed; `None` if no P speed is known.
+        /// Relative difference of the P speeds there; `None` if no P speed is known.
         difference: Option<f64>,
     },
 }

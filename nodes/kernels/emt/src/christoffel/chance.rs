@@ -1,17 +1,19 @@
-//! What chance does, by cube-root approximations to the normal distribution.
+//! Tail probabilities of χ² and F, by cube-root approximations to the normal distribution.
 
-/// Quantile of the standard normal distribution that chance exceeds once in a thousand times.
+/// The 0.999 quantile of the standard normal distribution.
 pub(super) const CERTAIN: f64 = 3.09;
 
-/// Whether a χ² of so many degrees of freedom, at least 1, comes by chance less than once in a thousand times.
+/// Whether χ² with so many degrees of freedom (at least 1) exceeds this value by chance less than once in a thousand
+/// times.
 pub(super) fn is_beyond_chance(chi_square: f64, degrees_of_freedom: usize) -> bool {
     score(chi_square / degrees_of_freedom.max(1) as f64, degrees_of_freedom, None) >= CERTAIN
 }
 
-/// The quantile of the standard normal distribution that is as rare as this ratio of mean squares.
+/// The quantile of the standard normal distribution with the same tail probability as this ratio of mean squares.
 ///
-/// The ratio is of a χ² of `above` degrees of freedom per degree of freedom to another of `below`, or to its expectation if
-/// `None`: Wilson and Hilferty (1931), and Paulson (1942) for the ratio. With fewer than three below it never exceeds 2.7.
+/// The ratio is that of a χ² with `above` degrees of freedom, per degree of freedom, to another with `below`, or to its
+/// expectation if `None`: Wilson and Hilferty (1931), and Paulson (1942) for the ratio. With `below` less than three it
+/// never exceeds 2.7.
 pub(super) fn score(ratio: f64, above: usize, below: Option<usize>) -> f64 {
     let spread = |freedom: usize| 2.0 / (9.0 * freedom.max(1) as f64);
     let (above, below) = (spread(above), below.map_or(0.0, spread));

@@ -1,4 +1,4 @@
-//! Which moduli the fitted medium tells, and how well.
+//! Which moduli the fit determines, with their covariance.
 
 use super::fit::Fit;
 use super::ray::UNKNOWNS;
@@ -6,10 +6,11 @@ use crate::conditions::Measured;
 use crate::moduli::{MODULI, Moduli, ModuliCovariance};
 use nalgebra::{SMatrix, SVector};
 
-/// Part of a modulus that may be open while it counts as known.
+/// Relative undetermined part of a modulus up to which it counts as known.
 const OPEN: f64 = 3e-3;
 
-/// The moduli, in the order of [`crate::Modulus::ALL`], of C11, C33, C13, C44 and C66. 9 Θ = 4 C11 + C33 + 4 C13 − 4 C66.
+/// The moduli, in the order of [`crate::Modulus::ALL`], as linear combinations of C11, C33, C13, C44 and C66.
+/// 9 Θ = 4 C11 + C33 + 4 C13 − 4 C66.
 #[rustfmt::skip]
 const ROWS: [[f64; UNKNOWNS]; MODULI] = [
     [0.0, 0.0, 0.0, 0.0, 1.0],
@@ -20,12 +21,12 @@ const ROWS: [[f64; UNKNOWNS]; MODULI] = [
     [0.0, 0.0, 1.0, 0.0, 0.0],
 ];
 
-/// The moduli that are determined, Pa, and their covariance, Pa², for a speed of weight 1 that has the relative error
-/// `unit`.
+/// The determined moduli, Pa, and their covariance, Pa², if a speed of weight 1 has the relative error `unit`.
 pub(super) fn moduli(fit: &Fit, density: Measured, unit: Option<f64>) -> (Moduli, Option<ModuliCovariance>) {
     let rows = SMatrix::<f64, MODULI, UNKNOWNS>::from_fn(|i, j| ROWS[i][j]);
     let specific = rows * fit.specific;
-    // What is open may be off by its whole scale; where that is seen in a modulus that counts as known, it is small.
+    // An undetermined combination may be wrong by its whole scale; its effect on a modulus that counts as known is
+    // small.
     let open: Vec<SVector<f64, MODULI>> = fit.open.iter().map(|change| rows * change).collect();
     let scale = rows.abs() * fit.scale;
     let known: [bool; MODULI] =

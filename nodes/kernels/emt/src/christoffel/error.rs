@@ -1,6 +1,6 @@
-//! What makes wave speeds useless.
+//! Why wave speeds give no moduli.
 
-/// Why wave speeds have no moduli.
+/// Why wave speeds give no moduli.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChristoffelError {
     /// Nothing was measured.
@@ -49,33 +49,33 @@ pub enum ChristoffelError {
         /// The value found, kg/m³.
         value: f64,
     },
-    /// A polarisation that is between the modes of its direction.
+    /// A polarization between the modes of its direction.
     #[error(
-        "speeds[{index}].polarization is {degrees:.0} degrees from the nearest mode of its direction, and beyond 30 it \
-         does not say which mode was measured: give the particle motion of one mode"
+        "speeds[{index}].polarization is {degrees:.0} degrees from the nearest mode of its direction, more than the 30 \
+         within which a mode is identified: give the particle motion of one mode"
     )]
     Ambiguous {
         /// Index in the list of speeds.
         index: usize,
-        /// Angle between the motion given and the nearest mode's, degrees.
+        /// Angle between the given polarization and that of the nearest mode, degrees.
         degrees: f64,
     },
     /// No stable medium has these speeds.
     #[error(
-        "the speeds give {moduli}, which no stable medium has: look for a speed of another mode, axis or state"
+        "the speeds give {moduli}, which no stable medium has: check for a speed of another mode, axis or state"
     )]
     Unstable {
         /// The moduli, as text.
         moduli: String,
     },
     /// The search for the medium ended without one.
-    #[error("no medium was found for these speeds: look for a speed of another mode, axis or state")]
+    #[error("no medium was found for these speeds: check for a speed of another mode, axis or state")]
     NoMedium,
 }
 
 impl ChristoffelError {
-    /// Whether the data are too few, or are no data, rather than at odds with the theory.
-    pub fn is_of_input(&self) -> bool {
+    /// Whether the data are missing or invalid, rather than inconsistent with the theory.
+    pub fn is_input_error(&self) -> bool {
         !matches!(self, ChristoffelError::Unstable { .. } | ChristoffelError::NoMedium)
     }
 }

@@ -1,36 +1,36 @@
-//! The medium whose speeds are nearest to those measured, and what is known of it.
+//! The medium whose speeds are nearest to the measured ones, and which combinations of its moduli are determined.
 
-use super::ChristoffelError;
+use super::error::ChristoffelError;
 use super::ray::{Column, Ray, UNKNOWNS, is_clear};
 use super::search::{Point, Problem, Square, seen};
 
-/// Relative error of speeds of which none is known, where it must be said whether two media fit alike.
+/// Relative error of speeds assumed in comparing media if no error is known.
 const TYPICAL: f64 = 1e-3;
 
-/// χ² by which a medium may fit worse than the nearest and still be one that the speeds allow: two standard deviations.
+/// Difference of χ² up to which another medium fits as well as the nearest: two standard deviations.
 const ALLOWED: f64 = 4.0;
 
-/// C13 + C44 over its scale below which it cannot be told from zero, nor its sign: speeds know its square.
+/// C13 + C44 over its scale below which it cannot be distinguished from zero: speeds depend on its square.
 const UNCOUPLED: f64 = 1e-2;
 
-/// The nearest medium, and what is known of it.
+/// The nearest medium.
 pub(super) struct Fit {
-    /// Specific moduli C11, C33, C13, C44, C66, m²/s²; those left open are a guess.
+    /// Specific moduli C11, C33, C13, C44, C66, m²/s²; undetermined ones have an arbitrary value.
     pub(super) specific: Column,
-    /// Of every speed: measured less fitted, over measured.
+    /// Per speed: measured minus fitted over measured.
     pub(super) residuals: Vec<f64>,
-    /// cos² of the angle between motion measured and fitted, of every speed.
+    /// Per speed: cos² of the angle between measured and fitted polarization.
     pub(super) shares: Vec<f64>,
-    /// Share of the fit that every speed decides itself, from 0 to 1.
+    /// Per speed: its leverage on the fit, from 0 to 1.
     pub(super) leverages: Vec<f64>,
     /// Covariance of the specific moduli for errors of one relative weight unit, m⁴/s⁴.
     pub(super) covariance: Square,
-    /// Changes of the specific moduli, m²/s², that the speeds leave open: the whole scale of what they do not see, and
-    /// the way to other media that fit as well.
+    /// Changes of the specific moduli, m²/s², that the speeds do not determine: one scale along each undetermined
+    /// direction, and the differences to other media that fit as well.
     pub(super) open: Vec<Column>,
-    /// What to compare each specific modulus with, m²/s².
+    /// Scale of each specific modulus, m²/s².
     pub(super) scale: Column,
-    /// Number of combinations that the speeds determine.
+    /// Number of combinations of moduli that the speeds determine.
     pub(super) rank: usize,
 }
 
@@ -52,7 +52,7 @@ pub(super) fn fit(rays: &[Ray], weights: &[f64], unit: Option<f64>) -> Result<Fi
     points.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let limit = points[0].cost + ALLOWED * unit.unwrap_or(TYPICAL).powi(2);
     points.retain(|point| point.cost <= limit);
-    // Of media that fit alike, those whose modes move as measured.
+    // Of media that fit equally well, those whose modes have the measured polarizations.
     let is_clear = |point: &Point| point.shares.iter().all(|share| is_clear(*share));
     if points.iter().any(is_clear) {
         points.retain(is_clear);

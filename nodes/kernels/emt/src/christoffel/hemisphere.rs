@@ -1,8 +1,8 @@
-//! Directions that differ from their opposites in name only.
+//! Directions without sign: a direction and its opposite are the same.
 
 use grainlab_core::{Vec3, WaveSpeed};
 
-/// The direction furthest from all measured, of `count`.
+/// The direction furthest from all measured ones, among `count`.
 pub(super) fn widest_gap(speeds: &[WaveSpeed], count: usize) -> Vec3 {
     let nearest = |n: &Vec3| speeds.iter().map(|s| s.direction.dot(n).abs()).fold(0.0, f64::max);
     hemisphere(count).min_by(|a, b| nearest(a).total_cmp(&nearest(b))).unwrap_or_else(Vec3::z)
@@ -18,7 +18,7 @@ pub(super) fn hemisphere(count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Between two axes, from 0 to a right angle, rad.
+/// Angle between two axes, from 0 to a right angle, rad.
 pub(super) fn angle(a: &Vec3, b: &Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b).abs())
 }

@@ -1,22 +1,22 @@
-//! How well the best medium about each axis fits.
+//! The misfit of the best medium as a function of the axis.
 
-use super::ChristoffelError;
+use super::error::ChristoffelError;
 use super::ray::{Column, Ray};
 use super::search::{Point, Problem};
 use grainlab_core::{Mat3, Vec3, WaveSpeed};
 use nalgebra::{Matrix2, Vector2};
 
-/// Angle over which slopes by the axis are taken, rad.
+/// Angle of the central differences with respect to the axis, rad.
 const TILT: f64 = 1e-4;
 
-/// Most steps of a descent.
+/// Maximum number of steps of a descent.
 const STEPS: usize = 40;
 
-/// Longest and shortest of them, rad.
+/// Longest and shortest step, rad.
 const LONGEST: f64 = 0.3;
 const SHORTEST: f64 = 1e-8;
 
-/// Speeds, and how much each counts.
+/// Speeds with their weights.
 #[derive(Clone, Copy)]
 pub(super) struct Speeds<'a> {
     pub(super) measured: &'a [WaveSpeed],
@@ -25,24 +25,24 @@ pub(super) struct Speeds<'a> {
     pub(super) paired: &'a [bool],
 }
 
-/// An axis, and the best medium about it.
+/// An axis and the best medium about it.
 #[derive(Clone)]
 pub(super) struct Stand {
     pub(super) axis: Vec3,
     pub(super) point: Point,
 }
 
-/// What a tilt of the axis towards two perpendicular directions does.
+/// Derivatives with respect to tilts of the axis towards two perpendicular directions.
 pub(super) struct Tilts {
     /// The directions.
     pub(super) towards: [Vec3; 2],
-    /// Curvature of half the weighted sum of squares, with the medium always the best, 1/rad².
+    /// Second derivatives of half the weighted sum of squares of the best medium about each axis, 1/rad².
     pub(super) curvature: Matrix2<f64>,
     gradient: Vector2<f64>,
 }
 
 impl<'a> Speeds<'a> {
-    /// Seen from this axis, whether or not it is the right one.
+    /// The speeds in the frame of this axis, which may be the wrong one.
     pub(super) fn rays(&self, axis: &Vec3) -> Result<Vec<Ray>, ChristoffelError> {
         let ray = |(index, (speed, paired)): (usize, (&WaveSpeed, &bool))| {
             let (ray, _) = Ray::about(index, speed, axis)?;
@@ -51,12 +51,13 @@ impl<'a> Speeds<'a> {
         self.measured.iter().zip(self.paired).enumerate().map(ray).collect()
     }
 
-    /// The medium that is linear in the speeds, taking every motion for exactly that of a mode, and its sum of squares.
+    /// The medium from the linear problem, which takes every polarization for exactly that of a mode, and its sum of
+    /// squares.
     pub(super) fn linear(&self, axis: &Vec3) -> Option<(Column, f64)> {
         Problem::new(&self.rays(axis).ok()?, self.weights).linear()
     }
 
-    /// The best medium about `axis`, from `start` down.
+    /// The best medium about `axis`, searched from `start`.
     pub(super) fn stand(&self, axis: Vec3, start: Column) -> Option<Stand> {
         let rays = self.rays(&axis).ok()?;
         let problem = Problem::new(&rays, self.weights);
@@ -64,7 +65,7 @@ impl<'a> Speeds<'a> {
         Some(Stand { axis, point })
     }
 
-    /// The axis at the end of the way down from `start`.
+    /// The local optimum of the axis, searched from `start`.
     pub(super) fn descend(&self, start: Stand) -> Stand {
         let mut here = start;
         let Some(mut tilts) = self.tilts(&here) else { return here };
@@ -92,7 +93,7 @@ impl<'a> Speeds<'a> {
         here
     }
 
-    /// What tilts do at `here`; `None` if there is no medium beside it.
+    /// The derivatives at `here`; `None` if there is no medium for a tilted axis.
     pub(super) fn tilts(&self, here: &Stand) -> Option<Tilts> {
         let one = here.axis.cross(&Mat3::identity().column(here.axis.iamin())).normalize();
         let mut tilts = Tilts {
@@ -119,7 +120,7 @@ impl<'a> Speeds<'a> {
 }
 
 impl Tilts {
-    /// The axis tilted by this much towards each direction, rad.
+    /// The axis tilted by these angles towards the two directions, rad.
     pub(super) fn tilted(&self, axis: &Vec3, step: &Vector2<f64>) -> Vec3 {
         (axis + self.towards[0] * step.x + self.towards[1] * step.y).normalize()
     }

@@ -1,24 +1,24 @@
-//! One speed seen from the axis: which way the wave runs, how the grains move, and what a medium says to that.
+//! One speed in the frame of the axis: direction, polarization, and the speed that a medium gives it.
 
-use super::ChristoffelError;
+use super::error::ChristoffelError;
 use grainlab_core::{Vec3, WaveSpeed};
 use nalgebra::SVector;
 
-/// Number of moduli that fix a transversely isotropic medium.
+/// Number of moduli of a transversely isotropic medium.
 pub(super) const UNKNOWNS: usize = 5;
 
-/// C11, C33, C13, C44 and C66 over the density, m²/s², or a change of something with each of them.
+/// C11, C33, C13, C44 and C66 over the density, m²/s², or derivatives with respect to them.
 pub(super) type Column = SVector<f64, UNKNOWNS>;
 
-/// Least cos² of the angle between the motion measured and that of the mode it is taken for: 30°.
+/// Least cos² of the angle between the measured polarization and that of its mode: 30°.
 const CLEAR: f64 = 0.75;
 
-/// sin² of the angle between direction and axis up to which the two S modes are one: their ρ v² differ by less than this
-/// share of the anisotropy (1.8°).
+/// sin² of the angle between direction and axis up to which the two S modes count as degenerate: their ρ v² differ by
+/// less than this fraction of the anisotropy (1.8°).
 const AXIAL: f64 = 1e-3;
 
-/// One speed, in the frame of the plane that holds axis and direction. The direction is (sin θ, 0, cos θ) with θ from 0
-/// to a right angle.
+/// One speed, in the frame of the plane of axis and direction. The direction is (sin θ, 0, cos θ) with θ from 0 to a
+/// right angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     /// v, m/s.
@@ -27,32 +27,33 @@ pub(super) struct Ray {
     pub(super) error: Option<f64>,
     sin: f64,
     cos: f64,
-    /// Unit particle motion: across the axis in the plane, across the plane, along the axis.
+    /// Unit polarization: components across the axis in the plane, across the plane, along the axis.
     motion: [f64; 3],
-    /// Whether it is the S mode that moves across the plane.
+    /// Whether it is the S mode polarized across the plane.
     horizontal: bool,
-    /// Whether it is one of two S modes, both measured, that are turned from those of the medium: its v² is theirs, each by
-    /// its share of the motion. Of a medium that is nearly isotropic about the axis that holds to first order.
+    /// Whether it is one of two S modes, both measured, that are turned from those of the medium. Its v² is then the
+    /// mean of theirs, weighted by the squared components of the polarization: exact to first order for a nearly
+    /// isotropic medium.
     mixed: bool,
-    /// Whether direction and motion alone say which mode it is: in no packing are the modes turned far from theirs in an
+    /// Whether direction and polarization alone identify the mode: in a packing the modes are close to those of an
     /// isotropic medium.
     pub(super) named: bool,
 }
 
-/// What a medium says to a ray.
+/// The response of a medium to a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Answer {
-    /// v² of the mode meant, m²/s².
+pub(super) struct Response {
+    /// v² of the mode, m²/s².
     pub(super) square: f64,
-    /// Its slope with each specific modulus.
+    /// Its derivatives with respect to the specific moduli.
     pub(super) slopes: Column,
-    /// cos² of the angle between the motion measured and the mode's.
+    /// cos² of the angle between the measured polarization and that of the mode.
     pub(super) share: f64,
 }
 
 impl Ray {
-    /// Checks one measured speed; `axis` is a unit vector. A motion between two modes is refused, unless these are the S
-    /// modes and both were measured (`paired`).
+    /// Checks one measured speed; `axis` is a unit vector. A polarization between two modes is an error, unless these
+    /// are the S modes and both were measured (`paired`).
     pub(super) fn new(
         index: usize,
         measured: &WaveSpeed,
@@ -69,8 +70,8 @@ impl Ray {
         }
     }
 
-    /// The same about an axis that may be the wrong one, where a motion may well be between two modes: it is taken for the
-    /// nearest. With cos² of the angle to the nearest that the direction has in some medium.
+    /// The same about an axis that may be the wrong one: a polarization between two modes is taken for the nearest.
+    /// With cos² of the angle to the nearest polarization that the direction has in any medium.
     pub(super) fn about(
         index: usize,
         measured: &WaveSpeed,
@@ -93,7 +94,7 @@ impl Ray {
         let cos = n.dot(axis).min(1.0);
         let across = n - cos * axis;
         let sin = across.norm();
-        // Along the axis every plane will do: the one that the grains move in.
+        // Along the axis any plane is possible: take that of the polarization.
         let radial = (across.try_normalize(1e-9))
             .or_else(|| (p - p.dot(axis) * axis).try_normalize(1e-9))
             .unwrap_or_else(|| axis.cross(&least(axis)).normalize());
@@ -102,11 +103,11 @@ impl Ray {
         let along = p.dot(&n).powi(2);
         let upright = radially + axially - along;
         let is_axial = sin * sin <= AXIAL;
-        // Along the axis the two S modes are one.
+        // Along the axis the two S modes are degenerate.
         let shear = if is_axial { upright + across } else { upright.max(across) };
         let nearest = along.max(shear);
         let named = is_clear(nearest);
-        // Between the axes the medium may have turned the modes in the plane.
+        // In an oblique direction the medium may have turned the modes in the plane.
         let is_turned = !is_axial && cos * cos > AXIAL && is_clear(along + upright);
         let horizontal = across > radially.max(axially);
         let error = stddev.map(|s| s / speed);
@@ -114,32 +115,32 @@ impl Ray {
         Ok((ray, if is_turned { 1.0 } else { nearest }))
     }
 
-    /// The same as one of two S modes that may be turned from those of the medium.
+    /// The same ray as one of two S modes that may be turned from those of the medium.
     pub(super) fn mixed(self) -> Self {
         Self { mixed: true, named: true, ..self }
     }
 
-    /// cos² of the angle between motion and direction.
+    /// cos² of the angle between polarization and direction.
     fn along(&self) -> f64 {
         (self.sin * self.motion[0] + self.cos * self.motion[2]).powi(2)
     }
 
-    /// Whether the grains move more along the direction than across it.
+    /// Whether the polarization is more along the direction than across it.
     pub(super) fn is_compressional(&self) -> bool {
         self.along() > 0.5
     }
 
-    /// Whether they move clearly across it.
+    /// Whether the polarization is clearly across the direction.
     pub(super) fn is_transverse(&self) -> bool {
         is_clear(1.0 - self.along())
     }
 
-    /// Whether the motion of the mode, and with it v², hangs on C13 and on how the moduli compare.
+    /// Whether the polarization of the mode, and with it v², depends on C13 and on the ratios of the moduli.
     pub(super) fn is_coupled(&self) -> bool {
         (self.mixed || !self.horizontal) && (self.sin * self.cos).powi(2) > AXIAL
     }
 
-    /// v² of a mode with exactly the motion measured, as a sum over the specific moduli: p·Γ p/ρ.
+    /// Derivatives of v² with respect to the specific moduli for exactly the measured polarization: v² = p·Γ p/ρ.
     pub(super) fn slopes_of_motion(&self) -> Column {
         let [radial, across, axial] = self.motion;
         let mut slopes = self.slopes_in_plane(radial, axial);
@@ -147,17 +148,17 @@ impl Ray {
         slopes
     }
 
-    /// The mode that the motion measured is nearest to; `None` if it has no speed in this medium.
+    /// The mode nearest to the measured polarization; `None` if its v² is not positive in this medium.
     ///
     /// Across the plane, v² = C66 sin²θ + C44 cos²θ over ρ. In it, the eigenvalues of
     /// `[[C11 sin² + C44 cos², (C13 + C44) sin cos], [., C44 sin² + C33 cos²]]` over ρ.
-    pub(super) fn answer(&self, specific: &Column) -> Option<Answer> {
+    pub(super) fn response(&self, specific: &Column) -> Option<Response> {
         let (radial, axial) = self.nearest_in_plane(specific);
         if self.mixed {
             let across = self.motion[1].powi(2) / (1.0 - self.along());
             let slopes = across * self.slopes_across() + (1.0 - across) * self.slopes_in_plane(radial, axial);
             let square = slopes.dot(specific);
-            return (square > 0.0).then_some(Answer { square, slopes, share: 1.0 });
+            return (square > 0.0).then_some(Response { square, slopes, share: 1.0 });
         }
         let in_plane = (radial * self.motion[0] + axial * self.motion[2]).powi(2);
         let (slopes, mut share) = if self.horizontal {
@@ -165,17 +166,17 @@ impl Ray {
         } else {
             (self.slopes_in_plane(radial, axial), in_plane)
         };
-        // Near the axis the two S modes are one.
+        // Near the axis the two S modes are degenerate.
         if self.sin * self.sin <= AXIAL && !self.is_compressional() {
             let upright = if self.horizontal { self.motion[0].powi(2) } else { self.motion[1].powi(2) };
             share += upright;
         }
-        // v² is of first degree in the moduli, so that its slopes give it.
+        // v² is homogeneous of degree one in the moduli, so that it follows from its derivatives.
         let square = slopes.dot(specific);
-        (square > 0.0).then_some(Answer { square, slopes, share })
+        (square > 0.0).then_some(Response { square, slopes, share })
     }
 
-    /// Motion, across and along the axis, of that mode in the plane which the motion measured is nearest to.
+    /// Polarization, across and along the axis, of the mode in the plane that is nearest to the measured one.
     fn nearest_in_plane(&self, specific: &Column) -> (f64, f64) {
         let [c11, c33, c13, c44, _] = specific.data.0[0];
         let (s2, c2) = (self.sin * self.sin, self.cos * self.cos);
@@ -184,7 +185,7 @@ impl Ray {
         // The stiffer mode moves at this angle from the plane of isotropy.
         let (sin, cos) = (0.5 * coupling.atan2(half_difference)).sin_cos();
         let [radial, axial] = if self.mixed {
-            // An S mode, whatever little of the motion is in the plane.
+            // An S mode, however small the component in the plane.
             [self.cos, -self.sin]
         } else {
             [self.motion[0], self.motion[2]]
@@ -213,8 +214,8 @@ impl Ray {
     }
 }
 
-/// Of every speed, whether it is one of two S modes of its direction that were both measured: with motions perpendicular to
-/// each other and to it.
+/// For each speed, whether both S modes of its direction were measured: with polarizations perpendicular to each other
+/// and to the direction.
 pub(super) fn paired(speeds: &[WaveSpeed]) -> Vec<bool> {
     const ALIKE: f64 = 1e-3;
     const PERPENDICULAR: f64 = 0.1;
@@ -226,17 +227,17 @@ pub(super) fn paired(speeds: &[WaveSpeed]) -> Vec<bool> {
     speeds.iter().map(|a| across(a) && speeds.iter().any(|b| across(b) && is_pair(a, b))).collect()
 }
 
-/// Whether a motion with this cos² of the angle to a mode's is that mode's.
+/// Whether a polarization with this cos² of the angle to that of a mode belongs to the mode.
 pub(super) fn is_clear(share: f64) -> bool {
     share >= CLEAR
 }
 
-/// What to say to a motion with this cos² of the angle to the nearest mode's.
+/// The error for a polarization with this cos² of the angle to the nearest mode.
 pub(super) fn ambiguous(index: usize, share: f64) -> ChristoffelError {
     ChristoffelError::Ambiguous { index, degrees: share.max(0.0).sqrt().acos().to_degrees() }
 }
 
-/// The vector at exactly unit length, if it has it to the rounding of a file or a message.
+/// The normalised vector, if its length is 1 to the rounding of a file or a message.
 pub(super) fn unit(vector: &Vec3, name: impl FnOnce() -> String) -> Result<Vec3, ChristoffelError> {
     let length = vector.norm();
     if (length - 1.0).abs() < 1e-6 {
@@ -245,7 +246,7 @@ pub(super) fn unit(vector: &Vec3, name: impl FnOnce() -> String) -> Result<Vec3,
     Err(ChristoffelError::NotUnit { vector: name(), length })
 }
 
-/// The axis of the frame that `vector` has least of.
+/// The axis of the frame with the smallest component of `vector`.
 fn least(vector: &Vec3) -> Vec3 {
     let mut unit = Vec3::zeros();
     unit[vector.iamin()] = 1.0;

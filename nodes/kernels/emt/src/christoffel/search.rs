@@ -1,41 +1,41 @@
 //! The search for the medium: damped Gauss-Newton on relative speeds.
 //!
-//! Unknowns are the specific moduli, each over a scale of its own (the ρ v² of P or S waves), so that every number here
-//! is of order one.
+//! Unknowns are the specific moduli, each divided by a scale of its own (the v² of P or S waves), so that they are of
+//! order one.
 
 use super::ray::{Column, Ray, UNKNOWNS};
 use nalgebra::{Const, SMatrix, SymmetricEigen};
 
-/// A combination of relative moduli that changes no speed by more than this part of its own change is left open: speeds
-/// known to 0.1 % then say nothing about it.
+/// Relative change of the speeds per relative change of a combination of moduli, below which the combination counts as
+/// undetermined: speeds known to 0.1 % give no information about it.
 const BLIND: f64 = 1e-3;
 
-/// The same, but below which other media may have the same speeds.
+/// The same, below which other media may have the same speeds.
 const WEAK: f64 = 0.1;
 
-/// How far to go from a medium to look for another, in scales of its moduli.
+/// Distances from a medium at which others are searched, in scales of its moduli.
 const FAR: [f64; 4] = [-0.6, -0.3, 0.3, 0.6];
 
 /// A matrix of the specific moduli.
 pub(super) type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// Speeds, and how much each counts.
+/// Speeds with their weights.
 pub(super) struct Problem<'a> {
     rays: &'a [Ray],
     weights: &'a [f64],
-    /// What to compare each specific modulus with: the v² of P or S waves, their difference for C13 + C44, m²/s².
+    /// Scale of each specific modulus: the v² of P or S waves, their difference for C13 + C44, m²/s².
     pub(super) scale: Column,
     guess: Column,
 }
 
-/// A medium, and what it says to every ray.
+/// A medium and its response to every ray.
 #[derive(Clone)]
 pub(super) struct Point {
     pub(super) specific: Column,
-    /// What the medium falls short of the speed by, over the speed, and the slopes of its own speed over the speed with each
-    /// modulus over its scale; one a ray.
+    /// Per ray: measured minus fitted speed over the measured one, and the derivatives of fitted over measured speed
+    /// with respect to each scaled modulus.
     pub(super) rows: Vec<(f64, Column)>,
-    /// cos² of the angle between the motion measured and that of the mode, one a ray.
+    /// Per ray: cos² of the angle between the measured polarization and that of the mode.
     pub(super) shares: Vec<f64>,
     /// Weighted sum of squares.
     pub(super) cost: f64,
@@ -49,7 +49,7 @@ impl<'a> Problem<'a> {
             let (sum, count) = squares.fold((0.0, 0.0), |(s, n), r| (s + r.speed * r.speed, n + 1.0));
             (count > 0.0).then(|| sum / count)
         };
-        // Where one kind is missing: the ratio in isotropic packings.
+        // If one kind is missing: the ratio in isotropic packings.
         let (p, s) = match (mean_square(true), mean_square(false)) {
             (Some(p), Some(s)) => (p, s),
             (Some(p), None) => (p, p / 3.0),
@@ -64,8 +64,9 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether the rays whose modes do not hang on the medium, and whose v² is linear in the moduli, leave nothing open but
-    /// C13 (or there are no others): every v² that hangs on C13 grows or falls with it throughout.
+    /// Whether the sum of squares has one minimum: the rays whose polarization does not depend on the medium, whose v²
+    /// is linear in the moduli, determine all moduli but C13 (or there are no other rays), and every v² is monotone in
+    /// C13.
     pub(super) fn has_one_minimum(&self) -> bool {
         let plain: Vec<(f64, Column)> =
             self.rays.iter().filter(|r| !r.is_coupled()).map(|r| (0.0, self.row_of_motion(r))).collect();
@@ -74,13 +75,13 @@ impl<'a> Problem<'a> {
         plain.len() == self.rays.len() || [0, 1, 3].into_iter().all(is_settled)
     }
 
-    /// Relative slopes of a ray's speed for exactly the motion measured.
+    /// Relative derivatives of a ray's speed for exactly the measured polarization.
     fn row_of_motion(&self, ray: &Ray) -> Column {
         ray.slopes_of_motion().component_mul(&self.scale) / (2.0 * ray.speed * ray.speed)
     }
 
-    /// The medium that gives each speed to exactly the motion measured, which is linear, and the weighted sum of squares
-    /// that it leaves.
+    /// The best medium if every mode had exactly the measured polarization, a linear problem, and its weighted sum of
+    /// squares.
     pub(super) fn linear(&self) -> Option<(Column, f64)> {
         let rows: Vec<(f64, Column)> = (self.rays.iter())
             .map(|ray| {
@@ -95,7 +96,7 @@ impl<'a> Problem<'a> {
         Some((self.guess + step.component_mul(&self.scale), cost))
     }
 
-    /// The medium that is linear in the speeds; then isotropic ones.
+    /// Starting points: the medium of the linear problem, then isotropic ones.
     pub(super) fn starts(&self) -> impl Iterator<Item = Column> + '_ {
         let linear = self.linear().map(|(medium, _)| medium);
         let shears = [1.0, 0.4, 1.6].map(|shear| {
@@ -105,8 +106,8 @@ impl<'a> Problem<'a> {
         linear.into_iter().chain(shears)
     }
 
-    /// Media some way from `point` along what the speeds know least of, or nothing: what fits as well as the point is found
-    /// from there.
+    /// Media at some distance from `point` along the combinations of moduli that the speeds determine least: starting
+    /// points for the search for other media that fit as well.
     pub(super) fn around(&self, point: &Point) -> Vec<Column> {
         let Some(eigen) = directions(&point.rows) else { return Vec::new() };
         let weak = (0..UNKNOWNS).filter(|i| eigen.eigenvalues[*i] < WEAK * WEAK);
@@ -120,18 +121,18 @@ impl<'a> Problem<'a> {
         }
         let mut point = Point { specific, rows: Vec::new(), shares: Vec::new(), cost: 0.0 };
         for (ray, weight) in self.rays.iter().zip(self.weights) {
-            let answer = ray.answer(&specific)?;
-            let fitted = answer.square.sqrt();
+            let response = ray.response(&specific)?;
+            let fitted = response.square.sqrt();
             let residual = 1.0 - fitted / ray.speed;
-            let slopes = answer.slopes.component_mul(&self.scale) / (2.0 * fitted * ray.speed);
+            let slopes = response.slopes.component_mul(&self.scale) / (2.0 * fitted * ray.speed);
             point.cost += weight * residual * residual;
             point.rows.push((residual, slopes));
-            point.shares.push(answer.share);
+            point.shares.push(response.share);
         }
         point.cost.is_finite().then_some(point)
     }
 
-    /// The medium at the end of the way down from `start`; `None` if that is no medium.
+    /// The local minimum, searched from `start`; `None` if `start` is not a stable medium.
     pub(super) fn descend(&self, start: Column) -> Option<Point> {
         let mut here = self.at(start)?;
         let mut damping = 1e-4;
@@ -142,7 +143,7 @@ impl<'a> Problem<'a> {
                 break;
             }
             let mut specific = here.specific + step.component_mul(&self.scale);
-            // C13 + C44 = 0 is a wall; a step through it goes most of the way there.
+            // C13 + C44 must stay positive; a step beyond zero is shortened to a tenth of the present value.
             let coupling = here.specific[2] + here.specific[3];
             if specific[2] + specific[3] <= 0.0 {
                 specific[2] = 0.1 * coupling - specific[3];
@@ -152,7 +153,7 @@ impl<'a> Problem<'a> {
                     here = next;
                     damping *= 0.01;
                 }
-                // The cost no longer tells a step from rounding.
+                // Changes of the cost are rounding.
                 _ if damping > 1e8 || step.amax() < 1e-9 => break,
                 _ => damping = 10.0 * damping.max(1e-8),
             }
@@ -160,7 +161,7 @@ impl<'a> Problem<'a> {
         Some(self.polished(here))
     }
 
-    /// A last undamped step or two, where they are too short for the cost to judge them.
+    /// One or two last undamped steps, too short to change the cost.
     fn polished(&self, mut point: Point) -> Point {
         for _ in 0..2 {
             let (basis, rank) = seen(&point.rows);
@@ -172,7 +173,7 @@ impl<'a> Problem<'a> {
         point
     }
 
-    /// Weighted least squares in the directions that are seen.
+    /// Weighted least-squares step in the determined directions.
     fn step(&self, rows: &[(f64, Column)], basis: &Square, rank: usize, damping: f64) -> Option<Column> {
         let mut right = Column::zeros();
         for ((residual, row), weight) in rows.iter().zip(self.weights) {
@@ -183,7 +184,7 @@ impl<'a> Problem<'a> {
         Some(basis * normal.cholesky()?.solve(&right))
     }
 
-    /// Normal matrix in the basis, with ones for what is not seen.
+    /// Normal matrix in the basis, with ones for the undetermined directions.
     pub(super) fn normal(&self, rows: &[(f64, Column)], basis: &Square, rank: usize, damping: f64) -> Square {
         let mut normal = Square::zeros();
         for ((_, row), weight) in rows.iter().zip(self.weights) {
@@ -203,7 +204,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Orthonormal directions of relative moduli, those first that some speed sees, and how many those are.
+/// Orthonormal directions in the space of scaled moduli, the determined ones first, and the number of those.
 pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
     let Some(eigen) = directions(rows) else { return (Square::identity(), 0) };
     let is_seen = |i: &usize| eigen.eigenvalues[*i] > BLIND * BLIND;
@@ -216,7 +217,7 @@ pub(super) fn seen(rows: &[(f64, Column)]) -> (Square, usize) {
     (basis, (0..UNKNOWNS).filter(is_seen).count())
 }
 
-/// Directions of relative moduli and the squares of what they do to the speeds; `None` for numbers of absurd scale.
+/// Principal directions of scaled moduli and their squared effect on the speeds; `None` if numbers overflow.
 fn directions(rows: &[(f64, Column)]) -> Option<SymmetricEigen<f64, Const<UNKNOWNS>>> {
     let normal: Square = rows.iter().map(|(_, row)| row * row.transpose()).sum();
     normal.iter().all(|v| v.is_finite()).then(|| SymmetricEigen::new(normal))

@@ -2,7 +2,7 @@
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, every_mode, thirteen};
 use grainlab_core::{TransverseIsotropy, Vec3, WaveSpeed};
-use grainlab_emt::christoffel::{self, AxisError, AxisFound, ChristoffelError};
+use grainlab_emt::christoffel::{self, AxisError, AxisEstimate, ChristoffelError};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector, SymmetricEigen};
 
@@ -21,7 +21,7 @@ fn is_compressional(speed: &WaveSpeed) -> bool {
 }
 
 /// The axis found less the true one, and its square by its covariance.
-fn error(found: &AxisFound, truth: &Vec3) -> (Vec3, f64) {
+fn error(found: &AxisEstimate, truth: &Vec3) -> (Vec3, f64) {
     assert!((found.axis.norm() - 1.0).abs() < 1e-12 && found.axis.z >= 0.0, "{found:?}");
     let error = found.axis * found.axis.dot(truth).signum() - truth;
     let eigen = SymmetricEigen::new(found.covariance);
@@ -47,9 +47,10 @@ fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_wi
             scaled += by_covariance;
             let density = Measured::exact(DENSITY);
             let fitted =
-                christoffel::observation(&speeds, density, Some(found.axis), Conditions::at(50e3)).unwrap();
+                christoffel::moduli_from_speeds(&speeds, density, Some(found.axis), Conditions::at(50e3))
+                    .unwrap();
             of_moduli += distance(&sample, &fitted);
-            assert_eq!((fitted.conflict, fitted.departure), (None, None));
+            assert_eq!((fitted.conflict, fitted.anisotropy_scatter), (None, None));
         }
         let mean = |sum: f64| sum / DRAWS as f64;
         let rms = mean(square).sqrt().to_degrees();
@@ -65,7 +66,7 @@ fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_wi
 }
 
 /// Squared distance of the moduli from the truth by their covariance; of chance it is 5.
-fn distance(sample: &Sample, fitted: &christoffel::Fitted) -> f64 {
+fn distance(sample: &Sample, fitted: &christoffel::SpeedFit) -> f64 {
     const FIVE: [Modulus; 5] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G13, Modulus::G12];
     let error =
         SVector::<f64, 5>::from(FIVE.map(|m| fitted.observation.moduli.get(m).unwrap() - sample.truth(m)));
@@ -129,11 +130,11 @@ fn too_few_speeds_are_told_how_many_are_missing_and_where() {
     speeds.iter_mut().for_each(|s| s.stddev = None);
     let fault = christoffel::find_axis(&speeds).unwrap_err();
     assert!(matches!(fault, AxisError::TooFew { scatter: true, unknowns: more, .. } if more == unknowns + 1));
-    assert!(fault.to_string().contains("6 wave speeds cannot tell"), "{fault}");
+    assert!(fault.to_string().contains("6 wave speeds cannot determine"), "{fault}");
 }
 
-/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have them
-/// all, and each has a mirror image.
+/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have
+/// them all, and each has a mirror image.
 #[test]
 fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_true_one() {
     let mut numbers = Numbers::new(6);

@@ -2,11 +2,12 @@
 
 use super::laboratory::{DENSITY, Numbers, every_mode, thirteen};
 use grainlab_core::{Stiffness, Vec3, WaveSpeed};
-use grainlab_emt::christoffel::{self, Fitted};
+use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::Matrix6;
 
-/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures it.
+/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures
+/// it.
 #[rustfmt::skip]
 const ANISOTROPIC: [f64; 36] = [
     267.923, 62.331, 65.989, -2.193, -0.769, 2.731,
@@ -30,9 +31,9 @@ fn packing(megapascals: &[f64; 36]) -> Stiffness {
     Stiffness(Matrix6::from_row_slice(megapascals) * 1e6)
 }
 
-fn fit(speeds: &[WaveSpeed]) -> Fitted {
+fn fit(speeds: &[WaveSpeed]) -> SpeedFit {
     let density = Measured::exact(DENSITY);
-    christoffel::observation(speeds, density, Some(Vec3::z()), Conditions::at(50e3)).unwrap()
+    christoffel::moduli_from_speeds(speeds, density, Some(Vec3::z()), Conditions::at(50e3)).unwrap()
 }
 
 /// Measured to 0.05 %.
@@ -40,7 +41,7 @@ fn sharp(packing: &Stiffness, directions: &[Vec3]) -> Vec<WaveSpeed> {
     every_mode(packing, directions, 0.0005, &mut Numbers::new(1))
 }
 
-fn deviations(fitted: &Fitted, packing: &Stiffness) -> Vec<(Modulus, f64)> {
+fn deviations(fitted: &SpeedFit, packing: &Stiffness) -> Vec<(Modulus, f64)> {
     let truth = grainlab_emt::Moduli::of_medium(&packing.transverse_isotropy());
     let covariance = fitted.observation.covariance.unwrap();
     let sigma = |m: Modulus| covariance[(m as usize, m as usize)].sqrt();
@@ -54,7 +55,7 @@ fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_wi
         let packing = packing(&stiffness);
         let fitted = fit(&sharp(&packing, &thirteen()));
         assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
-        let departure = fitted.departure.expect("a packing is no medium");
+        let departure = fitted.anisotropy_scatter.expect("a packing is no medium");
         assert!((departure.scatter / scatter - 1.0).abs() < 0.05, "{departure:?}");
         // All speeds have the same error of their own, 0.05 %.
         let whole = (0.5 * departure.scatter).hypot(0.0005);
@@ -71,7 +72,7 @@ fn a_departure_is_an_error_of_every_speed_but_not_of_the_density() {
     let mut speeds = sharp(&packing, &thirteen());
     let variances = |speeds: &[WaveSpeed], density| {
         let axis = Some(Vec3::z());
-        let fitted = christoffel::observation(speeds, density, axis, Conditions::at(50e3)).unwrap();
+        let fitted = christoffel::moduli_from_speeds(speeds, density, axis, Conditions::at(50e3)).unwrap();
         (fitted.observation.covariance.unwrap(), fitted.observation.moduli)
     };
     let exact = Measured::exact(DENSITY);
@@ -79,7 +80,7 @@ fn a_departure_is_an_error_of_every_speed_but_not_of_the_density() {
     let stated = fit(&speeds).chi_square.unwrap() / fit(&speeds).degrees_of_freedom as f64;
     // With errors as large as the scatter nothing departs, and the covariance is the same.
     speeds.iter_mut().for_each(|s| s.stddev = s.stddev.map(|e| e * stated.sqrt()));
-    assert_eq!(fit(&speeds).departure, None);
+    assert_eq!(fit(&speeds).anisotropy_scatter, None);
     let (agreed, _) = variances(&speeds, exact);
     assert!((departed - agreed).amax() < 1e-3 * agreed.amax());
     let blurred = Measured { value: DENSITY, stddev: 0.01 * DENSITY };
@@ -94,8 +95,7 @@ fn what_a_packing_is_inferred_to_be_holds_although_it_departs() {
     let packing = packing(&ANISOTROPIC);
     let fitted = fit(&sharp(&packing, &thirteen()));
     let relaxed = grainlab_emt::model("relaxed").unwrap();
-    let estimate =
-        relaxed.infer(&fitted.observation, grainlab_emt::Calibration::default_for(relaxed)).unwrap();
+    let estimate = relaxed.infer(&fitted.observation, relaxed.default_calibration()).unwrap();
     // Counted: z 5.266, eps 0.0464.
     let covariance = estimate.covariance().unwrap();
     let (z, eps) = (estimate.structure.z.unwrap(), estimate.structure.eps.unwrap());
@@ -110,14 +110,14 @@ fn speeds_that_scatter_more_than_those_of_a_packing_are_a_conflict() {
     let mut numbers = Numbers::new(2);
     speeds.iter_mut().for_each(|s| s.speed *= 1.0 + 0.04 * numbers.normal());
     let fitted = fit(&speeds);
-    assert!(fitted.departure.is_none() && fitted.conflict.is_some(), "{fitted:?}");
+    assert!(fitted.anisotropy_scatter.is_none() && fitted.conflict.is_some(), "{fitted:?}");
 }
 
 #[test]
 fn one_speed_that_is_off_where_all_others_agree_is_no_departure() {
     let medium = packing(&ANISOTROPIC).transverse_isotropy().stiffness();
     let mut speeds = every_mode(&medium, &thirteen(), 0.0005, &mut Numbers::new(3));
-    assert_eq!((fit(&speeds).conflict, fit(&speeds).departure), (None, None));
+    assert_eq!((fit(&speeds).conflict, fit(&speeds).anisotropy_scatter), (None, None));
     // 1 % is 20 of its sigma, and less than a packing scatters.
     speeds[9].speed *= 1.01;
     let conflict = fit(&speeds).conflict.expect("38 speeds say otherwise");
@@ -150,14 +150,18 @@ fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_a
         .collect();
     turned(&mut speeds, [across[0], across[1]], std::f64::consts::FRAC_PI_4);
     let mixed = fit(&speeds);
-    assert_eq!((mixed.conflict, mixed.departure), (None, None));
+    assert_eq!((mixed.conflict, mixed.anisotropy_scatter), (None, None));
     for (modulus, value) in mixed.observation.moduli.known() {
         let off = value / exact.observation.moduli.get(modulus).unwrap() - 1.0;
         assert!(off.abs() < 2e-3, "{modulus} {off}");
     }
     speeds.remove(across[1]);
-    let alone =
-        christoffel::observation(&speeds, Measured::exact(DENSITY), Some(Vec3::z()), Conditions::at(50e3));
+    let alone = christoffel::moduli_from_speeds(
+        &speeds,
+        Measured::exact(DENSITY),
+        Some(Vec3::z()),
+        Conditions::at(50e3),
+    );
     assert!(alone.unwrap_err().to_string().contains("45 degrees from the nearest mode"));
 }
 

@@ -2,7 +2,7 @@
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
 use grainlab_core::{Vec3, WaveSpeed};
-use grainlab_emt::christoffel::{self, ChristoffelError, Fitted};
+use grainlab_emt::christoffel::{self, ChristoffelError, SpeedFit};
 use grainlab_emt::{Conditions, Measured};
 use nalgebra::{Rotation3, Unit};
 
@@ -26,8 +26,8 @@ fn fault(spoil: impl Fn(&mut Vec<WaveSpeed>)) -> ChristoffelError {
     sample().fit(&speeds).unwrap_err()
 }
 
-fn about(axis: Option<Vec3>, density: Measured) -> Result<Fitted, ChristoffelError> {
-    christoffel::observation(&speeds(), density, axis, Conditions::at(50e3))
+fn about(axis: Option<Vec3>, density: Measured) -> Result<SpeedFit, ChristoffelError> {
+    christoffel::moduli_from_speeds(&speeds(), density, axis, Conditions::at(50e3))
 }
 
 #[test]
@@ -84,12 +84,12 @@ fn is_ambiguous(error: &ChristoffelError, at: usize) -> bool {
     matches!(error, ChristoffelError::Ambiguous { index, degrees } if *index == at && *degrees > 30.0)
 }
 
-/// Across the axis the S modes differ by G13/G12, and only equal moduli would make 45° between them a mode's motion: that
-/// is what is to be found out.
+/// Across the axis the S modes differ by G13/G12, and only equal moduli would make 45° between them a mode's motion:
+/// that is what is to be found out.
 #[test]
 fn a_shear_motion_between_the_modes_is_refused_though_the_medium_may_be_isotropic() {
     let error = fault(|s| s[2].polarization = Vec3::new(0.0, 1.0, 1.0).normalize());
-    assert!(is_ambiguous(&error, 2) && error.is_of_input(), "{error}");
+    assert!(is_ambiguous(&error, 2) && error.is_input_error(), "{error}");
     assert!(error.to_string().contains("45 degrees from the nearest mode"), "{error}");
 }
 
@@ -136,7 +136,7 @@ fn speeds_that_no_stable_medium_has_are_refused() {
         s.truncate(4);
         (s[1].speed, s[2].speed) = (s[2].speed, s[1].speed);
     });
-    assert!(matches!(error, ChristoffelError::Unstable { .. }) && !error.is_of_input(), "{error}");
+    assert!(matches!(error, ChristoffelError::Unstable { .. }) && !error.is_input_error(), "{error}");
     assert!(error.to_string().contains("C11 = 67.000 MPa"), "{error}");
     // SH at 45° slower than half of G13 allows.
     let slow = |s: &mut Vec<WaveSpeed>| {
@@ -158,7 +158,7 @@ fn numbers_of_absurd_scale_are_answered_or_refused() {
             }
         }
         let density = Measured { value: 10f64.powf(numbers.between(-300.0, 300.0)), stddev: 0.0 };
-        let result = christoffel::observation(&speeds, density, Some(Vec3::z()), Conditions::at(50e3));
+        let result = christoffel::moduli_from_speeds(&speeds, density, Some(Vec3::z()), Conditions::at(50e3));
         if let Ok(fitted) = result {
             assert!(fitted.observation.moduli.known().all(|(_, value)| value.is_finite()), "{fitted:?}");
         }

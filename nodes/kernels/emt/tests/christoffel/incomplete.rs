@@ -3,14 +3,14 @@
 use super::laboratory::{PACKING, Sample, Wave};
 use grainlab_core::WaveSpeed;
 use grainlab_emt::Modulus;
-use grainlab_emt::christoffel::Fitted;
+use grainlab_emt::christoffel::SpeedFit;
 use nalgebra::Rotation3;
 
 fn sample() -> Sample {
     Sample::new(PACKING, Rotation3::from_euler_angles(0.4, -1.1, 2.0))
 }
 
-fn fit(waves: &[Wave]) -> Fitted {
+fn fit(waves: &[Wave]) -> SpeedFit {
     let sample = sample();
     let speeds: Vec<_> = waves.iter().enumerate().map(|(i, w)| sample.named(*w, 70.0 * i as f64)).collect();
     sample.fit(&speeds).unwrap()

@@ -1,7 +1,7 @@
 //! Waves in media that are known, by a dense eigenvalue solve of the full Christoffel tensor.
 
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
-use grainlab_emt::christoffel::{self, ChristoffelError, Fitted};
+use grainlab_emt::christoffel::{self, ChristoffelError, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::{Rotation3, Unit};
 
@@ -83,9 +83,9 @@ impl Sample {
         grainlab_emt::Moduli::of_medium(&self.moduli).get(modulus).expect("a medium has all of them")
     }
 
-    pub(crate) fn fit(&self, speeds: &[WaveSpeed]) -> Result<Fitted, ChristoffelError> {
+    pub(crate) fn fit(&self, speeds: &[WaveSpeed]) -> Result<SpeedFit, ChristoffelError> {
         let density = Measured::exact(DENSITY);
-        christoffel::observation(speeds, density, Some(self.axis()), Conditions::at(50e3))
+        christoffel::moduli_from_speeds(speeds, density, Some(self.axis()), Conditions::at(50e3))
     }
 }
 
@@ -151,7 +151,8 @@ impl Numbers {
         Rotation3::from_axis_angle(&axis, self.between(0.0, 3.0))
     }
 
-    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is positive.
+    /// A stable medium whose P modulus is above its S moduli along and across the axis, and whose C13 + C44 is
+    /// positive.
     /// `anisotropy` in (0, 1].
     pub(crate) fn medium(&mut self, anisotropy: f64) -> TransverseIsotropy {
         loop {

@@ -2,7 +2,7 @@
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
 use grainlab_core::WaveSpeed;
-use grainlab_emt::christoffel::{self, Fitted};
+use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, MODULI, Measured, ModuliCovariance, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector};
 
@@ -31,12 +31,12 @@ fn with_errors(speeds: &[WaveSpeed], relative: &[f64], numbers: &mut Numbers) ->
     speeds.iter().zip(relative.iter().cycle()).map(measure).collect()
 }
 
-fn errors(fitted: &Fitted) -> SVector<f64, MODULI> {
+fn errors(fitted: &SpeedFit) -> SVector<f64, MODULI> {
     let sample = sample();
     SVector::from(Modulus::ALL.map(|m| fitted.observation.moduli.get(m).unwrap() - sample.truth(m)))
 }
 
-fn covariance(fitted: &Fitted) -> ModuliCovariance {
+fn covariance(fitted: &SpeedFit) -> ModuliCovariance {
     fitted.observation.covariance.unwrap()
 }
 
@@ -44,8 +44,8 @@ fn five<const C: usize>(m: &SMatrix<f64, MODULI, C>) -> SMatrix<f64, 5, C> {
     SMatrix::from_fn(|i, j| m[(FIVE[i] as usize, j)])
 }
 
-/// Means over many draws of χ² and of the squared distance of the moduli from the truth by their covariance, and the share
-/// of conflicts.
+/// Means over many draws of χ² and of the squared distance of the moduli from the truth by their covariance, and the
+/// share of conflicts.
 fn scatter(waves: &[Wave], relative: &[f64]) -> [f64; 3] {
     const DRAWS: usize = 3000;
     let (mut numbers, speeds) = (Numbers::new(7), exact(waves));
@@ -102,7 +102,8 @@ fn both_modes_between_the_axes_give_the_bulk_modulus_half_again_as_well_as_one()
 fn an_error_of_the_density_moves_all_moduli_together() {
     let speeds = with_errors(&exact(&SIX), &[0.001], &mut Numbers::new(2));
     let at = |density| {
-        christoffel::observation(&speeds, density, Some(sample().axis()), Conditions::at(50e3)).unwrap()
+        christoffel::moduli_from_speeds(&speeds, density, Some(sample().axis()), Conditions::at(50e3))
+            .unwrap()
     };
     let sharp = at(Measured::exact(DENSITY));
     let blurred = at(Measured { value: DENSITY, stddev: 0.02 * DENSITY });

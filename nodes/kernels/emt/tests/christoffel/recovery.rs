@@ -51,8 +51,8 @@ fn slopes(sample: &Sample, waves: &[Wave], scale: &[f64; 5]) -> Vec<[f64; 5]> {
     slopes
 }
 
-/// What part of each modulus, in the order of `Modulus::ALL`, is open to the speeds in the medium's neighbourhood; `None`
-/// if it is hard to say, because something has little influence on any speed, but some.
+/// What part of each modulus, in the order of `Modulus::ALL`, is open to the speeds in the medium's neighbourhood;
+/// `None` if it is hard to say, because something has little influence on any speed, but some.
 fn open_parts(sample: &Sample, waves: &[Wave]) -> Option<[f64; 6]> {
     let m = sample.moduli;
     let scale = [m.c11, m.c33, m.c13 + m.g13, m.g13, m.g12];
@@ -77,8 +77,8 @@ fn open_parts(sample: &Sample, waves: &[Wave]) -> Option<[f64; 6]> {
     Some(parts)
 }
 
-/// Every subset of the waves gives back, from its speeds, what it determines, and leaves the rest open. `speed` makes the
-/// wave; at most `rivalled` of all subsets may leave more open, because another medium has the same speeds.
+/// Every subset of the waves gives back, from its speeds, what it determines, and leaves the rest open. `speed` makes
+/// the wave; at most `rivalled` of all subsets may leave more open, because another medium has the same speeds.
 fn every_subset_gives_back(
     numbers: &mut Numbers,
     anisotropy: f64,
@@ -173,7 +173,7 @@ fn signs_of_directions_motions_and_axis_do_not_matter() {
         }
     }
     let (density, conditions) = (Measured::exact(DENSITY), Conditions::at(50e3));
-    let after = christoffel::observation(&speeds, density, Some(-sample.axis()), conditions).unwrap();
+    let after = christoffel::moduli_from_speeds(&speeds, density, Some(-sample.axis()), conditions).unwrap();
     for (modulus, value) in after.observation.moduli.known() {
         assert!((value / before.get(modulus).unwrap() - 1.0).abs() < 1e-12, "{modulus}");
     }
@@ -261,8 +261,8 @@ fn a_fit_is_an_observation_that_every_model_takes() {
     assert!((found - expected).abs() < 1e-9 && estimate.stddev(grainlab_emt::Quantity::K).unwrap() > 0.0);
 }
 
-/// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one number is left
-/// for an SV at 70°, and its speed is no function of that number that only grows.
+/// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one number is
+/// left for an SV at 70°, and its speed is no function of that number that only grows.
 #[test]
 fn what_two_media_with_the_same_speeds_differ_in_is_left_open() {
     let m = TransverseIsotropy {

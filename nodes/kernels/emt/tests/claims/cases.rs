@@ -1,13 +1,15 @@
 //! Random structures and states, the same in every run.
 
 use grainlab_core::Material;
-use grainlab_emt::{Calibration, Conditions, Domain, Gamma, Isotropic, Measured, Quantity, Structure};
+use grainlab_emt::{
+    Calibration, Conditions, Domain, IsotropicCalibration, Measured, Quantity, StrainRatio, Structure,
+};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
 /// The paper's calibration, one of other constants whose coordination number leaves rattlers out, and our own.
 pub(crate) fn calibrations() -> Vec<Calibration> {
-    let own = Isotropic::new([150.0, -3.5, 80.0, -0.2], Quantity::Z, [4.2, 6.5]).unwrap();
+    let own = IsotropicCalibration::new([150.0, -3.5, 80.0, -0.2], Quantity::Z, [4.2, 6.5]).unwrap();
     let grains = Material { shear_modulus: 25.0e9, poisson_ratio: 0.25, density: 2600.0 };
     let relaxed = Calibration::builtin("grainlab").unwrap().clone();
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
@@ -52,7 +54,7 @@ impl Random {
         };
         let conditions = Conditions {
             pressure: Measured::exact(10f64.powf(self.with_ends([2.0, 8.0]))),
-            gamma: Gamma::given(self.with_ends(domain.gamma)),
+            gamma: StrainRatio::given(self.with_ends(domain.gamma)),
             solid_fraction: Some(Measured::exact(self.within([0.5, 0.7]))),
             material: (self.0.next_u64() >> 63 == 0).then_some(other),
         };

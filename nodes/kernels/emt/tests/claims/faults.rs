@@ -4,12 +4,14 @@ use crate::{PAPER_MODELS, model};
 use grainlab_core::results::StrainRatios;
 use grainlab_core::{Mat3, Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::{
-    Calibration, CalibrationError, Conditions, EmtError, Estimate, Gamma, GammaSource, Isotropic, Measured,
-    Moduli, ModuliCovariance, Modulus, Observation, Quantity, Status, Structure, Warning,
+    Calibration, CalibrationError, Conditions, EmtError, Estimate, IsotropicCalibration, Measured, Moduli,
+    ModuliCovariance, Modulus, Observation, Quantity, Status, StrainRatio, StrainRatioSource, Structure,
+    Warning,
 };
 
 fn sound() -> Observation {
-    let mut o = Observation::paper(121.7e6, 127.4e6, 144.4e6, 50.0e3, Gamma::given(-0.0623));
+    let mut o =
+        Observation::from_g12_g13_theta(121.7e6, 127.4e6, 144.4e6, 50.0e3, StrainRatio::given(-0.0623));
     o.conditions.solid_fraction = Some(Measured::exact(0.636));
     o
 }
@@ -36,7 +38,7 @@ fn estimate(o: &Observation) -> Estimate {
 
 /// The estimate from what a structure is predicted to have.
 fn of_structure(k: f64, k_hat: f64, eps: f64, g: f64) -> Estimate {
-    let conditions = Conditions { gamma: Gamma::given(g), ..Conditions::at(100.0e3) };
+    let conditions = Conditions { gamma: StrainRatio::given(g), ..Conditions::at(100.0e3) };
     let moduli =
         model("ratio").predict(&Structure::paper(k, k_hat, eps), &conditions, &Calibration::PAPER).unwrap();
     estimate(&Observation::new(moduli, conditions))
@@ -47,7 +49,7 @@ fn a_sound_observation_has_neither_errors_nor_warnings() {
     let e = estimate(&sound());
     assert_eq!((e.status, e.warnings.as_slice()), (Status::Ok, &[][..]));
     assert_eq!((e.model, e.calibration.as_str()), ("ratio", "paper"));
-    assert_eq!(e.gamma.unwrap().source, GammaSource::Given);
+    assert_eq!(e.gamma.unwrap().source, StrainRatioSource::Given);
 }
 
 #[test]
@@ -113,7 +115,7 @@ fn moduli_that_leave_another_one_no_stable_value_are_refused_by_its_name() {
 fn uncertainties_must_be_uncertainties() {
     assert!(matches!(fault(|o| o.conditions.pressure.stddev = -1.0), EmtError::NegativeStddev { .. }));
     assert!(matches!(fault(|o| o.conditions.gamma.stddev = -0.1), EmtError::NegativeStddev { .. }));
-    let of = |c: Mat3| sound().with_paper_covariance(&(c * 1e12));
+    let of = |c: Mat3| sound().with_g12_g13_theta_covariance(&(c * 1e12));
     let skew = of(Mat3::new(1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
     assert!(fault(|o| o.clone_from(&skew)).to_string().contains("symmetric"));
     let indefinite = of(Mat3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0));
@@ -129,11 +131,11 @@ fn strain_ratios_that_turn_contacts_inside_out_are_refused() {
     }
 }
 
-/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all. `sqrt` has
-/// no such state.
+/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all. `sqrt`
+/// has no such state.
 #[test]
 fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
-    let mut o = Observation::paper(100.0e6, 195.0e6, 144.4e6, 50.0e3, Gamma::given(-0.9));
+    let mut o = Observation::from_g12_g13_theta(100.0e6, 195.0e6, 144.4e6, 50.0e3, StrainRatio::given(-0.9));
     o.conditions.solid_fraction = Some(Measured::exact(0.636));
     for name in PAPER_MODELS {
         let e = model(name).infer(&o, &Calibration::PAPER).unwrap_err();
@@ -147,7 +149,7 @@ fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
 fn shear_too_stiff_beside_bulk_is_refused_with_the_limit() {
     let with = |share: f64| {
         let g12 = share * 170.0 / 75.0 * 100.0e6;
-        Observation::paper(g12, g12, 100.0e6, 50.0e3, Gamma::given(0.0))
+        Observation::from_g12_g13_theta(g12, g12, 100.0e6, 50.0e3, StrainRatio::given(0.0))
     };
     let refused = model("ratio").infer(&with(1.0 + 1e-12), &Calibration::PAPER).unwrap_err();
     let EmtError::ShearTooStiff { limit, .. } = &refused else { panic!("{refused}") };
@@ -231,12 +233,12 @@ fn an_orthotropic_stiffness_is_used_with_a_warning_that_tells_its_asymmetry() {
 #[test]
 fn gamma_is_taken_from_the_total_strain_then_from_the_contacts_then_as_zero_with_a_warning() {
     let measured = StrainRatios { total: Some(-0.06), elastic: Some(0.01), contact: Some(0.02) };
-    let of = |a: &StrainRatios| (Gamma::preferred(a).source, Gamma::preferred(a).value);
-    assert_eq!(of(&measured), (GammaSource::Total, -0.06));
-    assert_eq!(of(&StrainRatios { total: None, ..measured }), (GammaSource::Contact, 0.02));
-    assert_eq!(of(&StrainRatios::default()), (GammaSource::Zero, 0.0));
+    let of = |a: &StrainRatios| (StrainRatio::preferred(a).source, StrainRatio::preferred(a).value);
+    assert_eq!(of(&measured), (StrainRatioSource::Total, -0.06));
+    assert_eq!(of(&StrainRatios { total: None, ..measured }), (StrainRatioSource::Contact, 0.02));
+    assert_eq!(of(&StrainRatios::default()), (StrainRatioSource::Zero, 0.0));
     let mut o = sound();
-    o.conditions.gamma = Gamma::ZERO;
+    o.conditions.gamma = StrainRatio::ZERO;
     let e = estimate(&o);
     assert_eq!((e.warnings.as_slice(), e.status), (&[Warning::GammaAssumedZero][..], Status::Ok));
     assert_eq!(e.gamma.unwrap().to_string(), "gamma/Delta = 0.0000 (not known, taken as 0)");
@@ -250,11 +252,12 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
         ([170.0, -3.66, f64::NAN, -0.5], "rho"),
         ([170.0, -3.66, 75.0, -3.66], "zeta"),
     ] {
-        let refused = Isotropic::new(constants, Quantity::K, [4.8, 6.0]).unwrap_err();
+        let refused = IsotropicCalibration::new(constants, Quantity::K, [4.8, 6.0]).unwrap_err();
         let CalibrationError::Constant { field, .. } = refused else { panic!("{refused}") };
         assert_eq!(field, at_fault);
     }
-    let upside_down = Isotropic::new([170.0, -3.66, 75.0, -0.5], Quantity::K, [6.0, 4.8]).unwrap_err();
+    let upside_down =
+        IsotropicCalibration::new([170.0, -3.66, 75.0, -0.5], Quantity::K, [6.0, 4.8]).unwrap_err();
     assert!(matches!(upside_down, CalibrationError::Constant { field: "fitted", .. }));
 }
 
@@ -269,7 +272,7 @@ fn what_is_missing_is_named() {
         for (modulus, missing) in [(Modulus::G12, "G12"), (Modulus::G13, "G13")] {
             let e = without(name, modulus).unwrap_err();
             assert_eq!(e, EmtError::Missing { model: name, missing });
-            assert!(e.is_of_input());
+            assert!(e.is_input_error());
         }
     }
     let nothing = Observation { moduli: Moduli::NONE, ..sound() };

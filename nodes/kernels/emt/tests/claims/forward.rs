@@ -4,7 +4,7 @@ use crate::cases::calibrations;
 use crate::sphere::{contact_density, directions, stiffness};
 use crate::{PAPER_MODELS, model};
 use grainlab_core::{Material, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Gamma, Measured, Moduli, Modulus, Structure};
+use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio, Structure};
 use std::f64::consts::PI;
 
 /// ε and g with both ends and what is next to them, and where the overlap is all but linear.
@@ -81,9 +81,9 @@ fn ratios_are_those_of_the_integral_with_the_spin_that_keeps_stress_symmetric() 
                         over[2] += 0.4 * eps * (2.0 - over[1] / over[0]);
                     }
                     let fitted = calibration.isotropic_for(Some(grains));
-                    let structure = Structure::paper(k, k_hat, eps).with(fitted.abscissa, k);
+                    let structure = Structure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
                     let conditions = Conditions {
-                        gamma: Gamma::given(g),
+                        gamma: StrainRatio::given(g),
                         material: Some(grains),
                         ..Conditions::at(pressure)
                     };
@@ -125,7 +125,7 @@ fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
 
             let structure = Structure { k: Some(k), eps: Some(eps), ..Structure::default() };
             let conditions = Conditions {
-                gamma: Gamma::given(g),
+                gamma: StrainRatio::given(g),
                 solid_fraction: Some(Measured::exact(phi)),
                 material: Some(grains),
                 ..Conditions::at(pressure)
@@ -155,7 +155,7 @@ fn g13_over_g12_rises_with_eps_at_every_g_and_nu() {
         for calibration in calibrations() {
             for (g, nu) in G.into_iter().flat_map(|g| NU.map(|nu| (g, nu))) {
                 let conditions = Conditions {
-                    gamma: Gamma::given(g),
+                    gamma: StrainRatio::given(g),
                     solid_fraction: Some(Measured::exact(0.6)),
                     material: Some(Material { poisson_ratio: nu, ..Material::GLASS }),
                     ..Conditions::at(1.0e5)

@@ -4,13 +4,14 @@ use crate::cases::Random;
 use crate::{PAPER_MODELS, model};
 use grainlab_core::Material;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Gamma, Measured, Modulus, Observation, Quantity, Status,
-    Structure, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Modulus, Observation, Quantity, Status,
+    StrainRatio, Structure, Warning,
 };
 
 /// G12, G13 = `ratio` G12 and Θ of a packing of some k̂ near 5.
 fn with_ratio(ratio: f64) -> Observation {
-    let mut o = Observation::paper(100.0e6, ratio * 100.0e6, 160.0e6, 100.0e3, Gamma::given(0.0));
+    let mut o =
+        Observation::from_g12_g13_theta(100.0e6, ratio * 100.0e6, 160.0e6, 100.0e3, StrainRatio::given(0.0));
     o.conditions.solid_fraction = Some(Measured::exact(0.636));
     o
 }
@@ -22,7 +23,7 @@ fn infer(name: &str, o: &Observation) -> Result<Estimate, EmtError> {
 /// The estimate from what a structure is predicted to have.
 fn there_and_back(name: &str, structure: Structure, g: f64, nu: f64) -> Estimate {
     let conditions = Conditions {
-        gamma: Gamma::given(g),
+        gamma: StrainRatio::given(g),
         solid_fraction: Some(Measured::exact(0.636)),
         material: Some(Material { poisson_ratio: nu, ..Material::GLASS }),
         ..Conditions::at(100.0e3)
@@ -35,7 +36,8 @@ fn eps_of(name: &str, ratio: f64) -> f64 {
     infer(name, &with_ratio(ratio)).unwrap().structure.eps.unwrap()
 }
 
-/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not move.
+/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not
+/// move.
 #[test]
 fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_eps() {
     for name in PAPER_MODELS {
@@ -140,7 +142,7 @@ fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
         }
         for g in [0.26, -0.51] {
             let mut o = with_ratio(1.02);
-            o.conditions.gamma = Gamma::given(g);
+            o.conditions.gamma = StrainRatio::given(g);
             match infer(name, &o) {
                 Ok(e) => {
                     assert!(name != "sqrt" && e.status == Status::Extrapolated);

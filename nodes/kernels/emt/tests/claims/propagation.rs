@@ -4,8 +4,8 @@ use crate::cases::{Random, calibrations};
 use crate::{model, table3};
 use grainlab_core::Mat3;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Gamma, GammaSource, INPUTS, Measured, Modulus, Observation,
-    QUANTITIES, Quantity, Slopes, models,
+    Calibration, Conditions, EmtError, INPUTS, Jacobian, Measured, Modulus, Observation, QUANTITIES,
+    Quantity, StrainRatio, StrainRatioSource, models,
 };
 use nalgebra::SVector;
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ const GAMMA: usize = 7;
 /// dε = (N_a D − N D_a)/D² dr + (N_g D − N D_g)/D² dg, dr = r (dlnG13 − dlnG12),
 /// dk̂ = (k̂+ζ)²/(ζ−β) s {dlnG12 − dlnΘ + [1/(2−r) − 1/(4−r)] dr},
 /// (k/k̂)^power = Θ/[ρ (k̂+ζ) p^⅓ (1 − 4εg/5)].
-fn slopes_by_hand(o: &Observation, [k, k_hat, eps]: [f64; 3], power: f64) -> Slopes {
+fn slopes_by_hand(o: &Observation, [k, k_hat, eps]: [f64; 3], power: f64) -> Jacobian {
     let [beta, zeta] = [-3.66, -0.5];
     let [g12, g13] = [Modulus::G12, Modulus::G13].map(|m| o.moduli.get(m).unwrap());
     let (g, r) = (o.conditions.gamma.value, g13 / g12);
@@ -43,7 +43,7 @@ fn slopes_by_hand(o: &Observation, [k, k_hat, eps]: [f64; 3], power: f64) -> Slo
     let d_ln_denser = row(&[(at_theta, 1.0), (PRESSURE, -1.0 / 3.0)]) - d_k_hat / (k_hat + zeta) - d_ln_bulk;
     let d_k = (d_k_hat / k_hat + d_ln_denser / power) * k;
 
-    let mut slopes = Slopes::zeros();
+    let mut slopes = Jacobian::zeros();
     slopes.set_row(Quantity::K as usize, &d_k);
     slopes.set_row(Quantity::KHat as usize, &d_k_hat);
     slopes.set_row(Quantity::Eps as usize, &d_eps);
@@ -61,7 +61,7 @@ proptest! {
         for (name, power) in [("ratio", 1.0), ("ratio-volume", 2.0 / 3.0)] {
             let conditions = Conditions {
                 pressure: Measured { value: 80.0e3, stddev: 80.0e3 * p_error },
-                gamma: Gamma { value: g, stddev: g_error, source: GammaSource::Given },
+                gamma: StrainRatio { value: g, stddev: g_error, source: StrainRatioSource::Given },
                 ..Conditions::at(80.0e3)
             };
             let truth = grainlab_emt::Structure::paper(k, k_hat, eps);
@@ -71,11 +71,11 @@ proptest! {
             let scale = Mat3::from_diagonal(&[g12, g13, theta].into());
             let root = Mat3::from_row_slice(&root) * 0.02;
             let relative = root * root.transpose();
-            let o = o.with_paper_covariance(&(scale * relative * scale));
+            let o = o.with_g12_g13_theta_covariance(&(scale * relative * scale));
 
             let expected = slopes_by_hand(&o, [k, k_hat, eps], power);
             let e = model(name).infer(&o, &Calibration::PAPER).unwrap();
-            prop_assert!((e.slopes - expected).amax() < 1e-6 * expected.amax(), "{name}: {} {expected}", e.slopes);
+            prop_assert!((e.jacobian - expected).amax() < 1e-6 * expected.amax(), "{name}: {} {expected}", e.jacobian);
 
             let mut input = nalgebra::SMatrix::<f64, INPUTS, INPUTS>::zeros();
             input.fixed_view_mut::<3, 3>(0, 0).copy_from(&relative);
@@ -104,7 +104,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                     domain.structure.map(|r| r.map(|r| random.within(inner(r)))),
                 );
                 let conditions = Conditions {
-                    gamma: Gamma::given(random.within(inner(domain.gamma))),
+                    gamma: StrainRatio::given(random.within(inner(domain.gamma))),
                     solid_fraction: Some(Measured::exact(random.within([0.5, 0.7]))),
                     ..Conditions::at(10f64.powf(random.within([2.0, 8.0])))
                 };
@@ -113,7 +113,8 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                     Err(EmtError::NotCalibrated { .. }) => continue,
                     moduli => moduli.unwrap(),
                 };
-                let slopes = model.infer(&Observation::new(moduli, conditions), &calibration).unwrap().slopes;
+                let slopes =
+                    model.infer(&Observation::new(moduli, conditions), &calibration).unwrap().jacobian;
                 // Relative change of the moduli along one variable, five points, and of what else it is.
                 let along = |moved: &dyn Fn(f64) -> (grainlab_emt::Structure, Conditions),
                              own: Option<usize>| {
@@ -150,7 +151,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                 let scaled = |m: Measured, by: f64| Measured::exact(m.value * (1.0 + by));
                 state(PRESSURE, &|by| Conditions { pressure: scaled(conditions.pressure, by), ..conditions });
                 state(GAMMA, &|by| Conditions {
-                    gamma: Gamma::given(conditions.gamma.value + by),
+                    gamma: StrainRatio::given(conditions.gamma.value + by),
                     ..conditions
                 });
                 state(GAMMA + 1, &|by| Conditions {
@@ -236,7 +237,7 @@ fn an_error_that_both_shear_moduli_share_does_not_reach_eps() {
     let o = row.observation();
     let [g12, g13, ..] = o.moduli.values().map(|m| m.unwrap_or(0.0));
     let shared = nalgebra::Vector3::new(0.05 * g12, 0.05 * g13, 0.0);
-    let o = o.with_paper_covariance(&(shared * shared.transpose()));
+    let o = o.with_g12_g13_theta_covariance(&(shared * shared.transpose()));
     let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
     assert!(e.stddev(Quantity::Eps).unwrap() < 1e-6 && e.stddev(Quantity::KHat).unwrap() > 0.1);
 }

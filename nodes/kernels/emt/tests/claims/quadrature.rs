@@ -2,7 +2,7 @@
 
 use crate::sphere::{contact_density, directions, stiffness};
 use grainlab_core::{Mat3, Material, Stiffness};
-use grainlab_emt::{Form, Medium, Moments};
+use grainlab_emt::{Eq16Reading, Medium, Moments};
 use std::f64::consts::PI;
 
 fn grid() -> impl Iterator<Item = (f64, f64)> {
@@ -48,13 +48,13 @@ fn stiffness_of_the_medium_is_the_integral_with_the_spin_that_keeps_stress_symme
         let number = 6.0 * medium.solid_fraction / (PI * D.powi(3));
         let unit = number * D / 2.0 * D / 2.0 * k_t * medium.k;
         let integrated = stiffness(&sphere, |x| [unit * contact_density(eps, x) * overlap_law(g, x); 2]);
-        let psi = medium.psi(Form::Corrected);
+        let psi = medium.moduli(Eq16Reading::Corrected);
         let scale = integrated.amax();
         assert!((integrated - psi.stiffness().0).amax() < 1e-12 * scale, "eps {eps} g {g}");
         assert!((Stiffness(integrated).bulk_voigt() - psi.bulk()).abs() < 1e-12 * scale);
         // Over the isotropic medium the bulk modulus is the bracket of Eq. 16, and the shear ratio is 1 + a.
-        let isotropic = Medium { eps: 0.0, gamma_over_delta: 0.0, ..medium }.psi(Form::Corrected);
-        assert!((psi.bulk() / isotropic.bulk() - Form::Corrected.bulk_factor(eps, g)).abs() < 1e-12);
+        let isotropic = Medium { eps: 0.0, gamma_over_delta: 0.0, ..medium }.moduli(Eq16Reading::Corrected);
+        assert!((psi.bulk() / isotropic.bulk() - Eq16Reading::Corrected.bulk_factor(eps, g)).abs() < 1e-12);
         let t = psi.stiffness().transverse_isotropy();
         assert!((t.g13 / t.g12 - 1.0 - Moments::new(eps, g).spin()).abs() < 1e-12);
     }
@@ -65,9 +65,9 @@ fn stiffness_of_the_medium_is_the_integral_with_the_spin_that_keeps_stress_symme
 fn printed_forms_exceed_the_corrected_ones_by_the_missing_factor() {
     for (eps, g) in grid() {
         let a = Moments::new(eps, g).spin();
-        let psi1 = Form::AsPrinted.psi1_factor(eps, g) - Form::Corrected.psi1_factor(eps, g);
+        let psi1 = Eq16Reading::AsPrinted.psi1_factor(eps, g) - Eq16Reading::Corrected.psi1_factor(eps, g);
         assert!((psi1 - 0.8 * eps * (1.0 - a)).abs() < 1e-14);
-        let bulk = Form::AsPrinted.bulk_factor(eps, g) - Form::Corrected.bulk_factor(eps, g);
+        let bulk = Eq16Reading::AsPrinted.bulk_factor(eps, g) - Eq16Reading::Corrected.bulk_factor(eps, g);
         assert!((bulk - 0.4 * eps * (1.0 - a)).abs() < 1e-14);
     }
 }

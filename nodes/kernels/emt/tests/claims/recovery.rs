@@ -3,8 +3,8 @@
 use crate::cases::{Random, calibrations};
 use grainlab_core::Material;
 use grainlab_emt::{
-    Calibration, Conditions, Domain, EmtError, Gamma, Measured, Model, Observation, Quantity, Structure,
-    models,
+    Calibration, Conditions, Domain, EmtError, Measured, Model, Observation, Quantity, StrainRatio,
+    Structure, models,
 };
 use proptest::prelude::*;
 
@@ -56,7 +56,7 @@ fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let inside = Structure::of_values(domain.structure.map(|r| r.map(middle)));
         let conditions = Conditions {
-            gamma: Gamma::given(middle(domain.gamma)),
+            gamma: StrainRatio::given(middle(domain.gamma)),
             solid_fraction: Some(Measured::exact(0.63)),
             ..Conditions::at(100.0e3)
         };
@@ -79,7 +79,7 @@ fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
             }
         }
         for g in &beyond(domain.gamma)[..2] {
-            refused(&inside, &Conditions { gamma: Gamma::given(*g), ..conditions }, "gamma/Delta");
+            refused(&inside, &Conditions { gamma: StrainRatio::given(*g), ..conditions }, "gamma/Delta");
         }
         for nu in &beyond(domain.poisson_ratio)[..2] {
             let grains = Material { poisson_ratio: *nu, ..Material::GLASS };
@@ -107,7 +107,7 @@ proptest! {
         if related {
             (g13, theta) = (ratio * g12, 0.8 * g12);
         }
-        let mut o = Observation::paper(g12, g13, theta, p, Gamma::given(g)).with_relative_error(relative);
+        let mut o = Observation::from_g12_g13_theta(g12, g13, theta, p, StrainRatio::given(g)).with_relative_error(relative);
         o.conditions.solid_fraction = Some(Measured { value: 0.63, stddev: 0.01 });
         for (model, calibration, _) in calibrated() {
             if let Ok(e) = model.infer(&o, &calibration) {

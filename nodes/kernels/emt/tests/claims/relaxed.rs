@@ -2,7 +2,7 @@
 
 use crate::cases::Random;
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
-use grainlab_emt::relaxed::Relaxed;
+use grainlab_emt::Relaxed;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Quantity,
     Structure, Warning,
@@ -69,8 +69,8 @@ fn more_moduli_are_never_worse() {
     assert!(four >= five.stddev(Quantity::Eps).unwrap());
 }
 
-/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they promise,
-/// and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
+/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they
+/// promise, and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
 #[test]
 fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
     let network = ours().network().unwrap();
@@ -117,7 +117,7 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
 /// The five independent moduli of a sample of this mean, in the order of [`Modulus::ALL`] and without Θ.
 fn scattered(
     mean: &Moduli,
-    network: &grainlab_emt::calibration::Network,
+    network: &grainlab_emt::RelaxationCalibration,
     z: f64,
     random: &mut Random,
 ) -> [Option<f64>; 6] {
@@ -251,7 +251,7 @@ fn stiffer_grains_at_as_much_higher_a_pressure_are_the_same_packing() {
 fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
     let exact = Observation::new(moduli(5.25, 0.06), conditions()).checked().unwrap();
     let found = Relaxed.solve(&exact, ours()).unwrap();
-    let slopes = found.slopes.unwrap();
+    let slopes = found.jacobian.unwrap();
     const STEP: f64 = 1e-6;
     for modulus in Modulus::ALL {
         let at = |by: f64| {

@@ -2,11 +2,10 @@
 
 use crate::cases::calibrations;
 use crate::{PAPER_MODELS, model, table3};
-use grainlab_emt::sampling::Settings;
 use grainlab_emt::{
-    Calibration, Conditions, Domain, EmtError, Gamma, GammaSource, Measured, Model, Moduli, ModuliCovariance,
-    Modulus, Observation, QUANTITIES, Quantity, Slopes, Solution, Structure, StructureCovariance, models,
-    sample,
+    Calibration, Conditions, Domain, EmtError, Jacobian, Measured, Model, Moduli, ModuliCovariance, Modulus,
+    Observation, PointEstimate, QUANTITIES, Quantity, SamplingSettings, StrainRatio, StrainRatioSource,
+    Structure, StructureCovariance, models, monte_carlo,
 };
 
 const DRAWS: usize = 40_000;
@@ -23,7 +22,7 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
     let known = |value: f64| Measured { value, stddev: relative * value };
     let conditions = Conditions {
         pressure: known(1.0e5),
-        gamma: Gamma { value: -0.05, stddev: relative, source: GammaSource::Given },
+        gamma: StrainRatio { value: -0.05, stddev: relative, source: StrainRatioSource::Given },
         solid_fraction: Some(known(0.63)),
         material: None,
     };
@@ -33,16 +32,16 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
     }
 }
 
-/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave out
-/// is a thousandth of σ here.
+/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave
+/// out is a thousandth of σ here.
 #[test]
 fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
-    let settings = Settings { draws: DRAWS, seed: 1 };
+    let settings = SamplingSettings { draws: DRAWS, seed: 1 };
     for calibration in calibrations() {
         for model in models() {
             let Some(o) = observed(*model, &calibration, 1e-3) else { continue };
             let linear = model.infer(&o, &calibration).unwrap();
-            let sampled = sample(*model, &o, &calibration, settings).unwrap();
+            let sampled = monte_carlo(*model, &o, &calibration, settings).unwrap();
             assert_eq!((sampled.unsolved, sampled.draws, &sampled.first_fault), (0, DRAWS, &None));
             assert_eq!((sampled.model, sampled.calibration.as_str()), (model.name(), calibration.name()));
             let (c, expected) = (sampled.covariance.unwrap(), linear.covariance().unwrap());
@@ -83,8 +82,9 @@ fn at_30_percent_they_part_and_the_samples_say_so() {
         let o = observed(model(name), &Calibration::PAPER, 0.3).unwrap();
         let linear = model(name).infer(&o, &Calibration::PAPER).unwrap();
         let sampled =
-            sample(model(name), &o, &Calibration::PAPER, Settings { draws: DRAWS, seed: 2 }).unwrap();
-        assert!(sampled.unsolved_share() > 0.02, "{name}: {}", sampled.unsolved_share());
+            monte_carlo(model(name), &o, &Calibration::PAPER, SamplingSettings { draws: DRAWS, seed: 2 })
+                .unwrap();
+        assert!(sampled.failed_fraction() > 0.02, "{name}: {}", sampled.failed_fraction());
         assert!(sampled.first_fault.as_ref().is_some_and(|e| !matches!(e, EmtError::Missing { .. })));
         let ([low, high], [_, taken]) =
             (sampled.interval(Quantity::KHat).unwrap(), linear.interval(Quantity::KHat).unwrap());
@@ -94,14 +94,16 @@ fn at_30_percent_they_part_and_the_samples_say_so() {
             "{name}: {skewness} {low} {high} {taken}"
         );
         let share = sampled.unsolved as f64 / sampled.draws as f64;
-        assert_eq!(sampled.unsolved_share(), share);
+        assert_eq!(sampled.failed_fraction(), share);
     }
 }
 
 #[test]
 fn the_same_seed_gives_the_same_samples_and_another_one_others() {
     let o = table3::rows()[0].observation().with_relative_error(0.05);
-    let of = |seed| sample(model("ratio"), &o, &Calibration::PAPER, Settings { draws: 500, seed }).unwrap();
+    let of = |seed| {
+        monte_carlo(model("ratio"), &o, &Calibration::PAPER, SamplingSettings { draws: 500, seed }).unwrap()
+    };
     assert_eq!(of(3), of(3));
     assert_ne!(of(3).mean, of(4).mean);
 }
@@ -109,8 +111,9 @@ fn the_same_seed_gives_the_same_samples_and_another_one_others() {
 #[test]
 fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
     let o = table3::rows()[0].observation();
-    let of =
-        |o: &Observation| sample(model("ratio"), o, &Calibration::PAPER, Settings { draws: 50, seed: 0 });
+    let of = |o: &Observation| {
+        monte_carlo(model("ratio"), o, &Calibration::PAPER, SamplingSettings { draws: 50, seed: 0 })
+    };
     let missing = EmtError::Missing { model: "ratio", missing: "the covariance of the moduli" };
     assert_eq!(of(&o).unwrap_err(), missing);
     let exact = of(&o.with_relative_error(0.0)).unwrap();
@@ -121,9 +124,10 @@ fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
     none.moduli = none.moduli.with(Modulus::G13, 1e9);
     assert!(matches!(of(&none), Err(EmtError::RatioOutOfRange { .. })));
     let o = table3::rows()[0].observation().with_relative_error(0.01);
-    let empty = sample(model("ratio"), &o, &Calibration::PAPER, Settings { draws: 0, seed: 0 }).unwrap();
+    let empty =
+        monte_carlo(model("ratio"), &o, &Calibration::PAPER, SamplingSettings { draws: 0, seed: 0 }).unwrap();
     assert!(
-        empty.mean == Structure::default() && empty.covariance.is_none() && empty.unsolved_share() == 0.0
+        empty.mean == Structure::default() && empty.covariance.is_none() && empty.failed_fraction() == 0.0
     );
 }
 
@@ -151,7 +155,7 @@ impl Model for Line {
         Ok(Moduli::NONE)
     }
 
-    fn solve(&self, o: &Observation, _: &Calibration) -> Result<Solution, EmtError> {
+    fn solve(&self, o: &Observation, _: &Calibration) -> Result<PointEstimate, EmtError> {
         let k = o.moduli.get(Modulus::Theta).unwrap() / 20.0e6;
         if k > 6.0 {
             return Err(EmtError::NoCoordination {
@@ -164,7 +168,7 @@ impl Model for Line {
         let mut left_out = StructureCovariance::zeros();
         left_out[(0, 0)] = 0.09;
         let structure = Structure::default().with(Quantity::K, k);
-        Ok(Solution { discrepancy: Some(left_out), ..Solution::exact(structure) })
+        Ok(PointEstimate { discrepancy: Some(left_out), ..PointEstimate::exact(structure) })
     }
 }
 
@@ -174,11 +178,12 @@ fn what_the_model_leaves_out_is_added_and_draws_without_a_solution_are_counted()
     let theta = 100.0e6;
     let o = Observation::new(Moduli::NONE.with(Modulus::Theta, theta), Conditions::at(1.0e5))
         .with_relative_error(0.08);
-    let s = sample(&Line, &o, &Calibration::PAPER, Settings { draws: 200_000, seed: 5 }).unwrap();
+    let s =
+        monte_carlo(&Line, &o, &Calibration::PAPER, SamplingSettings { draws: 200_000, seed: 5 }).unwrap();
     assert!(
-        (s.unsolved_share() - 0.0062).abs() < 5.0 * (0.0062f64 / 200_000.0).sqrt(),
+        (s.failed_fraction() - 0.0062).abs() < 5.0 * (0.0062f64 / 200_000.0).sqrt(),
         "{}",
-        s.unsolved_share()
+        s.failed_fraction()
     );
     assert!(matches!(s.first_fault, Some(EmtError::NoCoordination { nearest, .. }) if nearest > 6.0));
     // Cut at 2.5 σ a normal distribution has mean −0.01764 σ and variance 0.9556 σ².
@@ -204,12 +209,12 @@ fn correlated_errors_are_drawn_as_they_are() {
         fn predict(&self, _: &Structure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
             Ok(Moduli::NONE)
         }
-        fn solve(&self, o: &Observation, _: &Calibration) -> Result<Solution, EmtError> {
+        fn solve(&self, o: &Observation, _: &Calibration) -> Result<PointEstimate, EmtError> {
             assert!(o.moduli.imbalance().unwrap().abs() < 1e-9);
             let [k, z] = [Modulus::G12, Modulus::G13].map(|m| o.moduli.get(m).unwrap() / 1e8);
             let structure = Structure { k: Some(k), z: Some(z), ..Structure::default() };
             // Differences would move one modulus without the others.
-            Ok(Solution { slopes: Some(Slopes::zeros()), ..Solution::exact(structure) })
+            Ok(PointEstimate { jacobian: Some(Jacobian::zeros()), ..PointEstimate::exact(structure) })
         }
     }
     let values = [Some(1.0e8), Some(1.1e8), None, Some(2.4e8), Some(2.5e8), Some(0.5e8)];
@@ -218,7 +223,8 @@ fn correlated_errors_are_drawn_as_they_are() {
     // G12 and G13 share most of their error.
     (covariance[(0, 1)], covariance[(1, 0)]) = (0.8e12, 0.8e12);
     let o = Observation::new(Moduli::of_values(values), Conditions::at(1.0e5)).with_covariance(covariance);
-    let s = sample(&Balance, &o, &Calibration::PAPER, Settings { draws: DRAWS, seed: 6 }).unwrap();
+    let s =
+        monte_carlo(&Balance, &o, &Calibration::PAPER, SamplingSettings { draws: DRAWS, seed: 6 }).unwrap();
     let c = s.covariance.unwrap() * 1e4;
     let error = 5.0 / (DRAWS as f64).sqrt();
     assert!((c[(0, 0)] - 1.0).abs() < 1.42 * error && (c[(0, 2)] - 0.8).abs() < 1.29 * error, "{c}");

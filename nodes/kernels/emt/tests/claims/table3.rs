@@ -1,6 +1,6 @@
 //! The sixteen states of the paper's Table III, with the moduli that its k, k̂ and ε imply.
 
-use grainlab_emt::{Gamma, Observation, Structure};
+use grainlab_emt::{Observation, StrainRatio, Structure};
 
 /// One state.
 pub(crate) struct Row {
@@ -36,7 +36,7 @@ impl Row {
     }
 
     fn with_theta(&self, theta: f64) -> Observation {
-        Observation::paper(self.g12, self.g13, theta, self.pressure, Gamma::given(self.g))
+        Observation::from_g12_g13_theta(self.g12, self.g13, theta, self.pressure, StrainRatio::given(self.g))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
-use grainlab_emt::{Gamma, Moduli, Observation, Sample};
+use grainlab_emt::{CalibrationSample, Moduli, Observation, StrainRatio};
 use std::path::Path;
 
 /// Header and rows of a file in `tests/golden`.
@@ -31,13 +31,13 @@ impl Table {
 }
 
 /// The packings of one ensemble; path and friction are the preparation.
-pub(crate) fn samples(name: &str) -> Vec<Sample> {
+pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
     let t = read(&format!("ensembles/{name}"));
     let sample = |row: &Vec<String>| {
         let number = |column| t.number(row, column);
         let preparation = format!("{}-{}", t.cell(row, "preparation"), t.cell(row, "mu2"));
         let moduli = ["g12_pa", "g13_pa", "theta_pa", "ti_c11_pa", "ti_c33_pa", "ti_c13_pa"];
-        Sample {
+        CalibrationSample {
             packing: format!("{preparation}-{}", t.cell(row, "seed")),
             preparation,
             grains: number("grains") as u32,
@@ -68,8 +68,8 @@ pub(crate) fn paper_rows() -> Vec<(Observation, f64)> {
     let t = read("paper_rows.csv");
     let row = |row: &Vec<String>| {
         let n = |column| t.number(row, column);
-        let g = Gamma::given(n("gamma_over_delta"));
-        let o = Observation::paper(n("g12_pa"), n("g13_pa"), n("theta_pa"), 1e3 * n("p_kpa"), g);
+        let g = StrainRatio::given(n("gamma_over_delta"));
+        let o = Observation::from_g12_g13_theta(n("g12_pa"), n("g13_pa"), n("theta_pa"), 1e3 * n("p_kpa"), g);
         (o, n("eps"))
     };
     t.rows.iter().map(row).collect()

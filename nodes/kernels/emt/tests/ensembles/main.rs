@@ -2,10 +2,12 @@
 
 mod csv;
 
-use grainlab_emt::{Calibration, GammaSource, Moduli, Modulus, Observation, Quantity, Sample, learn};
+use grainlab_emt::{
+    Calibration, CalibrationSample, Moduli, Modulus, Observation, Quantity, StrainRatioSource, learn,
+};
 
 /// Packings that no calibration has seen: 24 seeds, 4 frictions, 4 pressures.
-fn held_out() -> Vec<Sample> {
+fn held_out() -> Vec<CalibrationSample> {
     csv::samples("held_out.csv")
 }
 
@@ -33,13 +35,18 @@ fn the_built_in_calibration_is_what_the_kept_ensembles_teach() {
     }
 }
 
+#[test]
+fn the_built_in_file_is_what_is_written() {
+    assert_eq!(ours().to_toml().unwrap(), include_str!("../../src/calibration/grainlab.toml"));
+}
+
 /// Errors of one quantity over samples.
 struct Errors {
     rms: f64,
     covered: f64,
 }
 
-fn errors(model: &str, gamma: GammaSource, quantity: Quantity, keep: fn(Moduli) -> Moduli) -> Errors {
+fn errors(model: &str, gamma: StrainRatioSource, quantity: Quantity, keep: fn(Moduli) -> Moduli) -> Errors {
     let model = grainlab_emt::model(model).unwrap();
     let samples = held_out();
     let (mut squares, mut covered) = (0.0, 0.0);
@@ -64,11 +71,16 @@ fn errors(model: &str, gamma: GammaSource, quantity: Quantity, keep: fn(Moduli) 
 #[test]
 fn unseen_packings_give_back_z_and_eps_without_any_gamma() {
     let all = |m| m;
-    let of = |q| errors("relaxed", GammaSource::Zero, q, all);
+    let of = |q| errors("relaxed", StrainRatioSource::Zero, q, all);
     let (z, eps) = (of(Quantity::Z), of(Quantity::Eps));
     assert!(z.rms < 0.05 && eps.rms < 0.010, "z {} eps {}", z.rms, eps.rms);
-    let ratio = [GammaSource::Zero, GammaSource::Total, GammaSource::Elastic, GammaSource::Contact]
-        .map(|g| errors("ratio", g, Quantity::Eps, all).rms);
+    let ratio = [
+        StrainRatioSource::Zero,
+        StrainRatioSource::Total,
+        StrainRatioSource::Elastic,
+        StrainRatioSource::Contact,
+    ]
+    .map(|g| errors("ratio", g, Quantity::Eps, all).rms);
     let best = ratio.into_iter().fold(f64::INFINITY, f64::min);
     assert!(eps.rms < 0.5 * best, "{} against {ratio:?}", eps.rms);
     assert!(of(Quantity::EpsStiffness).rms < eps.rms, "moduli see stiffness before they see number");
@@ -77,17 +89,17 @@ fn unseen_packings_give_back_z_and_eps_without_any_gamma() {
 #[test]
 fn stated_intervals_hold_the_truth_of_unseen_packings_in_90_to_99_percent() {
     for quantity in [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness] {
-        let covered = errors("relaxed", GammaSource::Zero, quantity, |m| m).covered;
+        let covered = errors("relaxed", StrainRatioSource::Zero, quantity, |m| m).covered;
         assert!((0.90..=0.99).contains(&covered), "{quantity}: {covered}");
     }
 }
 
 #[test]
 fn three_moduli_or_the_p_moduli_alone_are_worth_what_is_stated() {
-    let three = errors("relaxed", GammaSource::Zero, Quantity::Eps, |m| {
+    let three = errors("relaxed", StrainRatioSource::Zero, Quantity::Eps, |m| {
         m.without(Modulus::C11).without(Modulus::C33).without(Modulus::C13)
     });
-    let p_alone = errors("relaxed", GammaSource::Zero, Quantity::Eps, |m| {
+    let p_alone = errors("relaxed", StrainRatioSource::Zero, Quantity::Eps, |m| {
         Moduli::NONE
             .with(Modulus::C11, m.get(Modulus::C11).unwrap())
             .with(Modulus::C33, m.get(Modulus::C33).unwrap())

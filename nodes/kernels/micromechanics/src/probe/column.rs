@@ -4,7 +4,7 @@ use super::relaxation::Relaxation;
 use super::settings::{DifferenceScheme, StrainProbe};
 use crate::error::ProbeError;
 use grainlab_core::packing::Contact;
-use grainlab_dem::{DemError, Engine, Snapshot};
+use grainlab_dem::{DemError, Engine, Observables};
 use std::cmp::Ordering;
 
 /// Strain components, Voigt order.
@@ -63,7 +63,7 @@ pub(crate) struct RestState {
 
 impl RestState {
     pub(crate) fn new(engine: Engine) -> Result<Self, DemError> {
-        let seen = engine.snapshot()?;
+        let seen = engine.observables()?;
         let (stress, affine) = (stress(&seen), amax(&seen.tangent));
         Ok(Self { stress, contacts: contacts(&engine), affine, engine })
     }
@@ -145,11 +145,11 @@ pub(crate) fn strained(
     }
 }
 
-fn looks(relaxation: &Relaxation) -> Result<Vec<Snapshot>, DemError> {
-    relaxation.engines().iter().map(Engine::snapshot).collect()
+fn looks(relaxation: &Relaxation) -> Result<Vec<Observables>, DemError> {
+    relaxation.engines().iter().map(Engine::observables).collect()
 }
 
-fn stress(snapshot: &Snapshot) -> [f64; 6] {
+fn stress(snapshot: &Observables) -> [f64; 6] {
     snapshot.stress.tensor.voigt()
 }
 

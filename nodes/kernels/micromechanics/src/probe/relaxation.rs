@@ -7,7 +7,7 @@
 //! stiffest over softest frequency, but nobody has to know that mode: at z = 5.1 it takes 1.4 to 1.6 times the
 //! steps of the best constant drag, which is another one for every packing, and fewer than half that drag.
 
-use grainlab_dem::{DemError, Engine, Setting};
+use grainlab_dem::{DemError, Engine, EngineSettings};
 
 /// r of the schedule: of 1 to 3 the values from 1.25 to 1.5 take the fewest steps, 3 half as many again.
 const R: f64 = 1.5;
@@ -50,7 +50,7 @@ impl Relaxation {
         let mut square_speed = 0.0;
         for engine in &mut self.engines {
             let drag = R / ((f64::from(self.since) + R - 1.0) * engine.time_step());
-            engine.set(Setting { drag, spin_drag: drag, ..*engine.setting() });
+            engine.set_settings(EngineSettings { drag, spin_drag: drag, ..*engine.settings() });
             engine.step()?;
             square_speed += engine.speed().powi(2);
         }

@@ -1,7 +1,7 @@
 //! How a packing is probed.
 
 use crate::error::ProbeError;
-use grainlab_scene::Tangential;
+use grainlab_core::contact::TangentialLaw;
 
 /// How a packing is probed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,9 +18,9 @@ pub struct StrainProbe {
     /// Friction while probing: infinite ("set very high") sticks every contact, 0 takes tangential springs away, what
     /// is between lets contacts slide.
     pub friction: f64,
-    /// How the tangential force follows a change of normal stiffness. [`Tangential::Incremental`] has the frozen
+    /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the frozen
     /// network as its linear limit; the other law depends on the direction of the strain however small.
-    pub tangential: Tangential,
+    pub tangential: TangentialLaw,
 }
 
 impl Default for StrainProbe {
@@ -31,7 +31,7 @@ impl Default for StrainProbe {
             tolerance: 1e-5,
             max_steps: 50_000,
             friction: f64::INFINITY,
-            tangential: Tangential::Incremental,
+            tangential: TangentialLaw::Incremental,
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::error::ProbeError;
 use crate::rattlers::{min_contacts, non_rattlers};
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Stiffness, Vec3};
-use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 /// The packing relaxes, before it is strained, to this share of the unbalanced force that ends a relaxation afterwards.
 const REST: f64 = 0.25;
@@ -122,26 +122,26 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
 /// An engine with the packing relaxed, and the steps that took.
 fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engine, u32), ProbeError> {
     let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
-    let setting = Setting {
+    let setting = EngineSettings {
         friction: settings.friction,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
         tangential: settings.tangential,
-        time_step: TimeStep::Safety(1.0),
+        time_step: TimeStep::FractionOfStable(1.0),
         skin: SKIN * 2.0 * smallest,
-        speed_cap: None,
+        thermostat_speed: None,
     };
     let still = vec![Vec3::zeros(); packing.grains()];
     // Without a time step of its own the engine takes the longest stable one.
     let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting);
-    engine.set(setting);
+    engine.set_settings(setting);
     engine.set_velocities(&still);
     engine.set_spins(&still);
-    engine.prepare()?;
-    engine.set(Setting { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    engine.initialise()?;
+    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
     let target = REST * settings.tolerance * load;
-    let mut unbalanced = engine.snapshot()?.unbalanced;
+    let mut unbalanced = engine.observables()?.unbalanced;
     let mut relaxation = Relaxation::new(vec![engine]);
     let mut steps = 0;
     while unbalanced > target {
@@ -152,7 +152,7 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
             relaxation.step()?;
         }
         steps += LOOK;
-        unbalanced = relaxation.engines()[0].snapshot()?.unbalanced;
+        unbalanced = relaxation.engines()[0].observables()?.unbalanced;
     }
     let mut engine = relaxation.engines()[0].clone();
     engine.set_velocities(&still);

@@ -28,7 +28,7 @@ const SIGNIFICANT: f64 = 5.0 * 3.57;
 /// Claimed over found, for packings of 500 grains and 60 seeds: .94 ± .04 (isotropic, μ = .1), .91 ± .04 (the scene `demo`),
 /// 1.02 ± .04 (isotropic, frictionless), and 1.09 ± .07 for 24 isotropic ones of 2,000; a single claim is good to 13 %. Independent
 /// contacts would claim 1.8, 1.8, 2.2 and 1.9.
-/// `cargo run --release -p grainlab_dem --example fabric_noise` repeats it.
+/// `cargo run --release -p grainlab_experiment --example fabric_noise` repeats it.
 pub fn fabric_stddev(view: &PackingView<'_>, contact_fabric: &SymTensor) -> Option<f64> {
     let packing = view.packing;
     if packing.contacts.len() < FEWEST_CONTACTS {

@@ -43,6 +43,7 @@ pub(crate) fn reference() -> Packing {
             poisson_ratio: number("nu"),
             density: number("density"),
         },
+        law: Default::default(),
         friction: number("mu_prep"),
         time_step: 0.0,
     };

@@ -2,14 +2,14 @@
 
 use crate::golden::{lammps, reference};
 use crate::samples::packing;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
-use grainlab_dem::{Engine, Setting, TimeStep};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use grainlab_micromechanics::probe::{
     DifferenceScheme, Relaxation, StrainProbe, StrainProbeResult, amplitude_sweep, strain_probe,
 };
 use grainlab_micromechanics::{ProbeError, Settings, analyze};
-use grainlab_scene::Tangential;
 use nalgebra::Matrix6;
 
 fn share(difference: Matrix6<f64>, c: &Matrix6<f64>) -> f64 {
@@ -124,7 +124,7 @@ fn homogeneous_strain_enters_the_tangential_springs() {
         for _ in 0..500 {
             relaxation.step().unwrap();
         }
-        relaxation.engines()[0].snapshot().unwrap().stress.tensor.xy
+        relaxation.engines()[0].observables().unwrap().stress.tensor.xy
     };
     let c66 = -(blind(1e-6) - blind(-1e-6)) / 2e-6;
     assert!((c66 / 78.5e6 - 1.0).abs() < 5e-3, "{c66:e}");
@@ -159,19 +159,19 @@ fn near_isostaticity_the_probe_settles_on_the_frozen_network_too() {
 
 /// An engine with every contact stuck, undamped, at the longest stable time step.
 fn stuck(packing: &Packing) -> Engine {
-    let setting = Setting {
+    let setting = EngineSettings {
         friction: f64::INFINITY,
         damping: 0.0,
         drag: 0.0,
         spin_drag: 0.0,
-        tangential: Tangential::Incremental,
-        time_step: TimeStep::Safety(1.0),
+        tangential: TangentialLaw::Incremental,
+        time_step: TimeStep::FractionOfStable(1.0),
         skin: 1e-2 * packing.radii[0],
-        speed_cap: None,
+        thermostat_speed: None,
     };
     let mut engine = Engine::from_packing(packing, setting);
-    engine.prepare().unwrap();
-    engine.set(Setting { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    engine.initialise().unwrap();
+    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
     engine
 }
 

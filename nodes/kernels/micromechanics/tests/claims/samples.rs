@@ -38,6 +38,7 @@ pub(crate) fn packing_of_sizes(
         spins: vec![Vec3::zeros(); n],
         contacts: Vec::new(),
         material: Material::GLASS,
+        law: Default::default(),
         friction,
         time_step: 0.0,
     };

@@ -1,11 +1,11 @@
 //! Spheres of unequal sizes: contacts act at R − δ/2 from each centre, against an independent solve and against the probe.
 
 use crate::samples::Dice;
+use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
-use grainlab_dem::{Engine, Setting, Snapshot, TimeStep};
+use grainlab_dem::{Engine, EngineSettings, Observables, TimeStep};
 use grainlab_micromechanics::probe::{Relaxation, StrainProbe, strain_probe};
 use grainlab_micromechanics::{Settings, analyze};
-use grainlab_scene::Tangential;
 use nalgebra::Matrix6;
 
 const DIAMETER: f64 = 2e-4;
@@ -34,37 +34,37 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
             positions.push(x);
         }
     }
-    let setting = Setting {
+    let setting = EngineSettings {
         friction: 0.2,
         damping: 0.3,
         drag: 0.0,
         spin_drag: 1e4,
-        tangential: Tangential::Incremental,
-        time_step: TimeStep::Safety(0.8),
+        tangential: TangentialLaw::Incremental,
+        time_step: TimeStep::FractionOfStable(0.8),
         skin: 0.1 * DIAMETER,
-        speed_cap: None,
+        thermostat_speed: None,
     };
     let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, setting);
-    let mut strain = |rate: f64, done: &dyn Fn(&Snapshot) -> bool| {
+    let mut strain = |rate: f64, done: &dyn Fn(&Observables) -> bool| {
         engine.set_rate(&[-rate, -rate, -rate, 0.0, 0.0, 0.0]).unwrap();
-        while !done(&engine.snapshot().unwrap()) {
+        while !done(&engine.observables().unwrap()) {
             engine.run(100).unwrap();
         }
         engine.set_rate(&[0.0; 6]).unwrap();
         engine.run(5_000).unwrap();
-        engine.snapshot().unwrap().stress.tensor.mean()
+        engine.observables().unwrap().stress.tensor.mean()
     };
     strain(200.0, &|s| s.solid_fraction > 0.58);
     // Grains that come to rest press less: until enough is left.
     while strain(10.0, &|s| s.stress.tensor.mean() > pressure) < 0.6 * pressure {}
-    engine.prepare().unwrap();
+    engine.initialise().unwrap();
     // Nothing slides any more: sliding contacts come to rest slowly.
     let time_step = TimeStep::Fixed(0.8 * engine.time_step());
-    engine.set(Setting { time_step, friction: f64::INFINITY, damping: 0.0, ..setting });
+    engine.set_settings(EngineSettings { time_step, friction: f64::INFINITY, damping: 0.0, ..setting });
     let mut relaxation = Relaxation::new(vec![engine]);
     for _ in 0..400 {
         (0..100).for_each(|_| relaxation.step().unwrap());
-        if relaxation.engines()[0].snapshot().unwrap().unbalanced < 1e-8 {
+        if relaxation.engines()[0].observables().unwrap().unbalanced < 1e-8 {
             break;
         }
     }

@@ -4,8 +4,8 @@ use super::measure::Analysis;
 use super::outlet::Outlet;
 use crate::commands::packings::Measure;
 use crate::commands::packings::sink::{Ending, Sink};
-use crate::failure::{Failure, worse};
-use crate::network::tool_bus;
+use grainlab_console::network::tool_bus;
+use grainlab_console::{Failure, worse};
 use grainlab_core::Packing;
 use grainlab_msgs::{Topic, from_cdr, msg, topics};
 use grainlab_node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
@@ -37,7 +37,7 @@ pub(super) fn run(
             }
             Next::Refused(reason) => {
                 exit = worse(exit, Exit::Failure);
-                crate::output::say!("grainlab: {}: {reason}", source.name);
+                grainlab_console::say!("grainlab: {}: {reason}", source.name);
             }
             Next::Signal => {
                 exit = worse(exit, if count.is_some() { Exit::Interrupted } else { Exit::Done });

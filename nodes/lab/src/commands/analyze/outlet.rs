@@ -4,11 +4,10 @@ use super::measure::Found;
 use crate::commands::packings;
 use crate::commands::packings::bar::Bar;
 use crate::commands::packings::printer::{Printed, Printer};
-use crate::failure::Failure;
-use crate::output::{Table, print};
-use crate::results::measured_packing::{self, MeasuredPacking};
-use crate::results::packing_text;
+use crate::results::measured_packing::MeasuredPacking;
+use crate::results::{measured_packing, packing_text};
 use crate::tape::Tape;
+use grainlab_console::{Failure, Table, print};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 

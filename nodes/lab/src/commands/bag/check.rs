@@ -1,10 +1,9 @@
 //! `grainlab bag check`.
 
-use crate::failure::Failure;
-use crate::output::{Format, Table, json, print, say};
+use grainlab_console::{Failure, Format, Table, json, print, say};
 use grainlab_node_kit::Exit;
+use grainlab_recordings::Check;
 use grainlab_recordings::Recording;
-use grainlab_recordings::reader::Check;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -13,9 +12,9 @@ Examples:
   grainlab bag check run.mcap --format json
 
 Reads every record: framing, checksums of chunks, attachments, summary and data, the index against the messages, the order
-of files, and the account of the recorder against what is there. Exit 0 if nothing is wrong, 3 if anything is.";
+of files, and the recorder's ledger against the messages. Exit 0 without faults, else 3.";
 
-/// Which recording.
+/// Arguments of `grainlab bag check`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -53,14 +52,14 @@ fn text(check: &Check) -> String {
     )];
     lines.extend(check.warnings.iter().map(ToString::to_string));
     for path in &check.unaccounted {
-        let what = "there is no account of it: its recorder was killed, is at work, or is not ours";
+        let what = "it has no ledger: its recorder was killed, is still running, or is another program";
         lines.push(format!("{}: {what}", path.display()));
     }
     if let Some(lost) = check.lost.filter(|n| *n > 0) {
-        lines.push(format!("by the account, {lost} messages were published and not recorded"));
+        lines.push(format!("according to the ledger, {lost} messages were published and not recorded"));
     }
     if lines.len() == 1 {
-        lines.push("every record, checksum, index and account is right".to_owned());
+        lines.push("all records, checksums, indexes and ledgers are valid".to_owned());
     }
     lines.join("\n") + "\n"
 }

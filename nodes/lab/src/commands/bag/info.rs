@@ -1,15 +1,14 @@
 //! `grainlab bag info`.
 
-use crate::failure::Failure;
-use crate::output::{Format, Table, json, print};
-use crate::results::strangers::{self, StrangerView};
+use grainlab_console::{Failure, Format, Table, json, print};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::reader::Info;
+use grainlab_recorder::strangers::{self, StrangerView};
+use grainlab_recordings::Info;
 use grainlab_recordings::{METADATA_RECORD, Recording};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Which recording.
+/// Arguments of `grainlab bag info`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  grainlab bag info recordings/runs/demo-1-1 --format json")]
 pub(crate) struct Args {
@@ -35,11 +34,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     print(&text)?;
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
 
-/// What the recording is, and what the recorder knew of its run.
+/// The recording and the recorder's metadata of its run.
 #[derive(Serialize)]
 struct View {
     #[serde(flatten)]

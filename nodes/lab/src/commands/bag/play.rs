@@ -1,7 +1,7 @@
 //! `grainlab bag play`.
 
-use crate::failure::Failure;
-use crate::network::tool_bus;
+use grainlab_console::Failure;
+use grainlab_console::network::tool_bus;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, Exit, PublisherId, Wake};
 use grainlab_recordings::{Play, PlayOptions, Player, Recording};
@@ -17,17 +17,17 @@ Examples:
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
 publishes is left out and named: two writers would mix their messages.";
 
-/// Time to learn who publishes what, and for subscriptions to be complete after the first.
+/// Time to discover the publishers, and for all subscriptions to be discovered after the first.
 const LOOK_AROUND: Duration = Duration::from_millis(700);
 const SETTLE: Duration = Duration::from_millis(1000);
-/// Pause before a message is offered again that a slow reader held up.
+/// Pause before the next attempt to send a message while a reader is slow.
 const HOLD: Duration = Duration::from_millis(5);
-/// How long the last messages may take, and how long this process then stays: readers lose what they have not taken when
-/// their writer goes.
+/// Time limit for the last messages, and how long this process then stays: readers lose the samples they have not taken
+/// when their writer leaves.
 const FAREWELL: Duration = Duration::from_secs(5);
 const GRACE: Duration = Duration::from_millis(300);
 
-/// Where one topic's messages go.
+/// The publisher of one topic.
 enum Outlet {
     Plain(PublisherId),
     /// Packings of any length: large ones in parts.
@@ -49,7 +49,7 @@ impl Outlet {
         }
     }
 
-    /// Moves a large message on; true if none is under way.
+    /// Sends parts of a large message; true if none is in transit.
     fn advance(&mut self, bus: &mut DdsBus) -> Result<bool, Failure> {
         match self {
             Self::Plain(_) => Ok(true),
@@ -60,7 +60,7 @@ impl Outlet {
 
 type Outlets = BTreeMap<String, Outlet>;
 
-/// What to play, and how fast.
+/// Arguments of `grainlab bag play`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(crate) struct Args {
@@ -70,7 +70,7 @@ pub(crate) struct Args {
     /// Topics to play [default: all]
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     topics: Vec<String>,
-    /// Recorded seconds per second; inf is as fast as the readers take
+    /// Recorded seconds per second; inf is as fast as the readers can receive
     #[arg(short, long, value_name = "RATE", default_value_t = 1.0)]
     rate: f64,
     /// Where to start, s after the first message
@@ -79,7 +79,7 @@ pub(crate) struct Args {
     /// How much to play, s of the recording [default: to the end]
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
-    /// Subscribers that every topic needs before sending, as far as the patience goes
+    /// Subscribers that every topic needs before sending
     #[arg(long, value_name = "N", default_value_t = 1)]
     min_subscribers: usize,
     /// Wait at most this long for the subscribers of every topic before sending, s; 0 does not wait
@@ -101,7 +101,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
-    // Faults of the options show before anything is published.
+    // Errors of the options are found before anything is published.
     let wanted: Vec<String> = Player::new(&recording, &options)
         .map_err(play_failure)?
         .channels()
@@ -118,7 +118,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
                 publishers.insert(name, publisher);
             }
             Err(reason) => {
-                crate::output::say!("grainlab: {name} is left out: {reason}");
+                grainlab_console::say!("grainlab: {name} is left out: {reason}");
                 options.exclude.push(name);
             }
         }
@@ -134,17 +134,17 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let acknowledged = bus.flush(FAREWELL);
     std::thread::sleep(GRACE);
     let warnings = recording.warnings();
-    warnings.iter().for_each(|w| crate::output::say!("grainlab: {w}"));
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     if player.slipped() > Duration::from_millis(100) {
-        crate::output::say!(
-            "grainlab: the readers are slower than the recording: {:.1} s late in all",
+        grainlab_console::say!(
+            "grainlab: the readers are slower than the recording: {:.1} s late in total",
             player.slipped().as_secs_f64()
         );
     }
     let Some(sent) = sent else { return Ok(Exit::Interrupted) };
-    crate::output::say!("grainlab: {sent} messages sent");
+    grainlab_console::say!("grainlab: {sent} messages sent");
     if !acknowledged {
-        crate::output::say!("grainlab: a reader has not acknowledged the last messages");
+        grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
     }
     Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }
@@ -160,12 +160,12 @@ fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
     }
 }
 
-/// Offers one recorded topic under its recorded name, or says why not.
+/// Advertises one recorded topic under its recorded name; the inner error is the reason why not.
 fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<Outlet, String>, Failure> {
     let Some(row) = Topic::by_name(name) else {
         return Ok(Err("its type is not one of the laboratory".to_owned()));
     };
-    // A topic of the contract lives as long as the program; these few names do, too.
+    // The names of topics are static; these are few.
     let topic = Topic { name: Box::leak(name.to_owned().into_boxed_str()), ..*row };
     let writers = bus.foreign_writers(&topic);
     if let Some(writer) = writers.first() {
@@ -179,7 +179,7 @@ fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<Outlet, String>, Failure
     Ok(Ok(outlet.map_err(Failure::failed)?))
 }
 
-/// Lets the graph be followed for `time`.
+/// Follows the graph for `time`.
 fn pause(bus: &mut DdsBus, time: Duration) {
     let end = bus.now() + time;
     while let Some(left) = end.checked_sub(bus.now()).filter(|left| !left.is_zero()) {
@@ -187,7 +187,7 @@ fn pause(bus: &mut DdsBus, time: Duration) {
     }
 }
 
-/// Waits until every topic has the readers it needs and no more appear for a moment; false if a signal came.
+/// Waits until every topic has the readers it needs and no more appear for a short time; false on a signal.
 fn wait_for_readers(bus: &mut DdsBus, publishers: &Outlets, needed: usize, patience: Duration) -> bool {
     let end = bus.now() + patience;
     let count = |bus: &DdsBus| publishers.values().map(|p| bus.readers(p.id())).collect::<Vec<_>>();
@@ -203,7 +203,7 @@ fn wait_for_readers(bus: &mut DdsBus, publishers: &Outlets, needed: usize, patie
             let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n < needed);
             let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
             if !lonely.is_empty() && !patience.is_zero() {
-                crate::output::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
+                grainlab_console::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
             }
             return true;
         }
@@ -213,8 +213,8 @@ fn wait_for_readers(bus: &mut DdsBus, publishers: &Outlets, needed: usize, patie
     }
 }
 
-/// Sends all that is due, when it is due; the count of messages, or `None` if a signal came. Returns when every message
-/// that went in parts is whole at every reader that lives.
+/// Sends each message when it is due; the number of messages, or `None` on a signal. Returns when every message
+/// sent in parts is complete at every active reader.
 fn send(bus: &mut DdsBus, player: &mut Player<'_>, publishers: &mut Outlets) -> Result<Option<u64>, Failure> {
     let mut sent = 0;
     loop {

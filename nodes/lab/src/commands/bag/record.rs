@@ -1,10 +1,11 @@
 //! `grainlab bag record`.
 
-use crate::commands::run::record;
-use crate::failure::Failure;
-use crate::recorder::{self, Settings};
-use grainlab_node_kit::run::NodeSpec;
-use grainlab_node_kit::{Exit, RosArgs, Scope};
+use crate::commands::run::print_recorded;
+use crate::nodes::NodeKind;
+use grainlab_console::Failure;
+use grainlab_node_kit::NodeSpec;
+use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
+use grainlab_recorder::{Recorder, ResultSlot, Settings, contract_topics};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -14,7 +15,7 @@ Examples:
 
 Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost on the way.";
 
-/// What to record.
+/// Arguments of `grainlab bag record`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -24,7 +25,7 @@ pub(crate) struct Args {
     /// Topics to record
     #[arg(long, num_args = 1.., value_name = "TOPIC", conflicts_with = "all")]
     topics: Vec<String>,
-    /// Record every topic of the laboratory, which is the default
+    /// Record every topic, which is the default
     #[arg(short, long)]
     all: bool,
     /// Scene to attach: a built-in name or a file
@@ -38,13 +39,13 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
-        topics: recorder::contract_topics(&args.topics)?,
-        scene: args.scene.as_deref().map(|s| crate::scenes::load(s, None)).transpose()?,
+        topics: contract_topics(&args.topics)?,
+        scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
     };
     let spec = NodeSpec {
-        name: "recorder",
+        name: NodeKind::Recorder.name(),
         summary: "records topics to MCAP",
         scope: Scope::Everyone,
         parameters: Vec::new(),
@@ -53,5 +54,8 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(stranger) = plain.first() {
         return Err(Failure::usage(format!("unexpected argument {stranger:?}")));
     }
-    record(&spec, &ros, |_| Ok(settings))
+    let recorded = ResultSlot::default();
+    let exit = run_node(&spec, &ros, |bus, _| Ok(Box::new(Recorder::new(bus, &settings, recorded.clone())?)));
+    print_recorded(&recorded)?;
+    Ok(exit)
 }

@@ -1,7 +1,6 @@
 //! `grainlab bag recover`.
 
-use crate::failure::Failure;
-use crate::output::{print, say};
+use grainlab_console::{Failure, print, say};
 use grainlab_node_kit::Exit;
 use std::path::PathBuf;
 
@@ -9,12 +8,12 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab bag recover recordings/runs/demo-1-1
 
-Finishes the recording of a recorder that was killed, so that other tools read it: every message that can be read keeps its
-bytes, times and sequence number, and every file gets its index and its end; the directory gets a metadata.yaml. The file as
-it was stays beside it as NAME.mcap.orig: remove it when you trust the new one. Done again, nothing changes. A recording that
-is complete is left alone. Exit 3 if something could not be read; it is named.";
+Completes the recording of a recorder that was killed, so that other tools read it: every readable message keeps its
+bytes, times and sequence number, and every file gets its index and its end; the directory gets a metadata.yaml. The original
+is kept as NAME.mcap.orig: remove it when you trust the new one. A second call changes nothing. A recording that
+is complete is not changed. Exit 3 if a part could not be read, with a message.";
 
-/// Which recording.
+/// Arguments of `grainlab bag recover`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -35,9 +34,9 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     for file in &done.files {
         let path = file.path.display();
         text += &match &file.original {
-            None => format!("{path}: complete, {} messages; nothing was to be done\n", file.messages),
+            None => format!("{path}: complete, {} messages; nothing to do\n", file.messages),
             Some(original) => {
-                format!("{path}: recovered, {} messages; as it was: {}\n", file.messages, original.display())
+                format!("{path}: recovered, {} messages; original: {}\n", file.messages, original.display())
             }
         };
     }

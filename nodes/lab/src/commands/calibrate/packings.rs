@@ -1,10 +1,9 @@
 //! From the rows of a table to the packings that a calibration is learned from.
 
 use crate::commands::invert::{BadRow, Defaults, Row, Rows, State};
-use crate::failure::Failure;
-use crate::output::say;
+use grainlab_console::{Failure, say};
 use grainlab_core::Material;
-use grainlab_emt::{Modulus, Sample};
+use grainlab_emt::{CalibrationSample, Modulus};
 use std::path::Path;
 
 /// Which columns tell packings apart.
@@ -15,7 +14,7 @@ pub(super) struct Naming<'a> {
 
 /// Every packing of a table. A row that is none is named, and then there is no calibration: one learned from the rest
 /// would say nothing of it.
-pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<Sample>, Failure> {
+pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSample>, Failure> {
     let by = [naming.preparation, naming.packing].concat();
     let mut rows = Rows::open(path, &by, Defaults::default())?;
     let (mut samples, mut bad) = (Vec::new(), 0);
@@ -45,7 +44,7 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<Sample>, Fail
 }
 
 /// The first `preparation` cells grouped by say how it was prepared, those behind them which packing it is.
-fn sample(row: &Row, preparation: usize) -> Result<Sample, String> {
+fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
     let State { moduli, truth, phi, grains, grain_shear_modulus, poisson, .. } = &row.state;
     let need = |value: Option<f64>, name: &str| match value {
         Some(value) if value.is_finite() => Ok(value),
@@ -59,7 +58,7 @@ fn sample(row: &Row, preparation: usize) -> Result<Sample, String> {
     }
     need(Some(row.state.pressure.value), "the pressure")?;
     let (preparation, packing) = row.group.split_at(preparation);
-    Ok(Sample {
+    Ok(CalibrationSample {
         preparation: preparation.join(" "),
         packing: packing.join(" "),
         grains: need(*grains, "grains")? as u32,

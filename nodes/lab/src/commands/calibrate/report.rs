@@ -1,12 +1,16 @@
 //! A calibration for people.
 
-use crate::output::Table;
-use grainlab_emt::calibration::{Amplitude, Law, Network};
-use grainlab_emt::{Calibration, Isotropic, Quantity, Sample};
+use grainlab_console::Table;
+use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
+use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Quantity};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
-pub(super) fn text(calibration: &Calibration, isotropic: &[Sample], anisotropic: &[Sample]) -> String {
+pub(super) fn text(
+    calibration: &Calibration,
+    isotropic: &[CalibrationSample],
+    anisotropic: &[CalibrationSample],
+) -> String {
     let mut text = format!("calibration {}\n", calibration.name());
     for (kind, samples) in [("isotropic", isotropic), ("not isotropic", anisotropic)] {
         if !samples.is_empty() {
@@ -14,7 +18,7 @@ pub(super) fn text(calibration: &Calibration, isotropic: &[Sample], anisotropic:
         }
     }
     text += "\nEqs. 21 and 22, G = alpha (k + beta) p^(1/3), Theta = rho (k + zeta) p^(1/3), in MPa\n";
-    let lines = [Quantity::K, Quantity::Z].map(|q| calibration.with_abscissa(q));
+    let lines = [Quantity::K, Quantity::Z].map(|q| calibration.with_coordination_kind(q));
     text += &line_table(lines.iter().flatten().map(Calibration::isotropic));
     if let Some(network) = calibration.network() {
         text += &network_text(network);
@@ -22,10 +26,10 @@ pub(super) fn text(calibration: &Calibration, isotropic: &[Sample], anisotropic:
     text
 }
 
-fn summary(kind: &str, samples: &[Sample]) -> String {
+fn summary(kind: &str, samples: &[CalibrationSample]) -> String {
     let packings: BTreeSet<&str> = samples.iter().map(|s| s.packing.as_str()).collect();
     let preparations: BTreeSet<&str> = samples.iter().map(|s| s.preparation.as_str()).collect();
-    let range = |value: fn(&Sample) -> f64| {
+    let range = |value: fn(&CalibrationSample) -> f64| {
         let values = samples.iter().map(value);
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
     };
@@ -38,13 +42,13 @@ fn summary(kind: &str, samples: &[Sample]) -> String {
     )
 }
 
-fn line_table<'a>(lines: impl Iterator<Item = &'a Isotropic>) -> String {
+fn line_table<'a>(lines: impl Iterator<Item = &'a IsotropicCalibration>) -> String {
     let columns = ["k is", "alpha", "+-", "beta", "+-", "rho", "+-", "zeta", "+-", "from", "to"];
     let mut t = Table::new(columns.into_iter().chain(["scatter of G", "of Theta"]));
     for line in lines {
         let errors = line.covariance.map(|c| std::array::from_fn::<f64, 4, _>(|i| c[i][i].max(0.0).sqrt()));
         let errors = errors.map_or_else(|| [(); 4].map(|()| "-".to_owned()), |e| e.map(significant));
-        let mut cells = vec![line.abscissa.name().to_owned()];
+        let mut cells = vec![line.coordination_kind.name().to_owned()];
         for (value, error) in line.constants().into_iter().zip(errors) {
             cells.extend([format!("{value:.4}"), error]);
         }
@@ -58,10 +62,10 @@ fn line_table<'a>(lines: impl Iterator<Item = &'a Isotropic>) -> String {
     t.text()
 }
 
-fn network_text(n: &Network) -> String {
+fn network_text(n: &RelaxationCalibration) -> String {
     let mut laws = Table::new(["ln X =", "level", "ln z", "ln(z - z0)", "z0", "ln(phi/phi0)", "ln(p/p0)"]);
     for (name, l) in [("bulk", &n.theta), ("shear", &n.shear)] {
-        let Law { level, by_z, by_excess, onset, by_solid_fraction, by_pressure } = *l;
+        let ScalingLaw { level, by_z, by_excess, onset, by_solid_fraction, by_pressure } = *l;
         let numbers = [level, by_z, by_excess, onset, by_solid_fraction, by_pressure];
         laws.row(std::iter::once(name.to_owned()).chain(numbers.map(|v| format!("{v:.4}"))));
     }
@@ -72,7 +76,7 @@ fn network_text(n: &Network) -> String {
         ("harmonic part", &n.harmonic),
         ("eps by stiffness", &n.eps_stiffness),
     ] {
-        let Amplitude { constant, critical } = *a;
+        let AmplitudeLaw { constant, critical } = *a;
         amplitudes.row([name.to_owned(), format!("{constant:.4}"), format!("{critical:.4}")]);
     }
     let names = ["ln bulk", "ln shear", "dilatational", "Voigt", "harmonic", "eps by stiffness", "k"];

@@ -5,8 +5,8 @@ use super::explain::Explained;
 use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
-use crate::failure::worse;
 use crate::results::inference::Inference;
+use grainlab_console::worse;
 use grainlab_emt::{EmtError, Estimate, Quantity};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
@@ -74,7 +74,7 @@ impl Answer {
                 let mut inference = Inference::of(way.model.name(), name, outcome);
                 match outcome {
                     Ok(estimate) => inference.warnings.extend(undetermined(estimate)),
-                    Err(error) if error.is_of_input() => inference.status = "undetermined",
+                    Err(error) if error.is_input_error() => inference.status = "undetermined",
                     Err(_) => {}
                 }
                 inference
@@ -97,7 +97,7 @@ impl Answer {
             return Exit::Usage;
         }
         self.errors().filter(|e| !is_lacking(e)).fold(Exit::Done, |exit, e| {
-            worse(exit, if e.is_of_input() { Exit::Usage } else { Exit::PhysicsInvalid })
+            worse(exit, if e.is_input_error() { Exit::Usage } else { Exit::PhysicsInvalid })
         })
     }
 

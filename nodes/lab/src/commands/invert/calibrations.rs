@@ -1,6 +1,6 @@
 //! Calibrations by name.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model};
 use grainlab_recordings::input;
 use std::path::Path;
@@ -27,7 +27,7 @@ impl Choice {
     /// What this model takes.
     pub(super) fn of(&self, model: &dyn Model) -> Arc<Calibration> {
         match self {
-            Self::Default => Arc::new(Calibration::default_for(model).clone()),
+            Self::Default => Arc::new(model.default_calibration().clone()),
             Self::One(calibration) => Arc::clone(calibration),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::answer::Answer;
 use super::way::Way;
-use crate::output::{Table, fixed};
+use grainlab_console::{Table, fixed};
 use grainlab_emt::{Estimate, INPUT_NAMES, Quantity, StructureCovariance};
 use serde::Serialize;
 use std::collections::BTreeMap;

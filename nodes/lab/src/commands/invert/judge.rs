@@ -10,8 +10,7 @@ use super::rows::Rows;
 use super::state::State;
 use super::table::Tally;
 use super::way::Way;
-use crate::failure::Failure;
-use crate::output::{Format, Table, exact, fixed, json, print};
+use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_emt::Quantity;
 use grainlab_node_kit::Exit;
 use score::Score;
@@ -92,7 +91,7 @@ impl Verdict {
 /// What a quantity is compared with: k̂ is no property of a packing, the coordination number that it stands for is.
 fn against(quantity: Quantity, way: &Way) -> Quantity {
     match quantity {
-        Quantity::KHat => way.calibration.isotropic().abscissa,
+        Quantity::KHat => way.calibration.isotropic().coordination_kind,
         other => other,
     }
 }

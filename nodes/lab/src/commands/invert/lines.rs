@@ -1,6 +1,6 @@
 //! The lines of a text as they come, in pieces of bounded size.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use grainlab_recordings::input;
 use std::fs::File;
 use std::io::{ErrorKind, Read};

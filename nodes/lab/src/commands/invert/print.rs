@@ -3,9 +3,8 @@
 use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
-use crate::failure::Failure;
-use crate::output::{CsvText, Table, exact, json};
 use crate::results::inference::{self, Inference};
+use grainlab_console::{CsvText, Failure, Table, exact, json};
 
 /// What turns answers into text.
 pub(super) struct Printer<'a> {
@@ -67,7 +66,7 @@ impl Printer<'_> {
             let pressure = answer.state.as_ref().ok().map(|s| format!("{}", s.pressure.value / 1e3));
             let results = answer.inferences(self.ways);
             for (result, way) in results.iter().zip(self.ways) {
-                let asked = way.gamma.map_or("-", grainlab_emt::GammaSource::name).to_owned();
+                let asked = way.gamma.map_or("-", grainlab_emt::StrainRatioSource::name).to_owned();
                 let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned()), asked];
                 t.row(label.into_iter().chain(result.cells()));
             }

@@ -2,7 +2,7 @@
 
 use super::columns::{BadRow, Columns, Defaults, Row, Splitter};
 use super::lines::{Lines, Piece};
-use crate::failure::Failure;
+use grainlab_console::Failure;
 use rayon::prelude::*;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
-use crate::output::{Table, fixed};
-use grainlab_emt::sampling::Settings;
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Quantity, Samples, sample};
+use grainlab_console::{Table, fixed};
+use grainlab_emt::SamplingSettings;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, MonteCarlo, Quantity, monte_carlo};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub(super) struct Sampled {
 /// All that has an estimate, sampled.
 pub(super) fn sampled(answer: &Answer, ways: &[Way], draws: usize, seed: u64) -> Vec<Sampled> {
     let Ok(state) = &answer.state else { return Vec::new() };
-    let settings = Settings { draws, seed };
+    let settings = SamplingSettings { draws, seed };
     let found: Vec<_> =
         ways.iter().zip(&answer.outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
     // What has an estimate has samples, too: its errors are known, or the flag is refused.
@@ -39,11 +39,11 @@ pub(super) fn sampled(answer: &Answer, ways: &[Way], draws: usize, seed: u64) ->
     samples.iter().flat_map(of_samples).collect()
 }
 
-fn of_way(state: &State, way: &Way, settings: Settings) -> Result<Samples, EmtError> {
-    sample(way.model, &state.observation(way)?, &way.calibration, settings)
+fn of_way(state: &State, way: &Way, settings: SamplingSettings) -> Result<MonteCarlo, EmtError> {
+    monte_carlo(way.model, &state.observation(way)?, &way.calibration, settings)
 }
 
-fn of_samples(samples: &Samples) -> Vec<Sampled> {
+fn of_samples(samples: &MonteCarlo) -> Vec<Sampled> {
     let determined = Quantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
     let one = |quantity: Quantity| Sampled {
         model: samples.model,

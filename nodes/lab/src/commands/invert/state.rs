@@ -4,8 +4,8 @@ use super::way::Way;
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Gamma, GammaSource, Measured, Moduli, ModuliCovariance,
-    Modulus, Observation, Structure,
+    Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
+    StrainRatio, StrainRatioSource, Structure,
 };
 
 /// One state, as given.
@@ -110,7 +110,7 @@ impl State {
         match self.gamma(way.gamma) {
             _ if !way.model.uses_gamma() => "none",
             Ok(gamma) => gamma.source.name(),
-            Err(_) => way.gamma.map_or("none", GammaSource::name),
+            Err(_) => way.gamma.map_or("none", StrainRatioSource::name),
         }
     }
 
@@ -149,20 +149,23 @@ impl State {
 
     /// The γ/Δ asked for, or the name of what is missing. Where nothing is asked for: the one given, else what the paper's
     /// models take.
-    fn gamma(&self, asked: Option<GammaSource>) -> Result<Gamma, &'static str> {
+    fn gamma(&self, asked: Option<StrainRatioSource>) -> Result<StrainRatio, &'static str> {
         let of = |source, measured: Option<f64>, missing| {
-            measured.map(|value| Gamma { value, stddev: 0.0, source }).ok_or(missing)
+            measured.map(|value| StrainRatio { value, stddev: 0.0, source }).ok_or(missing)
         };
-        let given =
-            self.gamma.map(|g| Gamma { value: g.value, stddev: g.stddev, source: GammaSource::Given });
+        let given = self.gamma.map(|g| StrainRatio {
+            value: g.value,
+            stddev: g.stddev,
+            source: StrainRatioSource::Given,
+        });
         let measured = &self.measured_gamma;
         match asked {
-            None => Ok(given.unwrap_or_else(|| Gamma::preferred(measured))),
-            Some(GammaSource::Given) => given.ok_or("gamma_over_delta"),
-            Some(source @ GammaSource::Total) => of(source, measured.total, "g_total"),
-            Some(source @ GammaSource::Elastic) => of(source, measured.elastic, "g_elastic"),
-            Some(source @ GammaSource::Contact) => of(source, measured.contact, "g_contact"),
-            Some(GammaSource::Zero) => Ok(Gamma::ZERO),
+            None => Ok(given.unwrap_or_else(|| StrainRatio::preferred(measured))),
+            Some(StrainRatioSource::Given) => given.ok_or("gamma_over_delta"),
+            Some(source @ StrainRatioSource::Total) => of(source, measured.total, "g_total"),
+            Some(source @ StrainRatioSource::Elastic) => of(source, measured.elastic, "g_elastic"),
+            Some(source @ StrainRatioSource::Contact) => of(source, measured.contact, "g_contact"),
+            Some(StrainRatioSource::Zero) => Ok(StrainRatio::ZERO),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The ways in which each state is inverted: a model, its constants, and the γ/Δ that it is fed with.
 
 use super::calibrations::Choice;
-use crate::failure::Failure;
-use grainlab_emt::{Calibration, GammaSource, Model};
+use grainlab_console::Failure;
+use grainlab_emt::{Calibration, Model, StrainRatioSource};
 use std::sync::Arc;
 
 /// Which γ/Δ feeds the models that use one.
@@ -28,7 +28,7 @@ pub(super) struct Way {
     pub(super) model: &'static dyn Model,
     pub(super) calibration: Arc<Calibration>,
     /// `None` takes what is given, else what the paper's models take of what is measured.
-    pub(super) gamma: Option<GammaSource>,
+    pub(super) gamma: Option<StrainRatioSource>,
 }
 
 /// Every model, or those of these names, with every calibration and every γ/Δ asked for.
@@ -41,18 +41,18 @@ pub(super) fn ways(
     let named = named.collect::<Result<Vec<_>, _>>()?;
     let models = if named.is_empty() { grainlab_emt::models().to_vec() } else { named };
     let choices = calibrations.iter().map(|name| Choice::named(name)).collect::<Result<Vec<_>, _>>()?;
-    let gammas: &[Option<GammaSource>] = match gamma {
+    let gammas: &[Option<StrainRatioSource>] = match gamma {
         None => &[None],
-        Some(GammaChoice::Given) => &[Some(GammaSource::Given)],
-        Some(GammaChoice::Total) => &[Some(GammaSource::Total)],
-        Some(GammaChoice::Elastic) => &[Some(GammaSource::Elastic)],
-        Some(GammaChoice::Contact) => &[Some(GammaSource::Contact)],
-        Some(GammaChoice::Zero) => &[Some(GammaSource::Zero)],
+        Some(GammaChoice::Given) => &[Some(StrainRatioSource::Given)],
+        Some(GammaChoice::Total) => &[Some(StrainRatioSource::Total)],
+        Some(GammaChoice::Elastic) => &[Some(StrainRatioSource::Elastic)],
+        Some(GammaChoice::Contact) => &[Some(StrainRatioSource::Contact)],
+        Some(GammaChoice::Zero) => &[Some(StrainRatioSource::Zero)],
         Some(GammaChoice::All) => &[
-            Some(GammaSource::Total),
-            Some(GammaSource::Elastic),
-            Some(GammaSource::Contact),
-            Some(GammaSource::Zero),
+            Some(StrainRatioSource::Total),
+            Some(StrainRatioSource::Elastic),
+            Some(StrainRatioSource::Contact),
+            Some(StrainRatioSource::Zero),
         ],
     };
     let mut ways = Vec::new();

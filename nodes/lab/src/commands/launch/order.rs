@@ -1,8 +1,7 @@
-//! What was launched, kept beside the recording so that the run can be resumed as it was begun.
+//! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
-use crate::failure::Failure;
 use crate::launch::plan::{LaunchFile, NodePlan};
-use crate::output::json;
+use grainlab_console::{Failure, json};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -11,14 +10,14 @@ use std::path::Path;
 /// Name of the file in the run directory.
 pub(super) const FILE: &str = "launch.json";
 
-/// A launch file with what its arguments were.
+/// A launch file with its arguments.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
     /// Text of the launch file.
     pub(super) launch: String,
-    /// Values given for its arguments, but for scene, seed and out.
+    /// Values given for its arguments, except scene, seed and out.
     pub(super) arguments: BTreeMap<String, String>,
-    /// Seed in force.
+    /// The seed of the run.
     pub(super) seed: u64,
 }
 
@@ -44,7 +43,7 @@ impl Order {
 
     /// The processes to start, for a run in this directory.
     pub(super) fn plans(&self, directory: &Path) -> Result<Vec<NodePlan>, Failure> {
-        // Parameters are YAML: a path with a blank or a colon needs its quotes.
+        // Parameters are YAML: a path with a space or a colon needs quotes.
         let path = |p: &Path| serde_json::Value::from(p.to_string_lossy()).to_string();
         let mut values: BTreeMap<&str, String> =
             self.arguments.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
@@ -60,6 +59,7 @@ impl Order {
 mod tests {
     use super::*;
     use crate::launch::plan::BUILT_IN;
+    use crate::nodes::NodeKind;
 
     #[test]
     fn what_was_launched_is_read_back_as_it_was() {
@@ -70,7 +70,7 @@ mod tests {
         let known = Order::read(directory.path()).unwrap();
         assert_eq!(known, order);
         let plans = known.plans(directory.path()).unwrap();
-        let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
+        let simulator = plans.iter().find(|p| p.is(NodeKind::DemSimulator)).unwrap();
         assert!(
             simulator.arguments.contains(&"simd:=scalar".to_owned())
                 && simulator.arguments.contains(&"seed:=7".to_owned())

@@ -1,14 +1,14 @@
-//! `grainlab launch --resume RUN`: a run goes on from the last packing in its recording.
+//! `grainlab launch --resume RUN`: continues a run from the last packing in its recording.
 //!
-//! What is recorded stays as it is. The recorder goes on in the next file of the recording; what the processes say once
-//! more, with the same bytes, is not recorded again.
+//! Recorded files are unchanged. The recorder continues in the next file of the recording; messages that the processes
+//! repeat with the same bytes are not recorded again.
 
+use super::conduct::{conduct, domain};
 use super::order::Order;
-use super::{conduct, domain};
-use crate::failure::Failure;
-use crate::output::Format;
+use crate::nodes::NodeKind;
 use crate::results::last_packing;
-use crate::scenes;
+use grainlab_console::scenes;
+use grainlab_console::{Failure, Format};
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Recording, Selection};
@@ -18,11 +18,11 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let order = Order::read(&directory)?;
-    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), Some(order.seed))?;
+    let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
     // Without a recording the run begins anew, in its own directory.
     if Recording::open(&directory).is_ok() {
-        // The file of a recorder that was killed is finished first, so that other tools read the whole run.
+        // The file of a killed recorder is completed first, so that other tools read the whole run.
         grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
         let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         if is_finished(&recording) {
@@ -38,9 +38,11 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
         }
         let path = serde_json::Value::from(directory.to_string_lossy());
         for plan in &mut plans {
-            let given = match plan.node.as_deref() {
-                Some("recorder") => "append:=true".to_owned(),
-                Some("dem_simulator") if last_packing::count(&directory) > 0 => format!("resume:={path}"),
+            let given = match plan.node {
+                Some(NodeKind::Recorder) => "append:=true".to_owned(),
+                Some(NodeKind::DemSimulator) if last_packing::count(&directory) > 0 => {
+                    format!("resume:={path}")
+                }
                 _ => continue,
             };
             plan.arguments.extend(["--ros-args".to_owned(), "-p".to_owned(), given]);
@@ -50,7 +52,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
     conduct(plans, domain, lock, &directory, &scene, format)
 }
 
-/// Whether the loading path was done, and its last packing is there with what was inferred from it.
+/// Whether the loading path was complete and its last packing was measured and inverted.
 fn is_finished(recording: &Recording) -> bool {
     let last = |name: &str| {
         let channels = recording.channels();

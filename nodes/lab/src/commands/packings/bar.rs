@@ -42,7 +42,7 @@ impl Bar {
 
     /// A line on stderr.
     pub(crate) fn say(&self, line: &str) {
-        self.around(|| crate::output::say!("{line}"));
+        self.around(|| grainlab_console::say!("{line}"));
     }
 
     pub(crate) fn clear(&self) {

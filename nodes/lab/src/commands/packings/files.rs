@@ -3,9 +3,9 @@
 use super::bar::Bar;
 use super::sink::{Ending, Place, Sink};
 use super::{Measure, Outlet};
-use crate::failure::{Failure, worse};
+use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
-use grainlab_node_kit::signals::Signals;
+use grainlab_node_kit::Signals;
 use grainlab_recordings::Recording;
 use grainlab_recordings::import::{ImportError, ImportOptions, Imported, each};
 use std::collections::VecDeque;
@@ -60,7 +60,7 @@ where
         return Ok(exit);
     }
     let left = files.len() - desk.read_to_end;
-    crate::output::say!(
+    grainlab_console::say!(
         "grainlab: interrupted: {measured} packings measured, {left} files not read to their end"
     );
     Ok(worse(exit, Exit::Interrupted))

@@ -1,6 +1,7 @@
 //! What files do not say, as flags.
 
-use crate::failure::Failure;
+use grainlab_console::Failure;
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Mat3, Vec3};
 use grainlab_recordings::import::ImportOptions;
 use std::path::PathBuf;
@@ -36,6 +37,9 @@ pub(crate) struct Args {
     /// Friction coefficient; inf is allowed
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
+    /// Contact law with its parameters: hertz_mindlin, or linear:KN,RATIO with k_n in N/m and k_t/k_n
+    #[arg(long, value_name = "LAW")]
+    contact_law: Option<ContactLaw>,
     /// Radius of every grain, m, for files that have none
     #[arg(long, value_name = "M")]
     radius: Option<f64>,
@@ -83,6 +87,7 @@ impl Args {
             poisson_ratio: self.poisson,
             density: self.density,
             friction: self.friction,
+            law: self.contact_law,
             radius: self.radius,
             topic: Some(self.topic.clone()),
             contact_forces,

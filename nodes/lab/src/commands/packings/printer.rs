@@ -1,7 +1,6 @@
 //! Results that, printed one after the other, are one table, one JSON array or one CSV.
 
-use crate::failure::Failure;
-use crate::output::{Format, Table};
+use grainlab_console::{Failure, Format, Table};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::marker::PhantomData;
@@ -108,7 +107,7 @@ mod tests {
                 let parts: String = packings.iter().map(|p| printer.next(p).unwrap()).collect();
                 parts + &printer.end().unwrap()
             };
-            assert_eq!(text(Format::Json), crate::output::json(&packings).unwrap());
+            assert_eq!(text(Format::Json), grainlab_console::json(&packings).unwrap());
             assert_eq!(text(Format::Csv), table(&packings).csv());
         }
     }

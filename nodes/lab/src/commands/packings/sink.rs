@@ -2,7 +2,7 @@
 
 use super::Outlet;
 use super::bar::Bar;
-use crate::failure::{Failure, worse};
+use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
 

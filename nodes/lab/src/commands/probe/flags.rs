@@ -1,11 +1,12 @@
 //! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
 
-use crate::failure::Failure;
+use crate::nodes::NodeKind;
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use grainlab_acoustic_probe::{Settings, parameters};
+use grainlab_console::Failure;
 use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
 
-const NODE: &str = "acoustic_probe";
+const NODE: NodeKind = NodeKind::AcousticProbe;
 
 /// What was given, by the name of the parameter.
 #[derive(Clone, Debug, Default)]
@@ -21,8 +22,8 @@ impl Flags {
             words.extend(["-p".to_owned(), format!("{name}:={}", yaml(spec, text))]);
         }
         let (ros, _) = RosArgs::parse(&words).map_err(Failure::usage)?;
-        let names = Names::new(NODE).map_err(Failure::usage)?;
-        let parameters = Parameters::resolve(&specs, NODE, &names, &ros);
+        let names = Names::new(NODE.name()).map_err(Failure::usage)?;
+        let parameters = Parameters::resolve(&specs, NODE.name(), &names, &ros);
         // Whoever typed a flag did not type -p.
         let named = |e: &dyn std::fmt::Display| Failure::usage(e.to_string().replacen("-p: ", "", 1));
         Settings::try_from(&parameters.map_err(|e| named(&e))?).map_err(|e| named(&e))
@@ -87,7 +88,7 @@ impl FromArgMatches for Flags {
 mod tests {
     use super::*;
     use clap::Args as _;
-    use grainlab_acoustics::Way;
+    use grainlab_acoustics::MethodSettings;
 
     fn settings(words: &[&str]) -> Result<Settings, String> {
         let command = Flags::augment_args(Command::new("probe").allow_negative_numbers(true));
@@ -114,7 +115,7 @@ mod tests {
     #[test]
     fn lists_and_axes_are_typed_as_elsewhere() {
         let s = settings(&["--wavelengths", "30,40,60", "--axis", "0,0,2", "--seed", "7"]).unwrap().0;
-        let Way::Dispersion(d) = s.way else { panic!("the default") };
+        let MethodSettings::Dispersion(d) = s.method else { panic!("the default") };
         assert_eq!((d.wavelengths, s.axis), (vec![30.0, 40.0, 60.0], Some(grainlab_core::Vec3::z())));
         assert_eq!(s.instrument.seed, 7);
     }

@@ -4,10 +4,9 @@ use super::measure::Found;
 use crate::commands::packings;
 use crate::commands::packings::bar::Bar;
 use crate::commands::packings::printer::Printer;
-use crate::failure::Failure;
-use crate::output::print;
 use crate::results::probed::Probed;
 use crate::tape::Tape;
+use grainlab_console::{Failure, print};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 

@@ -1,4 +1,5 @@
 use super::*;
+use NodeKind::{AcousticProbe, DemSimulator, EmtInversion, FabricAnalyzer, Recorder, ServoController};
 
 const DEFAULT: &str = BUILT_IN[0].1;
 const ACOUSTIC: &str = BUILT_IN[1].1;
@@ -21,16 +22,12 @@ fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
         let file = LaunchFile::parse(text).unwrap();
         assert_eq!(file.default_of("scene"), Some(scene));
         let plans = file.nodes(&BTreeMap::new()).unwrap();
-        let names: Vec<&str> = plans.iter().map(|p| p.node.as_deref().unwrap()).collect();
-        let expected = ["recorder", "emt_inversion", "fabric_analyzer", "servo_controller", "dem_simulator"];
-        assert_eq!(names, expected);
+        let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
+        let expected = [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator];
+        assert_eq!(started, expected);
         let same = nodes(DEFAULT, &[("scene", scene)]).unwrap();
         assert_eq!(plans, same, "{scene}");
-        assert!(
-            plans
-                .iter()
-                .all(|p| p.respawn != ["recorder", "dem_simulator"].contains(&p.node.as_deref().unwrap()))
-        );
+        assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
     }
 }
 
@@ -38,7 +35,7 @@ fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
 fn the_acoustic_file_is_the_default_one_with_a_probe_that_the_run_waits_for() {
     let file = LaunchFile::parse(ACOUSTIC).unwrap();
     let (default, acoustic) = (nodes(DEFAULT, &[]).unwrap(), file.nodes(&BTreeMap::new()).unwrap());
-    let (probe, others): (Vec<_>, Vec<_>) = acoustic.iter().partition(|p| p.is("acoustic_probe"));
+    let (probe, others): (Vec<_>, Vec<_>) = acoustic.iter().partition(|p| p.is(AcousticProbe));
     let [probe] = probe.as_slice() else { panic!("{} probes", probe.len()) };
     assert!(probe.respawn && probe.arguments.contains(&"speed_noise:=0.003".to_owned()), "{probe:?}");
     let without_wait = |plan: &NodePlan| {
@@ -84,6 +81,7 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
         (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
         (one("executable: {cmd: grainlab run recorder}"), "0 of dem_simulator"),
+        (one("executable: {cmd: grainlab run recoder}"), "executable recoder: there is no node \"recoder\""),
         (one("executable: {cmd: grainlab run recorder, name: ../../evil}"), "../../evil"),
         (one("executable: {cmd: grainlab run recorder, name: ''}"), "lower case"),
         (one("executable: {cmd: grainlab run recorder}\n- executable: {cmd: grainlab run recorder}"), "two"),
@@ -104,13 +102,13 @@ fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
     for plan in plans {
         let (ros, plain) = grainlab_node_kit::RosArgs::parse(&plan.arguments).unwrap();
         let given = ros.parameters.iter().find(|p| p.name == "look_around").map(|p| p.yaml.as_str());
-        assert_eq!(given, plan.is("dem_simulator").then_some("0.0"));
-        assert_eq!(plain, ["run", plan.node.as_deref().unwrap()]);
+        assert_eq!(given, plan.is(DemSimulator).then_some("0.0"));
+        assert_eq!(plain, ["run", plan.node.unwrap().name()]);
     }
     let told = DEFAULT.replace("wait_for:=", "look_around:=2.0 -p wait_for:=");
     let mut plans = nodes(&told, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
-    let simulator = plans.iter().find(|p| p.is("dem_simulator")).unwrap();
+    let simulator = plans.iter().find(|p| p.is(DemSimulator)).unwrap();
     let (ros, _) = grainlab_node_kit::RosArgs::parse(&simulator.arguments).unwrap();
     assert_eq!(ros.parameters.iter().rfind(|p| p.name == "look_around").unwrap().yaml, "2.0");
 }
@@ -121,22 +119,20 @@ fn a_program_that_is_not_ours_is_started_with_its_arguments_and_named_after_itse
         + "- executable: {cmd: python3 tools/instrument.py --rate 2}\n- executable: {cmd: /opt/x/probe.sh, name: probe}\n";
     let plans = nodes(&more, &[]).unwrap();
     let [.., instrument, probe] = plans.as_slice() else { panic!("{} plans", plans.len()) };
-    assert_eq!((instrument.node.as_deref(), instrument.name.as_str()), (None, "python3"));
+    assert_eq!((instrument.node, instrument.name.as_str()), (None, "python3"));
     assert_eq!(
         (instrument.program.as_str(), instrument.arguments.join(" ").as_str()),
         ("python3", "tools/instrument.py --rate 2")
     );
-    assert_eq!(
-        (probe.node.as_deref(), probe.name.as_str(), probe.program.as_str()),
-        (None, "probe", "/opt/x/probe.sh")
-    );
+    assert_eq!((probe.node, probe.name.as_str(), probe.program.as_str()), (None, "probe", "/opt/x/probe.sh"));
 }
 
 #[test]
 fn a_run_may_have_several_inversions_and_one_of_everything_else() {
-    let again = |node: &str| format!("{DEFAULT}- executable: {{cmd: grainlab run {node}, name: second}}\n");
-    assert_eq!(nodes(&again("emt_inversion"), &[]).unwrap().len(), 6);
-    for node in ["servo_controller", "fabric_analyzer", "dem_simulator", "recorder"] {
+    let again =
+        |node: NodeKind| format!("{DEFAULT}- executable: {{cmd: grainlab run {node}, name: second}}\n");
+    assert_eq!(nodes(&again(EmtInversion), &[]).unwrap().len(), 6);
+    for node in [ServoController, FabricAnalyzer, DemSimulator, Recorder] {
         let error = nodes(&again(node), &[]).unwrap_err();
         assert!(matches!(error, PlanError::Count { count: 2, .. }), "{error}");
     }

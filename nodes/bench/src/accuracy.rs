@@ -1,0 +1,166 @@
+//! `grainlab bench accuracy`: what each numerical setting costs and how wrong it is.
+
+mod front;
+mod knobs;
+mod measure;
+mod plot;
+mod report;
+mod row;
+mod runs;
+mod statistics;
+mod table;
+mod verdict;
+
+use super::folder;
+use clap::ValueEnum;
+use grainlab_console::{Failure, Format, json, print, say};
+use grainlab_node_kit::Exit;
+use grainlab_scene::Scene;
+use knobs::{Knob, Servoed, Setting, converged};
+use row::Sample;
+use runs::Job;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const EXAMPLES: &str = "\
+Each knob is turned alone, on a scene run in this process from gas to packing at several seeds. The error of a setting is
+the mean over the seeds of its difference, in k, eps, phi, G12 and Theta, from a converged run with every knob at its most
+careful value. Packings diverge from any perturbation: an error below two standard errors is not resolved, and said to be.
+
+Examples:
+  All knobs on a path of 200 grains, with a plot of the Pareto front (about 15 minutes of two cores):
+    grainlab bench accuracy --out accuracy
+  Strain rate and damping on the demo, with more seeds:
+    grainlab bench accuracy --scene demo --knobs strain_rate,damping --seeds 16";
+
+/// The scene that is run unless another is named.
+const PRESS: &str = include_str!("accuracy/press.toml");
+
+/// Runs that take this many times the default's steps count as failed: twice what the slowest knob asks for.
+const PATIENCE: u64 = 8;
+
+/// What to turn, and how often.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Scene to run: a name built in or a file; without one, a path of 200 grains to 50 kPa
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<String>,
+    /// Seeds of each setting, counted up from the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    seeds: Option<u32>,
+    /// Knobs to turn; all without this flag
+    #[arg(long, value_enum, value_name = "KNOB", value_delimiter = ',')]
+    knobs: Vec<Knob>,
+    /// Two seeds, one value a knob beside the default, a less careful reference: to try it out
+    #[arg(long)]
+    quick: bool,
+    /// Runs at a time; each is timed by its own thread's CPU time
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: u32,
+    /// Folder for accuracy.json and accuracy.svg
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let scene = scene(args)?;
+    let count = args.seeds.unwrap_or(if args.quick { 2 } else { 8 });
+    let seeds: Vec<u64> = (0..u64::from(count)).map(|n| scene.seed.wrapping_add(n)).collect();
+    folder::ready(args.out.as_deref())?;
+    let knobs = if args.knobs.is_empty() { Knob::value_variants() } else { &args.knobs };
+    let threads = args.threads as usize;
+    let unlimited = vec![u64::MAX; seeds.len()];
+    let first = every_seed(&[(&scene, &unlimited)], &seeds, threads, "default");
+    let first = first.into_iter().next().unwrap_or_default();
+    let limits: Vec<u64> =
+        first.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
+    let careful = converged(&scene, args.quick);
+    let settings = settings(knobs, &scene, servoed(&first), args.quick);
+    // The default once more, so that it is timed among the others.
+    let mut jobs = vec![(&careful, &unlimited), (&scene, &limits)];
+    jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
+    let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
+    let (reference, default) = (results.next().unwrap_or_default(), results.next().unwrap_or_default());
+    let sample = |s: Setting| {
+        let sample = if s.default { default.clone() } else { results.next().unwrap_or_default() };
+        (s, sample)
+    };
+    let samples: Vec<(Setting, Sample)> = settings.into_iter().map(sample).collect();
+    let Some(report) = report::report(&scene, seeds, (&careful, &reference), &default, &samples) else {
+        return Err(no_reference(&reference, &default));
+    };
+    if let Some(folder) = &args.out {
+        folder::write(folder, "accuracy.json", &json(&report)?)?;
+        folder::write(folder, "accuracy.svg", &plot::svg(&report))?;
+    }
+    print(&match args.format {
+        Format::Json => json(&report)?,
+        Format::Csv => table::csv(&report),
+        Format::Table => table::text(&report),
+    })?;
+    Ok(Exit::Done)
+}
+
+fn scene(args: &Args) -> Result<Scene, Failure> {
+    let scene = match &args.scene {
+        Some(name) => grainlab_console::scenes::load(name, &[], None)?.scene,
+        None => Scene::parse(PRESS).map_err(Failure::failed)?,
+    };
+    Ok(scene)
+}
+
+fn settings(knobs: &[Knob], scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setting> {
+    let of = |knob: &Knob| {
+        let settings = knob.settings(scene, servoed, quick);
+        if settings.is_empty() {
+            say!("grainlab: the scene has nothing that {} would turn", knob.name());
+        }
+        settings
+    };
+    knobs.iter().flat_map(of).collect()
+}
+
+fn servoed(sample: &Sample) -> Option<Servoed> {
+    sample.iter().find_map(|r| r.as_ref().ok()?.servoed)
+}
+
+/// Runs each scene at every seed, each with its limits on steps; the outcomes by scene. Seed by seed, so that what else
+/// the machine does falls on all scenes alike.
+fn every_seed(scenes: &[(&Scene, &Vec<u64>)], seeds: &[u64], threads: usize, what: &str) -> Vec<Sample> {
+    let job = |s: usize| {
+        let (seed, at) = (seeds[s], s);
+        scenes.iter().map(move |(scene, limits)| Job { scene, seed, limit: limits[at] })
+    };
+    let jobs: Vec<Job<'_>> = (0..seeds.len()).flat_map(job).collect();
+    let (done, total) = (AtomicUsize::new(0), jobs.len());
+    let tenth = |n: usize| n * 10 / total;
+    let results = runs::all(&jobs, threads, || {
+        let n = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if tenth(n) > tenth(n - 1) {
+            say!("grainlab: {what}: {n} of {total} runs");
+        }
+    });
+    let mut samples: Vec<Sample> = vec![Vec::new(); scenes.len()];
+    for (run, outcome) in results.into_iter().enumerate() {
+        samples[run % scenes.len()].push(outcome);
+    }
+    samples
+}
+
+/// Without a reference nothing can be said.
+fn no_reference(reference: &Sample, default: &Sample) -> Failure {
+    let first = |sample: &Sample| sample.iter().find_map(|r| r.as_ref().err().cloned());
+    let reason = match (first(default), first(reference)) {
+        (Some(reason), _) => format!("the scene as it stands: {reason}"),
+        (None, Some(reason)) => format!("the converged run: {reason}"),
+        (None, None) => "no run has a result".to_owned(),
+    };
+    Failure::new(
+        Exit::PhysicsInvalid,
+        format!("fewer than two seeds ended, nothing to compare with: {reason}"),
+    )
+}

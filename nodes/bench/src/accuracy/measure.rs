@@ -1,0 +1,61 @@
+//! One run of a scene, in this thread alone: the servo is a function call.
+
+use super::knobs::Servoed;
+use super::statistics::Observables;
+use crate::cpu_time::thread_seconds;
+use grainlab_core::{ComponentControl, ServoLaw};
+use grainlab_experiment::Simulation;
+use grainlab_scene::Scene;
+
+/// What a run cost and where it ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outcome {
+    /// The packing at the end of the path; moduli in Pa.
+    pub(crate) observables: Observables<f64>,
+    /// CPU time of the run, the measurement at its end left out, s.
+    pub(crate) seconds: f64,
+    /// Solver steps.
+    pub(crate) steps: u64,
+    /// The last request under stress control.
+    pub(crate) servoed: Option<Servoed>,
+}
+
+/// Runs the scene to its end and measures the packing there. A run that is not done after `limit` solver steps fails.
+pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
+    let clock = || thread_seconds().map_err(|e| e.to_string());
+    let begin = clock()?;
+    let mut run = Simulation::new(scene.clone()).map_err(|e| e.to_string())?;
+    let mut servoed = None;
+    while let Some(r) = run.request() {
+        if r.step > limit {
+            return Err(format!(
+                "not done after {limit} steps, in phase {}",
+                run.scene().phases[r.phase as usize].name
+            ));
+        }
+        if r.controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
+            if let ServoLaw::Scaled { response_time } = r.law
+                && r.control_interval >= 2.0 * response_time
+            {
+                let interval = r.control_interval;
+                return Err(format!(
+                    "a control interval of {interval:.1e} s is not below twice the response time"
+                ));
+            }
+            let tangent = r.observables.tangent[..3].iter().copied().fold(0.0, f64::max);
+            servoed = Some(Servoed { tangent, interval: r.control_interval });
+        }
+        let answer = grainlab_servo::control(&r.servo_input()).map_err(|e| e.to_string())?;
+        run.advance(&answer.rate).map_err(|e| e.to_string())?;
+    }
+    let seconds = clock()? - begin;
+    Ok(Outcome { observables: observe(&run)?, seconds, steps: run.engine().steps(), servoed })
+}
+
+fn observe(run: &Simulation) -> Result<Observables<f64>, String> {
+    let settings = grainlab_micromechanics::Settings::default();
+    let r = grainlab_micromechanics::analyze(&run.packing(), &settings).map_err(|e| e.to_string())?.report;
+    let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
+    let c = r.elasticity.into_stiffness().map_err(|e| e.to_string())?.tensor;
+    Ok(Observables { k, eps, phi, g12: c.transverse_isotropy().g12, theta: c.bulk_voigt() })
+}

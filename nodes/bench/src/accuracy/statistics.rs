@@ -1,0 +1,189 @@
+//! Differences between settings, averaged over seeds, with their standard errors.
+//!
+//! Packings diverge after any perturbation, however small, so the difference between two single runs contains the effect of
+//! the setting and chance. The mean of the differences over seeds has the effect alone, to within its standard error.
+
+use serde::Serialize;
+
+/// What is measured on the packing at the end of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Observables<T> {
+    /// Coordination number, all grains.
+    pub(crate) k: T,
+    /// Anisotropy ε of the contacts about e3 (Eq. 20).
+    pub(crate) eps: T,
+    /// Solid fraction.
+    pub(crate) phi: T,
+    /// Shear modulus G12 of the frozen network.
+    pub(crate) g12: T,
+    /// Bulk modulus Θ of the frozen network.
+    pub(crate) theta: T,
+}
+
+impl<T: Copy> Observables<T> {
+    /// Names, in the order of [`Observables::array`].
+    pub(crate) const NAMES: [&str; 5] = ["k", "eps", "phi", "g12", "theta"];
+
+    pub(crate) fn from_array([k, eps, phi, g12, theta]: [T; 5]) -> Self {
+        Self { k, eps, phi, g12, theta }
+    }
+
+    pub(crate) fn array(&self) -> [T; 5] {
+        [self.k, self.eps, self.phi, self.g12, self.theta]
+    }
+
+    pub(crate) fn map<U: Copy>(&self, f: impl FnMut(T) -> U) -> Observables<U> {
+        Observables::from_array(self.array().map(f))
+    }
+}
+
+/// A mean over seeds and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    /// Mean.
+    pub(crate) mean: f64,
+    /// Standard error of the mean: standard deviation over √n.
+    pub(crate) standard_error: f64,
+    /// Number of samples n, at least two.
+    pub(crate) samples: usize,
+}
+
+impl Estimate {
+    /// Of at least two samples; fewer have no standard error.
+    pub(crate) fn of(samples: &[f64]) -> Option<Self> {
+        let n = samples.len();
+        let standard_error = deviation(samples)? / (n as f64).sqrt();
+        Some(Self { mean: samples.iter().sum::<f64>() / n as f64, standard_error, samples: n })
+    }
+
+    /// Half width of the 95 % interval of the mean: two standard errors with many samples, more with few.
+    pub(crate) fn half_width(&self) -> f64 {
+        student(self.samples - 1) * self.standard_error
+    }
+
+    /// Whether zero lies outside the 95 % interval. A mean without any scatter is resolved, also where it is zero: then
+    /// every sample is exactly zero.
+    pub(crate) fn resolved(&self) -> bool {
+        self.mean.abs() >= self.half_width()
+    }
+
+    /// The magnitude to count with: that of the mean where it is resolved, else the half width, below which it stays.
+    pub(crate) fn bound(&self) -> f64 {
+        self.mean.abs().max(self.half_width())
+    }
+}
+
+/// 97.5 % quantile of Student's t with `freedom` degrees of freedom, 1 or more, never below 2. From the fifth on the
+/// expansion of Abramowitz and Stegun, 26.7.5, which is right to 0.2 %.
+fn student(freedom: usize) -> f64 {
+    const FEW: [f64; 4] = [12.706, 4.303, 3.182, 2.776];
+    let v = freedom as f64;
+    let quantile = 1.95996 + 2.3723 / v + 2.8225 / (v * v) + 2.5558 / (v * v * v);
+    FEW.get(freedom.saturating_sub(1)).copied().unwrap_or(quantile).max(2.0)
+}
+
+/// Standard deviation of at least two samples, with n − 1.
+pub(crate) fn deviation(samples: &[f64]) -> Option<f64> {
+    if samples.len() < 2 {
+        return None;
+    }
+    let n = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / n;
+    Some((samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
+}
+
+/// What two settings differ by at the same seeds, over the seeds at which both came to an end; `None` with fewer than
+/// two of them.
+pub(crate) fn paired(
+    of: &[Option<Observables<f64>>],
+    from: &[Option<Observables<f64>>],
+) -> Option<Observables<Estimate>> {
+    let both: Vec<_> = of.iter().zip(from).filter_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?))).collect();
+    let estimate = |q: usize| {
+        let differences: Vec<f64> = both.iter().map(|(a, b)| a.array()[q] - b.array()[q]).collect();
+        Estimate::of(&differences)
+    };
+    Some(Observables::from_array([estimate(0)?, estimate(1)?, estimate(2)?, estimate(3)?, estimate(4)?]))
+}
+
+/// One number for five errors: the root mean square of their bounds, each over the seed scatter of its quantity, so that
+/// 1 is as wrong as one packing is by chance. `None` without any scatter to compare with.
+pub(crate) fn combined(errors: &Observables<Estimate>, scatter: &Observables<f64>) -> Option<f64> {
+    let squares: Vec<f64> = errors
+        .array()
+        .iter()
+        .zip(scatter.array())
+        .filter(|(_, s)| *s > 0.0)
+        .map(|(e, s)| (e.bound() / s).powi(2))
+        .collect();
+    (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(value: f64) -> Observables<f64> {
+        Observables::from_array([value; 5])
+    }
+
+    #[test]
+    fn mean_and_standard_error_are_those_of_the_textbook() {
+        // 1, 2, 3, 4: deviation √(5/3), standard error √(5/12).
+        let e = Estimate::of(&[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert!((e.mean - 2.5).abs() < 1e-15 && (e.standard_error - (5.0f64 / 12.0).sqrt()).abs() < 1e-15);
+        assert_eq!(Estimate::of(&[1.0]), None);
+    }
+
+    #[test]
+    fn a_mean_within_its_interval_is_unresolved_and_counts_with_its_bound() {
+        let noise = Estimate { mean: -0.19, standard_error: 0.1, samples: 1000 };
+        assert!(!noise.resolved() && noise.bound() == 0.2);
+        let effect = Estimate { mean: -0.21, ..noise };
+        assert!(effect.resolved() && effect.bound() == 0.21);
+        // Three samples scatter too little by chance too often.
+        assert!(!Estimate { samples: 3, ..effect }.resolved());
+    }
+
+    #[test]
+    fn the_interval_is_student_s() {
+        for (freedom, quantile) in [(1, 12.706), (4, 2.776), (5, 2.571), (7, 2.365), (15, 2.131), (30, 2.042)]
+        {
+            assert!((student(freedom) / quantile - 1.0).abs() < 2e-3, "{freedom}: {}", student(freedom));
+        }
+    }
+
+    #[test]
+    fn equal_results_have_an_error_of_exactly_zero_that_counts_as_known() {
+        let runs = [Some(all(5.1)), Some(all(4.9)), Some(all(5.3))];
+        let none = paired(&runs, &runs).unwrap();
+        assert!(none.array().iter().all(|e| e.resolved() && e.mean == 0.0 && e.standard_error == 0.0));
+        assert_eq!(combined(&none, &all(0.1)), Some(0.0));
+    }
+
+    #[test]
+    fn pairing_takes_the_scatter_of_the_seeds_out_of_a_difference() {
+        let from: Vec<_> = [4.0, 5.0, 6.0].map(|v| Some(all(v))).into();
+        let of: Vec<_> = [4.1, 5.2, 6.3].map(|v| Some(all(v))).into();
+        let k = paired(&of, &from).unwrap().k;
+        assert!((k.mean - 0.2).abs() < 1e-12 && (k.standard_error - 0.1 / 3f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn only_seeds_at_which_both_settings_ended_count() {
+        let from = [Some(all(1.0)), None, Some(all(1.0)), Some(all(1.0))];
+        let of = [Some(all(2.0)), Some(all(9.0)), None, Some(all(4.0))];
+        assert_eq!(paired(&of, &from).unwrap().phi.mean, 2.0);
+        assert_eq!(paired(&of[..3], &from[..3]), None);
+    }
+
+    #[test]
+    fn the_combined_error_is_in_units_of_the_scatter_and_quantities_without_scatter_stay_out() {
+        let error = Estimate { mean: 0.3, standard_error: 0.0, samples: 8 };
+        let errors = Observables::from_array([error; 5]);
+        assert!((combined(&errors, &all(0.1)).unwrap() - 3.0).abs() < 1e-12);
+        let one = Observables { k: 0.1, ..all(0.0) };
+        assert!((combined(&errors, &one).unwrap() - 3.0).abs() < 1e-12);
+        assert_eq!(combined(&errors, &all(0.0)), None);
+    }
+}

@@ -1,0 +1,42 @@
+//! `grainlab bench acoustics`: what wave speeds of a packing cost by each way to measure them, and how wrong they are.
+
+mod args;
+mod curves;
+mod measure;
+mod noise;
+mod plot;
+mod report;
+
+pub(crate) use args::Args;
+
+use super::folder;
+use super::packing::load;
+use grainlab_console::{Failure, Format, json, print};
+use grainlab_node_kit::Exit;
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    if !args.noise.is_empty() {
+        return noise::run(args);
+    }
+    let mut packings = args.packing.iter().map(|path| load(Some(path))).collect::<Result<Vec<_>, _>>()?;
+    if packings.is_empty() {
+        packings.push(load(None)?);
+    }
+    folder::ready(args.out.as_deref())?;
+    let mut rows = Vec::new();
+    for packing in &packings {
+        rows.extend(measure::rows(packing, args)?);
+    }
+    let report = report::report(rows);
+    if let Some(folder) = &args.out {
+        folder::write(folder, "acoustics.json", &json(&report)?)?;
+        folder::write(folder, "acoustics.svg", &plot::svg(&report))?;
+        folder::write(folder, "dispersion.svg", &curves::svg(&packings[0])?)?;
+    }
+    print(&match args.format {
+        Format::Json => json(&report)?,
+        Format::Csv => report::csv(&report),
+        Format::Table => report::text(&report),
+    })?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,171 @@
+//! Microstructure inferred from noisy speeds and from the analyzer's moduli, both by the inversion of the node.
+
+use super::args::Args;
+use crate::packing::load_all;
+use grainlab_acoustics::{Measurement, with_speed_noise};
+use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
+use grainlab_core::Packing;
+use grainlab_core::results::PackingReport;
+use grainlab_emt::Quantity;
+use grainlab_micromechanics::network::Springs;
+use grainlab_msgs::boundary::MicrostructureReading;
+use grainlab_msgs::msg::Microstructure;
+use grainlab_node_kit::Exit;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// The model of the inversion: it needs no γ/Δ and includes the scatter between packings.
+const MODEL: &str = "relaxed";
+
+/// Half the width of a 95 % interval, standard deviations.
+const INTERVAL: f64 = 1.96;
+
+const QUANTITIES: [Quantity; 4] = [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness];
+
+/// One level of noise, or the analyzer's moduli.
+#[derive(Debug, Serialize)]
+struct Row {
+    /// Relative standard deviation of every speed; null for the analyzer's moduli.
+    noise: Option<f64>,
+    packings: usize,
+    inferred: usize,
+    k: Score,
+    z: Score,
+    eps: Score,
+    eps_stiffness: Score,
+}
+
+/// Inferred less counted.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+struct Score {
+    rms: Option<f64>,
+    bias: Option<f64>,
+    /// Share within the 95 % interval.
+    covered: Option<f64>,
+}
+
+/// Inferred values less those counted, in their standard deviations as well.
+type Errors = [Option<(f64, f64)>; 4];
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let packings = load_all(&args.packing)?;
+    let measured: Vec<_> =
+        packings.iter().map(|packing| one(packing, args)).collect::<Result<Vec<_>, Failure>>()?;
+    let rows: Vec<Row> = (0..=args.noise.len())
+        .map(|level| {
+            let errors: Vec<Errors> = measured.iter().flat_map(|m| m[level].clone()).collect();
+            row(level.checked_sub(1).map(|k| args.noise[k]), packings.len(), &errors)
+        })
+        .collect();
+    print(&match args.format {
+        Format::Json => json(&rows)?,
+        Format::Csv => table(&rows, exact).csv(),
+        Format::Table => table(&rows, |v| fixed(v, 4)).text(),
+    })?;
+    Ok(Exit::Done)
+}
+
+/// Of one packing: the errors by the analyzer's moduli, then those of every draw of every level.
+fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
+    let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
+    let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
+    let measurement = grainlab_acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
+    let springs = Springs::with_friction(packing.friction);
+    let truth = grainlab_micromechanics::analyze(
+        packing,
+        &grainlab_micromechanics::Settings { springs, ..Default::default() },
+    )
+    .map_err(|e| invalid(&e))?
+    .report;
+    let header = Default::default();
+    let analysed = grainlab_fabric_analyzer::messages(&header, &truth).map_err(|e| invalid(&e))?;
+    let moduli = analysed.moduli.map_err(|e| invalid(&e))?;
+    let inversion = inversion()?;
+    let by_moduli =
+        grainlab_emt_inversion::microstructure_message(&moduli, &inversion).map_err(|e| invalid(&e))?;
+    let mut errors = vec![vec![compared(&by_moduli, &truth)]];
+    for noise in &args.noise {
+        let draws = if *noise > 0.0 { args.draws } else { 1 };
+        let draw = |seed: u32| {
+            // Draws of one packing are not those of another.
+            let seed = packing.step.wrapping_mul(u64::from(args.draws) + 1).wrapping_add(seed.into());
+            let waves = with_speed_noise(&measurement.waves, *noise, seed);
+            let noisy = Measurement { waves, ..measurement.clone() };
+            let sent =
+                grainlab_acoustic_probe::messages(&header, packing, &noisy).map_err(|e| invalid(&e))?;
+            let found = grainlab_emt_inversion::microstructure_of_speeds(&sent.wave_speeds, &inversion);
+            Ok(compared(&found.map_err(|e| invalid(&e))?, &truth))
+        };
+        errors.push((1..=draws).into_par_iter().map(draw).collect::<Result<_, Failure>>()?);
+    }
+    Ok(errors)
+}
+
+fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
+    let models = grainlab_emt_inversion::Models::named(MODEL).map_err(Failure::failed)?;
+    Ok(grainlab_emt_inversion::Settings { models, ..Default::default() })
+}
+
+fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
+    let reading = MicrostructureReading::try_from(found).ok();
+    let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
+    let of = |quantity: Quantity| {
+        let (inferred, at) = (inferred.as_ref()?, quantity as usize);
+        let counted = match quantity {
+            Quantity::K => truth.contacts.coordination,
+            Quantity::Z => truth.contacts.mechanical_coordination,
+            Quantity::Eps => truth.fabric.contact_anisotropy,
+            Quantity::EpsStiffness => truth.stiffness_anisotropy()?,
+            Quantity::KHat => return None,
+        };
+        let error = inferred.values[at]? - counted;
+        Some((error, error / inferred.covariance?[6 * at].sqrt()))
+    };
+    QUANTITIES.map(of)
+}
+
+fn row(noise: Option<f64>, packings: usize, errors: &[Errors]) -> Row {
+    let score = |at: usize| {
+        let known: Vec<(f64, f64)> = errors.iter().filter_map(|e| e[at]).collect();
+        let mean = |of: fn(&(f64, f64)) -> f64| {
+            (!known.is_empty()).then(|| known.iter().map(of).sum::<f64>() / known.len() as f64)
+        };
+        Score {
+            rms: mean(|e| e.0 * e.0).map(f64::sqrt),
+            bias: mean(|e| e.0),
+            covered: mean(|e| f64::from(u8::from(e.1.abs() <= INTERVAL))),
+        }
+    };
+    let inferred = errors.iter().filter(|e| e.iter().any(Option::is_some)).count();
+    Row { noise, packings, inferred, k: score(0), z: score(1), eps: score(2), eps_stiffness: score(3) }
+}
+
+fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+    let mut t = Table::new([
+        "speed noise",
+        "packings",
+        "inferred",
+        "k rms",
+        "bias",
+        "in 95 %",
+        "z rms",
+        "bias",
+        "in 95 %",
+        "eps rms",
+        "bias",
+        "in 95 %",
+        "eps_k rms",
+        "bias",
+        "in 95 %",
+    ]);
+    for r in rows {
+        let head = [
+            r.noise.map_or_else(|| "moduli".to_owned(), |n| n.to_string()),
+            r.packings.to_string(),
+            r.inferred.to_string(),
+        ];
+        let score = |s: &Score| [number(s.rms), number(s.bias), number(s.covered)];
+        t.row(head.into_iter().chain([r.k, r.z, r.eps, r.eps_stiffness].iter().flat_map(score)));
+    }
+    t
+}

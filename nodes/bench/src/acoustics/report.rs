@@ -1,0 +1,131 @@
+//! Rows as JSON, as a table, as CSV.
+
+use super::args::Method;
+use crate::numbers::rounded;
+use grainlab_console::{Table, exact};
+use serde::Serialize;
+
+/// The whole result.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) rows: Vec<Row>,
+    pub(super) notes: [&'static str; 3],
+}
+
+const NOTES: [&str; 3] = [
+    "value: error allowed to the square of a frequency (dispersion), repetitions along the path (standing_wave); seconds: CPU \
+     time of all threads for all speeds, the preparation of the packing included",
+    "rms, largest, stated: of rho v^2, relative to p Gamma p of the frozen network; stated is the standard deviation that came \
+     with it, density included, and sigmas the largest error over its own. It is zero for an exact measurement of a frozen \
+     network; moving grains are not quite one",
+    "moduli: largest relative error of C33, C11, C44, C66 and C13 by Christoffel, against the transversely isotropic projection \
+     of the stiffness: three rays alone miss its average over azimuths",
+];
+
+/// One way to measure, on one packing.
+#[derive(Debug, Serialize)]
+pub(super) struct Row {
+    pub(super) method: Method,
+    /// What was varied.
+    pub(super) value: Option<f64>,
+    pub(super) grains: usize,
+    pub(super) speeds: usize,
+    pub(super) seconds: f64,
+    pub(super) wall_seconds: f64,
+    pub(super) error: Error,
+    /// Why there is no result, or the warnings of the measurement.
+    pub(super) failure: Option<String>,
+}
+
+/// Relative errors of ρ v².
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Error {
+    pub(super) rms: Option<f64>,
+    pub(super) largest: Option<f64>,
+    pub(super) stated: Option<f64>,
+    pub(super) worst_sigmas: Option<f64>,
+    pub(super) moduli: Option<f64>,
+}
+
+pub(super) fn report(rows: Vec<Row>) -> Report {
+    Report { rows, notes: NOTES }
+}
+
+/// For people.
+pub(super) fn text(report: &Report) -> String {
+    let mut text = table(&report.rows, rounded).text();
+    for row in &report.rows {
+        if let Some(failure) = &row.failure {
+            text += &format!("{} {}: {failure}\n", row.method.name(), setting(row.value));
+        }
+    }
+    text += "\n";
+    report.notes.iter().for_each(|note| text += &format!("{note}\n"));
+    text
+}
+
+/// The rows alone.
+pub(super) fn csv(report: &Report) -> String {
+    table(&report.rows, exact).csv()
+}
+
+fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+    let header = [
+        "method",
+        "value",
+        "grains",
+        "speeds",
+        "seconds",
+        "wall_seconds",
+        "rms",
+        "largest",
+        "stated",
+        "sigmas",
+        "moduli",
+    ];
+    let mut t = Table::new(header);
+    let small = |e: Option<f64>| e.map_or_else(|| "-".to_owned(), |e| format!("{e:.1e}"));
+    for r in rows {
+        let e = &r.error;
+        t.row([
+            r.method.name().to_owned(),
+            setting(r.value),
+            r.grains.to_string(),
+            r.speeds.to_string(),
+            number(Some(r.seconds)),
+            number(Some(r.wall_seconds)),
+            small(e.rms),
+            small(e.largest),
+            small(e.stated),
+            e.worst_sigmas.map_or_else(|| "-".to_owned(), |s| format!("{s:.1}")),
+            small(e.moduli),
+        ]);
+    }
+    t
+}
+
+fn setting(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), |v| if v < 1.0 { format!("{v:e}") } else { format!("{v}") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_that_failed_has_a_row_without_numbers_and_says_why() {
+        let row = Row {
+            method: Method::Peak,
+            value: None,
+            grains: 500,
+            speeds: 0,
+            seconds: 0.5,
+            wall_seconds: 0.5,
+            error: Error::default(),
+            failure: Some("no arrival".to_owned()),
+        };
+        let report = report(vec![row]);
+        assert!(text(&report).contains("peak -: no arrival"));
+        assert_eq!(csv(&report).lines().nth(1), Some("peak,-,500,0,0.5,0.5,-,-,-,-,-"));
+    }
+}

@@ -1,0 +1,22 @@
+//! The clock of a measurement on a shared machine.
+
+use grainlab_console::Failure;
+
+/// CPU time that the calling thread has used, s: what a run costs, whatever else the machine does meanwhile.
+pub(super) fn thread_seconds() -> Result<f64, Failure> {
+    seconds(libc::CLOCK_THREAD_CPUTIME_ID)
+}
+
+/// CPU time that all threads of this process have used, s.
+pub(super) fn process_seconds() -> Result<f64, Failure> {
+    seconds(libc::CLOCK_PROCESS_CPUTIME_ID)
+}
+
+fn seconds(clock: libc::clockid_t) -> Result<f64, Failure> {
+    let mut now = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: `now` is a timespec that outlives the call, which writes nothing else.
+    match unsafe { libc::clock_gettime(clock, &raw mut now) } {
+        0 => Ok(now.tv_sec as f64 + 1e-9 * now.tv_nsec as f64),
+        _ => Err(Failure::failed(format!("no CPU clock: {}", std::io::Error::last_os_error()))),
+    }
+}

@@ -1,0 +1,214 @@
+//! `grainlab bench dem`: how fast the particle engine steps.
+
+mod machine;
+mod peak;
+mod stepping;
+
+use super::numbers::{median, rounded};
+use super::packing;
+use clap::ValueEnum;
+use grainlab_console::{Failure, Format, Table, exact, json, print, say};
+use grainlab_core::Packing;
+use grainlab_dem::Simd;
+use grainlab_node_kit::Exit;
+use machine::Machine;
+use serde::Serialize;
+use std::path::PathBuf;
+use stepping::{Case, Features, Loop, Packings};
+
+const EXAMPLES: &str = "\
+Grains of a packing at rest near 100 kPa, with 2.55 contacts a grain, are stepped with friction 0.1, damping 0.3 and a time
+step of 3e-8 s, and only the stepping is timed. Without --packing it is one of 2,000 grains made by LAMMPS, repeated along
+each axis for the larger sizes; without friction it would fall apart, so that the frictionless rows step the same grains
+pressed anew without it. Every repetition goes once through all cases; medians are reported.
+
+Examples:
+  One core, one size, with the servo answering every step:
+    grainlab bench dem --grains 2000 --threads 1 --features coulomb --servo
+  What each instruction set gives:
+    grainlab bench dem --grains 16000 --threads 1 --simd scalar,avx2,avx512 --format json";
+
+/// What to step, and how often.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Packing to step: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz
+    #[arg(long, value_name = "FILE")]
+    packing: Option<PathBuf>,
+    /// Sizes: cubes of the packing's own number of grains; without it 1, 2 and 4 copies along each axis
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    grains: Vec<u64>,
+    /// Numbers of threads
+    #[arg(long, value_name = "N", value_delimiter = ',', default_value = "1,2", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Vec<u32>,
+    /// Parts of the contact law
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = Features::value_variants().to_vec())]
+    features: Vec<Features>,
+    /// Take the stress and answer it with a strain rate after every step, towards the packing's pressure
+    #[arg(long)]
+    servo: bool,
+    /// Solver steps of a repetition, after a tenth as many to warm up; without it as many as make 2e7 particle-steps
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    steps: Option<u32>,
+    /// Instruction sets: best, scalar, avx2, avx512
+    #[arg(long, value_name = "SET", value_delimiter = ',', default_value = "best", value_parser = instruction_set)]
+    simd: Vec<Simd>,
+    /// Repetitions of every case
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repetitions: u32,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    machine: Machine,
+    rows: Vec<Row>,
+}
+
+/// One case: medians over its repetitions.
+#[derive(Debug, Serialize)]
+struct Row {
+    grains: u64,
+    threads: u32,
+    features: Features,
+    simd: String,
+    servo: bool,
+    steps: u32,
+    repetitions: usize,
+    /// By the wall clock.
+    particle_steps_per_second: f64,
+    /// By the CPU time of all threads.
+    cpu_particle_steps_per_second: f64,
+    /// CPU time.
+    ns_per_contact: f64,
+    coordination: f64,
+    /// Mean stress at the end, Pa.
+    pressure: f64,
+    /// Floating-point operations of the contact law on one contact, counted by running it.
+    operations_per_contact: f64,
+    /// What the contacts need of what the cores in use could do of independent additions and multiplications.
+    share_of_peak: Option<f64>,
+    /// Memory that the engine holds; null where the system does not report it.
+    bytes_per_grain: Option<f64>,
+}
+
+fn instruction_set(text: &str) -> Result<Simd, String> {
+    let set =
+        if text == "best" { Simd::best() } else { text.parse().map_err(|e| format!("{e}; or best"))? };
+    if set.is_available() {
+        return Ok(set);
+    }
+    let there_are: Vec<String> = Simd::available().iter().map(Simd::to_string).collect();
+    Err(format!("this processor has no {set}; it has {}", there_are.join(", ")))
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let packing = packing::load(args.packing.as_deref())?;
+    let sizes = packing::copies(packing.grains(), &args.grains)?;
+    let mut cases = Vec::new();
+    for copies in sizes {
+        let grains = packing.grains() as u64 * u64::from(copies).pow(3);
+        let steps = args.steps.unwrap_or((2e7 / grains as f64).ceil() as u32);
+        for simd in &args.simd {
+            for threads in &args.threads {
+                for features in &args.features {
+                    let (simd, threads, features) = (*simd, *threads, *features);
+                    cases.push(Case { copies, grains, threads, features, simd, servo: args.servo, steps });
+                }
+            }
+        }
+    }
+    let packings = Packings::new(packing.clone(), &args.features)?;
+    let machine = Machine::measured(&args.simd)?;
+    let mut loops: Vec<Vec<Loop>> = vec![Vec::new(); cases.len()];
+    for repetition in 1..=args.repetitions {
+        say!("grainlab: repetition {repetition} of {}", args.repetitions);
+        for (case, done) in cases.iter().zip(&mut loops) {
+            done.push(stepping::run(&packings, case)?);
+        }
+    }
+    let rows = cases.iter().zip(&loops).map(|(case, loops)| row(&packing, case, loops, &machine)).collect();
+    let report = Report { machine, rows };
+    print(&match args.format {
+        Format::Json => json(&report)?,
+        Format::Csv => table(&report.rows, exact).csv(),
+        Format::Table => report.machine.to_string() + &table(&report.rows, rounded).text(),
+    })?;
+    Ok(Exit::Done)
+}
+
+fn row(packing: &Packing, case: &Case, loops: &[Loop], machine: &Machine) -> Row {
+    let of = |part: &dyn Fn(&Loop) -> f64| median(loops.iter().map(part).collect());
+    let work = case.grains as f64 * f64::from(case.steps);
+    let operations = stepping::operations_per_contact(packing, case);
+    let ns_per_contact = of(&|l| 1e9 * l.cpu_seconds / (l.contacts * f64::from(case.steps)));
+    let share = |peak: f64| operations / (1e-9 * ns_per_contact) / peak;
+    Row {
+        grains: case.grains,
+        threads: case.threads,
+        features: case.features,
+        simd: case.simd.to_string(),
+        servo: case.servo,
+        steps: case.steps,
+        repetitions: loops.len(),
+        particle_steps_per_second: of(&|l| work / l.wall_seconds),
+        cpu_particle_steps_per_second: of(&|l| work / l.cpu_seconds),
+        ns_per_contact,
+        coordination: of(&|l| 2.0 * l.contacts / case.grains as f64),
+        pressure: of(&|l| l.pressure),
+        operations_per_contact: operations,
+        share_of_peak: machine.peak(case.simd).map(share),
+        // The first engine finds the memory untouched; later ones take up what others left.
+        bytes_per_grain: loops
+            .iter()
+            .filter_map(|l| l.bytes)
+            .reduce(f64::max)
+            .map(|b| b / case.grains as f64),
+    }
+}
+
+fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+    let mut t = Table::new([
+        "features",
+        "grains",
+        "threads",
+        "simd",
+        "servo",
+        "particle_steps_per_second",
+        "cpu_particle_steps_per_second",
+        "ns_per_contact",
+        "coordination",
+        "share_of_peak",
+        "bytes_per_grain",
+    ]);
+    for r in rows {
+        let mut cells = vec![
+            r.features.name().to_owned(),
+            r.grains.to_string(),
+            r.threads.to_string(),
+            r.simd.clone(),
+            if r.servo { "yes" } else { "no" }.to_owned(),
+        ];
+        let rates = [r.particle_steps_per_second, r.cpu_particle_steps_per_second];
+        cells.extend(rates.map(|v| number(Some(v))));
+        cells.extend(
+            [Some(r.ns_per_contact), Some(r.coordination), r.share_of_peak, r.bytes_per_grain].map(&number),
+        );
+        t.row(cells);
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_instruction_set_is_known_by_name_and_the_best_is_one_of_those_there_are() {
+        assert_eq!(instruction_set("scalar"), Ok(Simd::Scalar));
+        assert!(Simd::available().contains(&instruction_set("best").unwrap()));
+        assert!(instruction_set("mmx").unwrap_err().contains("avx512"));
+    }
+}

@@ -1,0 +1,128 @@
+//! `grainlab bench faults`: the laboratory under seeded faults.
+//!
+//! All processes of a run in one thread, on the bus in memory: messages are lost, doubled, late and out of order, processes
+//! crash, are stopped and are restarted, strangers forge every message, clocks jump. Each run has to come to the bytes of the
+//! undisturbed run, or to an error. A seed decides everything, so that a run that fails can be looked at again.
+//!
+//! - `plan`: what a seed makes of a run; `laboratory`: the processes and who restarts them
+//! - `process`: one process; `recorder`: what is recorded; `stranger`, `forgery`: a process that is not part of the run, and what it forges
+
+mod forgery;
+mod laboratory;
+mod plan;
+mod process;
+mod recorder;
+mod stranger;
+
+use grainlab_console::{Failure, Format, Table, json, print};
+use grainlab_node_kit::Exit;
+use grainlab_scene::Scene;
+use laboratory::{Outcome, run_with};
+use plan::Plan;
+use serde::Serialize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bench faults --seeds 1000
+  grainlab bench faults --seed 4711 --seeds 1 --explain
+
+Exit 1 if a run came to other results without an error, or to no end.";
+
+/// How many runs, and which.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Runs
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    seeds: u64,
+    /// Seed of the first run; the next ones count up
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Say what happens in each run
+    #[arg(long)]
+    explain: bool,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// A run that must not be.
+#[derive(Debug, Serialize)]
+struct Fault {
+    seed: u64,
+    what: String,
+}
+
+/// What came of all runs.
+#[derive(Debug, Default, Serialize)]
+struct Report {
+    runs: u64,
+    same: u64,
+    errors: u64,
+    /// Faults that were done to the runs: crashes, stops, clock jumps, messages of strangers.
+    crashes: u64,
+    stops: u64,
+    jumps: u64,
+    forged: u64,
+    failures: Vec<Fault>,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let scene = Scene::parse(include_str!("faults/scene.toml")).map_err(Failure::failed)?;
+    let quiet = run_with(&scene, &Plan::quiet(), args.explain);
+    let Outcome::Finished(expected) = quiet.outcome else {
+        return Err(Failure::failed(format!("the undisturbed run failed: {:?}", quiet.outcome)));
+    };
+    let mut report = Report::default();
+    for seed in (args.seed..).take(usize::try_from(args.seeds).unwrap_or(usize::MAX)) {
+        let plan = Plan::of(seed);
+        if args.explain {
+            grainlab_console::say!("seed {seed}: {plan:#?}");
+        }
+        let run = catch_unwind(AssertUnwindSafe(|| run_with(&scene, &plan, args.explain)));
+        report.runs += 1;
+        let mut fail = |what: String| {
+            grainlab_console::say!("grainlab: seed {seed}: {what}");
+            report.failures.push(Fault { seed, what });
+        };
+        let run = match run {
+            Ok(run) => run,
+            Err(_) => {
+                fail("a node panicked".to_owned());
+                continue;
+            }
+        };
+        report.crashes += run.done.crashes;
+        report.stops += run.done.stops;
+        report.jumps += run.done.jumps;
+        report.forged += run.done.forged;
+        match run.outcome {
+            Outcome::Finished(record) => match expected.difference(&record) {
+                None => report.same += 1,
+                Some(topic) => fail(format!("other results on {topic}, and no error")),
+            },
+            Outcome::Failed(error) => {
+                report.errors += 1;
+                if args.explain {
+                    grainlab_console::say!("seed {seed}: {error}");
+                }
+            }
+            Outcome::Stuck(what) => fail(format!("the run comes to no end: {what}")),
+        }
+    }
+    print(&match args.format {
+        Format::Json => json(&report)?,
+        Format::Csv => table(&report).csv(),
+        Format::Table => table(&report).text(),
+    })?;
+    Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failure })
+}
+
+fn table(report: &Report) -> Table {
+    let mut t = Table::new(["runs", "same", "errors", "failures", "crashes", "stops", "jumps", "forged"]);
+    let r = report;
+    let counts = [r.runs, r.same, r.errors, r.failures.len() as u64, r.crashes, r.stops, r.jumps, r.forged];
+    t.row(counts.map(|n| n.to_string()));
+    t
+}

@@ -1,0 +1,41 @@
+//! What is forged.
+
+use grainlab_msgs::{Topic, topics};
+
+/// What is forged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Forgery {
+    StrainRate,
+    Stress,
+    Packing,
+    Moduli,
+    Microstructure,
+    Finished,
+    Failed,
+    Garbage,
+}
+
+impl Forgery {
+    pub(super) const ALL: [Forgery; 8] = [
+        Forgery::StrainRate,
+        Forgery::Stress,
+        Forgery::Packing,
+        Forgery::Moduli,
+        Forgery::Microstructure,
+        Forgery::Finished,
+        Forgery::Failed,
+        Forgery::Garbage,
+    ];
+
+    pub(super) fn topics(self) -> (Topic, Topic) {
+        match self {
+            Forgery::StrainRate => (topics::STRESS, topics::STRAIN_RATE),
+            Forgery::Stress => (topics::STRESS, topics::STRESS),
+            Forgery::Packing => (topics::PACKING, topics::PACKING),
+            Forgery::Moduli => (topics::MODULI, topics::MODULI),
+            Forgery::Microstructure => (topics::MODULI, topics::MICROSTRUCTURE),
+            Forgery::Finished | Forgery::Failed => (topics::STRESS, topics::RUN_STATE),
+            Forgery::Garbage => (topics::STRESS, topics::STRAIN_RATE),
+        }
+    }
+}

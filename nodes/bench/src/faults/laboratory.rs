@@ -1,0 +1,292 @@
+//! The processes of a run in one thread, and who restarts them.
+
+use super::plan::{Event, Plan};
+use super::process::{Kind, Process, Start};
+use super::recorder::Record;
+use super::stranger::Stranger;
+use grainlab_node_kit::{Exit, Hub, Next, RunId};
+use grainlab_scene::Scene;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// Virtual time within which a run has to come to an end.
+const LIMIT: Duration = Duration::from_secs(3600);
+
+/// Steps of processes within which it has to.
+const STEPS: u64 = 2_000_000;
+
+/// Time for messages on their way to arrive.
+const LAST_CALL: Duration = Duration::from_secs(2);
+
+/// Restarts of the simulator after one packing. The next crash ends the run, as in the launcher.
+const DEATHS: usize = 3;
+
+/// What a run came to.
+#[derive(Debug)]
+pub(super) enum Outcome {
+    /// The path is done, and its last packing is inverted.
+    Finished(Box<Record>),
+    /// It ended with an error that is reported to the user.
+    Failed(String),
+    /// No process has anything left to do, or the run does not end.
+    Stuck(String),
+}
+
+/// What was done to a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Done {
+    pub(super) crashes: u64,
+    pub(super) stops: u64,
+    pub(super) jumps: u64,
+    pub(super) forged: u64,
+}
+
+/// A run with its faults.
+pub(super) struct Finished {
+    pub(super) outcome: Outcome,
+    pub(super) done: Done,
+}
+
+struct Laboratory<'a> {
+    hub: Hub,
+    scene: &'a Scene,
+    run: RunId,
+    record: Rc<RefCell<Record>>,
+    processes: Vec<Process>,
+    strangers: Vec<Stranger>,
+    events: std::vec::IntoIter<(super::plan::Moment, Event)>,
+    next: Option<(super::plan::Moment, Event)>,
+    deaths: Vec<usize>,
+    done: Done,
+    explain: bool,
+}
+
+/// Runs the scene under a plan.
+pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
+    let hub = Hub::new(plan.bus);
+    for topic in grainlab_msgs::TOPICS {
+        hub.set_faults(&topic.absolute_name(), plan.faults);
+    }
+    let mut events = plan.events.clone().into_iter();
+    let next = events.next();
+    let mut laboratory = Laboratory {
+        hub,
+        scene,
+        run: RunId::named("the run"),
+        record: Rc::default(),
+        processes: Vec::new(),
+        strangers: Vec::new(),
+        events,
+        next,
+        deaths: Vec::new(),
+        done: Done::default(),
+        explain,
+    };
+    let outcome = match laboratory.conduct(plan) {
+        Ok(()) => {
+            let record = laboratory.record.take();
+            match (record.contradictions, record.lacks()) {
+                (0, None) => Outcome::Finished(Box::new(record)),
+                (0, Some(lack)) => Outcome::Failed(format!("{lack}: exit 3")),
+                (n, _) => Outcome::Failed(format!("{n} messages contradict what was recorded: exit 1")),
+            }
+        }
+        Err(outcome) => outcome,
+    };
+    laboratory.done.forged = laboratory.strangers.iter().map(|s| s.forged).sum();
+    Finished { outcome, done: laboratory.done }
+}
+
+impl Laboratory<'_> {
+    fn conduct(&mut self, plan: &Plan) -> Result<(), Outcome> {
+        let failed = |e: &dyn std::fmt::Display| Outcome::Failed(e.to_string());
+        for (number, stranger) in plan.strangers.iter().enumerate() {
+            let seed = plan.bus ^ (number as u64 + 1) << 32;
+            self.strangers
+                .push(Stranger::join(&self.hub, self.run, *stranger, seed).map_err(|e| failed(&e))?);
+        }
+        for kind in Kind::ALL {
+            let process = Process::start(kind, &self.start()).map_err(|e| failed(&e))?;
+            self.processes.push(process);
+        }
+        self.advance(|lab| lab.record.borrow().is_complete(), LIMIT)?;
+        // What is stopped goes on, and what is on its way arrives.
+        self.processes.iter_mut().for_each(|p| p.stopped_until = Duration::ZERO);
+        self.next = None;
+        let end = self.hub.now() + LAST_CALL;
+        match self.advance(|_| false, end) {
+            Err(Outcome::Stuck(_)) | Ok(()) => Ok(()),
+            Err(outcome) => Err(outcome),
+        }
+    }
+
+    fn start(&self) -> Start<'_> {
+        Start { hub: &self.hub, run: self.run, scene: self.scene, record: &self.record }
+    }
+
+    /// Lets the run go on until `done`, or to an error, or until virtual time `limit`.
+    fn advance(&mut self, done: impl Fn(&Self) -> bool, limit: Duration) -> Result<(), Outcome> {
+        let mut steps = 0;
+        loop {
+            let now = self.hub.now();
+            self.events_due()?;
+            let mut stepped = self.restart(now)?;
+            for stranger in &mut self.strangers {
+                stepped |= stranger.step().map_err(|e| Outcome::Failed(e.to_string()))?;
+            }
+            for index in 0..self.processes.len() {
+                stepped |= self.step(index, now)?;
+            }
+            if done(self) {
+                return Ok(());
+            }
+            steps += 1;
+            if steps > STEPS {
+                return Err(Outcome::Stuck(self.describe("after millions of steps")));
+            }
+            if stepped {
+                continue;
+            }
+            match self.next_moment(now) {
+                Some(next) if next <= limit => self.hub.advance(next.saturating_sub(now)),
+                _ => return Err(Outcome::Stuck(self.describe("nothing is to come"))),
+            }
+        }
+    }
+
+    /// When anything is to happen next, if anything is.
+    fn next_moment(&self, now: Duration) -> Option<Duration> {
+        let of = |p: &Process| match &p.alive {
+            _ if p.ended.is_some() => None,
+            None => p.restart_at,
+            Some((_, bus)) => {
+                let wants = if bus.has_arrivals() { now } else { p.due };
+                Some(wants.max(p.stopped_until))
+            }
+        };
+        let processes = self.processes.iter().filter_map(of);
+        processes.chain(self.hub.next_arrival()).filter(|at| *at > now).min()
+    }
+
+    /// One step of a process that can and wants to take one.
+    fn step(&mut self, index: usize, now: Duration) -> Result<bool, Outcome> {
+        let process = &mut self.processes[index];
+        if process.ended.is_some() || process.stopped_until > now {
+            return Ok(false);
+        }
+        let Some((node, bus)) = &mut process.alive else { return Ok(false) };
+        if process.due > now && !bus.has_arrivals() {
+            return Ok(false);
+        }
+        match node.step(bus) {
+            Ok(Next::Again) => process.due = now,
+            Ok(Next::Wait(time)) => process.due = now.saturating_add(time),
+            Ok(Next::Finished(exit)) => process.ended = Some(exit),
+            Err(error) => {
+                let text = format!("{:?}: {error}", process.kind);
+                process.ended = Some(error.exit());
+                return Err(Outcome::Failed(text));
+            }
+        }
+        Ok(true)
+    }
+
+    fn restart(&mut self, now: Duration) -> Result<bool, Outcome> {
+        let mut any = false;
+        for index in 0..self.processes.len() {
+            if self.processes[index].restart_at.is_none_or(|at| at > now) {
+                continue;
+            }
+            any = true;
+            let mut process = self.processes.swap_remove(index);
+            let begun = process.begin(&self.start());
+            self.say(&format!("{:?} is started again", process.kind));
+            self.processes.push(process);
+            let last = self.processes.len() - 1;
+            self.processes.swap(index, last);
+            begun.map_err(|e| Outcome::Failed(e.to_string()))?;
+        }
+        Ok(any)
+    }
+
+    /// Does what is due by the count of samples.
+    fn events_due(&mut self) -> Result<(), Outcome> {
+        while let Some((moment, event)) = self.next {
+            if self.record.borrow().seen < moment.recorded {
+                return Ok(());
+            }
+            self.next = self.events.next();
+            self.say(&format!("at sample {}: {event:?}", moment.recorded));
+            self.happen(event)?;
+        }
+        Ok(())
+    }
+
+    fn happen(&mut self, event: Event) -> Result<(), Outcome> {
+        let now = self.hub.now();
+        match event {
+            Event::Crash(kind, pause) => {
+                self.done.crashes += 1;
+                self.crash(kind, now + pause)
+            }
+            Event::Stop(kind, time) => {
+                self.done.stops += 1;
+                self.processes
+                    .iter_mut()
+                    .filter(|p| p.kind == kind)
+                    .for_each(|p| p.stopped_until = now + time);
+                Ok(())
+            }
+            Event::Suspend(time) => {
+                self.done.jumps += 1;
+                self.hub.advance(time);
+                Ok(())
+            }
+            Event::WallClock(seconds) => {
+                self.done.jumps += 1;
+                self.hub.set_wall_clock(seconds * 1_000_000_000);
+                Ok(())
+            }
+        }
+    }
+
+    fn crash(&mut self, kind: Kind, back_at: Duration) -> Result<(), Outcome> {
+        let Some(process) = self.processes.iter_mut().find(|p| p.kind == kind) else { return Ok(()) };
+        if process.alive.take().is_none() {
+            return Ok(());
+        }
+        match kind {
+            Kind::Recorder => return Err(Outcome::Failed("the recorder died: exit 3".to_owned())),
+            Kind::Simulator if process.ended == Some(Exit::Done) => return Ok(()),
+            Kind::Simulator => {
+                let packings = self.record.borrow().packings();
+                self.deaths.push(packings);
+                if self.deaths.iter().filter(|known| **known == packings).count() > DEATHS {
+                    return Err(Outcome::Failed("the simulator died too often: exit 1".to_owned()));
+                }
+            }
+            _ => {}
+        }
+        process.restart_at = Some(back_at);
+        Ok(())
+    }
+
+    fn describe(&self, why: &str) -> String {
+        let dead = self.processes.iter().filter(|p| p.alive.is_none()).map(|p| p.kind);
+        let record = self.record.borrow();
+        format!(
+            "{why}: at {:.1} s, {} samples, state {:?}, dead: {:?}",
+            self.hub.now().as_secs_f64(),
+            record.seen,
+            record.state.as_ref().map(|s| (s.status, s.step)),
+            dead.collect::<Vec<_>>()
+        )
+    }
+
+    fn say(&self, text: &str) {
+        if self.explain {
+            grainlab_console::say!("  {:9.4} s  {text}", self.hub.now().as_secs_f64());
+        }
+    }
+}

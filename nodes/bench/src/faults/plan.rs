@@ -1,0 +1,104 @@
+//! What a seed makes of a run.
+
+use super::forgery::Forgery;
+use super::process::Kind;
+use grainlab_node_kit::{Dice, Faults};
+use std::time::Duration;
+
+/// Something that happens at a moment of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Event {
+    /// A process crashes, and is started again after this time.
+    Crash(Kind, Duration),
+    /// A process is stopped for this time, while messages for it arrive.
+    Stop(Kind, Duration),
+    /// All processes are stopped for this time: the clocks jump forward.
+    Suspend(Duration),
+    /// The wall clock is set forward by so many seconds, or back.
+    WallClock(i64),
+}
+
+/// A stranger, from the beginning on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stranger {
+    /// What it forges.
+    pub(super) forgery: Forgery,
+    /// It claims to belong to another run; else to no run.
+    pub(super) of_a_run: bool,
+    /// Share of the messages received that it forges.
+    pub(super) share: f64,
+}
+
+/// Everything that is done to a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Plan {
+    /// Seed of the bus.
+    pub(super) bus: u64,
+    /// Faults of every topic.
+    pub(super) faults: Faults,
+    /// By the count of exchanges before it: whatever the machine, it meets the run in the same state.
+    pub(super) events: Vec<(Moment, Event)>,
+    pub(super) strangers: Vec<Stranger>,
+}
+
+/// A moment of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moment {
+    /// Samples that the recorder has seen.
+    pub(super) recorded: u64,
+}
+
+/// Samples that a run of the scene records: moments are drawn from them, and some lie behind the end.
+const SAMPLES: usize = 700;
+
+impl Plan {
+    /// Nothing happens.
+    pub(super) fn quiet() -> Self {
+        Self { bus: 0, faults: Faults::default(), events: Vec::new(), strangers: Vec::new() }
+    }
+
+    /// The run of a seed.
+    pub(super) fn of(seed: u64) -> Self {
+        let mut dice = Dice::new(seed);
+        let ms = |dice: &mut Dice, most: f64| Duration::from_secs_f64(1e-3 * most * dice.unit());
+        // A third of the runs has a good network, so that crashes and strangers meet fast runs, too.
+        let bad = dice.below(3) > 0;
+        let scale = if bad { dice.unit() } else { 0.0 };
+        let faults =
+            Faults { drop: 0.3 * scale, duplicate: 0.4 * scale, delay: ms(&mut dice, 60.0).mul_f64(scale) };
+        let count = dice.below(7);
+        let mut events: Vec<(Moment, Event)> = (0..count)
+            .map(|_| {
+                let moment = Moment { recorded: dice.below(SAMPLES) as u64 };
+                let kind = Kind::ALL[dice.below(Kind::ALL.len())];
+                let event = match dice.below(8) {
+                    0..=2 => Event::Crash(kind, ms(&mut dice, 500.0)),
+                    3..=5 => Event::Stop(kind, ms(&mut dice, 20_000.0)),
+                    6 => Event::Suspend(ms(&mut dice, 60_000.0)),
+                    _ => Event::WallClock((7200.0 * dice.unit()) as i64 - 3600),
+                };
+                (moment, event)
+            })
+            .collect();
+        events.sort_by_key(|(moment, _)| moment.recorded);
+        let strangers = (0..dice.below(4))
+            .map(|_| Stranger {
+                forgery: Forgery::ALL[dice.below(Forgery::ALL.len())],
+                of_a_run: dice.below(2) == 0,
+                share: dice.unit(),
+            })
+            .collect();
+        Self { bus: seed, faults, events, strangers }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_seed_makes_one_plan_and_another_seed_another() {
+        assert_eq!(Plan::of(7), Plan::of(7));
+        assert_ne!(Plan::of(7), Plan::of(8));
+    }
+}

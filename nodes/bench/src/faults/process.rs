@@ -1,0 +1,113 @@
+//! One process of the run, which may crash and be started again.
+
+use super::recorder::{MemoryRecorder, Record};
+use grainlab_dem_simulator::DemSimulator;
+use grainlab_emt_inversion::EmtInversion;
+use grainlab_fabric_analyzer::FabricAnalyzer;
+use grainlab_node_kit::Hub;
+use grainlab_node_kit::{Exit, Identity, MemoryBus, Names, Node, NodeError, RunId};
+use grainlab_scene::Scene;
+use grainlab_servo_controller::ServoController;
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// Which process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Recorder,
+    Inversion,
+    Analyzer,
+    Servo,
+    Simulator,
+}
+
+impl Kind {
+    pub(super) const ALL: [Kind; 5] =
+        [Kind::Recorder, Kind::Inversion, Kind::Analyzer, Kind::Servo, Kind::Simulator];
+
+    /// Its place in the run.
+    pub(super) fn member(self) -> u8 {
+        1 + self as u8
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Recorder => "recorder",
+            Kind::Inversion => "emt_inversion",
+            Kind::Analyzer => "fabric_analyzer",
+            Kind::Servo => "servo_controller",
+            Kind::Simulator => "dem_simulator",
+        }
+    }
+}
+
+/// A node at work on its bus.
+pub(super) struct Process {
+    pub(super) kind: Kind,
+    /// `None` between a crash and the restart.
+    pub(super) alive: Option<(Box<dyn Node>, MemoryBus)>,
+    /// When it wants its next step at the latest.
+    pub(super) due: Duration,
+    /// It takes no step before this time.
+    pub(super) stopped_until: Duration,
+    /// When it is started again after a crash.
+    pub(super) restart_at: Option<Duration>,
+    pub(super) ended: Option<Exit>,
+}
+
+/// What a process is started with.
+pub(super) struct Start<'a> {
+    pub(super) hub: &'a Hub,
+    pub(super) run: RunId,
+    pub(super) scene: &'a Scene,
+    pub(super) record: &'a Rc<RefCell<Record>>,
+}
+
+impl Process {
+    pub(super) fn start(kind: Kind, with: &Start) -> Result<Self, NodeError> {
+        let mut process = Self {
+            kind,
+            alive: None,
+            due: Duration::ZERO,
+            stopped_until: Duration::ZERO,
+            restart_at: None,
+            ended: None,
+        };
+        process.begin(with)?;
+        Ok(process)
+    }
+
+    /// Starts its node, also again. A simulator continues from the last packing recorded.
+    pub(super) fn begin(&mut self, with: &Start) -> Result<(), NodeError> {
+        let names = Names::new(self.kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
+        let mut bus = with.hub.bus_as(names, Identity::member_of(with.run, self.kind.member()));
+        let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
+        let node: Box<dyn Node> = match self.kind {
+            Kind::Recorder => Box::new(MemoryRecorder::new(&mut bus, with.record)?),
+            Kind::Inversion => {
+                Box::new(EmtInversion::new(&mut bus, grainlab_emt_inversion::Settings::default())?)
+            }
+            Kind::Analyzer => {
+                Box::new(FabricAnalyzer::new(&mut bus, grainlab_fabric_analyzer::Settings::default())?)
+            }
+            Kind::Servo => {
+                Box::new(ServoController::new(&mut bus, grainlab_servo_controller::Settings::default())?)
+            }
+            Kind::Simulator => {
+                let settings = grainlab_dem_simulator::Settings {
+                    look_around: Duration::ZERO,
+                    threads: std::num::NonZeroUsize::new(1),
+                    ..grainlab_dem_simulator::Settings::default()
+                };
+                let resume = with.record.borrow().last_packing();
+                let simulator = DemSimulator::new(&mut bus, with.scene.clone(), resume, settings);
+                Box::new(simulator.map_err(|e| failed(&e))?)
+            }
+        };
+        self.alive = Some((node, bus));
+        self.due = with.hub.now();
+        (self.stopped_until, self.restart_at, self.ended) = (Duration::ZERO, None, None);
+        Ok(())
+    }
+}

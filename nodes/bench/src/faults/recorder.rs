@@ -1,0 +1,132 @@
+//! What is recorded of a run in memory: by the rules of the recorder, without a file.
+
+use grainlab_core::Packing;
+use grainlab_msgs::boundary::{RunStateReading, RunStatus};
+use grainlab_msgs::{Topic, from_cdr, msg, topics};
+use grainlab_node_kit::member_of;
+use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, SubscriptionId};
+use grainlab_recorder::repeats::{Novelty, Repeats};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+use std::time::Duration;
+
+/// Topics that are a pure function of scene and seed.
+const REPRODUCIBLE: [Topic; 6] = [
+    topics::STRESS,
+    topics::STRAIN_RATE,
+    topics::PACKING,
+    topics::FABRIC,
+    topics::MODULI,
+    topics::MICROSTRUCTURE,
+];
+
+/// What came of a run.
+#[derive(Debug, Default)]
+pub(super) struct Record {
+    /// Whole bodies by topic, each once.
+    bodies: BTreeMap<&'static str, Vec<Vec<u8>>>,
+    /// The last run state.
+    pub(super) state: Option<RunStateReading>,
+    /// Samples seen, repeats included.
+    pub(super) seen: u64,
+    /// Messages that contradict what was recorded.
+    pub(super) contradictions: u64,
+}
+
+impl Record {
+    /// The last packing, and the state of the run in it.
+    pub(super) fn last_packing(&self) -> Option<(Packing, Vec<u8>)> {
+        let message: msg::Packing = from_cdr(self.bodies.get(topics::PACKING.name)?.last()?).ok()?;
+        Some((Packing::try_from(&message).ok()?, message.run_state))
+    }
+
+    pub(super) fn packings(&self) -> usize {
+        self.bodies.get(topics::PACKING.name).map_or(0, Vec::len)
+    }
+
+    /// Whether the path is done and its last packing is inverted.
+    pub(super) fn is_complete(&self) -> bool {
+        let Some(state) = self.state.as_ref().filter(|s| s.status == RunStatus::Finished) else {
+            return false;
+        };
+        let Some(step) = state.last_packing_step else { return true };
+        let found = self.bodies.get(topics::MICROSTRUCTURE.name).into_iter().flatten();
+        found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
+    }
+
+    /// The first result that a finished run lacks: the structure of a packing, or the microstructure from its moduli. The
+    /// launcher ends such a run with exit 3.
+    pub(super) fn lacks(&self) -> Option<String> {
+        let steps = |topic: &Topic, step: fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
+            self.bodies.get(topic.name).into_iter().flatten().filter_map(|body| step(body)).collect()
+        };
+        let packings = steps(&topics::PACKING, |b| from_cdr::<msg::Packing>(b).ok().map(|m| m.step));
+        let fabrics = steps(&topics::FABRIC, |b| from_cdr::<msg::Fabric>(b).ok().map(|m| m.source_step));
+        let moduli = steps(&topics::MODULI, |b| from_cdr::<msg::Moduli>(b).ok().map(|m| m.source_step));
+        let found = steps(&topics::MICROSTRUCTURE, |b| {
+            from_cdr::<msg::Microstructure>(b).ok().map(|m| m.source_step)
+        });
+        let packing =
+            packings.difference(&fabrics).next().map(|s| format!("the packing of step {s} was not analysed"));
+        packing.or_else(|| {
+            moduli.difference(&found).next().map(|s| format!("the moduli of step {s} were not inverted"))
+        })
+    }
+
+    /// The first topic on which two records differ. Requests and answers have an order; results come when they come.
+    pub(super) fn difference(&self, other: &Record) -> Option<&'static str> {
+        let sorted = |record: &Record, name: &str| {
+            let mut bodies = record.bodies.get(name).cloned().unwrap_or_default();
+            bodies.sort();
+            bodies
+        };
+        REPRODUCIBLE.iter().map(|t| t.name).find(|name| sorted(self, name) != sorted(other, name))
+    }
+}
+
+/// Records every reproducible topic.
+pub(super) struct MemoryRecorder {
+    subscriptions: Vec<(Topic, SubscriptionId)>,
+    states: SubscriptionId,
+    repeats: Repeats,
+    record: Rc<RefCell<Record>>,
+}
+
+impl MemoryRecorder {
+    pub(super) fn new(bus: &mut dyn Bus, record: &Rc<RefCell<Record>>) -> Result<Self, BusError> {
+        let demand = Demand::reliable(100_000);
+        let subscribe = |topic: &Topic| Ok((*topic, bus.subscribe(topic, demand)?));
+        let subscriptions = REPRODUCIBLE.iter().map(subscribe).collect::<Result<_, BusError>>()?;
+        let states = bus.subscribe(&topics::RUN_STATE, demand)?;
+        Ok(Self { subscriptions, states, repeats: Repeats::default(), record: Rc::clone(record) })
+    }
+}
+
+impl Node for MemoryRecorder {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        let mut record = self.record.borrow_mut();
+        for (topic, subscription) in &self.subscriptions {
+            while let Some(sample) = bus.take(*subscription)? {
+                record.seen += 1;
+                let author = u64::from(member_of(&sample.info.writer.participant()));
+                match self.repeats.enter(topic, author, &sample.body) {
+                    Novelty::New => record.bodies.entry(topic.name).or_default().push(sample.body),
+                    Novelty::Repeat => {}
+                    Novelty::Contradiction { .. } => record.contradictions += 1,
+                }
+            }
+        }
+        while let Some(sample) = bus.take(self.states)? {
+            let state = from_cdr::<msg::RunState>(&sample.body).ok();
+            if let Some(state) = state.and_then(|s| RunStateReading::try_from(&s).ok()) {
+                record.state = Some(state);
+            }
+        }
+        Ok(Next::Wait(Duration::from_secs(3600)))
+    }
+
+    fn health(&self) -> Health {
+        Health::default()
+    }
+}

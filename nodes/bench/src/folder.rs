@@ -1,0 +1,18 @@
+//! The folder that a report goes into.
+
+use grainlab_console::{Failure, say};
+use std::path::Path;
+
+/// Makes the folder: before long computing, not after.
+pub(super) fn ready(folder: Option<&Path>) -> Result<(), Failure> {
+    let Some(folder) = folder else { return Ok(()) };
+    std::fs::create_dir_all(folder).map_err(|e| Failure::failed(format!("{}: {e}", folder.display())))
+}
+
+/// Writes one of its files and reports its path on stderr.
+pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    say!("grainlab: {} written", path.display());
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! `grainlab bench`: speed on this machine, and what it is bought with.
+//!
+//! A bench is one file with an `Args` and a `run`, and a variant of [`Command`].
+//!
+//! - `accuracy`, `acoustics`, `dem`, `faults`, `lockstep`, `stiffness`: the benches
+//! - `packing`: what is measured on; `cpu_time`: by which clock; `numbers`, `folder`: reports
+
+mod accuracy;
+mod acoustics;
+mod cpu_time;
+mod dem;
+mod faults;
+mod folder;
+mod lockstep;
+mod numbers;
+mod packing;
+mod stiffness;
+
+use clap::Subcommand;
+use grainlab_console::Failure;
+use grainlab_node_kit::Exit;
+
+/// What to measure.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
+    Accuracy(accuracy::Args),
+    /// Wave speeds of a packing: time against error of dispersion, standing waves and time of flight.
+    Acoustics(acoustics::Args),
+    /// The particle engine: particle-steps per second by size, threads, instruction set and features.
+    Dem(dem::Args),
+    /// Runs in which everything fails that may fail, each drawn from a seed: the same results, or an error.
+    Faults(faults::Args),
+    /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
+    Lockstep(lockstep::Args),
+    /// The stiffness of a packing: time against error of every method and tolerance.
+    Stiffness(stiffness::Args),
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// With the exit code and what to tell the user.
+pub fn run(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::Accuracy(args) => accuracy::run(args),
+        Command::Acoustics(args) => acoustics::run(args),
+        Command::Dem(args) => dem::run(args),
+        Command::Faults(args) => faults::run(args),
+        Command::Lockstep(args) => lockstep::run(args),
+        Command::Stiffness(args) => stiffness::run(args),
+    }
+}

@@ -1,0 +1,152 @@
+//! `grainlab bench lockstep`: what one exchange costs.
+
+mod role;
+mod round;
+
+use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
+use grainlab_node_kit::Exit;
+use role::Role;
+use serde::Serialize;
+
+const EXAMPLES: &str = "\
+One process asks with a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
+followed by one without the recorder (`alone`), and by one of the same two messages over bare ros2-client, also without, so
+that all see the same machine. How long an exchange takes depends on where the processes run: waking a process on another
+processor takes longer than on the same one. `taskset -c 0` puts all on one.
+
+Examples:
+  taskset -c 0 grainlab bench lockstep
+  grainlab bench lockstep --rounds 5 --format json";
+
+/// How much to measure.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Rounds, each of the three kinds
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
+    rounds: u32,
+    /// Exchanges of a round
+    #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(10..=1_000_000))]
+    exchanges: u64,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// One process of the measurement
+    #[arg(long, value_enum, hide = true)]
+    role: Option<Role>,
+}
+
+/// Median and 99th percentile of the duration of an exchange.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Microseconds {
+    p50: f64,
+    p99: f64,
+}
+
+/// One round of the three kinds.
+#[derive(Debug, Serialize)]
+struct Row {
+    method: &'static str,
+    /// Number of the round; `null` for all of them together.
+    value: Option<u32>,
+    /// Grains take no part.
+    grains: Option<u32>,
+    /// Duration of all exchanges of the row over our bus.
+    seconds: f64,
+    error: NoError,
+    exchanges: usize,
+    microseconds: Microseconds,
+    /// Over our bus, without a recorder.
+    alone_microseconds: Microseconds,
+    bare_microseconds: Microseconds,
+    /// Messages of the row that the recorder lost.
+    lost: u64,
+}
+
+/// A duration has no reference to be wrong against.
+#[derive(Debug, Serialize)]
+struct NoError {}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    rows: Vec<Row>,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let Some(role) = args.role {
+        return round::role(role, args.exchanges);
+    }
+    let (mut ours, mut alone, mut bare, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let mut rows = Vec::new();
+    for number in 1..=args.rounds {
+        grainlab_console::say!("grainlab: round {number} of {}", args.rounds);
+        let recorded = round::recorded(args.exchanges)?;
+        let unrecorded = round::unrecorded(args.exchanges)?;
+        let plain = round::bare(args.exchanges)?;
+        rows.push(row(Some(number), [&recorded.micros, &unrecorded, &plain], recorded.lost));
+        ours.extend(recorded.micros);
+        alone.extend(unrecorded);
+        bare.extend(plain);
+        lost += recorded.lost;
+    }
+    rows.push(row(None, [&ours, &alone, &bare], lost));
+    let report = Report { rows };
+    print(&match args.format {
+        Format::Json => json(&report)?,
+        Format::Csv => table(&report.rows, exact).csv(),
+        Format::Table => table(&report.rows, |v| fixed(v, 1)).text(),
+    })?;
+    Ok(if lost > 0 { Exit::DataLoss } else { Exit::Done })
+}
+
+fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
+    Row {
+        method: "lockstep",
+        value,
+        grains: None,
+        seconds: ours.iter().sum::<f64>() * 1e-6,
+        error: NoError {},
+        exchanges: ours.len(),
+        microseconds: percentiles(ours),
+        alone_microseconds: percentiles(alone),
+        bare_microseconds: percentiles(bare),
+        lost,
+    }
+}
+
+/// Nearest ranks; NaN without a measurement, which is printed as missing.
+fn percentiles(micros: &[f64]) -> Microseconds {
+    let mut sorted = micros.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = |share: f64| {
+        let n = (share * sorted.len() as f64).ceil() as usize;
+        sorted.get(n.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+    };
+    Microseconds { p50: rank(0.5), p99: rank(0.99) }
+}
+
+fn table(rows: &[Row], number: impl Fn(Option<f64>) -> String) -> Table {
+    let columns = ["round", "exchanges", "p50_us", "p99_us", "alone_p50_us", "alone_p99_us", "bare_p50_us"];
+    let mut t = Table::new(columns.into_iter().chain(["bare_p99_us", "lost"]));
+    for r in rows {
+        let kinds = [r.microseconds, r.alone_microseconds, r.bare_microseconds];
+        let mut cells =
+            vec![r.value.map_or_else(|| "all".to_owned(), |n| n.to_string()), r.exchanges.to_string()];
+        cells.extend(kinds.iter().flat_map(|kind| [kind.p50, kind.p99]).map(|v| number(Some(v))));
+        cells.push(r.lost.to_string());
+        t.row(cells);
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_nearest_ranks() {
+        let micros: Vec<f64> = (1..=200).rev().map(f64::from).collect();
+        assert_eq!(percentiles(&micros), Microseconds { p50: 100.0, p99: 198.0 });
+        assert!(percentiles(&[]).p50.is_nan());
+    }
+}

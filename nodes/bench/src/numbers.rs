@@ -1,0 +1,38 @@
+//! Numbers of a report.
+
+use grainlab_console::fixed;
+
+/// Of at least one number.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match (values.len() % 2, values.get(middle)) {
+        (_, None) => f64::NAN,
+        (0, Some(upper)) => 0.5 * (values[middle - 1] + upper),
+        (_, Some(value)) => *value,
+    }
+}
+
+/// A number for people: four digits that mean something.
+pub(super) fn rounded(value: Option<f64>) -> String {
+    let digits = value.map_or(0, |v| (3 - v.abs().max(1e-3).log10().floor() as i32).clamp(0, 6));
+    fixed(value, digits as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between_the_middle_two() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), 2.5);
+        assert!(median(Vec::new()).is_nan());
+    }
+
+    #[test]
+    fn people_see_four_digits() {
+        let shown = [21_345_678.9, 15.2345, 0.12345].map(|v| rounded(Some(v)));
+        assert_eq!(shown, ["21345679", "15.23", "0.1235"].map(str::to_owned));
+    }
+}

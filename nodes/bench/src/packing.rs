@@ -1,0 +1,106 @@
+//! What is measured on: a packing from a file or the one built in, repeated along each axis.
+
+use flate2::read::GzDecoder;
+use grainlab_console::Failure;
+use grainlab_core::{Cell, Material, Packing, Vec3};
+use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// 2,000 glass spheres made by LAMMPS at 100 kPa, z = 5.11: see its README.
+const BUILT_IN: &[u8] = include_bytes!("../../../tests/golden/packings/packing_2000.data.gz");
+
+/// The first packing of the file, or the one built in. Glass where a file does not name the material.
+pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
+    let glass = ImportOptions {
+        shear_modulus: Some(Material::GLASS.shear_modulus),
+        poisson_ratio: Some(Material::GLASS.poisson_ratio),
+        density: Some(Material::GLASS.density),
+        friction: Some(0.1),
+        ..ImportOptions::default()
+    };
+    let Some(path) = path else {
+        let mut text = String::new();
+        GzDecoder::new(BUILT_IN).read_to_string(&mut text).map_err(Failure::failed)?;
+        return Ok(lammps_data::packing(&text, &glass).map_err(Failure::failed)?.packing);
+    };
+    let known = load_file(path, &ImportOptions::default());
+    let loaded = known.or_else(|_| load_file(path, &glass)).map_err(Failure::failed)?;
+    let none = || Failure::failed(format!("{}: holds no packing", path.display()));
+    Ok(loaded.packings.into_iter().next().ok_or_else(none)?.packing)
+}
+
+/// Every packing of every file, or the one built in.
+pub(crate) fn load_all(paths: &[PathBuf]) -> Result<Vec<Packing>, Failure> {
+    if paths.is_empty() {
+        return Ok(vec![load(None)?]);
+    }
+    let all = paths.iter().map(|path| load_file(path, &ImportOptions::default()).map_err(Failure::failed));
+    let loaded = all.collect::<Result<Vec<_>, _>>()?;
+    Ok(loaded.into_iter().flat_map(|l| l.packings).map(|imported| imported.packing).collect())
+}
+
+/// Copies along each axis that give these sizes; 1, 2 and 4 if none is named.
+pub(crate) fn copies(grains: usize, wanted: &[u64]) -> Result<Vec<u32>, Failure> {
+    if wanted.is_empty() {
+        return Ok(vec![1, 2, 4]);
+    }
+    let one = |n: &u64| {
+        let ratio = *n as f64 / grains as f64;
+        let copies = ratio.cbrt().round().max(1.0) as u32;
+        let size = |c: u32| grains as u64 * u64::from(c).pow(3);
+        if size(copies) == *n {
+            return Ok(copies);
+        }
+        let (first, second, third) = (size(1), size(2), size(3));
+        let fitting = format!("{first}, {second}, {third}, and so on");
+        Err(Failure::usage(format!("--grains {n}: the packing has {grains}, and copies of it {fitting}")))
+    };
+    wanted.iter().map(one).collect()
+}
+
+/// Cell and centres of a packing repeated `copies` times along each edge of its cell.
+pub(crate) fn repeated(packing: &Packing, copies: u32) -> Option<(Cell, Vec<Vec3>)> {
+    let matrix = *packing.cell.matrix();
+    let cell = Cell::new(matrix * f64::from(copies))?;
+    let mut centres = Vec::with_capacity(packing.grains() * (copies as usize).pow(3));
+    for a in 0..copies {
+        for b in 0..copies {
+            for c in 0..copies {
+                let shift = matrix * Vec3::new(f64::from(a), f64::from(b), f64::from(c));
+                centres.extend(packing.positions.iter().map(|x| x + shift));
+            }
+        }
+    }
+    Some((cell, centres))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_packing_built_in_has_the_coordination_that_lammps_found() {
+        let packing = load(None).unwrap();
+        assert_eq!((packing.grains(), packing.contacts.len()), (2000, 5109));
+    }
+
+    #[test]
+    fn copies_keep_the_solid_fraction_and_lie_apart() {
+        let packing = load(None).unwrap();
+        let (cell, centres) = repeated(&packing, 2).unwrap();
+        assert_eq!(centres.len(), 16_000);
+        assert!((cell.volume() / packing.cell.volume() - 8.0).abs() < 1e-9);
+        let shift = centres[2000] - centres[0];
+        assert!((shift - packing.cell.matrix().column(2)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn sizes_that_no_number_of_copies_gives_are_refused_with_those_that_fit() {
+        assert_eq!(copies(2000, &[128_000, 2000]).unwrap(), [4, 1]);
+        assert_eq!(copies(2000, &[]).unwrap(), [1, 2, 4]);
+        let failure = copies(2000, &[16_001]).unwrap_err().to_string();
+        assert!(failure.contains("2000, 16000, 54000"), "{failure}");
+        assert!(copies(2000, &[0]).is_err());
+    }
+}

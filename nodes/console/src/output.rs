@@ -1,0 +1,199 @@
+//! Results to stdout: as a table, as JSON, as CSV.
+
+use crate::failure::Failure;
+use clap::ValueEnum;
+use serde::Serialize;
+use std::io::{ErrorKind, Write};
+
+/// How a result is printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// For programs; the keys are stable, undefined values are null.
+    Json,
+    /// For spreadsheets; one header line, units in the names, undefined values are empty.
+    Csv,
+}
+
+/// `eprintln!` that ignores a closed stderr: `2>&1 | head` must not end a run.
+#[macro_export]
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($text)*);
+    }};
+}
+/// Writes `text` to stdout. A reader that has seen enough (`| head`) is no error.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Failure::failed(format!("stdout: {e}"))),
+        _ => Ok(()),
+    }
+}
+
+/// Indented JSON with a newline at its end. Numbers that are not finite become null.
+pub fn json<T: Serialize + ?Sized>(value: &T) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::failed(format!("JSON: {e}")))?;
+    Ok(text + "\n")
+}
+
+/// Rows of cells under a header; the first column is text and aligned left, the others are aligned right.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table with these column names.
+    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![header.into_iter().map(Into::into).collect()] }
+    }
+
+    /// Adds a row.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+
+    /// The same with these columns alone, in this order; an unknown one comes back.
+    pub fn select(&self, columns: &[String]) -> Result<Self, String> {
+        let header = self.rows.first().map_or(&[][..], Vec::as_slice);
+        let at = |name: &String| header.iter().position(|h| h == name).ok_or_else(|| name.clone());
+        let chosen = columns.iter().map(at).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { rows: self.rows.iter().map(|r| chosen.iter().map(|c| r[*c].clone()).collect()).collect() })
+    }
+
+    /// Names of the columns.
+    pub fn header(&self) -> &[String] {
+        self.rows.first().map_or(&[], Vec::as_slice)
+    }
+
+    /// The same without the columns in which no row has a value: every cell is a `-`.
+    #[must_use]
+    pub fn without_empty_columns(mut self) -> Self {
+        let (header, rows) = self.rows.split_at(1);
+        let has_value = |c: usize| rows.iter().filter_map(|r| r.get(c)).any(|cell| cell != "-");
+        let kept: Vec<bool> = (0..header[0].len()).map(|c| rows.is_empty() || has_value(c)).collect();
+        for row in &mut self.rows {
+            let mut kept = kept.iter();
+            row.retain(|_| *kept.next().unwrap_or(&true));
+        }
+        self
+    }
+
+    /// Aligned columns, two spaces apart.
+    pub fn text(&self) -> String {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |c: usize| {
+            self.rows.iter().filter_map(|r| r.get(c)).map(|s| s.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let mut text = String::new();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (c, cell) in row.iter().enumerate() {
+                let w = widths[c];
+                let gap = if c == 0 { "" } else { "  " };
+                line += &if c == 0 { format!("{gap}{cell:<w$}") } else { format!("{gap}{cell:>w$}") };
+            }
+            text += line.trim_end();
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Comma-separated, quoted where need be (RFC 4180, but with bare newlines).
+    pub fn csv(&self) -> String {
+        let mut text = CsvText::new();
+        self.rows.iter().for_each(|row| text.row(row));
+        text.finish()
+    }
+}
+
+/// Lines of CSV, one after the other.
+#[derive(Debug)]
+pub struct CsvText(csv::Writer<Vec<u8>>);
+
+impl Default for CsvText {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl CsvText {
+    /// No lines yet.
+    pub fn new() -> Self {
+        Self(csv::WriterBuilder::new().flexible(true).from_writer(Vec::new()))
+    }
+
+    /// Adds a line.
+    pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) {
+        // Writing to a vector cannot fail.
+        let _ = self.0.write_record(cells);
+    }
+
+    /// The lines.
+    pub fn finish(self) -> String {
+        let bytes = self.0.into_inner().unwrap_or_default();
+        String::from_utf8(bytes).unwrap_or_default()
+    }
+}
+
+/// A number at full precision for CSV, empty if there is none.
+pub fn exact(value: Option<f64>) -> String {
+    value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string())
+}
+
+/// A number with `digits` behind the point for people, `-` if there is none.
+pub fn fixed(value: Option<f64>, digits: usize) -> String {
+    value.filter(|v| v.is_finite()).map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_with_commas_and_quotes_survive_csv() {
+        let mut t = Table::new(["a", "b"]);
+        t.row(["x,y", "say \"no\""]);
+        assert_eq!(t.csv(), "a,b\n\"x,y\",\"say \"\"no\"\"\"\n");
+    }
+
+    #[test]
+    fn columns_come_in_the_order_asked_for_and_an_unknown_one_is_named() {
+        let mut t = Table::new(["a", "b", "c"]);
+        t.row(["1", "2", "3"]);
+        let of = |names: &[&str]| t.select(&names.iter().map(ToString::to_string).collect::<Vec<_>>());
+        assert_eq!(of(&["c", "a"]).unwrap().csv(), "c,a\n3,1\n");
+        assert_eq!(of(&["c", "d"]).unwrap_err(), "d");
+    }
+
+    #[test]
+    fn a_column_is_left_out_only_if_no_row_has_a_value_there() {
+        let mut t = Table::new(["a", "b", "c"]);
+        t.row(["x", "-", "-"]);
+        t.row(["y", "1", "-"]);
+        assert_eq!(t.without_empty_columns().text(), "a  b\nx  -\ny  1\n");
+        assert_eq!(
+            Table::new(["a", "b"]).without_empty_columns().text(),
+            "a  b\n",
+            "no rows, nothing to judge by"
+        );
+    }
+
+    #[test]
+    fn undefined_numbers_are_never_printed_as_nan() {
+        assert_eq!((exact(Some(f64::NAN)), fixed(Some(f64::INFINITY), 3)), (String::new(), "-".to_owned()));
+        assert_eq!(json(&[f64::NAN, 1.5]).unwrap(), "[\n  null,\n  1.5\n]\n");
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let mut t = Table::new(["name", "k"]);
+        t.row(["a longer name", "5.13"]);
+        assert_eq!(t.text(), "name              k\na longer name  5.13\n");
+    }
+}

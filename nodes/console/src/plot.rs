@@ -1,0 +1,109 @@
+//! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
+//! dark. Points can have tooltips.
+//!
+//! - [`Figure`]: what is drawn; [`Theme`]: on which paper
+//! - `axis`: from values to places, and the marks of an axis
+//! - `labels`: texts beside points, where there is room
+//! - `draw`: the elements
+
+mod axis;
+mod draw;
+mod figure;
+mod labels;
+
+pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
+
+use axis::Range;
+use draw::{Drawing, Key};
+
+impl Figure {
+    /// The picture as SVG.
+    pub fn svg(&self, theme: Theme) -> String {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        let x = Range::of(points().flat_map(Point::across), self.x.scale, draw::HORIZONTAL);
+        let y = Range::of(points().flat_map(Point::up), self.y.scale, draw::VERTICAL);
+        let drawable = |p: &&Point| x.has(p.x) && y.has(p.y);
+        let mut drawing = Drawing::begin(theme, &self.title, &self.subtitle);
+        drawing.axes((&x, &self.x.name), (&y, &self.y.name));
+        let mut labelled = Vec::new();
+        let mut taken = Vec::new();
+        for series in &self.series {
+            let drawn: Vec<&Point> = series.points.iter().filter(drawable).collect();
+            let places: Vec<[f64; 2]> = drawn.iter().map(|p| [x.at(p.x), y.at(p.y)]).collect();
+            drawing.line(series, &places);
+            if series.line == Some(Line::Steps) {
+                taken.extend(labels::along_steps(&places));
+            }
+            for (point, at) in drawn.iter().zip(&places) {
+                if let Some(error) = point.error {
+                    let end = |value: f64| if y.has(value) { y.at(value) } else { draw::VERTICAL[0] };
+                    drawing.error_bar(series.colour, at[0], [end(point.y - error), end(point.y + error)]);
+                }
+                if let Some(marker) = series.marker {
+                    let tooltip = point.tooltip.as_deref().unwrap_or("");
+                    drawing.marker(
+                        *at,
+                        Key { marker, colour: series.colour, hollow: series.hollow },
+                        tooltip,
+                    );
+                    taken.push(labels::around(*at));
+                }
+                if let Some(label) = &point.label {
+                    labelled.push((*at, label.as_str(), series.colour));
+                }
+            }
+        }
+        for (place, label, colour) in labels::place(&labelled, taken, draw::FRAME) {
+            drawing.label(place, label, colour);
+        }
+        drawing.legend(&self.legend);
+        drawing.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figure(points: Vec<Point>) -> Figure {
+        let axis = |name: &str| Axis { name: name.into(), scale: Scale::Log };
+        let series = Series { marker: Some(Marker::Circle), points, ..Series::default() };
+        Figure {
+            title: "a & b".into(),
+            subtitle: String::new(),
+            x: axis("x"),
+            y: axis("y"),
+            series: vec![series],
+            legend: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_written_into_the_svg_cannot_end_it() {
+        let point = Point { tooltip: Some("<\"x\">".into()), ..Point::at(1.0, 2.0) };
+        let svg = figure(vec![point]).svg(Theme::Light);
+        assert!(svg.contains("a &amp; b") && svg.contains("&lt;&quot;x&quot;&gt;"), "{svg}");
+    }
+
+    #[test]
+    fn what_has_no_place_on_a_logarithmic_axis_is_left_out() {
+        let all = [(1.0, 1.0), (2.0, 0.0), (-1.0, 1.0), (f64::NAN, 1.0), (3.0, f64::INFINITY), (4.0, 1e3)];
+        let svg = figure(all.map(|(x, y)| Point::at(x, y)).into()).svg(Theme::Light);
+        assert_eq!(svg.matches("<circle").count(), 2, "{svg}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
+
+    #[test]
+    fn an_error_bar_that_reaches_zero_ends_at_the_axis() {
+        let point = Point { error: Some(2.0), ..Point::at(1.0, 1.5) };
+        let svg = figure(vec![point, Point::at(2.0, 1.0)]).svg(Theme::System);
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+        assert!(svg.contains("prefers-color-scheme"));
+    }
+
+    #[test]
+    fn without_any_point_the_axes_still_have_a_range() {
+        let svg = figure(Vec::new()).svg(Theme::Dark);
+        assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"), "{svg}");
+    }
+}

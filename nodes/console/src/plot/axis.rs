@@ -1,0 +1,151 @@
+//! From values to places, and the marks of an axis.
+
+use super::figure::Scale;
+
+/// Room beyond the outermost values, share of what lies between them.
+const MARGIN: f64 = 0.03;
+
+/// A logarithmic axis is at least this factor longer than its values on either side.
+const LEAST_FACTOR: f64 = 1.25;
+
+/// On an axis of less than a decade every digit is marked.
+const ONE_DECADE: f64 = 1.0;
+
+/// More decades than these are marked by their powers of ten alone…
+const FEW_DECADES: f64 = 3.5;
+
+/// …and more than these by every second one.
+const MANY_DECADES: f64 = 10.0;
+
+/// Marks of a linear axis, about.
+const MARKS: f64 = 6.0;
+
+/// Values from the one end of an axis to the other, and where they lie in the picture.
+pub(super) struct Range {
+    low: f64,
+    high: f64,
+    scale: Scale,
+    from: f64,
+    to: f64,
+}
+
+impl Range {
+    /// Of an axis between these places, a little longer than its values.
+    pub(super) fn of(values: impl Iterator<Item = f64>, scale: Scale, [from, to]: [f64; 2]) -> Self {
+        let fits = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
+        let ends = values.filter(fits).fold(None, |ends: Option<(f64, f64)>, v| {
+            Some(ends.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+        });
+        let (low, high) = match (ends, scale) {
+            (None, Scale::Linear) => (0.0, 1.0),
+            (None, Scale::Log) => (0.5, 2.0),
+            (Some((low, high)), Scale::Linear) => {
+                let margin = if high > low { MARGIN * (high - low) } else { high.abs().max(1.0) * MARGIN };
+                (low - margin, high + margin)
+            }
+            (Some((low, high)), Scale::Log) => {
+                let margin = (high / low).powf(MARGIN).max(LEAST_FACTOR);
+                (low / margin, high * margin)
+            }
+        };
+        Self { low, high, scale, from, to }
+    }
+
+    /// Whether a value lies on the axis.
+    pub(super) fn has(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// The place of a value.
+    pub(super) fn at(&self, value: f64) -> f64 {
+        let share = match self.scale {
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+        };
+        self.from + (self.to - self.from) * share
+    }
+
+    /// Values that are marked, and how they are written.
+    pub(super) fn marks(&self) -> Vec<(f64, String)> {
+        match self.scale {
+            Scale::Linear => self.linear_marks(),
+            Scale::Log => self.log_marks(),
+        }
+    }
+
+    /// Multiples of 1, 2 or 5 times a power of ten.
+    fn linear_marks(&self) -> Vec<(f64, String)> {
+        let wanted = (self.high - self.low) / MARKS;
+        let decade = 10f64.powf(wanted.log10().floor());
+        let step = [1.0, 2.0, 5.0].into_iter().map(|m| m * decade).find(|s| *s >= wanted);
+        let step = step.unwrap_or(10.0 * decade);
+        let digits = (-step.log10().floor()).max(0.0) as usize;
+        let numbers = (self.low / step).ceil() as i64..=(self.high / step).floor() as i64;
+        let mark = |n: i64| {
+            let value = n as f64 * step;
+            let text = if digits > 4 { format!("{value:e}") } else { format!("{value:.digits$}") };
+            (value, text)
+        };
+        numbers.map(mark).collect()
+    }
+
+    /// 1, 2 and 5 of every decade in range, more on a short axis and fewer on a long one.
+    fn log_marks(&self) -> Vec<(f64, String)> {
+        let span = (self.high / self.low).log10();
+        let parts: &[f64] = match span {
+            _ if span < ONE_DECADE => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+            _ if span < FEW_DECADES => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
+        let every = if span < MANY_DECADES { 1 } else { 2 };
+        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
+        let wanted = decades.filter(|d| d.rem_euclid(every) == 0);
+        let all = wanted.flat_map(|d| parts.iter().map(move |m| m * 10f64.powi(d)));
+        all.filter(|v| self.has(*v)).map(|v| (v, power(v))).collect()
+    }
+}
+
+/// One significant digit, as people write it.
+fn power(value: f64) -> String {
+    if (1e-3..1e5).contains(&value) {
+        format!("{}", (value * 1e4).round() / 1e4)
+    } else {
+        format!("{value:.0e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn log(values: &[f64]) -> Range {
+        Range::of(values.iter().copied(), Scale::Log, [100.0, 500.0])
+    }
+
+    #[test]
+    fn a_logarithmic_axis_spans_its_values_and_a_factor_is_a_distance() {
+        let axis = log(&[0.4, 3.0, 40.0]);
+        assert!(axis.at(0.4) > 100.0 && axis.at(40.0) < 500.0);
+        assert!((axis.at(4.0) - axis.at(2.0) - (axis.at(20.0) - axis.at(10.0))).abs() < 1e-9);
+        let marks: Vec<f64> = axis.marks().into_iter().map(|(v, _)| v).collect();
+        assert_eq!(marks, [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
+    }
+
+    #[test]
+    fn many_decades_are_marked_by_every_second_one_and_written_as_people_write_them() {
+        let marks: Vec<String> = log(&[2e-15, 0.5]).marks().into_iter().map(|(_, text)| text).collect();
+        assert_eq!(marks, ["1e-14", "1e-12", "1e-10", "1e-8", "1e-6", "1e-4", "0.01", "1"]);
+        assert_eq!([0.002, 0.1, 5.0, 2e4, 1e5].map(power), ["0.002", "0.1", "5", "20000", "1e5"]);
+    }
+
+    #[test]
+    fn a_linear_axis_is_marked_at_round_values() {
+        let texts = |low: f64, high: f64| -> Vec<String> {
+            let axis = Range::of([low, high].into_iter(), Scale::Linear, [0.0, 1.0]);
+            axis.marks().into_iter().map(|(_, text)| text).collect()
+        };
+        assert_eq!(texts(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(-30.0, 100.0), ["0", "50", "100"]);
+        assert!(texts(5.0, 5.0).len() > 2, "a single value has an axis, too");
+    }
+}

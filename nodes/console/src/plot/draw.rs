@@ -1,0 +1,243 @@
+//! The elements of a picture. Colours are classes, so that one style sheet holds those of a theme.
+
+use super::axis::Range;
+use super::figure::{Entry, Line, Marker, Series, Theme};
+use super::labels::Area;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+/// Width and height of the picture.
+const PICTURE: [f64; 2] = [860.0, 560.0];
+
+/// Left, top, right and bottom of the axes.
+pub(super) const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
+
+/// Ends of the horizontal axis.
+pub(super) const HORIZONTAL: [f64; 2] = [FRAME[0], FRAME[2]];
+
+/// Ends of the vertical axis.
+pub(super) const VERTICAL: [f64; 2] = [FRAME[3], FRAME[1]];
+
+/// Distinct for the colour-blind (Okabe and Ito, and two more), dark enough on white.
+const ON_WHITE: [&str; Series::COLOURS] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
+
+/// The same, light enough on dark.
+const ON_DARK: [&str; Series::COLOURS] =
+    ["#4aa3df", "#ff8a3d", "#2fc79b", "#e3a1c6", "#f2b632", "#8fd0f5", "#f0f0f0", "#c9a64a", "#b08fe0"];
+
+/// Distance between two lines of the legend.
+const LEGEND_LINE: f64 = 20.0;
+
+/// Centre of the keys of the legend, and the left end of its texts.
+const LEGEND: [f64; 2] = [FRAME[2] + 36.0, FRAME[2] + 50.0];
+
+/// What a point looks like.
+#[derive(Clone, Copy)]
+pub(super) struct Key {
+    pub(super) marker: Marker,
+    pub(super) colour: Option<usize>,
+    pub(super) hollow: bool,
+}
+
+/// A picture that is being drawn.
+pub(super) struct Drawing(String);
+
+impl Drawing {
+    /// With a title and a line that explains it.
+    pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
+        let [width, height] = PICTURE;
+        let mut drawing = Self(format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+             <style>{}</style>\n\
+             <rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n",
+            style(theme)
+        ));
+        drawing.text([FRAME[0], 28.0], "start", "class=\"ink\" font-size=\"15\"", title);
+        drawing.text([FRAME[0], 46.0], "start", "class=\"faint\"", subtitle);
+        drawing
+    }
+
+    /// The whole.
+    pub(super) fn end(mut self) -> String {
+        self.0 += "</svg>\n";
+        self.0
+    }
+
+    /// Both axes with their names and a grid.
+    pub(super) fn axes(&mut self, (x, along): (&Range, &str), (y, up): (&Range, &str)) {
+        let [left, top, right, bottom] = FRAME;
+        for (value, text) in x.marks() {
+            let at = x.at(value);
+            self.segment([at, top, at, bottom], "grid");
+            self.text([at, bottom + 18.0], "middle", "class=\"ink\"", &text);
+        }
+        for (value, text) in y.marks() {
+            let at = y.at(value);
+            self.segment([left, at, right, at], "grid");
+            self.text([left - 8.0, at + 4.0], "end", "class=\"ink\"", &text);
+        }
+        self.segment([left, bottom, right, bottom], "axis");
+        self.segment([left, top, left, bottom], "axis");
+        self.text([0.5 * (left + right), bottom + 42.0], "middle", "class=\"ink\"", along);
+        let middle = 0.5 * (top + bottom);
+        let turned = format!("class=\"ink\" transform=\"rotate(-90 20 {middle:.1})\"");
+        self.text([20.0, middle], "middle", &turned, up);
+    }
+
+    /// The line of a series through these places.
+    pub(super) fn line(&mut self, series: &Series, places: &[[f64; 2]]) {
+        let (Some(line), Some((first, rest))) = (series.line, places.split_first()) else { return };
+        let mut path = format!("M {:.1} {:.1}", first[0], first[1]);
+        for [x, y] in rest {
+            let _ = match line {
+                Line::Straight | Line::Faint => write!(path, " L {x:.1} {y:.1}"),
+                Line::Steps => write!(path, " H {x:.1} V {y:.1}"),
+            };
+        }
+        let opacity = match line {
+            Line::Straight => "",
+            Line::Faint => " stroke-opacity=\"0.35\"",
+            Line::Steps => " stroke-opacity=\"0.6\" stroke-width=\"1.5\"",
+        };
+        let class = class(series.colour);
+        let _ = writeln!(
+            self.0,
+            "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}/>"
+        );
+    }
+
+    /// A vertical bar between two heights, with caps.
+    pub(super) fn error_bar(&mut self, colour: Option<usize>, x: f64, [low, high]: [f64; 2]) {
+        let (left, right, class) = (x - 3.0, x + 3.0, class(colour));
+        let _ = writeln!(
+            self.0,
+            "<path d=\"M {left:.1} {low:.1} H {right:.1} M {x:.1} {low:.1} V {high:.1} M {left:.1} {high:.1} H {right:.1}\" \
+             class=\"{class}\" fill=\"none\" stroke=\"currentColor\"/>"
+        );
+    }
+
+    /// A point, with what its tooltip says.
+    pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
+        let class = match (key.marker, key.hollow) {
+            (Marker::Star, _) => "star".to_owned(),
+            (_, true) => format!("{} hollow", class(key.colour)),
+            (_, false) => format!("{} full", class(key.colour)),
+        };
+        let title =
+            if tooltip.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(tooltip)) };
+        let (element, shape) = match corners(key.marker) {
+            None => ("circle", format!("cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.5\"")),
+            Some(corners) => {
+                let at = |[dx, dy]: &[f64; 2]| format!("{:.1},{:.1}", x + dx, y + dy);
+                let all: Vec<String> = corners.iter().map(at).collect();
+                ("polygon", format!("points=\"{}\"", all.join(" ")))
+            }
+        };
+        let _ = writeln!(self.0, "<{element} {shape} class=\"{class}\">{title}</{element}>");
+    }
+
+    /// A small text whose left and bottom end is given.
+    pub(super) fn label(&mut self, at: [f64; 2], text: &str, colour: Option<usize>) {
+        let more = format!("class=\"{}\" fill=\"currentColor\" font-size=\"10\"", class(colour));
+        self.text(at, "start", &more, text);
+    }
+
+    /// What the colours and shapes mean.
+    pub(super) fn legend(&mut self, entries: &[Entry]) {
+        let [x, beside] = LEGEND;
+        let mut y = FRAME[1] + 10.0;
+        for entry in entries {
+            match entry {
+                Entry::Colour(colour, text) => {
+                    let class = class(Some(*colour));
+                    let _ = writeln!(
+                        self.0,
+                        "<path d=\"M {:.1} {:.1} h 14\" class=\"{class}\" stroke=\"currentColor\" stroke-width=\"3\"/>",
+                        x - 7.0,
+                        y - 4.0
+                    );
+                    self.text([beside, y], "start", "class=\"ink\"", text);
+                }
+                Entry::Shape(marker, colour, hollow, text) => {
+                    let key = Key { marker: *marker, colour: *colour, hollow: *hollow };
+                    self.marker([x, y - 4.0], key, "");
+                    self.text([beside, y], "start", "class=\"ink\"", text);
+                }
+                Entry::Note(text) => self.text([x - 6.0, y], "start", "class=\"faint\"", text),
+                Entry::Gap => y -= 0.5 * LEGEND_LINE,
+            }
+            y += LEGEND_LINE;
+        }
+    }
+
+    fn segment(&mut self, [x1, y1, x2, y2]: [f64; 4], class: &str) {
+        let _ = writeln!(
+            self.0,
+            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" class=\"{class}\"/>"
+        );
+    }
+
+    fn text(&mut self, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
+        let content = escaped(content);
+        let _ = writeln!(
+            self.0,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
+        );
+    }
+}
+
+/// Corners of a marker from its centre; `None` for a circle.
+fn corners(marker: Marker) -> Option<Vec<[f64; 2]>> {
+    let polygon = |corners: u32, turn: f64| -> Vec<[f64; 2]> {
+        let angle = |k: u32| TAU * (f64::from(k) / f64::from(corners) + turn);
+        (0..corners).map(|k| [6.0 * angle(k).sin(), -6.0 * angle(k).cos()]).collect()
+    };
+    Some(match marker {
+        Marker::Circle => return None,
+        Marker::Square => polygon(4, 0.125),
+        Marker::Triangle => polygon(3, 0.0),
+        Marker::Diamond => polygon(4, 0.0),
+        Marker::TriangleDown => polygon(3, 0.5),
+        Marker::Pentagon => polygon(5, 0.0),
+        Marker::Hexagon => polygon(6, 0.0),
+        Marker::Star => {
+            let radius = |k: u32| if k.is_multiple_of(2) { 11.0 } else { 4.5 };
+            let corner = |k: u32| {
+                let angle = PI * f64::from(k) / 5.0;
+                [radius(k) * angle.sin(), -radius(k) * angle.cos()]
+            };
+            (0..10).map(corner).collect()
+        }
+    })
+}
+
+fn class(colour: Option<usize>) -> String {
+    colour.map_or_else(|| "grey".to_owned(), |n| format!("c{}", n % Series::COLOURS))
+}
+
+/// The style sheet of a theme.
+fn style(theme: Theme) -> String {
+    let sheet = |paper: &str, ink: &str, faint: &str, grid: &str, colours: &[&str]| {
+        let mut css = format!(
+            ".paper{{fill:{paper}}}.ink{{fill:{ink}}}.faint{{fill:{faint}}}.axis{{stroke:{ink}}}.grid{{stroke:{grid}}}\
+             .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
+             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{fill:#e00000;stroke:{paper}}}"
+        );
+        for (n, colour) in colours.iter().enumerate() {
+            let _ = write!(css, ".c{n}{{color:{colour}}}");
+        }
+        css
+    };
+    let light = || sheet("#ffffff", "#000000", "#555555", "#e4e4e4", &ON_WHITE);
+    let dark = || sheet("#1b1b1f", "#e6e6e6", "#a8a8a8", "#38383e", &ON_DARK);
+    match theme {
+        Theme::Light => light(),
+        Theme::Dark => dark(),
+        Theme::System => format!("{}@media (prefers-color-scheme: dark){{{}}}", light(), dark()),
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,130 @@
+//! Scenes by name or path, with their bases and what is set beside them.
+
+use crate::failure::Failure;
+use crate::start;
+use grainlab_core::Packing;
+use grainlab_node_kit::{Exit, ParameterSpec};
+use grainlab_recordings::input;
+use grainlab_scene::{BUILT_IN, Draft, Scene, Source, assignment, built_in};
+use std::path::Path;
+
+/// A scene and its text.
+#[derive(Clone, Debug)]
+pub struct SceneText {
+    /// The text, which goes into the recording: whole without its bases, with the seed in force.
+    pub text: String,
+    /// The same, parsed.
+    pub scene: Scene,
+    /// The packing that it starts from, if it does.
+    pub start: Option<Packing>,
+}
+
+/// The parameter of nodes that sets keys of the scene.
+pub fn set_parameter() -> ParameterSpec {
+    let meaning = "keys of the scene to set, as in [grains.count=500, friction=0.2]";
+    ParameterSpec::new("set", Vec::<String>::new(), meaning)
+}
+
+/// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` goes over the one that it
+/// names.
+pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<SceneText, Failure> {
+    let source = find(name_or_path, None).map_err(|f| match f.exit {
+        Exit::Usage => f,
+        exit => Failure::new(exit, format!("scene {name_or_path}: {f}")),
+    })?;
+    let with = |sets: &[String]| match sets {
+        [] => name_or_path.to_owned(),
+        sets => format!("{name_or_path} with {}", sets.join(" ")),
+    };
+    let library = |base: &str, from: &str| find(base, Some(Path::new(from))).map_err(|f| f.to_string());
+    let refused = |e: grainlab_scene::SceneError| Failure::usage(format!("{}: {e}", with(sets)));
+    let mut draft = Draft::of(&source, &library).map_err(refused)?;
+    let seed = seed.map(|s| format!("seed={s}"));
+    for set in sets.iter().chain(&seed) {
+        draft.set(assignment(set).map_err(refused)?).map_err(refused)?;
+    }
+    let start = draft.start().map(|file| start::read(&draft, &file)).transpose()?;
+    let resolved = match &start {
+        None => draft.resolve(),
+        Some(found) => {
+            // The whole path: the scene is read again from the directory of its run.
+            draft.start_at(&found.path.to_string_lossy(), found.step);
+            draft.resolve_from(&found.packing)
+        }
+    };
+    let resolved = resolved.map_err(refused)?;
+    Ok(SceneText { text: resolved.toml, scene: resolved.scene, start: start.map(|found| found.packing) })
+}
+
+/// A built-in scene or a file; one that is named in the file `from` is looked for beside it.
+fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
+    if let Some(text) = built_in(name) {
+        return Ok(Source { name: name.to_owned(), text: text.to_owned() });
+    }
+    let path = from.and_then(Path::parent).unwrap_or(Path::new("")).join(name);
+    if !name.contains('/') && !path.exists() {
+        let known = BUILT_IN.map(|(name, _)| name).join(", ");
+        let message = format!("no scene {name:?}: neither a file nor built in; built in are: {known}");
+        return Err(Failure::usage(message));
+    }
+    let text = input::text(&path, input::SETTINGS).map_err(Failure::failed)?;
+    // The whole path tells two files apart, and one that is reached in two ways is one.
+    let name = path.canonicalize().unwrap_or(path);
+    Ok(Source { name: name.to_string_lossy().into_owned(), text })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_built_in_parses_and_carries_its_own_name() {
+        for (name, _) in BUILT_IN {
+            assert_eq!(load(name, &[], None).unwrap().scene.name, name);
+        }
+    }
+
+    #[test]
+    fn the_seed_given_wins_and_an_unknown_scene_lists_those_there_are() {
+        let seven = load("demo", &[], Some(7)).unwrap();
+        assert!(seven.scene.seed == 7 && seven.text.contains("seed = 7\n"));
+        let failure = load("dmeo", &[], None).unwrap_err();
+        assert!(failure.exit == Exit::Usage && failure.to_string().contains("demo, s1"), "{failure}");
+        assert_eq!(load("no/such.toml", &[], None).unwrap_err().exit, Exit::Failure);
+    }
+
+    #[test]
+    fn what_is_set_is_in_the_scene_and_a_fault_names_it() {
+        let sets =
+            |sets: &[&str]| load("s2", &sets.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>(), None);
+        let small = sets(&["grains.count=500", "friction=0.2", "name=n500"]).unwrap();
+        assert_eq!((small.scene.grains, small.scene.name.as_str()), (500, "n500"));
+        assert_eq!(small.scene.phases[6].friction, 0.2);
+        let failure = sets(&["grains.cuont=500"]).unwrap_err();
+        assert_eq!(failure.exit, Exit::Usage);
+        assert!(
+            failure.to_string().starts_with("s2 with grains.cuont=500: the scene has 1 fault"),
+            "{failure}"
+        );
+        assert!(sets(&["grains"]).unwrap_err().to_string().contains("KEY=VALUE"));
+    }
+
+    #[test]
+    fn a_base_is_looked_for_beside_the_file_that_names_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(&path, text).unwrap();
+            path.to_string_lossy().into_owned()
+        };
+        write("mine.toml", "base = 's2'\nname = 'mine'\ngrains.count = 600");
+        let deep = write("deep/er.toml", "base = '../mine.toml'\nname = 'er'");
+        assert_eq!(load(&deep, &[], None).unwrap().scene.grains, 600);
+        let round = write("round.toml", "base = 'deep/../round.toml'\nname = 'round'");
+        let failure = load(&round, &[], None).unwrap_err();
+        assert!(failure.exit == Exit::Usage && failure.to_string().contains("circle"), "{failure}");
+        let lost = write("lost.toml", "base = 'nowhere.toml'\nname = 'lost'");
+        assert!(load(&lost, &[], None).unwrap_err().to_string().contains("no scene \"nowhere.toml\""));
+    }
+}

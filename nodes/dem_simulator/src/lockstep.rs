@@ -1,0 +1,279 @@
+//! The lockstep: one request, its repetitions and its answer.
+
+use crate::Settings;
+use crate::question::{Question, Violation};
+use grainlab_msgs::boundary::StrainRateAnswer;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Number of consecutive invalid answers that ends a run.
+pub(crate) const REFUSALS_ALLOWED: u32 = 10;
+
+/// The current request and the latest answer.
+#[derive(Debug)]
+pub(crate) struct Lockstep {
+    lag: u64,
+    resend_after: Duration,
+    resend_at_most: Duration,
+    /// The current request, after earlier ones whose answers are still accepted. Empty before the first request.
+    questions: VecDeque<Question>,
+    body: Vec<u8>,
+    /// The previous request; empty for the first one.
+    previous: Vec<u8>,
+    asked: Duration,
+    /// Time since then that was spent computing.
+    busy: Duration,
+    resend_at: Duration,
+    pause: Duration,
+    answer: Option<(u64, [f64; 6])>,
+    refused_in_row: u32,
+    pub(crate) counts: Counts,
+}
+
+/// Counters of the lockstep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub(crate) exchanges: u64,
+    pub(crate) resends: u64,
+    pub(crate) refused: u64,
+    /// Answers to requests that are not current.
+    pub(crate) stale: u64,
+    /// Answers that differ from an earlier answer to the same request.
+    pub(crate) contradictions: u64,
+    pub(crate) waiting: Duration,
+}
+
+/// Kind of a valid answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AnswerKind {
+    /// The first answer to its request.
+    New,
+    /// An answer to a request that is not current, or a repetition.
+    Stale,
+    /// An answer that differs from an earlier one to the same request.
+    Contradicts,
+}
+
+impl Lockstep {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        Self {
+            lag: settings.mode.lag(),
+            resend_after: settings.resend_after,
+            resend_at_most: settings.resend_at_most.max(settings.resend_after),
+            questions: VecDeque::new(),
+            body: Vec::new(),
+            previous: Vec::new(),
+            asked: Duration::ZERO,
+            busy: Duration::ZERO,
+            resend_at: Duration::ZERO,
+            pause: Duration::ZERO,
+            answer: None,
+            refused_in_row: 0,
+            counts: Counts::default(),
+        }
+    }
+
+    /// A request has been published.
+    pub(crate) fn ask(&mut self, question: Question, body: Vec<u8>, now: Duration) {
+        let oldest = question.sequence.saturating_sub(self.lag);
+        self.questions.retain(|q| q.sequence >= oldest);
+        self.questions.push_back(question);
+        self.previous = std::mem::replace(&mut self.body, body);
+        (self.asked, self.busy) = (now, Duration::ZERO);
+        self.pause = self.resend_after;
+        self.resend_at = now + self.pause;
+    }
+
+    /// Notes the time spent computing while the answer was in transit.
+    pub(crate) fn computed(&mut self, time: Duration) {
+        self.busy += time;
+    }
+
+    /// Receives an answer. It is accepted if sequence number and stamp are those of a current request and the rates are
+    /// allowed by it.
+    pub(crate) fn hear(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
+        let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
+        let Some(question) = self.questions.iter().find(asked) else {
+            self.counts.stale += 1;
+            return Ok(AnswerKind::Stale);
+        };
+        match self.answer {
+            Some((known, rate)) if known == answer.sequence => {
+                let same = rate.map(f64::to_bits) == answer.rate.map(f64::to_bits);
+                let (count, heard) = match same {
+                    true => (&mut self.counts.stale, AnswerKind::Stale),
+                    false => (&mut self.counts.contradictions, AnswerKind::Contradicts),
+                };
+                *count += 1;
+                return Ok(heard);
+            }
+            Some((known, _)) if known > answer.sequence => {
+                self.counts.stale += 1;
+                return Ok(AnswerKind::Stale);
+            }
+            _ => {}
+        }
+        question.check(&answer.rate)?;
+        self.answer = Some((answer.sequence, answer.rate));
+        self.refused_in_row = 0;
+        Ok(AnswerKind::New)
+    }
+
+    /// Counts an invalid answer; the request is repeated at once. True if the run must end.
+    pub(crate) fn refuse(&mut self, now: Duration) -> bool {
+        self.counts.refused += 1;
+        self.refused_in_row += 1;
+        self.resend_at = now;
+        self.refused_in_row >= REFUSALS_ALLOWED
+    }
+
+    /// The rate to apply, if the run may continue.
+    pub(crate) fn pass(&mut self, now: Duration) -> Option<[f64; 6]> {
+        let (sequence, rate) = self.answer?;
+        if sequence + self.lag < self.sequence() {
+            return None;
+        }
+        self.counts.exchanges += 1;
+        self.counts.waiting += now.saturating_sub(self.asked + self.busy);
+        Some(rate)
+    }
+
+    /// The messages to publish again, if the current request is due: with the previous one, since a servo that was
+    /// killed may have delivered its last answer to the simulator and not to the recorder. The next servo repeats that
+    /// answer.
+    pub(crate) fn resend(&mut self, now: Duration) -> Option<[&[u8]; 2]> {
+        if now < self.resend_at {
+            return None;
+        }
+        self.pause = (2 * self.pause).min(self.resend_at_most);
+        self.resend_at = now + self.pause;
+        self.counts.resends += 1;
+        Some([&self.previous, &self.body])
+    }
+
+    /// Time until the request is repeated.
+    pub(crate) fn patience(&self, now: Duration) -> Duration {
+        self.resend_at.saturating_sub(now)
+    }
+
+    /// Time since the request was published.
+    pub(crate) fn waited(&self, now: Duration) -> Duration {
+        now.saturating_sub(self.asked)
+    }
+
+    /// Sequence number of the current request.
+    pub(crate) fn sequence(&self) -> u64 {
+        self.questions.back().map_or(0, |q| q.sequence)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mode;
+    use grainlab_core::ComponentControl;
+    use grainlab_msgs::builtin_interfaces::Time;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn question(sequence: u64) -> Question {
+        let target = ComponentControl::Stress(1e3);
+        let stamp = Time { sec: 1, nanosec: sequence as u32 };
+        Question { sequence, stamp, controls: [target; 6], rate_limit: 100.0 }
+    }
+
+    fn lockstep(mode: Mode) -> Lockstep {
+        let mut lockstep = Lockstep::new(&Settings { mode, ..Settings::default() });
+        lockstep.ask(question(7), vec![7], Duration::ZERO);
+        lockstep
+    }
+
+    fn answer(sequence: u64, nanosec: u32) -> StrainRateAnswer {
+        StrainRateAnswer {
+            stamp: Time { sec: 1, nanosec },
+            sequence,
+            rate: [sequence as f64; 6],
+            saturated: [false; 6],
+        }
+    }
+
+    #[test]
+    fn only_the_answer_to_this_very_request_passes() {
+        let mut lockstep = lockstep(Mode::Lockstep);
+        for stale in [answer(6, 6), answer(8, 8), answer(7, 6)] {
+            assert_eq!(lockstep.hear(&stale), Ok(AnswerKind::Stale));
+            assert_eq!(lockstep.pass(MS), None, "{stale:?}");
+        }
+        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.pass(MS), Some([7.0; 6]));
+        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::Stale));
+        assert_eq!((lockstep.counts.stale, lockstep.counts.exchanges), (4, 1));
+    }
+
+    #[test]
+    fn an_answer_heard_before_the_first_request_is_no_answer_to_it() {
+        let mut lockstep = Lockstep::new(&Settings::default());
+        let early =
+            StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
+        assert_eq!(lockstep.hear(&early), Ok(AnswerKind::Stale));
+        lockstep.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
+        assert_eq!(lockstep.pass(MS), None);
+    }
+
+    #[test]
+    fn another_rate_for_the_same_request_is_a_contradiction_and_changes_nothing() {
+        let mut lockstep = lockstep(Mode::Lockstep);
+        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::New));
+        let other = StrainRateAnswer { rate: [1.0; 6], ..answer(7, 7) };
+        assert_eq!(lockstep.hear(&other), Ok(AnswerKind::Contradicts));
+        assert_eq!((lockstep.pass(MS), lockstep.counts.contradictions), (Some([7.0; 6]), 1));
+    }
+
+    #[test]
+    fn an_answer_beyond_the_rate_limit_is_refused() {
+        let mut lockstep = lockstep(Mode::Lockstep);
+        let fast = StrainRateAnswer { rate: [101.0; 6], ..answer(7, 7) };
+        assert!(lockstep.hear(&fast).is_err());
+        assert_eq!(lockstep.pass(MS), None);
+    }
+
+    #[test]
+    fn repetitions_grow_apart_up_to_the_longest_pause() {
+        let mut lockstep = lockstep(Mode::Lockstep);
+        let mut at = Vec::new();
+        for t in 0..1000 {
+            if lockstep.resend(t * MS) == Some([&[], &[7]]) {
+                at.push(t);
+            }
+        }
+        assert_eq!(at, [20, 60, 140, 300, 500, 700, 900]);
+    }
+
+    #[test]
+    fn ten_refusals_in_a_row_end_a_run_and_an_answer_between_them_does_not_let_them_add_up() {
+        let mut lockstep = lockstep(Mode::Lockstep);
+        assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
+        assert_eq!(lockstep.resend(MS), Some([&[][..], &[7]]), "a refused answer is asked for again at once");
+        lockstep.ask(question(8), vec![8], MS);
+        assert_eq!(lockstep.resend(100 * MS), Some([&[7][..], &[8]]), "with the request before it");
+        lockstep.ask(question(9), vec![9], MS);
+        assert_eq!(lockstep.hear(&answer(9, 9)), Ok(AnswerKind::New));
+        assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
+        assert!(lockstep.refuse(MS));
+    }
+
+    #[test]
+    fn free_run_uses_the_latest_answer_until_it_is_too_old() {
+        let mut lockstep = Lockstep::new(&Settings { mode: Mode::FreeRun { lag: 2 }, ..Settings::default() });
+        (5..=7).for_each(|sequence| lockstep.ask(question(sequence), vec![], MS));
+        assert_eq!(lockstep.pass(MS), None, "there is nothing to obey before the first answer");
+        assert_eq!(lockstep.hear(&answer(6, 6)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.hear(&answer(5, 5)), Ok(AnswerKind::Stale));
+        assert_eq!(lockstep.hear(&answer(7, 6)), Ok(AnswerKind::Stale), "stamps are looked at there, too");
+        assert_eq!(lockstep.pass(MS), Some([6.0; 6]), "a late answer does not replace a newer one");
+        for (sequence, passes) in [(8, true), (9, false)] {
+            lockstep.ask(question(sequence), vec![], MS);
+            assert_eq!(lockstep.pass(MS).is_some(), passes, "request {sequence}");
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Messages in order, none lost if a reader is behind.
+
+use grainlab_node_kit::{BulkPublisher, Bus, BusError, PublisherId};
+use std::collections::VecDeque;
+
+/// Number of packings, of megabytes each, that may be queued behind the one in transit before the run waits for the
+/// readers.
+const QUEUED_PACKINGS: usize = 2;
+
+#[derive(Debug)]
+enum Item {
+    /// A request: it may overtake a packing in transit.
+    Request(PublisherId, Vec<u8>),
+    /// A run state: it follows the packings that it counts.
+    State(PublisherId, Vec<u8>),
+    /// A packing of any length.
+    Packing(Vec<u8>),
+}
+
+/// Messages to publish, in order. Requests overtake a large packing in transit; all other messages wait for it.
+#[derive(Debug)]
+pub(crate) struct SendQueue {
+    packings: BulkPublisher,
+    waiting: VecDeque<Item>,
+    /// States and packings behind the packing in transit.
+    behind: VecDeque<Item>,
+    under_way: bool,
+    held_up: u64,
+}
+
+impl SendQueue {
+    pub(crate) fn new(packings: BulkPublisher) -> Self {
+        let (waiting, behind) = (VecDeque::new(), VecDeque::new());
+        Self { packings, waiting, behind, under_way: false, held_up: 0 }
+    }
+
+    /// The publisher of packings.
+    pub(crate) fn packings(&self) -> &BulkPublisher {
+        &self.packings
+    }
+
+    pub(crate) fn push_request(&mut self, publisher: PublisherId, body: Vec<u8>) {
+        self.waiting.push_back(Item::Request(publisher, body));
+    }
+
+    pub(crate) fn push_state(&mut self, publisher: PublisherId, body: Vec<u8>) {
+        self.waiting.push_back(Item::State(publisher, body));
+    }
+
+    pub(crate) fn push_packing(&mut self, body: Vec<u8>) {
+        self.waiting.push_back(Item::Packing(body));
+    }
+
+    /// Publishes what the bus accepts and sends parts of a large packing; true if the run may continue. If a reliable
+    /// reader is too far behind, the run waits for it instead of losing a sample.
+    pub(crate) fn deliver(&mut self, bus: &mut dyn Bus) -> Result<bool, BusError> {
+        self.under_way = !self.packings.advance(bus)?;
+        while let Some(item) = self.behind.pop_front() {
+            if let Some(item) = self.send(bus, item)? {
+                self.behind.push_front(item);
+                break;
+            }
+        }
+        while let Some(item) = self.waiting.pop_front() {
+            let passes = matches!(item, Item::Request(..));
+            if !passes && (self.under_way || !self.behind.is_empty()) {
+                self.behind.push_back(item);
+            } else if let Some(item) = self.send(bus, item)? {
+                self.waiting.push_front(item);
+                return Ok(false);
+            }
+        }
+        Ok(self.behind.iter().filter(|item| matches!(item, Item::Packing(_))).count() < QUEUED_PACKINGS)
+    }
+
+    /// Sends an item; returns it if it cannot be sent now.
+    fn send(&mut self, bus: &mut dyn Bus, item: Item) -> Result<Option<Item>, BusError> {
+        let sent = match &item {
+            Item::Request(publisher, body) => bus.publish(*publisher, body).map(|_| ()),
+            _ if self.under_way => return Ok(Some(item)),
+            Item::State(publisher, body) => bus.publish(*publisher, body).map(|_| ()),
+            Item::Packing(body) => self.packings.publish(bus, body),
+        };
+        match sent {
+            Ok(()) => {
+                if matches!(item, Item::Packing(_)) {
+                    // A large packing is in transit from now on.
+                    self.under_way = !self.packings.advance(bus)?;
+                }
+                Ok(None)
+            }
+            Err(full @ BusError::Full { .. }) => {
+                self.held_up += 1;
+                if self.held_up.is_power_of_two() {
+                    log::warn!("the run waits ({} times so far): {full}", self.held_up);
+                }
+                Ok(Some(item))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Whether all messages were delivered to all active readers.
+    pub(crate) fn is_empty(&self) -> bool {
+        !self.under_way && self.behind.is_empty() && self.waiting.is_empty()
+    }
+
+    /// Whether a packing is in transit, so that [`SendQueue::deliver`] must be called again soon.
+    pub(crate) fn is_under_way(&self) -> bool {
+        self.under_way || !self.behind.is_empty()
+    }
+
+    /// Sends all queued messages now, for a process that is about to end: the last packing replaces one in transit.
+    pub(crate) fn flush(&mut self, bus: &mut dyn Bus) -> Result<(), BusError> {
+        for item in self.behind.drain(..).chain(self.waiting.drain(..)) {
+            let sent = match &item {
+                Item::Request(publisher, body) | Item::State(publisher, body) => {
+                    bus.publish(*publisher, body).map(|_| ())
+                }
+                Item::Packing(body) => self.packings.supersede(bus, body),
+            };
+            match sent {
+                Ok(()) => {}
+                Err(full @ BusError::Full { .. }) => log::warn!("{full}"),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of times that a slow reader delayed the run.
+    pub(crate) fn held_up(&self) -> u64 {
+        self.held_up
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_msgs::topics;
+    use grainlab_node_kit::BULK_LIMIT;
+    use grainlab_node_kit::{BulkSubscription, Demand, Hub, MemoryBus, Names, SubscriptionId};
+    use std::time::Duration;
+
+    /// A simulator's bus with its queue, and a reader of everything.
+    struct Bench {
+        hub: Hub,
+        bus: MemoryBus,
+        queue: SendQueue,
+        stress: PublisherId,
+        run_state: PublisherId,
+        reader: MemoryBus,
+        packings: BulkSubscription,
+        requests: SubscriptionId,
+        states: SubscriptionId,
+        /// The first letter of each message's topic, and its number.
+        received: Vec<String>,
+    }
+
+    fn body(number: u8, length: usize) -> Vec<u8> {
+        let mut body = vec![number; length];
+        body[..4].copy_from_slice(&[0, 1, 0, 0]);
+        body
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let hub = Hub::new(1);
+            let mut reader = hub.bus(Names::new("reader").unwrap());
+            let demand = Demand::reliable(100);
+            let packings = BulkSubscription::subscribe(&mut reader, &topics::PACKING, demand).unwrap();
+            let requests = reader.subscribe(&topics::STRESS, demand).unwrap();
+            let states = reader.subscribe(&topics::RUN_STATE, demand).unwrap();
+            let mut bus = hub.bus(Names::new("dem_simulator").unwrap());
+            let stress = bus.advertise(&topics::STRESS).unwrap();
+            let queue = SendQueue::new(BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap());
+            let run_state = bus.advertise(&topics::RUN_STATE).unwrap();
+            let received = Vec::new();
+            Self { hub, bus, queue, stress, run_state, reader, packings, requests, states, received }
+        }
+
+        /// The reader looks, and a millisecond passes.
+        fn look(&mut self) {
+            for (letter, subscription) in [("r", self.requests), ("s", self.states)] {
+                while let Some(sample) = self.reader.take(subscription).unwrap() {
+                    self.received.push(format!("{letter}{}", sample.body[4]));
+                }
+            }
+            while let Some(sample) = self.packings.take(&mut self.reader).unwrap() {
+                self.received.push(format!("p{}", sample.body[4]));
+            }
+            self.hub.advance(Duration::from_millis(1));
+        }
+
+        fn deliver(&mut self) -> bool {
+            self.queue.deliver(&mut self.bus).unwrap()
+        }
+
+        fn until_empty(&mut self) {
+            for _ in 0..20_000 {
+                self.deliver();
+                if self.queue.is_empty() {
+                    return self.look();
+                }
+                self.look();
+            }
+            panic!("not delivered within 20 s");
+        }
+    }
+
+    #[test]
+    fn requests_overtake_a_large_packing_and_its_state_does_not() {
+        let mut bench = Bench::new();
+        let (stress, run_state) = (bench.stress, bench.run_state);
+        bench.queue.push_packing(body(1, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(2, 8));
+        bench.queue.push_packing(body(3, 100));
+        bench.queue.push_request(stress, body(4, 8));
+        assert!(bench.deliver(), "the run goes on");
+        bench.look();
+        assert_eq!(bench.received, ["r4"]);
+        assert!(bench.queue.is_under_way() && !bench.queue.is_empty());
+        bench.until_empty();
+        assert_eq!(bench.received, ["r4", "p1", "s2", "p3"]);
+    }
+
+    #[test]
+    fn small_messages_are_published_at_once_in_the_order_in_which_they_were_posted() {
+        let mut bench = Bench::new();
+        let (stress, run_state) = (bench.stress, bench.run_state);
+        bench.queue.push_packing(body(1, 100));
+        bench.queue.push_state(run_state, body(2, 8));
+        bench.queue.push_request(stress, body(3, 8));
+        assert!(bench.deliver() && bench.queue.is_empty());
+        bench.look();
+        bench.received.sort();
+        assert_eq!(bench.received, ["p1", "r3", "s2"]);
+    }
+
+    #[test]
+    fn a_run_that_makes_packings_faster_than_they_are_read_waits() {
+        let mut bench = Bench::new();
+        let mut posted = 0;
+        for _ in 0..100 {
+            if bench.deliver() {
+                posted += 1;
+                bench.queue.push_packing(body(posted, BULK_LIMIT + 1));
+            }
+        }
+        assert_eq!(posted, 3, "one under way, two behind it");
+        bench.until_empty();
+        assert_eq!(bench.received, ["p1", "p2", "p3"]);
+    }
+
+    #[test]
+    fn a_reader_that_died_does_not_keep_the_run_from_its_end() {
+        let mut bench = Bench::new();
+        (0..100).for_each(|_| bench.look());
+        let run_state = bench.run_state;
+        bench.queue.push_packing(body(1, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(2, 8));
+        let began = bench.hub.now();
+        while !bench.queue.is_empty() {
+            bench.deliver();
+            bench.hub.advance(Duration::from_millis(5));
+            assert!(bench.hub.now() - began < Duration::from_secs(10));
+        }
+        assert_eq!(bench.queue.packings().left_behind(), 1);
+        // Where there is no time for that, what waits is sent all the same.
+        bench.queue.push_packing(body(3, 3 * BULK_LIMIT));
+        bench.queue.push_state(run_state, body(4, 8));
+        bench.queue.push_packing(body(5, 3 * BULK_LIMIT));
+        bench.deliver();
+        bench.queue.flush(&mut bench.bus).unwrap();
+        // It was only asleep.
+        for _ in 0..500 {
+            bench.deliver();
+            bench.look();
+        }
+        assert_eq!(bench.received.iter().rfind(|message| message.starts_with('p')).unwrap(), "p5");
+        assert!(bench.received.contains(&"s4".into()), "{:?}", bench.received);
+    }
+}

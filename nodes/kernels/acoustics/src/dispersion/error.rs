@@ -1,0 +1,30 @@
+//! Why acoustic modes were not found.
+
+/// Why acoustic modes were not found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum SolveError {
+    /// A motion without stiffness, other than those of a few grains.
+    #[error("it has no stiffness")]
+    Floppy,
+    /// The maximum number of iterations was reached.
+    #[error(
+        "relative residual {residual:e} after {iterations} iterations; raise max_iterations or tolerance, or use longer waves"
+    )]
+    NotConverged {
+        /// Residual over the load.
+        residual: f64,
+        /// Iterations used.
+        iterations: u32,
+    },
+    /// The maximum number of rounds of inverse iteration was reached.
+    #[error(
+        "the square of the frequency still changed by {change:e} of itself after {rounds} rounds, among softer motions of \
+         single grains; use longer waves"
+    )]
+    Unsettled {
+        /// Relative change of ω² in the last round.
+        change: f64,
+        /// Number of rounds.
+        rounds: u32,
+    },
+}

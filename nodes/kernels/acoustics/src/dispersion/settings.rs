@@ -1,0 +1,48 @@
+//! Settings of the measurement by dispersion.
+
+use crate::error::AcousticsError;
+
+/// Shortest wavelength, mean diameters: below, neighbours move against each other.
+const MIN_WAVELENGTH: f64 = 2.0;
+
+/// Settings of the measurement by dispersion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Wavelengths in mean grain diameters, three or more different ones, each above 2. In packings of z = 5 waves
+    /// shorter than about 100 diameters leave behind loosely held grains that longer waves take along, and are faster
+    /// by up to a thousandth.
+    pub wavelengths: Vec<f64>,
+    /// Relative error of ω², in [1e-12, 1e-2].
+    pub tolerance: f64,
+    /// Maximum number of conjugate gradient iterations per wave vector.
+    pub max_iterations: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { wavelengths: vec![160.0, 240.0, 320.0], tolerance: 1e-5, max_iterations: 20_000 }
+    }
+}
+
+impl Settings {
+    /// The settings, if they are in range.
+    pub fn validated(&self) -> Result<&Self, AcousticsError> {
+        let range = |name, value: f64, valid: bool, requirement| {
+            if valid { Ok(()) } else { Err(AcousticsError::Setting { name, value, requirement }) }
+        };
+        let mut different = self.wavelengths.clone();
+        different.sort_by(f64::total_cmp);
+        different.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
+        let count = different.len();
+        let requirement = "3 or more different ones, to extrapolate and to estimate the error";
+        range("number of wavelengths", count as f64, count >= 3, requirement)?;
+        for wavelength in &self.wavelengths {
+            let valid = wavelength.is_finite() && *wavelength > MIN_WAVELENGTH;
+            range("wavelength", *wavelength, valid, "more than 2 mean grain diameters, finite")?;
+        }
+        let (t, n) = (self.tolerance, self.max_iterations);
+        range("tolerance", t, (1e-12..=1e-2).contains(&t), "between 1e-12 and 1e-2")?;
+        range("max_iterations", f64::from(n), n > 0, "1 or more")?;
+        Ok(self)
+    }
+}

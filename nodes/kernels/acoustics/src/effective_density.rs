@@ -1,0 +1,28 @@
+//! The density of the mass that moves with a wave.
+
+use grainlab_core::Mat3;
+
+/// Density of the mass that moves with a wave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffectiveDensity {
+    /// The tensor ρ, kg/m³: the effective density of the polarization p is pᵀ ρ p.
+    pub density: Mat3,
+    /// Density of all grains, kg/m³.
+    pub bulk: f64,
+    /// Number of grains that carry no force.
+    pub rattlers: u32,
+    /// Number of motions of the other grains that do not follow the wave: floppy, or of a frequency below it.
+    pub left_behind: u32,
+}
+
+impl EffectiveDensity {
+    /// Mean over directions, kg/m³.
+    pub fn mean(&self) -> f64 {
+        self.density.trace() / 3.0
+    }
+
+    /// Standard deviation over directions, kg/m³.
+    pub fn spread(&self) -> f64 {
+        (self.density - Mat3::identity() * self.mean()).norm() / 3f64.sqrt()
+    }
+}

@@ -1,0 +1,59 @@
+//! What is measured, and how.
+
+use crate::error::AcousticsError;
+use crate::instrument::Instrument;
+use crate::survey::{Modes, Survey};
+use crate::{dispersion, standing_wave, time_of_flight};
+use grainlab_core::Vec3;
+
+/// A method of measuring speeds, with its settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MethodSettings {
+    /// See [`dispersion`].
+    Dispersion(dispersion::Settings),
+    /// See [`standing_wave`].
+    StandingWave(standing_wave::Settings),
+    /// See [`time_of_flight`].
+    TimeOfFlight(time_of_flight::Settings),
+}
+
+/// What is measured, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Method of measuring speeds.
+    pub method: MethodSettings,
+    /// Unit axis of symmetry, if it is known.
+    pub axis: Option<Vec3>,
+    /// Set of rays; [`Survey::Hemisphere`] without an axis.
+    pub survey: Survey,
+    /// Polarizations sent along them.
+    pub modes: Modes,
+    /// Source, receivers, electronics.
+    pub instrument: Instrument,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: MethodSettings::Dispersion(dispersion::Settings::default()),
+            axis: Some(Vec3::z()),
+            survey: Survey::default(),
+            modes: Modes::default(),
+            instrument: Instrument::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Checks axis and instrument.
+    pub(crate) fn check(&self) -> Result<(), AcousticsError> {
+        if let Some(axis) = self.axis {
+            let value = axis.norm();
+            if !(value.is_finite() && value > 0.0) {
+                let requirement = "a direction: finite and not zero";
+                return Err(AcousticsError::Setting { name: "|axis|", value, requirement });
+            }
+        }
+        self.instrument.validated().map(|_| ())
+    }
+}

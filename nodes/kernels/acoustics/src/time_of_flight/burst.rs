@@ -1,0 +1,29 @@
+//! Tone bursts.
+
+use std::f64::consts::{PI, TAU};
+
+/// A sine under a Hann window; its mean is zero for any number of periods.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Burst {
+    /// Centre frequency, Hz.
+    pub(crate) frequency: f64,
+    /// Number of periods.
+    pub(crate) cycles: f64,
+}
+
+impl Burst {
+    /// Duration, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.cycles / self.frequency
+    }
+
+    /// Its value at `time` s after its start, at most 1.
+    pub(crate) fn at(&self, time: f64) -> f64 {
+        let from_middle = time - 0.5 * self.duration();
+        if from_middle.abs() >= 0.5 * self.duration() {
+            return 0.0;
+        }
+        let window = (PI * from_middle / self.duration()).cos().powi(2);
+        window * (TAU * self.frequency * from_middle).sin()
+    }
+}

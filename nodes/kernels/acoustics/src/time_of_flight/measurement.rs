@@ -1,0 +1,213 @@
+//! The speed of one polarization along one ray, from bursts.
+
+use super::arrival::Arrivals;
+use super::burst::Burst;
+use super::burst_run::{BurstResponse, BurstRun};
+use super::path_plan::PathPlan;
+use super::phase_velocity;
+use super::settings::{ArrivalPick, Settings};
+use crate::curve::DispersionCurve;
+use crate::error::AcousticsError;
+use crate::instrument::{Instrument, ReceiverSignals, SamplingWindow, burst_level};
+use crate::noise::seed_at;
+use crate::nonlinearity::{TO_ZERO, relative_change};
+use crate::sample::Sample;
+use crate::supercell::supercell;
+use crate::trace::{Channel, Trace};
+use crate::warning::Warning;
+use crate::wave_path::{PathResult, WavePath};
+use grainlab_core::Vec3;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// Wavelengths of the default frequencies, mean diameters.
+const WAVELENGTHS: [f64; 3] = [20.0, 28.0, 40.0];
+
+/// The first burst, which gives the speed to a few per cent: its wavelength in mean diameters for a typical speed over
+/// the affine one; and number, first and last distance of its receivers, wavelengths.
+const FIRST_WAVELENGTH: f64 = 20.0;
+const TYPICAL_SPEED: f64 = 0.75;
+const FIRST_RECEIVERS: (u32, f64, f64) = (3, 0.75, 2.0);
+
+/// Relative change of the trace at half the amplitude above which the response is nonlinear.
+const NONLINEAR: f64 = 1e-2;
+
+/// Sends bursts of all frequencies along `path`, picks arrivals, and extrapolates to long waves.
+pub(super) fn measure(
+    path: &WavePath,
+    sample: &Sample,
+    settings: &Settings,
+    instrument: &Instrument,
+) -> Result<PathResult, AcousticsError> {
+    TimeOfFlight { path, sample }.measure(settings, instrument)
+}
+
+struct TimeOfFlight<'a> {
+    path: &'a WavePath,
+    sample: &'a Sample,
+}
+
+impl TimeOfFlight<'_> {
+    fn measure(&self, settings: &Settings, instrument: &Instrument) -> Result<PathResult, AcousticsError> {
+        let diameter = self.sample.diameter;
+        let speed = self.first_speed(settings)?;
+        // The band edge of ω = (2 v/a) sin(q a/2), the dispersion of a chain, with a the mean diameter.
+        let cutoff = speed / (PI * diameter);
+        let frequencies = settings.frequencies.clone();
+        let frequencies = frequencies.unwrap_or_else(|| WAVELENGTHS.map(|w| speed / (w * diameter)).to_vec());
+        if let Some(frequency) = frequencies.iter().copied().find(|f| *f >= cutoff) {
+            return Err(AcousticsError::CutOff { frequency, cutoff, direction: self.path.direction.into() });
+        }
+        let bursts: Vec<Burst> =
+            frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
+        // A path that is too short is an error before anything is sent, with the length that the longest wave needs.
+        let short = bursts.iter().filter_map(|b| self.plan(settings, b, speed).err());
+        if let Some(worst) = short.max_by_key(copies_needed) {
+            return Err(worst);
+        }
+        let send = |burst: &Burst| self.send(settings, burst, speed, instrument.rate(burst.frequency)?);
+        let responses: Vec<Result<BurstResponse, AcousticsError>> = bursts.par_iter().map(send).collect();
+        let responses = responses.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let mut traces = Vec::with_capacity(bursts.len());
+        let mut arrivals = Vec::with_capacity(bursts.len());
+        for (k, (burst, response)) in bursts.iter().zip(&responses).enumerate() {
+            let place = [&self.path.place[..], &[k as u64]].concat();
+            let trace = self.trace(burst, response, instrument, settings.pick, &place)?;
+            let seed = seed_at(instrument.seed, &place);
+            arrivals.push(Arrivals::pick(&trace, burst.cycles, settings.pick, seed)?);
+            traces.push(trace);
+        }
+        let mut curve = phase_velocity::curve(&traces, &arrivals, settings.cycles, settings.pick, diameter)?;
+        let warnings = self.nonlinearity(settings, speed, &bursts, &responses, &mut curve)?;
+        Ok(PathResult { curve, traces, warnings })
+    }
+
+    /// The speed of a first burst, m/s, from which frequencies and receivers follow.
+    fn first_speed(&self, settings: &Settings) -> Result<f64, AcousticsError> {
+        let guess = TYPICAL_SPEED * self.sample.affine_speed(&self.path.direction, &self.path.polarization);
+        if guess.is_nan() || guess <= 0.0 {
+            return Err(self.path.no_signal("wave", "the contacts have no stiffness for this polarization"));
+        }
+        let (receivers, nearest, furthest) = FIRST_RECEIVERS;
+        let settings = Settings { receivers, nearest, furthest, copies: None, ..settings.clone() };
+        let frequency = guess / (FIRST_WAVELENGTH * self.sample.diameter);
+        let burst = Burst { frequency, cycles: settings.cycles };
+        let instrument = Instrument::default();
+        let pick = ArrivalPick::CrossCorrelation;
+        let response = self.send(&settings, &burst, guess, instrument.rate(frequency)?)?;
+        let trace = self.trace(&burst, &response, &instrument, pick, &self.path.place)?;
+        let arrivals = Arrivals::pick(&trace, burst.cycles, pick, instrument.seed)?;
+        Ok(1.0 / arrivals.slowness)
+    }
+
+    fn plan(&self, settings: &Settings, burst: &Burst, speed: f64) -> Result<PathPlan, AcousticsError> {
+        let indices = self.path.indices;
+        let planes = self.sample.packing.cell.inverse().transpose() * Vec3::from(indices.map(f64::from));
+        // Planes (2 0 0) are every other one of (1 0 0).
+        let divisor = indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
+        let period = f64::from(divisor) / planes.norm();
+        PathPlan::new(settings, burst, speed, self.sample.diameter, period)
+    }
+
+    fn send(
+        &self,
+        settings: &Settings,
+        burst: &Burst,
+        speed: f64,
+        rate: f64,
+    ) -> Result<BurstResponse, AcousticsError> {
+        let plan = self.plan(settings, burst, speed)?;
+        let supercell = supercell(&self.sample.packing, self.path.indices, plan.copies)?;
+        let run = BurstRun {
+            supercell: &supercell,
+            present: &self.sample.present,
+            setting: self.sample.setting,
+            polarization: self.path.polarization,
+            burst: *burst,
+            amplitude: settings.amplitude,
+            speed,
+            thickness: settings.thickness * self.sample.diameter,
+            receivers: &plan.receivers,
+            duration: plan.duration,
+            rate,
+        };
+        run.response()
+    }
+
+    /// The trace that the instrument records, which starts one burst duration before the trigger.
+    fn trace(
+        &self,
+        burst: &Burst,
+        response: &BurstResponse,
+        instrument: &Instrument,
+        pick: ArrivalPick,
+        place: &[u64],
+    ) -> Result<Trace, AcousticsError> {
+        let ReceiverSignals { start, interval, channels } = &response.signals;
+        let rate = instrument.rate(burst.frequency)?;
+        let before = (burst.duration() * rate).ceil();
+        let end = channels.first().map_or(0.0, |c| start + interval * (c.len() as f64 - 2.0));
+        let window = SamplingWindow {
+            start: -before / rate,
+            rate,
+            samples: (before + (end * rate).floor().max(0.0)) as usize,
+        };
+        let level = channels.first().map_or(0.0, |c| burst_level(c, (burst.duration() / interval) as usize));
+        let samples = instrument.record(&response.signals, &window, level, place);
+        let channels = response.distances.iter().zip(samples);
+        Ok(Trace {
+            direction: self.path.direction,
+            polarization: self.path.polarization,
+            method: pick.method(),
+            frequency: burst.frequency,
+            sample_rate: rate,
+            start: window.start,
+            channels: channels.map(|(d, samples)| Channel { distance: *d, samples }).collect(),
+        })
+    }
+
+    /// If contacts opened or closed, sends the burst of the highest frequency again at half the amplitude and adds the
+    /// change to the uncertainty.
+    fn nonlinearity(
+        &self,
+        settings: &Settings,
+        speed: f64,
+        bursts: &[Burst],
+        responses: &[BurstResponse],
+        curve: &mut DispersionCurve,
+    ) -> Result<Vec<Warning>, AcousticsError> {
+        let (opened, closed) = responses.iter().fold((0, 0), |(o, c), a| (o + a.opened, c + a.closed));
+        let shortest = bursts.iter().zip(responses).max_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
+        let Some((burst, full)) = shortest.filter(|_| opened + closed > 0) else { return Ok(Vec::new()) };
+        let instrument = Instrument::default();
+        let settings = Settings { amplitude: 0.5 * settings.amplitude, ..settings.clone() };
+        let half = self.send(&settings, burst, speed, instrument.rate(burst.frequency)?)?;
+        let slowness = |response: &BurstResponse| {
+            let trace = self.trace(burst, response, &instrument, settings.pick, &self.path.place)?;
+            Ok::<f64, AcousticsError>(Arrivals::pick(&trace, burst.cycles, settings.pick, 1)?.slowness)
+        };
+        let moved = (slowness(&half)? / slowness(full)? - 1.0).abs();
+        let channels = full.signals.channels.iter().zip(&half.signals.channels);
+        let change = relative_change(channels.flat_map(|(f, h)| f.iter().zip(h)));
+        // A trace of another shape at half the amplitude cannot be extrapolated to zero amplitude.
+        let unknown = if change > NONLINEAR { 0.5 * change } else { 0.0 };
+        curve.stddev = curve.stddev.hypot((TO_ZERO * moved).hypot(unknown) * curve.speed);
+        let warning = Warning::Nonlinear {
+            direction: self.path.direction.into(),
+            polarization: self.path.polarization.into(),
+            amplitude: 2.0 * settings.amplitude,
+            opened,
+            closed,
+            change,
+        };
+        Ok(if change > NONLINEAR { vec![warning] } else { Vec::new() })
+    }
+}
+
+fn copies_needed(error: &AcousticsError) -> u32 {
+    if let AcousticsError::PathTooShort { enough, .. } = error { *enough } else { u32::MAX }
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}

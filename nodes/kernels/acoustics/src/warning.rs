@@ -1,0 +1,56 @@
+//! Limitations of a measurement.
+
+use crate::error::{AcousticsError, in_brackets};
+
+/// A limitation of a measurement.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Warning {
+    /// The response is nonlinear.
+    #[error(
+        "the response along {}, polarization {}, is nonlinear: {opened} contacts opened, {closed} closed at a strain of \
+         {amplitude:e}, the trace changes by {change:.1e} of itself at half of that; reduce the amplitude",
+        in_brackets(direction),
+        in_brackets(polarization)
+    )]
+    Nonlinear {
+        /// Direction of propagation.
+        direction: [f64; 3],
+        /// Polarization.
+        polarization: [f64; 3],
+        /// Peak strain.
+        amplitude: f64,
+        /// Number of contacts that were missing at some look.
+        opened: u32,
+        /// Number of contacts that were new at some look.
+        closed: u32,
+        /// Root mean square of the relative change of the normalised trace at half the amplitude.
+        change: f64,
+    },
+    /// A speed of large uncertainty.
+    #[error(
+        "the speed along {}, polarization {}, has a relative error of {relative:.1e}; average more shots if there is noise, \
+         reduce the amplitude if contacts open",
+        in_brackets(direction),
+        in_brackets(polarization)
+    )]
+    Noisy {
+        /// Direction of propagation.
+        direction: [f64; 3],
+        /// Polarization.
+        polarization: [f64; 3],
+        /// Relative standard deviation of the speed.
+        relative: f64,
+    },
+    /// The packing moves by itself.
+    #[error(
+        "the packing did not come to rest (unbalanced force ratio {unbalanced:.1e}): its own motion is superposed on the waves; \
+         relax it further, or increase the amplitude"
+    )]
+    NotAtRest {
+        /// Mean net force of the grains that carry force, over the mean contact force.
+        unbalanced: f64,
+    },
+    /// A mode was left out.
+    #[error("left out: {0}")]
+    LeftOut(AcousticsError),
+}

@@ -1,0 +1,128 @@
+//! Packings repeated along a path are the same packings.
+
+use crate::sample;
+use grainlab_acoustics::{AcousticsError, Ray, supercell};
+use grainlab_core::contact::TangentialLaw;
+use grainlab_core::{Cell, Mat3, Packing, Vec3, stress::stress};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
+
+const PLANES: [[i32; 3]; 6] = [[0, 0, 1], [1, 0, 0], [1, 0, 1], [1, -1, 0], [1, 1, 1], [2, -1, 3]];
+
+/// The first packing, in a cell whose edges are others of the same lattice, so that it is skewed.
+fn skewed(packing: Packing) -> Packing {
+    let mut packing = packing;
+    // a, b + a, c − b: what is touched at k edges of the old is touched at M⁻¹ k of the new.
+    let m = Mat3::new(1.0, 1.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 1.0);
+    packing.cell = Cell::new(packing.cell.matrix() * m).unwrap();
+    let inverse = m.try_inverse().unwrap();
+    for c in &mut packing.contacts {
+        let image = inverse * Vec3::from(c.image.map(f64::from));
+        c.image = image.map(|k| k.round() as i8).into();
+        if c.i == c.j && c.image < [0; 3] {
+            (c.image, c.normal) = (c.image.map(|k| -k), -c.normal);
+            c.tangential_force = -c.tangential_force;
+        }
+    }
+    packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
+    packing.validated().unwrap()
+}
+
+#[test]
+fn a_repeated_packing_is_a_packing_with_the_same_contacts() {
+    for packing in [sample::isotropic(), skewed(sample::anisotropic())] {
+        for indices in PLANES {
+            for copies in [1, 2, 5] {
+                let r = supercell(&packing, indices, copies).unwrap();
+                let many = r.packing.clone().validated().unwrap();
+                assert_eq!(many.grains(), copies as usize * packing.grains());
+                assert_eq!(many.contacts.len(), copies as usize * packing.contacts.len());
+                for c in &many.contacts {
+                    let branch = many.branch(c);
+                    assert!((branch.normalize() - c.normal).amax() < 1e-9, "{indices:?} {c:?}");
+                    let gap = many.radii[c.i as usize] + many.radii[c.j as usize] - branch.norm();
+                    assert!((gap - c.overlap).abs() < 1e-9 * many.radii[0], "{indices:?} {c:?}");
+                }
+                let normal = Ray::normal(&packing.cell, indices).unwrap();
+                assert!((r.normal - normal).amax() < 1e-14);
+                assert!(r.along.iter().all(|x| (0.0..r.path).contains(x)));
+                for (x, along) in many.positions.iter().zip(&r.along) {
+                    let turns = (x.dot(&normal) - along) / r.path;
+                    assert!((turns - turns.round()).abs() < 1e-12, "{indices:?} {turns}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
+    let packing = sample::anisotropic();
+    let settings = grainlab_micromechanics::Settings { tolerance: 1e-8, ..Default::default() };
+    let one = *grainlab_micromechanics::analyze(&packing, &settings).unwrap().report.stiffness().unwrap();
+    let expected = stress(&packing).tensor.matrix();
+    for indices in PLANES {
+        let many = supercell(&packing, indices, 2).unwrap().packing;
+        let found = stress(&many).tensor.matrix();
+        assert!((found - expected).amax() < 1e-12 * expected.amax(), "{indices:?}");
+        // One solve is enough for the slow part.
+        if indices == [1, 0, 1] || indices == [1, 1, 1] {
+            let moduli =
+                *grainlab_micromechanics::analyze(&many, &settings).unwrap().report.stiffness().unwrap();
+            let difference = (moduli.tensor.0 - one.tensor.0).amax();
+            assert!(difference < 1e-8 * one.tensor.0.amax(), "{indices:?} {difference:e}");
+            let affine = (moduli.bounds.affine.0 - one.bounds.affine.0).amax();
+            assert!(affine < 1e-9 * one.bounds.affine.0.amax(), "{indices:?} {affine:e}");
+        }
+    }
+}
+
+#[test]
+fn the_engine_finds_the_same_contacts_and_forces_in_it() {
+    let packing = sample::isotropic();
+    let look = |packing: &Packing| {
+        let mut engine = Engine::from_packing(packing, quiet(packing));
+        engine.initialise().unwrap();
+        engine.observables().unwrap()
+    };
+    let one = look(&packing);
+    for indices in PLANES {
+        let many = look(&supercell(&packing, indices, 3).unwrap().packing);
+        assert_eq!(many.contacts, 3 * one.contacts, "{indices:?}");
+        let (a, b) = (one.stress.tensor.matrix(), many.stress.tensor.matrix());
+        assert!((a - b).amax() < 1e-12 * a.amax(), "{indices:?}");
+        assert!((many.unbalanced - one.unbalanced).abs() < 1e-9, "{indices:?} {many:?}");
+    }
+}
+
+fn quiet(packing: &Packing) -> EngineSettings {
+    EngineSettings {
+        friction: packing.friction,
+        damping: 0.0,
+        drag: 0.0,
+        spin_drag: 0.0,
+        tangential: TangentialLaw::Incremental,
+        time_step: TimeStep::FractionOfStable(0.8),
+        skin: 0.01 * 2.0 * packing.radii[0],
+        thermostat_speed: None,
+    }
+}
+
+#[test]
+fn common_divisors_of_indices_do_not_count() {
+    let packing = sample::isotropic();
+    let one = supercell(&packing, [1, 0, -1], 3).unwrap();
+    assert_eq!(supercell(&packing, [4, 0, -4], 3).unwrap(), one);
+}
+
+#[test]
+fn no_planes_no_copies_and_too_many_are_refused() {
+    let packing = sample::isotropic();
+    let planes = supercell(&packing, [0; 3], 2).unwrap_err();
+    assert!(matches!(planes, AcousticsError::NoLatticePlane { .. }), "{planes}");
+    let dense = supercell(&packing, [i32::MIN, 0, 1], 2).unwrap_err();
+    assert!(matches!(dense, AcousticsError::Setting { name: "indices", .. }), "{dense}");
+    for copies in [0, 10_001, u32::MAX] {
+        let error = supercell(&packing, [0, 0, 1], copies).unwrap_err();
+        assert!(matches!(error, AcousticsError::Setting { name: "copies", .. }), "{error}");
+    }
+}

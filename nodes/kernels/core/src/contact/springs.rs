@@ -1,0 +1,45 @@
+//! What a contact law provides: its springs and parameters.
+
+use crate::lanes::Lanes;
+
+/// A parameter of a contact law, which does not follow from the material. It must be positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawParameter {
+    /// Key in scenes.
+    pub key: &'static str,
+    /// Meaning and unit.
+    pub meaning: &'static str,
+    /// Value in scenes that do not give it; `None` if they must.
+    pub default: Option<f64>,
+}
+
+/// The elastic part of a contact law, with its coefficients: a normal and a tangential spring.
+///
+/// Written for any number of lanes: with `f64` it is the scalar specification; the force kernel runs it in the lanes of an
+/// instruction set. The contact radius is a = √(R* δ) for every law, with δ the full overlap.
+pub trait ContactSprings: Copy + Send + Sync {
+    /// Normal stiffness k_n = dF/dδ, N/m, from the contact radius, m.
+    fn normal_stiffness<L: Lanes>(&self, contact_radius: L) -> L;
+
+    /// Elastic normal force F, N, from the normal stiffness, N/m, and the overlap, m.
+    fn normal_force<L: Lanes>(&self, normal_stiffness: L, overlap: L) -> L;
+
+    /// Energy U of the normal spring, J, with F = dU/dδ, from the elastic normal force, N, and the overlap, m.
+    fn normal_energy<L: Lanes>(&self, normal_force: L, overlap: L) -> L;
+
+    /// `factor` times the tangential stiffness k_t, N/m, from the contact radius, m.
+    fn tangential_stiffness<L: Lanes>(&self, contact_radius: L, factor: f64) -> L;
+
+    /// k_t/k_n.
+    fn stiffness_ratio(&self) -> f64;
+
+    /// Ratio of the dashpots, c_t/c_n = √(k_t/k_n).
+    fn dashpot_ratio(&self) -> f64;
+
+    /// k_t over that of the step before, where it fell; 1 where it rose or the contact is new. From the contact radius of the
+    /// step before and the present one, m.
+    fn unloading<L: Lanes>(&self, before: L, contact_radius: L) -> L;
+
+    /// Largest overlap of an elastic collision, m, from effective radius (m), effective mass (kg) and relative speed (m/s).
+    fn collision_overlap(&self, r_eff: f64, m_eff: f64, speed: f64) -> f64;
+}

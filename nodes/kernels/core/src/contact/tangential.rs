@@ -1,0 +1,10 @@
+//! How a tangential spring follows the normal stiffness.
+
+/// How the tangential force follows a change of normal stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentialLaw {
+    /// Scaled down with the tangential stiffness on unloading: a closed cycle never creates energy.
+    Rescaled,
+    /// Kept on unloading: the increments of the stuck network, and LAMMPS's `mindlin/force`.
+    Incremental,
+}

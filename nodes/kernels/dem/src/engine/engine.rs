@@ -1,0 +1,279 @@
+//! Construction, settings and observation of the engine.
+
+use super::checkpoint::Checkpoint;
+use super::spatial_order;
+use crate::domain::compute::Compute;
+use crate::domain::distributed_state::DistributedState;
+use crate::domain::state::{State, twist, vector};
+use crate::error::DemError;
+use crate::observe::energy::{EnergyBalance, EnergyMeter};
+use crate::observe::observables::{self, Observables};
+use crate::pairs::contacts::Contacts;
+use crate::pairs::displacement_bound::DisplacementBound;
+use crate::pairs::neighbours::Neighbours;
+use crate::settings::{EngineSettings, Features};
+use grainlab_core::contact::ContactLaw;
+use grainlab_core::{Cell, Mat3, Material, Packing, SymTensor, Vec3};
+use std::borrow::Cow;
+
+/// Grains in a deforming periodic cell, stepped at a given strain rate.
+#[derive(Clone, Debug)]
+pub struct Engine {
+    pub(crate) state: State,
+    pub(crate) contacts: Contacts,
+    pub(super) copies: DistributedState,
+    pub(super) settings: EngineSettings,
+    pub(super) compute: Compute,
+    pub(super) neighbours: Neighbours,
+    /// How much closer any pair may have come since the neighbours were found.
+    pub(super) since_search: DisplacementBound,
+    /// And since they were pruned to the pairs of the force kernel.
+    pub(super) since_pruning: DisplacementBound,
+    pub(super) has_neighbours: bool,
+    /// Whether the forces are those of the present state.
+    pub(super) has_forces: bool,
+    /// Sums the energy balance, if it is switched on.
+    pub(super) energy: Option<Box<EnergyMeter>>,
+}
+
+impl Engine {
+    /// Grains at rest at `positions` (m), without contact history. Their contact law is the default, Hertz–Mindlin.
+    pub fn new(
+        cell: Cell,
+        material: Material,
+        radii: Vec<f64>,
+        positions: &[Vec3],
+        settings: EngineSettings,
+    ) -> Self {
+        let ids = (0..radii.len() as u32).collect();
+        let state = State::new(cell, material, ids, radii, positions);
+        let contacts = Contacts::empty(&state);
+        Self::from_state(state, contacts, settings)
+    }
+
+    /// The same grains under another contact law. Call it before the first step.
+    pub fn with_law(mut self, law: ContactLaw) -> Self {
+        self.state.law = law;
+        self
+    }
+
+    /// Grains as they are in `packing`, contact law and history included.
+    pub fn from_packing(packing: &Packing, settings: EngineSettings) -> Self {
+        let mut state = State::new(
+            packing.cell,
+            packing.material,
+            packing.ids.clone(),
+            packing.radii.clone(),
+            &packing.positions,
+        );
+        state.twist = packing.velocities.iter().zip(&packing.spins).map(|(v, w)| twist(v, w)).collect();
+        state.law = packing.law;
+        state.step = packing.step;
+        state.time = packing.time;
+        state.time_step = packing.time_step;
+        let contacts = Contacts::from_packing(packing, &state);
+        Self::from_state(state, contacts, settings)
+    }
+
+    fn from_state(state: State, contacts: Contacts, settings: EngineSettings) -> Self {
+        let mut engine = Self {
+            state,
+            contacts,
+            copies: DistributedState::default(),
+            settings,
+            compute: Compute::default(),
+            neighbours: Neighbours::default(),
+            since_search: DisplacementBound::new(settings.skin),
+            since_pruning: DisplacementBound::new(settings.skin),
+            has_neighbours: false,
+            has_forces: false,
+            energy: None,
+        };
+        engine.set_settings(settings);
+        engine
+    }
+
+    /// Sets instruction set and threads. Results do not depend on them.
+    pub fn set_compute(&mut self, compute: Compute) {
+        // The pairs are divided among as many subdomains as there are threads.
+        self.has_neighbours &= compute.threads() == self.compute.threads();
+        self.compute = compute;
+    }
+
+    /// Instruction set and threads in use.
+    pub fn compute(&self) -> &Compute {
+        &self.compute
+    }
+
+    /// Sets velocities relative to the affine motion, m/s, one per grain.
+    pub fn set_velocities(&mut self, velocities: &[Vec3]) {
+        self.reclaim_state();
+        self.state.twist.iter_mut().zip(velocities).for_each(|(t, v)| t.0[..3].copy_from_slice(v.as_slice()));
+    }
+
+    /// Sets spins, rad/s, one per grain.
+    pub fn set_spins(&mut self, spins: &[Vec3]) {
+        self.reclaim_state();
+        self.state.twist.iter_mut().zip(spins).for_each(|(t, w)| t.0[4..7].copy_from_slice(w.as_slice()));
+    }
+
+    /// Adds to the velocities of some grains, m/s.
+    pub fn add_velocities(&mut self, increments: impl IntoIterator<Item = (usize, Vec3)>) {
+        self.reclaim_state();
+        for (grain, increment) in increments {
+            self.state.twist[grain].0[..3].iter_mut().zip(increment.iter()).for_each(|(v, dv)| *v += dv);
+        }
+    }
+
+    /// Velocities relative to the affine motion, m/s, one per grain: those half a step before the positions.
+    pub fn velocities(&self) -> Vec<Vec3> {
+        self.current_state().velocities().collect()
+    }
+
+    /// The settings in force.
+    pub fn settings(&self) -> &EngineSettings {
+        &self.settings
+    }
+
+    /// Changes the settings, from the next step on. Without friction, spins and tangential forces become zero.
+    pub fn set_settings(&mut self, settings: EngineSettings) {
+        if settings.features() == Features::Frictionless {
+            self.reclaim_state();
+            self.state.twist.iter_mut().for_each(|t| t.0[4..].fill(0.0));
+            self.contacts.clear_history();
+        }
+        if settings.skin != self.settings.skin {
+            self.has_neighbours = false;
+        }
+        self.settings = settings;
+    }
+
+    /// Imposes a strain rate (Voigt order, tensor components, 1/s, positive in extension).
+    pub fn set_rate(&mut self, rate: &[f64; 6]) -> Result<(), DemError> {
+        const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+        if let Some(c) = rate.iter().position(|r| !r.is_finite()) {
+            return Err(DemError::Rate { component: NAMES[c], value: rate[c] });
+        }
+        self.state.rate = SymTensor::from_voigt(*rate).matrix();
+        Ok(())
+    }
+
+    /// The strain rate in force, Voigt order, 1/s.
+    pub fn rate(&self) -> [f64; 6] {
+        SymTensor::symmetric_part(&self.state.rate).voigt()
+    }
+
+    /// Whether all grains are of one size.
+    pub fn equal_sized(&self) -> bool {
+        self.state.is_monodisperse()
+    }
+
+    /// Solver steps done.
+    pub fn steps(&self) -> u64 {
+        self.state.step
+    }
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Sets the simulated time, s: that of a run which is resumed.
+    pub fn set_time(&mut self, time: f64) {
+        self.state.time = time;
+    }
+
+    /// Time step in force, s.
+    pub fn time_step(&self) -> f64 {
+        self.state.time_step
+    }
+
+    /// Moves grains that are neighbours in space next to each other in memory, which makes large packings faster. Their ids
+    /// move with them. Call [`Engine::initialise`] before the next step.
+    pub fn sort_spatially(&mut self) {
+        self.reclaim_state();
+        let order = spatial_order::along_curve(&self.state);
+        self.contacts = spatial_order::reorder(&mut self.state, &self.contacts, &order);
+        (self.has_neighbours, self.has_forces) = (false, false);
+    }
+
+    /// Copies the state back from the subdomains of the threads. It changes no result; it is worth calling before the state
+    /// is read more than once.
+    pub fn gather(&mut self) {
+        self.copies.gather(&mut self.state, &self.compute);
+    }
+
+    /// Copies the state back from the subdomains, and makes their copies invalid: before the state is changed.
+    pub(super) fn reclaim_state(&mut self) {
+        self.gather();
+        self.copies.invalidate();
+    }
+
+    /// The present state, wherever it is stored.
+    fn current_state(&self) -> Cow<'_, State> {
+        let mut state = Cow::Borrowed(&self.state);
+        if self.copies.is_authoritative() {
+            self.copies.copy_to(state.to_mut(), &self.compute);
+        }
+        state
+    }
+
+    /// A state to return to.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint::new(&self.current_state(), &self.contacts)
+    }
+
+    /// Returns to a checkpoint, with the energy balance off. Call [`Engine::initialise`] before the next step.
+    pub fn restore(&mut self, checkpoint: Checkpoint) {
+        self.reclaim_state();
+        self.contacts = checkpoint.restore(&mut self.state);
+        self.energy = None;
+        (self.has_neighbours, self.has_forces) = (false, false);
+    }
+
+    /// Stress, tangent stiffness and force balance of the present contacts.
+    pub fn observables(&self) -> Result<Observables, DemError> {
+        let state = self.current_state();
+        observables::observe(&state, &self.contacts, &self.settings, &self.compute)
+    }
+
+    /// Switches the energy balance on, from the present state, or off. It changes no result; steps with it are several times
+    /// slower. Forces must have been evaluated ([`Engine::initialise`]).
+    pub fn measure_energy(&mut self, on: bool) {
+        self.gather();
+        let new = || Box::new(EnergyMeter::new(&self.state, &self.contacts, &self.settings));
+        self.energy = on.then(new);
+    }
+
+    /// The energy balance since it was switched on; `None` if it is off.
+    pub fn energy(&self) -> Option<EnergyBalance> {
+        let meter = self.energy.as_ref()?;
+        Some(meter.balance(&self.current_state(), &self.contacts, &self.settings))
+    }
+
+    /// Root mean square speed relative to the affine motion, m/s.
+    pub fn speed(&self) -> f64 {
+        self.current_state().mean_square_speed().sqrt()
+    }
+
+    /// The packing; `deformation` is the deformation gradient since the reference state.
+    pub fn packing(&self, deformation: Mat3) -> Packing {
+        let s = &*self.current_state();
+        Packing {
+            step: s.step,
+            time: s.time,
+            cell: s.cell,
+            deformation,
+            ids: s.ids.clone(),
+            radii: s.radius.clone(),
+            positions: s.position.iter().map(vector).collect(),
+            velocities: s.velocities().collect(),
+            spins: s.spins().collect(),
+            contacts: self.contacts.to_contacts(s),
+            material: s.material,
+            law: s.law,
+            friction: self.settings.friction,
+            time_step: s.time_step,
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Gases of grains: the start of a packing.
+//!
+//! - `placement`: random placement with thermal velocities
+//! - `event_driven`: hard spheres, moved from collision to collision
+
+mod event_driven;
+mod placement;
+
+pub use event_driven::spheres::{Collisions, HardSpheres, mean_free_time};
+pub use placement::{Gas, random_placement, random_sequential_addition};

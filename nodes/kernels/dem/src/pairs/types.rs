@@ -1,0 +1,90 @@
+//! Pairs of grains as they are stored: eight to a block.
+
+use crate::simd::simd_f64::{BLOCK_SIZE, F64x8};
+use grainlab_core::Vec3;
+
+/// Row in the table of periodic images of the pairs that only pad a block. It is so far away that they never touch.
+pub(crate) const PADDING: u32 = 0;
+
+/// Eight pairs.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct PairBlock {
+    /// Contact radius √(R* δ) at the last evaluation, m; 0 where the pair does not touch.
+    pub(crate) contact_radius: [f64; BLOCK_SIZE],
+    /// Elastic tangential force on `i`, N: the history of the contact.
+    pub(crate) history: [[f64; BLOCK_SIZE]; 3],
+    pub(crate) i: [u32; BLOCK_SIZE],
+    pub(crate) j: [u32; BLOCK_SIZE],
+    /// Row in the table of periodic images.
+    pub(crate) image: [u32; BLOCK_SIZE],
+    /// Row of the accumulator for the force on `j`. The row for `i` is its index in the chunk.
+    pub(crate) accumulator_row: [u32; BLOCK_SIZE],
+}
+
+/// Sizes of eight pairs; stored only where grains differ in size.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct PairSizes {
+    pub(crate) radius_i: [f64; BLOCK_SIZE],
+    pub(crate) radius_j: [f64; BLOCK_SIZE],
+    pub(crate) r_eff: [f64; BLOCK_SIZE],
+    pub(crate) m_eff: [f64; BLOCK_SIZE],
+}
+
+/// A pair whose second grain is a periodic image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PeriodicPair {
+    /// Its slot among those of its chunk.
+    pub(crate) slot: u32,
+    /// Row in the table of periodic images.
+    pub(crate) image: u32,
+}
+
+/// One pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    /// Row in the table of periodic images.
+    pub(crate) image: u32,
+    /// Contact radius √(R* δ), m; 0 where the pair does not touch.
+    pub(crate) contact_radius: f64,
+    /// Elastic tangential force on `i`, N.
+    pub(crate) history: Vec3,
+}
+
+/// A contact as it is saved: grains, image, contact radius √(R* δ) (m) and elastic tangential force (N).
+pub(crate) type SavedContact = (u32, u32, [i8; 3], f64, Vec3);
+
+/// The pairs of one chunk, for the force kernel.
+pub(crate) struct PairChunk<'a> {
+    pub(crate) blocks: &'a mut [PairBlock],
+    /// Empty where grains are of one size.
+    pub(crate) sizes: &'a [PairSizes],
+    /// Pairs across the faces of the cell.
+    pub(crate) periodic: &'a [PeriodicPair],
+    /// Accumulator rows, those of the chunk's grains first.
+    pub(crate) sums: &'a mut [F64x8],
+}
+
+impl Pair {
+    pub(crate) fn touches(&self) -> bool {
+        self.contact_radius > 0.0
+    }
+}
+
+impl PairBlock {
+    /// The pair in a lane; `None` where it only pads the block.
+    #[inline(always)]
+    pub(crate) fn pair(&self, lane: usize) -> Option<Pair> {
+        let h = &self.history;
+        (self.image[lane] != PADDING).then(|| Pair {
+            i: self.i[lane],
+            j: self.j[lane],
+            image: self.image[lane],
+            contact_radius: self.contact_radius[lane],
+            history: Vec3::new(h[0][lane], h[1][lane], h[2][lane]),
+        })
+    }
+}

@@ -1,0 +1,94 @@
+//! Choosing an instruction set at run time.
+
+use super::kernel::Kernel;
+use std::fmt;
+use std::str::FromStr;
+
+/// An instruction set for the force kernel. All give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Simd {
+    /// One contact at a time, on any processor.
+    Scalar,
+    /// Four at a time.
+    Avx2,
+    /// Eight at a time.
+    Avx512,
+}
+
+impl Simd {
+    /// All instruction sets, from narrow to wide.
+    pub const ALL: [Simd; 3] = [Simd::Scalar, Simd::Avx2, Simd::Avx512];
+
+    /// Whether this processor has the instruction set.
+    pub fn is_available(self) -> bool {
+        match self {
+            Simd::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx2 => super::x86::has_avx2(),
+            #[cfg(target_arch = "x86_64")]
+            Simd::Avx512 => super::x86::has_avx512(),
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => false,
+        }
+    }
+
+    /// The instruction sets of this processor, from narrow to wide.
+    pub fn available() -> Vec<Simd> {
+        Self::ALL.into_iter().filter(|s| s.is_available()).collect()
+    }
+
+    /// The widest instruction set of this processor.
+    pub fn best() -> Simd {
+        Self::ALL.into_iter().rfind(|s| s.is_available()).unwrap_or(Simd::Scalar)
+    }
+
+    /// Lanes of 64-bit floats.
+    pub fn width(self) -> usize {
+        match self {
+            Simd::Scalar => 1,
+            Simd::Avx2 => 4,
+            Simd::Avx512 => 8,
+        }
+    }
+
+    /// Runs a kernel. Where the processor lacks this set it runs with one lane, with the same bits.
+    #[inline]
+    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        #[cfg(target_arch = "x86_64")]
+        let kernel = {
+            let tried = match self {
+                Simd::Scalar => Err(kernel),
+                Simd::Avx2 => super::x86::run_avx2(kernel),
+                Simd::Avx512 => super::x86::run_avx512(kernel),
+            };
+            match tried.or_else(super::x86::run_scalar) {
+                Ok(output) => return output,
+                Err(kernel) => kernel,
+            }
+        };
+        kernel.run::<f64>()
+    }
+}
+
+impl fmt::Display for Simd {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Simd::Scalar => "scalar",
+            Simd::Avx2 => "avx2",
+            Simd::Avx512 => "avx512",
+        })
+    }
+}
+
+/// The name of no instruction set.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown instruction set \"{0}\"; known are scalar, avx2 and avx512")]
+pub struct UnknownSimd(String);
+
+impl FromStr for Simd {
+    type Err = UnknownSimd;
+
+    fn from_str(text: &str) -> Result<Self, UnknownSimd> {
+        Self::ALL.into_iter().find(|s| s.to_string() == text).ok_or_else(|| UnknownSimd(text.to_owned()))
+    }
+}

@@ -1,0 +1,121 @@
+//! The constants of all models.
+
+use super::discrepancy::ModelDiscrepancy;
+use super::isotropic::IsotropicCalibration;
+use super::relaxation::RelaxationCalibration;
+use crate::conditions::StrainRatioSource;
+use crate::structure::{Quantity, StructureCovariance};
+use grainlab_core::Material;
+use std::borrow::Cow;
+
+/// Constants of the models, measured on packings of one material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    pub(crate) name: Cow<'static, str>,
+    pub(crate) isotropic: IsotropicCalibration,
+    /// The fit to the same packings with the other coordination number.
+    pub(crate) other: Option<IsotropicCalibration>,
+    pub(crate) material: Material,
+    pub(crate) pressures: Option<[f64; 2]>,
+    pub(crate) network: Option<Box<RelaxationCalibration>>,
+    pub(crate) discrepancies: Vec<ModelDiscrepancy>,
+}
+
+impl Calibration {
+    /// The paper's isotropic constants alone.
+    pub const PAPER: Calibration = Calibration {
+        name: Cow::Borrowed("paper"),
+        isotropic: IsotropicCalibration::PAPER,
+        other: None,
+        material: Material::GLASS,
+        pressures: None,
+        network: None,
+        discrepancies: Vec::new(),
+    };
+
+    /// From isotropic constants of packings of `material`.
+    pub fn of_isotropic(
+        name: impl Into<Cow<'static, str>>,
+        isotropic: IsotropicCalibration,
+        material: Material,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            isotropic,
+            other: None,
+            material,
+            pressures: None,
+            network: None,
+            discrepancies: Vec::new(),
+        }
+    }
+
+    /// Its name, reported with every estimate.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Material of its packings.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// Lowest and highest pressure of its packings, Pa; `None` if not known.
+    pub fn pressures(&self) -> Option<[f64; 2]> {
+        self.pressures
+    }
+
+    /// Constants of the model `relaxed`; `None` if the calibration has none.
+    pub fn network(&self) -> Option<&RelaxationCalibration> {
+        self.network.as_deref()
+    }
+
+    /// Eqs. 21 and 22 for the calibration's own material.
+    pub fn isotropic(&self) -> &IsotropicCalibration {
+        &self.isotropic
+    }
+
+    /// Eqs. 21 and 22 for these grains: at the same pressure the stiffness of a network of Hertz contacts is
+    /// proportional to E*^⅔.
+    pub fn isotropic_for(&self, material: Option<Material>) -> IsotropicCalibration {
+        self.isotropic.scaled(self.stiffer(material))
+    }
+
+    /// Stiffness of a network of these grains over that of the calibration at the same pressure: (E*/E* of the
+    /// calibration)^⅔.
+    pub(crate) fn stiffer(&self, material: Option<Material>) -> f64 {
+        let own = self.material.effective_young();
+        material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
+    }
+
+    /// The same with this coordination number for its isotropic packings; `None` if the calibration has no such fit.
+    pub fn with_coordination_kind(&self, kind: Quantity) -> Option<Self> {
+        if self.isotropic.coordination_kind == kind {
+            return Some(self.clone());
+        }
+        let isotropic = self.other.clone().filter(|i| i.coordination_kind == kind)?;
+        Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
+    }
+
+    /// Covariance of the error of a model that is given this γ/Δ and infers this ε; `None` if it was not learned.
+    pub(crate) fn discrepancy(
+        &self,
+        model: &str,
+        gamma: Option<StrainRatioSource>,
+        eps: Option<f64>,
+    ) -> Option<StructureCovariance> {
+        let kind = self.isotropic.coordination_kind;
+        let learned = self
+            .discrepancies
+            .iter()
+            .find(|d| d.model == model && d.gamma == gamma && d.coordination_kind == kind)?;
+        let mut covariance = StructureCovariance::zeros();
+        let order = [kind, Quantity::KHat, Quantity::Eps];
+        for (a, row) in order.into_iter().zip(learned.at(eps)) {
+            for (b, value) in order.into_iter().zip(row) {
+                covariance[(a as usize, b as usize)] = value;
+            }
+        }
+        Some(covariance)
+    }
+}

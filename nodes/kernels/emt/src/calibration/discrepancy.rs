@@ -1,0 +1,51 @@
+//! The error of a model itself.
+
+use super::error::{CalibrationError, constant};
+use super::names::{coordination_kind, strain_ratio};
+use crate::conditions::StrainRatioSource;
+use crate::structure::Quantity;
+use serde::{Deserialize, Serialize};
+
+/// How far a model is from the packings of the calibration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelDiscrepancy {
+    /// Name of the model.
+    pub model: String,
+    /// The coordination number of the isotropic packings: [`Quantity::K`] or [`Quantity::Z`].
+    #[serde(rename = "abscissa", with = "coordination_kind")]
+    pub coordination_kind: Quantity,
+    /// The γ/Δ given to the model; `None` if it uses none.
+    #[serde(with = "strain_ratio")]
+    pub gamma: Option<StrainRatioSource>,
+    /// Means of the products of the errors (bias included) of the coordination number, k̂ and ε; zero for k̂ where the
+    /// model has none.
+    pub mean_square: [[f64; 3]; 3],
+    /// f0 and f1: where ε is inferred, the mean square of its error is multiplied by f0 + f1 ε², which is 1 in the
+    /// mean.
+    pub by_eps: [f64; 2],
+}
+
+impl ModelDiscrepancy {
+    /// Means of the products of the errors where this ε is inferred.
+    pub(super) fn at(&self, eps: Option<f64>) -> [[f64; 3]; 3] {
+        let [constant, square] = self.by_eps;
+        let of_eps = eps.map_or(1.0, |eps| (constant + square * eps * eps).sqrt());
+        let scale = [1.0, 1.0, of_eps];
+        std::array::from_fn(|i| std::array::from_fn(|j| scale[i] * scale[j] * self.mean_square[i][j]))
+    }
+
+    pub(super) fn check(&self) -> Result<(), CalibrationError> {
+        let m = nalgebra::Matrix3::from_fn(|i, j| self.mean_square[i][j]);
+        let lowest = if m.iter().all(|v| v.is_finite()) { m.symmetric_eigenvalues().min() } else { f64::NAN };
+        let valid = m == m.transpose() && lowest >= -1e-9 * m.amax();
+        constant(
+            "discrepancy.mean_square",
+            lowest,
+            valid,
+            "it must be symmetric without negative eigenvalues",
+        )?;
+        let [f0, f1] = self.by_eps;
+        constant("discrepancy.by_eps", f0.min(f1), f0 >= 0.0 && f1 >= 0.0, "it must not be negative")
+    }
+}

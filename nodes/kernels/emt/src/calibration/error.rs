@@ -1,0 +1,42 @@
+//! Why there is no calibration.
+
+/// Why there is no calibration.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CalibrationError {
+    /// A constant is out of range.
+    #[error("{field} = {value} is invalid: {requirement}")]
+    Constant {
+        /// Which constant.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is required.
+        requirement: &'static str,
+    },
+    /// The text is not a calibration file.
+    #[error("{0}")]
+    Text(String),
+    /// The packings do not determine the constants.
+    #[error("{found} {what}, {needed} or more are needed: prepare more packings, or more different ones")]
+    Packings {
+        /// What is too few.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+}
+
+/// Refuses a constant that is not finite or not `valid`.
+pub(super) fn constant(
+    field: &'static str,
+    value: f64,
+    valid: bool,
+    requirement: &'static str,
+) -> Result<(), CalibrationError> {
+    if valid && value.is_finite() {
+        return Ok(());
+    }
+    Err(CalibrationError::Constant { field, value, requirement })
+}

@@ -1,0 +1,99 @@
+//! The warnings that apply to the estimate of any model.
+
+use crate::calibration::Calibration;
+use crate::conditions::StrainRatioSource;
+use crate::moduli::Modulus;
+use crate::observation::Observation;
+use crate::structure::{Quantity, Structure};
+use crate::warning::Warning;
+
+/// Coordination number of a close packing of equal spheres, the largest possible.
+const CLOSE_PACKING: f64 = 12.0;
+
+/// Asymmetry beyond which a stiffness counts as not isotropic about e3, for any number of grains.
+const ASYMMETRY: f64 = 0.05;
+
+/// Upper bound of asymmetry times the root of the number of grains, for packings that are isotropic about e3.
+const SCATTER: f64 = 2.2;
+
+/// Imbalance of moduli that were rounded to three or four digits.
+const ROUNDING: f64 = 5e-3;
+
+/// Number of standard deviations that chance exceeds less than once in a thousand times.
+const CERTAIN: f64 = 3.3;
+
+/// Relative error of a modulus beyond which linear propagation is inaccurate: at 5 % the intervals still cover their
+/// level, at 30 % they do not.
+const LARGE_ERROR: f64 = 0.1;
+
+/// Warnings that follow from the observation and the structure alone.
+pub(crate) fn common(
+    observation: &Observation,
+    structure: &Structure,
+    calibration: &Calibration,
+    uses_gamma: bool,
+) -> Vec<Warning> {
+    let conditions = &observation.conditions;
+    let mut warnings = Vec::new();
+    let mut add = |applies: bool, warning: Warning| {
+        if applies {
+            warnings.push(warning);
+        }
+    };
+    let outside = |v: f64, [low, high]: [f64; 2]| !(low..=high).contains(&v);
+    let coordinations = [structure.k, structure.k_hat, structure.z].into_iter().flatten();
+    let highest = coordinations.fold(0.0, f64::max);
+    add(highest > CLOSE_PACKING, Warning::CoordinationImpossible { coordination: highest });
+    if let Some(range) = calibration.pressures() {
+        let pressure = observation.pressure();
+        // The tolerance of a servo is not an extrapolation.
+        let wide = [0.99 * range[0], 1.01 * range[1]];
+        add(outside(pressure, wide), Warning::PressureOutsideFit { pressure, range });
+    }
+    if let Some(nu) = conditions.material.map(|m| m.poisson_ratio) {
+        let calibrated = calibration.material().poisson_ratio;
+        add((nu - calibrated).abs() > 1e-6, Warning::OtherGrains { nu, calibrated });
+    }
+    if let Some(asymmetry) = observation.asymmetry {
+        let scatter = observation.grains.map_or(0.0, |n| SCATTER / f64::from(n.max(1)).sqrt());
+        add(asymmetry > scatter.max(ASYMMETRY), Warning::NotTransverselyIsotropic { asymmetry });
+    }
+    add(observation.moduli.unstable(), Warning::NotOneMedium);
+    if let Some(relative) = observation.moduli.imbalance() {
+        let errors = observation.covariance.as_ref();
+        let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
+        add(relative.abs() > ROUNDING + CERTAIN * stddev, Warning::Imbalance { relative });
+    }
+    for quantity in [Quantity::K, Quantity::Z] {
+        let Some(value) = structure.get(quantity) else { continue };
+        add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
+    }
+    if let Some(covariance) = &observation.covariance {
+        let relative = |(modulus, value): (Modulus, f64)| {
+            let i = modulus as usize;
+            (modulus, covariance[(i, i)].max(0.0).sqrt() / value.abs())
+        };
+        // C13 is a small difference of large numbers: its relative error is not meaningful.
+        let given = observation.moduli.known().filter(|(m, _)| *m != Modulus::C13).map(relative);
+        if let Some((modulus, relative)) = given.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            add(relative > LARGE_ERROR, Warning::ErrorsLarge { modulus, relative });
+        }
+    }
+    if let Some(eps) = structure.eps {
+        add(outside(eps, [-0.5, 1.0]), Warning::EpsOutOfRange { eps });
+    }
+    if uses_gamma {
+        let g = conditions.gamma.value;
+        add(outside(g, [-0.3, 0.1]), Warning::GammaLarge { g });
+        add(outside(g, [-0.5, 0.25]), Warning::ContactsOpen { g });
+        add(conditions.gamma.source == StrainRatioSource::Zero, Warning::GammaAssumedZero);
+    }
+    warnings
+}
+
+/// The warning for a coordination number in Eqs. 21 and 22 that no packing of the calibration had.
+pub(crate) fn outside_fit(quantity: Quantity, value: f64, calibration: &Calibration) -> Option<Warning> {
+    let range = calibration.isotropic().fitted;
+    let outside = !(range[0]..=range[1]).contains(&value);
+    outside.then_some(Warning::CoordinationOutsideFit { quantity, value, range })
+}

@@ -1,0 +1,60 @@
+//! From packings to constants.
+
+mod discrepancy;
+mod isotropic;
+mod regression;
+mod relaxation;
+mod sample;
+
+pub use sample::CalibrationSample;
+
+use crate::calibration::{Calibration, CalibrationError};
+use crate::structure::Quantity;
+use discrepancy::discrepancies;
+use grainlab_core::Material;
+use isotropic::of_isotropic;
+use relaxation::network;
+use sample::bounds;
+
+/// Constants from isotropic and from anisotropic packings, all of one material. Without anisotropic ones only Eqs. 21
+/// and 22 are fitted.
+pub fn learn(
+    name: &str,
+    isotropic: &[CalibrationSample],
+    anisotropic: &[CalibrationSample],
+) -> Result<Calibration, CalibrationError> {
+    let all: Vec<&CalibrationSample> = isotropic.iter().chain(anisotropic).collect();
+    let material = material(&all)?;
+    let (low, high) = bounds(all.iter().map(|s| s.pressure));
+    let mut calibration = Calibration {
+        other: Some(of_isotropic(isotropic, Quantity::Z)?),
+        pressures: Some([low, high]),
+        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic, Quantity::K)?, material)
+    };
+    if !anisotropic.is_empty() {
+        calibration.network = Some(Box::new(network(isotropic, anisotropic, &material)?));
+        calibration.discrepancies = discrepancies(isotropic, anisotropic, &calibration);
+    }
+    Ok(calibration)
+}
+
+fn material(samples: &[&CalibrationSample]) -> Result<Material, CalibrationError> {
+    let first =
+        samples.first().ok_or(CalibrationError::Packings { what: "packings", found: 0, needed: 3 })?;
+    for s in samples {
+        if !s.is_finite() {
+            let requirement = "every number of a packing must be finite, and all moduli known and positive";
+            return Err(CalibrationError::Constant { field: "a packing", value: s.pressure, requirement });
+        }
+        for (field, value, reference) in [
+            ("shear modulus of the grains", s.material.shear_modulus, first.material.shear_modulus),
+            ("Poisson ratio of the grains", s.material.poisson_ratio, first.material.poisson_ratio),
+        ] {
+            if value != reference {
+                let requirement = "all packings of a calibration must be of one material";
+                return Err(CalibrationError::Constant { field, value, requirement });
+            }
+        }
+    }
+    Ok(first.material)
+}

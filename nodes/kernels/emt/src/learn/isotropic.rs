@@ -1,0 +1,51 @@
+//! Eqs. 21 and 22 from isotropic packings.
+
+use super::regression::linear;
+use super::sample::{CalibrationSample, bounds};
+use crate::calibration::{CalibrationError, IsotropicCalibration};
+use crate::invariants::Invariants;
+use crate::structure::Quantity;
+use std::collections::BTreeSet;
+
+/// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the
+/// covariance counts packings, not states.
+pub(super) fn of_isotropic(
+    samples: &[CalibrationSample],
+    kind: Quantity,
+) -> Result<IsotropicCalibration, CalibrationError> {
+    let coordination = |s: &CalibrationSample| if kind == Quantity::Z { s.z } else { s.k };
+    let packings = samples.iter().map(|s| &s.packing).collect::<BTreeSet<_>>().len();
+    let fit = |modulus: fn(&Invariants) -> f64| {
+        let rows: Vec<_> = samples
+            .iter()
+            .filter_map(|s| {
+                let reduced = modulus(&Invariants::of(&s.moduli)?).exp() / 1e6 / (s.pressure / 1e6).cbrt();
+                Some(([coordination(s), 1.0], reduced, 1.0 / reduced))
+            })
+            .collect();
+        let line = linear(&rows, "isotropic packings")?;
+        let independent = (packings as f64 - 2.0).max(1.0);
+        let variance = line.squares / rows.len() as f64 * packings as f64 / independent;
+        // From (slope, intercept) to (slope, intercept/slope).
+        let (slope, ratio) = (line.coefficients[0], line.coefficients[1] / line.coefficients[0]);
+        let jacobian = nalgebra::Matrix2::new(1.0, 0.0, -ratio / slope, 1.0 / slope);
+        let inverse =
+            line.inverse.fixed_view::<2, 2>(0, 0).into_owned() * (rows.len() as f64 / packings as f64);
+        let covariance = jacobian * inverse * jacobian.transpose() * variance;
+        Ok((slope, ratio, covariance, (line.squares / rows.len() as f64).sqrt()))
+    };
+    let (alpha, beta, of_shear, shear_scatter) = fit(|i| i.ln_shear)?;
+    let (rho, zeta, of_theta, theta_scatter) = fit(|i| i.ln_theta)?;
+    let (low, high) = bounds(samples.iter().map(coordination));
+    let mut isotropic = IsotropicCalibration::new([alpha, beta, rho, zeta], kind, [low, high])?;
+    let mut covariance = [[0.0; 4]; 4];
+    for i in 0..2 {
+        for j in 0..2 {
+            covariance[i][j] = of_shear[(i, j)];
+            covariance[2 + i][2 + j] = of_theta[(i, j)];
+        }
+    }
+    isotropic.covariance = Some(covariance);
+    isotropic.scatter = Some([shear_scatter, theta_scatter]);
+    Ok(isotropic)
+}

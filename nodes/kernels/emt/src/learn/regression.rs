@@ -1,0 +1,76 @@
+//! Weighted linear least squares, and minimisation in one variable.
+
+use crate::calibration::CalibrationError;
+use nalgebra::{DMatrix, DVector};
+
+/// Coefficients, and the inverse of the normal matrix.
+pub(super) struct Regression {
+    pub(super) coefficients: Vec<f64>,
+    pub(super) inverse: DMatrix<f64>,
+    /// Weighted sum of squared residuals.
+    pub(super) squares: f64,
+}
+
+/// Fits y by linear combinations of the columns of x. Each row is (x, y, weight of the residual).
+pub(super) fn linear<const N: usize>(
+    rows: &[([f64; N], f64, f64)],
+    what: &'static str,
+) -> Result<Regression, CalibrationError> {
+    let too_few = CalibrationError::Packings { what, found: rows.len(), needed: N + 1 };
+    if rows.len() <= N {
+        return Err(too_few);
+    }
+    let x = DMatrix::from_fn(rows.len(), N, |i, j| rows[i].0[j] * rows[i].2);
+    let y = DVector::from_fn(rows.len(), |i, _| rows[i].1 * rows[i].2);
+    // Columns are scaled to norm 1, so that the threshold for a singular matrix has no unit.
+    let scale: Vec<f64> = x.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+    let scaled = DMatrix::from_fn(rows.len(), N, |i, j| x[(i, j)] / scale[j]);
+    let normal = scaled.transpose() * &scaled;
+    let determined = normal.clone().symmetric_eigenvalues().min() > 1e-12;
+    let inverse = normal.try_inverse().filter(|_| determined).ok_or(too_few)?;
+    let solution = &inverse * (scaled.transpose() * &y);
+    let squares = (&scaled * &solution - y).norm_squared();
+    let coefficients = solution.iter().zip(&scale).map(|(c, s)| c / s).collect();
+    let inverse = DMatrix::from_fn(N, N, |i, j| inverse[(i, j)] / scale[i] / scale[j]);
+    Ok(Regression { coefficients, inverse, squares })
+}
+
+/// The minimum of `f` in [low, high], if it is the only one there, by golden-section search.
+pub(super) fn minimum(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    while high - low > 1e-7 {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - golden * (high - low);
+            at_a = f(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + golden * (high - low);
+            at_b = f(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_recovered_from_its_points_and_too_few_points_are_an_error() {
+        let points: Vec<_> = (0..5).map(|i| ([1.0, f64::from(i)], 2.0 - 0.5 * f64::from(i), 1.0)).collect();
+        let fit = linear(&points, "points").unwrap();
+        assert!((fit.coefficients[0] - 2.0).abs() < 1e-12 && (fit.coefficients[1] + 0.5).abs() < 1e-12);
+        assert!(fit.squares < 1e-24);
+        assert!(linear(&points[..2], "points").is_err());
+        let same: Vec<_> = (0..5).map(|_| ([1.0, 3.0], 1.0, 1.0)).collect();
+        assert!(matches!(linear(&same, "points"), Err(CalibrationError::Packings { .. })));
+    }
+
+    #[test]
+    fn the_minimum_of_a_parabola_is_found() {
+        assert!((minimum(0.0, 10.0, |x| (x - 3.7f64).powi(2)) - 3.7).abs() < 1e-6);
+    }
+}

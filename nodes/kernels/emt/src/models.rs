@@ -1,0 +1,9 @@
+//! The models, a file each; [`crate::models`](fn@crate::models) lists them.
+
+pub(crate) mod directional;
+pub(crate) mod effective_medium;
+mod equivalent;
+pub(crate) mod ratio;
+pub(crate) mod relaxed;
+mod shear_ratio;
+pub(crate) mod unequal_springs;

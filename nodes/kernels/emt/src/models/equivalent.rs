@@ -1,0 +1,96 @@
+//! The equivalent isotropic packing, to which the ratio models compare a packing.
+//!
+//! Moduli of an anisotropic packing over those of an isotropic one with coordination number k̂ are (k/k̂)^power times
+//! factors that depend on the contact distribution alone. With G and Θ of Eqs. 21 and 22, G12/Θ gives k̂, and Θ then
+//! gives k: closed and unique.
+
+use super::shear_ratio::ratio_warnings;
+use crate::calibration::Calibration;
+use crate::checks::outside_fit;
+use crate::conditions::Conditions;
+use crate::domain::Domain;
+use crate::error::EmtError;
+use crate::moduli::{Moduli, Modulus};
+use crate::observation::Observation;
+use crate::point_estimate::PointEstimate;
+use crate::structure::{QUANTITIES, Quantity, Structure};
+
+/// Highest coordination number of the domain: more than the neighbours that equal spheres can touch.
+pub(super) const MAX_COORDINATION: f64 = 15.0;
+
+/// Moduli over those of an isotropic packing with as many contacts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factors {
+    /// G12 over the isotropic shear modulus. Positive.
+    pub(super) g12: f64,
+    /// G13 over the isotropic shear modulus.
+    pub(super) g13: f64,
+    /// Bulk modulus over the isotropic one. Positive.
+    pub(super) bulk: f64,
+}
+
+impl Factors {
+    /// The moduli of a packing with the coordination numbers of `found`, a structure of [`domain`] in the order of
+    /// [`Quantity::ALL`].
+    pub(super) fn moduli(
+        &self,
+        found: &[f64; QUANTITIES],
+        power: f64,
+        conditions: &Conditions,
+        calibration: &Calibration,
+    ) -> Moduli {
+        let isotropic = calibration.isotropic_for(conditions.material);
+        let [k, k_hat] = [isotropic.coordination_kind, Quantity::KHat].map(|q| found[q as usize]);
+        let pressure = conditions.pressure.value;
+        let denser = (k / k_hat).powf(power);
+        let shear = denser * isotropic.shear_modulus(k_hat, pressure);
+        let bulk = denser * isotropic.bulk_modulus(k_hat, pressure);
+        Moduli::paper(self.g12 * shear, self.g13 * shear, self.bulk * bulk)
+    }
+
+    /// The structure of contact anisotropy `eps` that has the observed moduli, with warnings. Without Θ its
+    /// coordination numbers stay undetermined.
+    pub(super) fn point_estimate(
+        &self,
+        eps: f64,
+        power: f64,
+        observation: &Observation,
+        calibration: &Calibration,
+    ) -> Result<PointEstimate, EmtError> {
+        let structure = Structure::default().with(Quantity::Eps, eps);
+        let [g12, g13, theta] =
+            [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| observation.moduli.get(m));
+        let mut warnings = g12.zip(g13).map_or(Vec::new(), |(g12, g13)| ratio_warnings(g13 / g12));
+        let Some((g12, theta)) = g12.zip(theta) else {
+            return Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) });
+        };
+        let isotropic = calibration.isotropic_for(observation.conditions.material);
+        let of_isotropic = self.bulk / self.g12;
+        let s = isotropic.reduced(g12 / theta * of_isotropic);
+        if s >= 1.0 {
+            return Err(EmtError::ShearTooStiff {
+                ratio: g12 / theta,
+                limit: 1.0 / isotropic.reduced(of_isotropic),
+                calibration: calibration.name().into(),
+            });
+        }
+        let k_hat = isotropic.coordination(s);
+        let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
+        let k = k_hat * if power == 1.0 { denser } else { denser.powf(1.0 / power) };
+        warnings.extend(outside_fit(Quantity::KHat, k_hat, calibration));
+        let structure = structure.with(isotropic.coordination_kind, k).with(Quantity::KHat, k_hat);
+        Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
+    }
+}
+
+/// Domain of a model with the paper's three unknowns: k (or z, as the calibration has it), k̂ above the zero of the
+/// shear modulus, and ε.
+pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
+    let isotropic = calibration.isotropic();
+    let mut structure = [None; QUANTITIES];
+    structure[isotropic.coordination_kind as usize] = Some([0.1, MAX_COORDINATION]);
+    // At the zero of shear itself nothing can be inverted.
+    structure[Quantity::KHat as usize] = Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
+    structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
+    Domain { model, structure, gamma: [-0.5, 0.25], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+}

@@ -1,0 +1,148 @@
+//! The moduli of a relaxed contact network, without γ/Δ.
+//!
+//! The scalars of the stiffness depend on the coordination number z. Its two deviators are proportional to ε, with
+//! factors that grow as the network approaches its isostatic point. The harmonic part depends on the fourth-order
+//! fabric and hardly on ε (see [`crate::Invariants`]). Packings of the same structure still differ; their scatter is
+//! known as a covariance of these five numbers, and the estimate is the generalised least-squares one: for a linear
+//! model, the most probable one with a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z,
+//! ε and the residual of the moduli.
+//!
+//! The constants come from packings ([`crate::Calibration`]); only the form is derived.
+
+mod fit;
+mod scan;
+mod state;
+
+use crate::calibration::{Calibration, RelaxationCalibration};
+use crate::conditions::Conditions;
+use crate::domain::Domain;
+use crate::error::EmtError;
+use crate::model::Model;
+use crate::moduli::{Moduli, Modulus};
+use crate::observation::Observation;
+use crate::point_estimate::{Misfit, PointEstimate};
+use crate::structure::{QUANTITIES, Quantity, Structure};
+use crate::warning::Warning;
+use fit::{Data, Fit};
+use state::State;
+
+/// The relaxed network: model `relaxed`.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxed;
+
+const NAME: &str = "relaxed";
+
+/// Standard deviation of ε from which on ε counts as undetermined: more than the ε of any packing.
+const UNDETERMINED: f64 = 0.2;
+
+impl Model for Relaxed {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn uses_gamma(&self) -> bool {
+        false
+    }
+
+    fn domain(&self, calibration: &Calibration) -> Domain {
+        let mut structure = [None; QUANTITIES];
+        if let Some(network) = calibration.network() {
+            structure[Quantity::Z as usize] = Some(network.domain());
+            structure[Quantity::Eps as usize] = Some(network.domain_of_eps());
+        }
+        Domain {
+            model: NAME,
+            structure,
+            gamma: [-1.0, 1.0],
+            poisson_ratio: [0.0, 0.5],
+            needs_solid_fraction: false,
+        }
+    }
+
+    fn predict(
+        &self,
+        structure: &Structure,
+        conditions: &Conditions,
+        calibration: &Calibration,
+    ) -> Result<Moduli, EmtError> {
+        let network = network(calibration)?;
+        let found = self.domain(calibration).validate(structure, conditions)?;
+        let [z, eps] = [Quantity::Z, Quantity::Eps].map(|q| found[q as usize]);
+        let state = State::of(conditions, None, network, calibration);
+        let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
+        for (modulus, value) in Modulus::ALL.into_iter().zip(moduli) {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(EmtError::Unstable { modulus: modulus.name(), value });
+            }
+        }
+        Ok(Moduli::of_values(moduli.map(Some)))
+    }
+
+    fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError> {
+        let network = network(calibration)?;
+        let state = State::of(&observation.conditions, observation.grains, network, calibration);
+        let data = Data::of(observation, &state);
+        if data.used == 0 {
+            return Err(EmtError::Missing { model: NAME, missing: "any modulus" });
+        }
+        let both = (data.used > 1).then(|| scan::best(&data, network, &state, calibration.name(), false));
+        let fit = match both {
+            Some(Ok(fit)) if fit.eps_stddev() < UNDETERMINED => fit,
+            Some(Err(error)) if data.used > 2 => return Err(error),
+            // The coordination number alone, with ε distributed as in the packings of the calibration.
+            _ => scan::best(&data, network, &state, calibration.name(), true)?,
+        };
+        Ok(point_estimate(&fit, &data, network, &state))
+    }
+}
+
+fn network(calibration: &Calibration) -> Result<&RelaxationCalibration, EmtError> {
+    let missing = || EmtError::NotCalibrated { model: NAME, calibration: calibration.name().to_owned() };
+    calibration.network().ok_or_else(missing)
+}
+
+fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state: &State) -> PointEstimate {
+    let mut warnings = Vec::new();
+    if !state.phi_known {
+        warnings.push(Warning::SolidFractionAssumed { phi: network.solid_fraction[0] });
+    }
+    let phi = state.ln_phi[0].exp() * network.solid_fraction[0];
+    let [loosest, densest] = network.solid_fractions;
+    // The tolerance is for the rounding of φ through a logarithm.
+    if !(loosest - 1e-9..=densest + 1e-9).contains(&phi) {
+        warnings.push(Warning::SolidFractionOutsideFit { phi, range: network.solid_fractions });
+    }
+    if !(network.z[0]..=network.z[1]).contains(&fit.z) {
+        warnings.push(Warning::CoordinationOutsideFit {
+            quantity: Quantity::Z,
+            value: fit.z,
+            range: network.z,
+        });
+    }
+    let eps = fit.eps();
+    if let Some(eps) = eps.filter(|eps| !(network.eps[0]..=network.eps[1]).contains(eps)) {
+        warnings.push(Warning::EpsOutsideFit { eps, range: network.eps });
+    }
+    let misfit = fit
+        .degrees_of_freedom(data)
+        .map(|degrees_of_freedom| Misfit { chi_square: fit.chi_square, degrees_of_freedom });
+    if let Some(Misfit { chi_square, degrees_of_freedom }) = misfit
+        && chi_square > one_in_a_thousand(degrees_of_freedom)
+    {
+        let worst = fit.worst(data);
+        warnings.push(Warning::Conflict { chi_square, degrees_of_freedom, worst });
+    }
+    let inferred = fit.inferred(data, network, state);
+    PointEstimate {
+        structure: inferred.structure,
+        jacobian: Some(inferred.jacobian),
+        discrepancy: Some(inferred.discrepancy),
+        misfit,
+        warnings,
+    }
+}
+
+/// Value that χ² exceeds by chance once in a thousand times.
+fn one_in_a_thousand(degrees_of_freedom: usize) -> f64 {
+    [10.83, 13.82, 16.27, 18.47][degrees_of_freedom.clamp(1, 4) - 1]
+}

@@ -1,0 +1,310 @@
+//! The least squares problem at one coordination number, and what follows from its solution.
+
+use super::state::State;
+use crate::calibration::{RelaxationCalibration, SCATTERED};
+use crate::invariants::INVARIANTS;
+use crate::moduli::{MODULI, Modulus};
+use crate::observation::Observation;
+use crate::point_estimate::Jacobian;
+use crate::structure::{Quantity, Structure, StructureCovariance};
+use nalgebra::{Cholesky, SMatrix, SVector};
+
+/// Relative error of the relation between the six moduli below which only five of them are independent.
+const NO_ROOM: f64 = 1e-6;
+
+type Square = SMatrix<f64, MODULI, MODULI>;
+type Moduli = SVector<f64, MODULI>;
+
+/// The moduli used, in units of [`State::unit`]. A modulus that was not measured but follows from the others is left
+/// out; if all six were measured and their relation holds exactly, Θ is left out. Rows of moduli left out or not known
+/// have residual 0 and variance 1.
+pub(super) struct Data {
+    value: Moduli,
+    covariance: Square,
+    is_used: [bool; MODULI],
+    pub(super) used: usize,
+}
+
+impl Data {
+    pub(super) fn of(observation: &Observation, state: &State) -> Self {
+        let known = observation.moduli.values();
+        let no_room = || {
+            let errors = observation.covariance.as_ref();
+            let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c));
+            observation.moduli.imbalance().is_some() && stddev.is_none_or(|s| s < NO_ROOM)
+        };
+        let left_out = observation.derived.or_else(|| no_room().then_some(Modulus::Theta));
+        let is_used: [bool; MODULI] =
+            std::array::from_fn(|i| known[i].is_some() && left_out != Some(Modulus::ALL[i]));
+        let covariance = observation.covariance.unwrap_or_default() / (state.unit * state.unit);
+        Self {
+            value: SVector::from_fn(|i, _| known[i].map_or(0.0, |m| m / state.unit)),
+            covariance: Square::from_fn(
+                |i, j| if is_used[i] && is_used[j] { covariance[(i, j)] } else { 0.0 },
+            ),
+            is_used,
+            used: is_used.iter().filter(|u| **u).count(),
+        }
+    }
+
+    fn masked<const N: usize>(&self, mut m: SMatrix<f64, MODULI, N>) -> SMatrix<f64, MODULI, N> {
+        for (i, used) in self.is_used.iter().enumerate() {
+            if !used {
+                m.fill_row(i, 0.0);
+            }
+        }
+        m
+    }
+}
+
+/// The problem linearised at one z and ε.
+pub(super) struct Fit {
+    pub(super) z: f64,
+    eps: f64,
+    /// Whether ε is fitted; else it is part of the scatter of the packings.
+    fits_eps: bool,
+    pub(super) chi_square: f64,
+    /// χ² + ln det of the covariance: twice the negative logarithm of the likelihood.
+    pub(super) objective: f64,
+    /// Observed minus predicted.
+    residual: Moduli,
+    /// Derivatives of the moduli with respect to the invariants, ln φ, and (z, ε).
+    by_invariants: SMatrix<f64, MODULI, INVARIANTS>,
+    by_ln_phi: Moduli,
+    by_unknowns: SMatrix<f64, MODULI, 2>,
+    /// Inverse of the covariance of the residual, and covariance of the unknowns.
+    weight: Square,
+    unknowns: SMatrix<f64, 2, 2>,
+}
+
+/// The estimate and its errors.
+pub(super) struct Inferred {
+    pub(super) structure: Structure,
+    pub(super) jacobian: Jacobian,
+    pub(super) discrepancy: StructureCovariance,
+}
+
+impl Fit {
+    /// At z, with the given ε or, for `None`, the best one; `None` where the covariance is singular.
+    pub(super) fn at(
+        data: &Data,
+        network: &RelaxationCalibration,
+        state: &State,
+        z: f64,
+        eps: Option<f64>,
+        fits_eps: bool,
+    ) -> Option<Self> {
+        let deviators = [network.dilatation, network.voigt, network.harmonic];
+        // The moduli are linear in ε.
+        let isotropic = state.invariants(network, z, 0.0);
+        let by_eps = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
+            (0..3).map(|i| slopes.column(2 + i) * deviators[i].value(z)).sum::<Moduli>()
+        };
+        let at_zero = data.masked(isotropic.slopes());
+        let first = Moduli::from(isotropic.moduli());
+        let covariance = |slopes: &SMatrix<f64, MODULI, INVARIANTS>, by_ln_phi: &Moduli, by_eps: &Moduli| {
+            let scatter = network
+                .scatter_at(z, state.variance_factor)
+                .fixed_view::<INVARIANTS, INVARIANTS>(0, 0)
+                .into_owned();
+            let mut c = slopes * scatter * slopes.transpose() + data.covariance;
+            c += by_ln_phi * by_ln_phi.transpose() * state.ln_phi[1].powi(2);
+            if !fits_eps {
+                let [mean, spread] = network.eps_spread;
+                c += by_eps * by_eps.transpose() * (mean * mean + spread * spread);
+            }
+            for (i, used) in data.is_used.iter().enumerate() {
+                if !used {
+                    c[(i, i)] = 1.0;
+                }
+            }
+            c
+        };
+        let phi = |slopes: &SMatrix<f64, MODULI, INVARIANTS>| {
+            slopes.column(0) * network.theta.by_solid_fraction
+                + slopes.column(1) * network.shear.by_solid_fraction
+        };
+        let eps = match eps {
+            Some(eps) => eps,
+            None if fits_eps => {
+                let direction = by_eps(&at_zero);
+                let c = covariance(&at_zero, &phi(&at_zero), &direction);
+                let weighted = Cholesky::new(c)?.solve(&direction);
+                let residual = data.masked(data.value - first);
+                weighted.dot(&residual) / weighted.dot(&direction)
+            }
+            None => 0.0,
+        };
+        let invariants = state.invariants(network, z, eps);
+        let by_invariants = data.masked(invariants.slopes());
+        let by_ln_phi = phi(&by_invariants);
+        let direction = by_eps(&by_invariants);
+        let c = covariance(&by_invariants, &by_ln_phi, &direction);
+        let cholesky = Cholesky::new(c)?;
+        let by_z = by_invariants.column(0) * network.theta.slope(z)
+            + by_invariants.column(1) * network.shear.slope(z)
+            + (0..3).map(|i| by_invariants.column(2 + i) * (deviators[i].slope(z) * eps)).sum::<Moduli>();
+        let mut by_unknowns = SMatrix::<f64, MODULI, 2>::from_columns(&[by_z, direction]);
+        let weight = cholesky.inverse();
+        if !fits_eps {
+            by_unknowns.set_column(1, &Moduli::zeros());
+        }
+        let mut information = by_unknowns.transpose() * weight * by_unknowns;
+        if !fits_eps {
+            information[(1, 1)] = 1.0;
+        }
+        let residual = data.masked(data.value - Moduli::from(invariants.moduli()));
+        let chi_square = residual.dot(&(weight * residual));
+        let ln_det = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
+        Some(Self {
+            z,
+            eps,
+            fits_eps,
+            chi_square,
+            objective: chi_square + ln_det,
+            residual,
+            by_invariants,
+            by_ln_phi,
+            by_unknowns,
+            weight,
+            unknowns: information.try_inverse()?,
+        })
+    }
+
+    /// Change of (z, ε) by one Gauss–Newton step.
+    pub(super) fn step(&self) -> [f64; 2] {
+        let step = self.gain() * self.residual;
+        [step[0], step[1]]
+    }
+
+    /// Change of (z, ε) per change of the moduli.
+    fn gain(&self) -> SMatrix<f64, 2, MODULI> {
+        let mut gain = self.unknowns * self.by_unknowns.transpose() * self.weight;
+        if !self.fits_eps {
+            gain.fill_row(1, 0.0);
+        }
+        gain
+    }
+
+    /// ε at which the problem is linearised.
+    pub(super) fn eps_now(&self) -> f64 {
+        self.eps
+    }
+
+    /// ε; `None` if it is not fitted.
+    pub(super) fn eps(&self) -> Option<f64> {
+        self.fits_eps.then_some(self.eps)
+    }
+
+    pub(super) fn eps_stddev(&self) -> f64 {
+        self.unknowns[(1, 1)].max(0.0).sqrt()
+    }
+
+    /// Number of data minus number of unknowns; `None` if not positive.
+    pub(super) fn degrees_of_freedom(&self, data: &Data) -> Option<usize> {
+        let unknowns = if self.fits_eps { 2 } else { 1 };
+        data.used.checked_sub(unknowns).filter(|d| *d > 0)
+    }
+
+    /// The modulus furthest from its prediction by the others, and by how many standard deviations.
+    pub(super) fn worst(&self, data: &Data) -> (Modulus, f64) {
+        // A datum left out of the fit differs from its prediction by (W r)_i over the square root of (W C W)_ii.
+        let left = self.weight - self.weight * self.by_unknowns * self.gain();
+        let pull = left * self.residual;
+        let sigma = |i: usize| pull[i].abs() / left[(i, i)].max(f64::MIN_POSITIVE).sqrt();
+        let used = (0..MODULI).filter(|i| data.is_used[*i]);
+        let worst = used.max_by(|a, b| sigma(*a).total_cmp(&sigma(*b))).unwrap_or(0);
+        (Modulus::ALL[worst], sigma(worst))
+    }
+
+    /// z and ε; and k and the ε weighted by stiffness, which follow from them and from the residual of the moduli.
+    pub(super) fn inferred(&self, data: &Data, network: &RelaxationCalibration, state: &State) -> Inferred {
+        let (z, eps) = (self.z, self.eps);
+        let gain = self.gain();
+        let scatter = network.scatter_at(z, state.variance_factor);
+        let ln_rattlers = network.ln_rattlers(z, state.ln_phi[0], state.ln_p);
+        let rattlers = ln_rattlers.exp();
+        let [_, by_z, by_phi, by_p] = network.rattlers;
+        let amplitude = network.eps_stiffness;
+        // Rows: ε weighted by stiffness, k. Columns: z, ε.
+        let follows = SMatrix::<f64, 2, 2>::new(
+            amplitude.slope(z) * eps,
+            amplitude.value(z),
+            1.0 - rattlers - z * rattlers * by_z,
+            0.0,
+        );
+        // The scatter of these two is correlated with that of the moduli: regression on the residual.
+        let regression =
+            scatter.fixed_view::<2, INVARIANTS>(INVARIANTS, 0) * self.by_invariants.transpose() * self.weight;
+        let residual_gain = SMatrix::<f64, MODULI, MODULI>::identity() - self.by_unknowns * gain;
+        let following = follows * gain + regression * residual_gain;
+        let beyond = regression * self.residual;
+        let known = self.fits_eps;
+        let structure = Structure {
+            k: Some(z * (1.0 - rattlers) + beyond[1]),
+            k_hat: None,
+            z: Some(z),
+            eps: known.then_some(eps),
+            eps_stiffness: known.then_some(amplitude.value(z) * eps + beyond[0]),
+        };
+
+        let rows = [Quantity::Z, Quantity::Eps, Quantity::EpsStiffness, Quantity::K];
+        let mut by_moduli = SMatrix::<f64, 4, MODULI>::zeros();
+        by_moduli.fixed_view_mut::<2, MODULI>(0, 0).copy_from(&gain);
+        by_moduli.fixed_view_mut::<2, MODULI>(2, 0).copy_from(&following);
+
+        // The residual changes with the data and, with opposite sign, with the prediction for the state.
+        let mut jacobian = Jacobian::zeros();
+        let by_ln_p = -data.value / 3.0
+            - self.by_invariants.column(0) * network.theta.by_pressure
+            - self.by_invariants.column(1) * network.shear.by_pressure;
+        let by_state = [by_moduli * data.masked(by_ln_p), by_moduli * -self.by_ln_phi];
+        for (row, quantity) in rows.into_iter().enumerate() {
+            if structure.get(quantity).is_none() {
+                continue;
+            }
+            let of = quantity as usize;
+            for i in 0..MODULI {
+                jacobian[(of, i)] = by_moduli[(row, i)] * data.value[i];
+            }
+            jacobian[(of, MODULI)] = by_state[0][row];
+            jacobian[(of, MODULI + 2)] = if state.phi_known { by_state[1][row] } else { 0.0 };
+        }
+        let of_k = Quantity::K as usize;
+        jacobian[(of_k, MODULI)] -= z * rattlers * by_p;
+        if state.phi_known {
+            jacobian[(of_k, MODULI + 2)] -= z * rattlers * by_phi;
+        }
+
+        // Errors from the scatter of the packings: through the moduli, and that of k and of ε weighted by stiffness.
+        let mut by_scatter = SMatrix::<f64, 4, SCATTERED>::zeros();
+        by_scatter.fixed_view_mut::<4, INVARIANTS>(0, 0).copy_from(&(by_moduli * self.by_invariants));
+        by_scatter[(2, INVARIANTS)] = -1.0;
+        by_scatter[(3, INVARIANTS + 1)] = -1.0;
+        let mut errors = by_scatter * scatter * by_scatter.transpose();
+        if !state.phi_known {
+            let mut by_phi_row = by_state[1];
+            by_phi_row[3] -= z * rattlers * by_phi;
+            errors += by_phi_row * by_phi_row.transpose() * state.ln_phi[1].powi(2);
+        }
+        if !self.fits_eps {
+            let [mean, spread] = network.eps_spread;
+            let direction = self.of_eps(network);
+            let row = by_moduli * direction;
+            errors += row * row.transpose() * (mean * mean + spread * spread);
+        }
+        let mut discrepancy = StructureCovariance::zeros();
+        for (a, qa) in rows.into_iter().enumerate() {
+            for (b, qb) in rows.into_iter().enumerate() {
+                discrepancy[(qa as usize, qb as usize)] = errors[(a, b)];
+            }
+        }
+        Inferred { structure, jacobian, discrepancy }
+    }
+
+    /// Derivative of the moduli with respect to ε.
+    fn of_eps(&self, network: &RelaxationCalibration) -> Moduli {
+        let amplitudes = [network.dilatation, network.voigt, network.harmonic];
+        (0..3).map(|i| self.by_invariants.column(2 + i) * amplitudes[i].value(self.z)).sum()
+    }
+}

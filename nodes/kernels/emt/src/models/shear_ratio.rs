@@ -1,0 +1,23 @@
+//! The ratio of the shear moduli, from which several models infer ε.
+
+use crate::error::EmtError;
+use crate::moduli::Modulus;
+use crate::observation::Observation;
+use crate::warning::Warning;
+
+/// r = G13/G12, dimensionless. It is below 2 in every model here.
+pub(super) fn shear_ratio(model: &'static str, observation: &Observation) -> Result<f64, EmtError> {
+    let need = |m| observation.moduli.get(m).ok_or(EmtError::missing(model, m));
+    let (g12, g13) = (need(Modulus::G12)?, need(Modulus::G13)?);
+    let ratio = g13 / g12;
+    if !(ratio > 0.0 && ratio < 2.0) {
+        return Err(EmtError::RatioOutOfRange { ratio });
+    }
+    Ok(ratio)
+}
+
+/// The warning for a shear ratio that contact anisotropy alone cannot give.
+pub(super) fn ratio_warnings(ratio: f64) -> Vec<Warning> {
+    let usual = (2.0 / 3.0..=1.5).contains(&ratio);
+    if usual { Vec::new() } else { vec![Warning::RatioUnusual { ratio }] }
+}

@@ -1,0 +1,17 @@
+//! Errors of a run.
+
+use grainlab_dem::DemError;
+
+/// Why a run cannot start or go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ExperimentError {
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] DemError),
+    /// The path failed.
+    #[error(transparent)]
+    Path(#[from] grainlab_scene::PathError),
+    /// A saved state does not belong to this scene or version.
+    #[error("cannot resume: {0}")]
+    Resume(String),
+}

@@ -1,0 +1,19 @@
+//! A scene run along its loading path, one request to the servo and one strain rate at a time.
+//!
+//! - [`Simulation`]: the run
+//! - [`ServoRequest`], [`StepOutcome`]: what it asks, and what a strain rate led to
+//!
+//! A packing and the run state published with it are a checkpoint: a run resumed from them goes on bit for bit.
+
+mod error;
+mod left_out;
+mod phase_settings;
+mod request;
+mod rollback;
+mod run_state;
+mod simulation;
+
+pub use error::ExperimentError;
+pub use request::{ServoRequest, StepOutcome};
+pub use run_state::is_frame;
+pub use simulation::Simulation;

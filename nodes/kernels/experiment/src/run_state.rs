@@ -1,0 +1,102 @@
+//! The part of a run's state that is not in the packing: loading path, accumulated strain, rate in force. It is stored as
+//! opaque bytes with a version, so that a recording is also a checkpoint.
+
+use crate::error::ExperimentError;
+use grainlab_core::Mat3;
+use grainlab_scene::PathState;
+
+const VERSION: u64 = 3;
+
+/// Everything beside the packing that a run needs to continue bit for bit.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RunState {
+    pub(crate) sequence: u64,
+    pub(crate) packings: u64,
+    pub(crate) path: PathState,
+    pub(crate) time: f64,
+    pub(crate) rate: [f64; 6],
+    /// Deformation gradient since the start of the phase.
+    pub(crate) phase_deformation: Mat3,
+    /// Integral over time of the largest component of the strain rate since the start of the phase.
+    pub(crate) phase_strain: f64,
+    pub(crate) has_reference: bool,
+    /// The packing was recorded within a phase.
+    pub(crate) is_frame: bool,
+    /// Fingerprint of the scene: a state can be resumed only in the scene that it came from.
+    pub(crate) scene: u64,
+}
+
+impl RunState {
+    pub(crate) fn encode(&self) -> Vec<u8> {
+        let p = &self.path;
+        let mut words: Vec<u64> = vec![
+            VERSION,
+            self.sequence,
+            self.packings,
+            p.phase as u64,
+            p.began.to_bits(),
+            u64::from(p.holding_since.is_some()),
+            p.holding_since.unwrap_or(0.0).to_bits(),
+            self.time.to_bits(),
+            u64::from(self.has_reference) | u64::from(self.is_frame) << 1,
+            self.scene,
+        ];
+        words.extend(self.rate.iter().map(|r| r.to_bits()));
+        words.extend(self.phase_deformation.iter().map(|r| r.to_bits()));
+        words.push(self.phase_strain.to_bits());
+        words.iter().flat_map(|w| w.to_le_bytes()).collect()
+    }
+
+    pub(crate) fn decode(bytes: &[u8]) -> Result<Self, ExperimentError> {
+        let words: Vec<u64> = bytes
+            .chunks_exact(8)
+            .map(|c| u64::from_le_bytes([c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]]))
+            .collect();
+        let resume = |m: String| ExperimentError::Resume(m);
+        match words.first() {
+            None => {
+                return Err(resume(
+                    "the packing carries no run state (it was not made by a simulation)".into(),
+                ));
+            }
+            Some(&VERSION) => {}
+            Some(v) => {
+                return Err(resume(format!("run state version {v}, this program knows version {VERSION}")));
+            }
+        }
+        if words.len() != 26 || !bytes.len().is_multiple_of(8) {
+            return Err(resume(format!("the run state has {} bytes, 208 expected", bytes.len())));
+        }
+        let real = |k: usize| f64::from_bits(words[k]);
+        let rate: [f64; 6] = std::array::from_fn(|k| real(10 + k));
+        let phase_deformation = Mat3::from_fn(|r, c| real(16 + 3 * c + r));
+        if ![4, 6, 7, 25].iter().all(|k| real(*k).is_finite())
+            || !rate.iter().chain(phase_deformation.iter()).all(|v| v.is_finite())
+        {
+            return Err(resume("the run state holds numbers that are not finite".into()));
+        }
+        let path = PathState {
+            phase: words[3] as usize,
+            began: real(4),
+            holding_since: (words[5] != 0).then_some(real(6)),
+        };
+        let (sequence, packings, time, scene) = (words[1], words[2], real(7), words[9]);
+        Ok(Self {
+            sequence,
+            packings,
+            path,
+            time,
+            rate,
+            phase_deformation,
+            phase_strain: real(25),
+            has_reference: words[8] & 1 != 0,
+            is_frame: words[8] & 2 != 0,
+            scene,
+        })
+    }
+}
+
+/// Whether a packing with this run state was recorded within a phase, on the way from one state to the next.
+pub fn is_frame(run_state: &[u8]) -> bool {
+    RunState::decode(run_state).is_ok_and(|state| state.is_frame)
+}

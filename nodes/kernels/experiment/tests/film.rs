@@ -1,0 +1,161 @@
+//! Packings within phases, grains of several sizes, and runs that start from a packing.
+
+use grainlab_core::Packing;
+use grainlab_experiment::{Simulation, is_frame};
+use grainlab_scene::{Draft, Scene};
+
+const SCENE: &str = r#"
+name = "small"
+seed = 5
+friction = 0.1
+[grains]
+count = 48
+diameter = 2e-4
+[[phase]]
+kind = "gas"
+rate = -60.0
+until = { solid_fraction = 0.55 }
+[[phase]]
+kind = "relax"
+friction = 0.0
+drag = 1e4
+reference = true
+control_period = 50
+until = { elapsed = 2e-4 }
+[[phase]]
+kind = "strain"
+rate = [-30.0, -30.0, -40.0, 0.0, 3.0, 0.0]
+until = { pressure_above = 2e4 }
+[[phase]]
+kind = "relax"
+name = "rest"
+friction = inf
+drag = 5e4
+spin_drag = 5e4
+until = { elapsed = 5e-5 }
+publish = true
+"#;
+
+/// A packing that was due, the run state with it, and whether a phase had ended.
+type Published = (Packing, Vec<u8>, bool);
+
+/// Runs to the end; all packings that were due.
+fn run(mut run: Simulation) -> (Simulation, Vec<Published>) {
+    let mut published = Vec::new();
+    while let Some(request) = run.request() {
+        let rate = grainlab_servo::control(&request.servo_input()).unwrap().rate;
+        let outcome = run.advance(&rate).unwrap();
+        if outcome.packing_due {
+            published.push((run.packing(), run.run_state(), outcome.ended.is_some()));
+        }
+    }
+    (run, published)
+}
+
+fn of(scene: &str) -> Simulation {
+    Simulation::new(Scene::parse(scene).unwrap()).unwrap()
+}
+
+fn filmed() -> String {
+    SCENE
+        .replace(
+            "until = { solid_fraction = 0.55 }",
+            "record = { every_steps = 100 }\nuntil = { solid_fraction = 0.55 }",
+        )
+        .replace(
+            "until = { pressure_above = 2e4 }",
+            "record = { every_strain = 1e-3 }\nuntil = { pressure_above = 2e4 }",
+        )
+        .replace("until = { elapsed = 5e-5 }", "record = { every_time = 1e-5 }\nuntil = { elapsed = 5e-5 }")
+}
+
+/// Expected: the same end, bit for bit, with a packing each thousandth of strain and one at the end.
+#[test]
+fn a_run_that_is_filmed_is_the_run_that_is_not() {
+    let ((_, plain), (film, frames)) = (run(of(SCENE)), run(of(&filmed())));
+    assert_eq!(plain.len(), 1);
+    assert_eq!(frames.last().unwrap().0, plain[0].0);
+    assert_eq!(film.packings(), frames.len() as u64);
+    assert!(frames.iter().all(|(_, state, ended)| is_frame(state) != *ended));
+    let strained: Vec<&Packing> = frames.iter().map(|(p, ..)| p).filter(|p| p.friction == 0.1).collect();
+    assert!(strained.len() > 10, "{} packings", strained.len());
+    for (n, pair) in strained.windows(2).enumerate() {
+        let strain = |p: &Packing| p.deformation[(2, 2)].ln().abs();
+        let step = strain(pair[1]) - strain(pair[0]);
+        assert!((step - 1e-3).abs() < 2e-4, "between packings {n} and {}: {step}", n + 1);
+    }
+}
+
+/// Expected: a run taken up from any of its packings goes on to the same packings, bit for bit.
+#[test]
+fn a_filmed_run_goes_on_from_each_of_its_packings() {
+    let scene = filmed();
+    let (_, frames) = run(of(&scene));
+    for at in (0..frames.len() - 1).step_by(7) {
+        let (packing, state, _) = &frames[at];
+        let again = Simulation::resume(Scene::parse(&scene).unwrap(), packing, state).unwrap();
+        assert_eq!(&again.run_state(), state, "what it says again is what it said");
+        assert_eq!(run(again).1, frames[at + 1..], "from packing {at}");
+    }
+}
+
+/// Expected: solid fraction, energy per grain and momentum of a gas of several sizes, which comes to the same end each time.
+#[test]
+fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
+    for diameter in [
+        "{ min = 1.4e-4, max = 2.6e-4 }",
+        "{ median = 2e-4, spread = 0.2 }",
+        "[{ diameter = 1.4e-4, share = 0.6 }, { diameter = 2.8e-4, share = 0.4 }]",
+    ] {
+        let scene = SCENE.replace("diameter = 2e-4", &format!("diameter = {diameter}"));
+        for scene in [scene.clone(), scene.replace("rate = -60.0", "method = \"soft\"\nrate = -60.0")] {
+            let start = of(&scene);
+            let gas = start.packing();
+            let sizes = start.scene().sizes.diameters(48);
+            assert!(gas.radii.iter().zip(&sizes).all(|(r, d)| *r == 0.5 * d));
+            assert!((gas.solid_fraction() - 0.3).abs() < 1e-12, "{}", gas.solid_fraction());
+            let mass = |r: &f64| gas.material.sphere_mass(*r);
+            let momentum = gas.velocities.iter().zip(&gas.radii).map(|(v, r)| v * mass(r));
+            assert!(momentum.sum::<grainlab_core::Vec3>().norm() < 1e-12 * mass(&gas.radii[0]));
+            let (a, b) = (run(start).1, run(of(&scene)).1);
+            assert_eq!(a, b, "{diameter}");
+            assert!(a[0].0.contacts.len() > 60 && a[0].0.clone().validated().is_ok());
+        }
+    }
+}
+
+/// Expected: the packing as it was, at time 0; its forces are those that it came with.
+#[test]
+fn a_run_starts_from_a_packing() {
+    let packing = run(of(SCENE)).1.remove(0).0;
+    let text = "name = \"on\"\nfriction = inf\n[start]\npacking = \"x\"\n\
+        [[phase]]\nkind = \"strain\"\nrate = [0, 0, -1.0, 0, 0, 0]\nuntil = { elapsed = 1e-6 }\npublish = true\n";
+    let scene = Draft::of_text(text).unwrap().resolve_from(&packing).unwrap().scene;
+    let start = Simulation::from_packing(scene.clone(), &packing).unwrap();
+    let first = start.packing();
+    assert_eq!((first.step, first.time, start.packings()), (0, 0.0, 1));
+    assert_eq!((&first.positions, &first.velocities), (&packing.positions, &packing.velocities));
+    assert_eq!(first.contacts, packing.contacts);
+    // It is published first, and the run goes on from that.
+    let again = Simulation::resume(scene, &first, &start.run_state()).unwrap();
+    assert_eq!(run(again).1, run(start).1);
+}
+
+/// Expected: what each phase leaves out, by name.
+#[test]
+fn a_run_says_what_each_phase_leaves_out() {
+    let mut run = of(SCENE);
+    let mut said = Vec::new();
+    while let Some(request) = run.request() {
+        if said.len() <= run.path().phase {
+            said.push(run.left_out());
+        }
+        run.advance(&grainlab_servo::control(&request.servo_input()).unwrap().rate).unwrap();
+    }
+    assert!(said[0].contains("hard spheres"), "{said:?}");
+    assert!(said[1].starts_with("without spins, tangential springs, unequal sizes ("), "{said:?}");
+    assert_eq!(said[2], "without unequal sizes");
+    assert!(said[3].starts_with("without the Coulomb check, unequal sizes"), "{said:?}");
+    let unequal = SCENE.replace("diameter = 2e-4", "diameter = { min = 1.9e-4, max = 2.1e-4 }");
+    assert!(!of(&unequal).left_out().contains("unequal"));
+}

@@ -1,0 +1,83 @@
+//! A drag on motion holds stress that the packing does not bear.
+
+use crate::support::*;
+use grainlab_core::ServoLaw;
+use grainlab_dem::{Engine, TimeStep};
+use grainlab_experiment::Simulation;
+use grainlab_scene::Scene;
+
+const DRAG: f64 = 4e5;
+
+/// The pressure that is left of a state at rest in its cell, without drag, Pa.
+fn left(e: &mut Engine) -> f64 {
+    let mut s = *e.settings();
+    (s.damping, s.drag, s.spin_drag) = (0.3, 0.0, 0.0);
+    e.set_settings(s);
+    e.set_rate(&[0.0; 6]).unwrap();
+    steps(e, 100_000);
+    e.observables().unwrap().stress.tensor.mean()
+}
+
+/// Expected: grains dragged together far below the density at which they jam show a pressure; at rest none is left.
+/// The unbalanced force had said so.
+#[test]
+fn a_pressure_propped_up_by_drag_is_gone_at_rest_and_shows_in_the_unbalanced_force() {
+    for seed in 1..4 {
+        let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
+        let mut s = setting(0.1, 0.0);
+        (s.time_step, s.drag, s.spin_drag) = (TimeStep::FractionOfStable(0.8), DRAG, DRAG);
+        let mut e = engine(gas.cell, GLASS, &[RADIUS; 60], &gas.positions, s);
+        e.set_rate(&[-1000.0, -1000.0, -1000.0, 0.0, 0.0, 0.0]).unwrap();
+        while e.observables().unwrap().solid_fraction < 0.52 {
+            e.step().unwrap();
+        }
+        let moving = e.observables().unwrap();
+        let pressure = moving.stress.tensor.mean();
+        assert!(pressure > 1e3 && moving.unbalanced > 0.03, "{pressure} {}", moving.unbalanced);
+        let kept = left(&mut e);
+        assert!(kept < 0.01 * pressure, "seed {seed}: {pressure} to {kept}");
+    }
+}
+
+/// Expected: under the same drag, a target that was met with forces in balance is kept at rest to 1 %.
+#[test]
+fn a_pressure_met_in_balance_is_kept_at_rest() {
+    let target = 9.5e4;
+    let text = format!(
+        r#"
+name = "dragged"
+seed = 5
+[grains]
+count = 60
+diameter = 2e-4
+[[phase]]
+kind = "gas"
+rate = -100.0
+control_period = 100
+until = {{ solid_fraction = 0.5 }}
+[[phase]]
+kind = "servo"
+friction = 0.1
+drag = {DRAG}
+spin_drag = {DRAG}
+rate_limit = 1000.0
+response_time = 3e-6
+control = {{ xx = {{ stress = {target} }}, yy = {{ stress = {target} }}, zz = {{ stress = {target} }} }}
+until = {{ on_target = 0.05, unbalanced = 1e-4, timeout = 0.2 }}
+"#
+    );
+    let mut run = Simulation::new(Scene::parse(&text).unwrap()).unwrap();
+    while let Some(r) = run.request() {
+        let law = ServoLaw::Scaled { response_time: 3e-6 };
+        let limit = if r.phase == 0 { 100.0 } else { 1000.0 };
+        let answer = servo(run.engine(), r.controls, law, limit, 10);
+        run.advance(&answer.rate).unwrap();
+    }
+    let p = run.packing();
+    let mut e = Engine::from_packing(&p, setting(0.1, p.time_step));
+    e.initialise().unwrap();
+    let kept = left(&mut e);
+    assert!((kept / target - 1.0).abs() < 0.06, "on target to 5 %: {kept}");
+    let met = grainlab_core::stress::stress(&p).tensor.mean();
+    assert!((kept / met - 1.0).abs() < 0.01, "{met} to {kept}");
+}

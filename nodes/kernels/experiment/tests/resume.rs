@@ -1,0 +1,198 @@
+//! A packing and its run state are a checkpoint: a run taken up from them goes on bit for bit.
+
+use grainlab_dem::DemError;
+use grainlab_experiment::{ExperimentError, Simulation};
+use grainlab_scene::Scene;
+
+const SCENE: &str = r#"
+name = "tiny"
+seed = 5
+[grains]
+count = 32
+diameter = 2e-4
+[[phase]]
+kind = "gas"
+method = "soft"
+rate = -60.0
+control_period = 100
+until = { solid_fraction = 0.55 }
+[[phase]]
+kind = "relax"
+friction = 0.0
+drag = 1e4
+reference = true
+control_period = 50
+until = { elapsed = 2e-4 }
+[[phase]]
+kind = "strain"
+friction = 0.1
+rate = [-30.0, -30.0, -40.0, 0.0, 3.0, 0.0]
+until = { pressure_above = 2e4 }
+publish = true
+[[phase]]
+kind = "servo"
+friction = 0.1
+drag = 5e3
+response_time = 3e-6
+control = { xx = { stress = 5e4 }, yy = { stress = 5e4 }, zz = { stress = 5e4 }, xy = { stress = 0.0 } }
+control_period = 7
+until = { on_target = 0.1, unbalanced = 3e-2, hold = 1e-5 }
+[[phase]]
+kind = "relax"
+friction = inf
+drag = 5e4
+spin_drag = 5e4
+until = { elapsed = 5e-5 }
+publish = true
+"#;
+
+fn advance(run: &mut Simulation) -> bool {
+    let Some(r) = run.request() else { return false };
+    run.advance(&grainlab_servo::control(&r.servo_input()).unwrap().rate).unwrap();
+    true
+}
+
+fn start() -> Simulation {
+    begin(SCENE)
+}
+
+fn begin(scene: &str) -> Simulation {
+    Simulation::new(Scene::parse(scene).unwrap()).unwrap()
+}
+
+/// The same path from an event-driven gas.
+fn event_driven() -> String {
+    SCENE.replace("method = \"soft\"\nrate = -60.0\ncontrol_period = 100", "rate = -60.0\ncontrol_period = 3")
+}
+
+#[test]
+fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
+    // The phase of every request, to save in the middle of each phase and where each begins.
+    let (mut run, mut phases) = (start(), Vec::new());
+    while run.request().is_some() {
+        phases.push(run.path().phase);
+        advance(&mut run);
+    }
+    let end = run.packing();
+    assert!(end.contacts.len() > 50, "{} contacts", end.contacts.len());
+    let mut saves = Vec::new();
+    for phase in 0..5 {
+        let first = phases.iter().position(|p| *p == phase).unwrap();
+        let length = phases.iter().filter(|p| **p == phase).count();
+        saves.extend([first, first + length / 2]);
+    }
+    let mut first = start();
+    for (at, phase) in phases.iter().enumerate() {
+        if saves.contains(&at) {
+            let saved = (first.packing(), first.run_state());
+            let mut second = Simulation::resume(Scene::parse(SCENE).unwrap(), &saved.0, &saved.1).unwrap();
+            while advance(&mut second) {}
+            // Every number of both states, contact history and run state included.
+            assert_eq!(second.packing(), end, "resumed at request {at}, in phase {phase}");
+            assert_eq!(second.run_state(), run.run_state());
+        }
+        advance(&mut first);
+    }
+}
+
+#[test]
+fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
+    let scene = event_driven();
+    let (mut run, mut saves) = (begin(&scene), Vec::new());
+    while run.path().phase < 2 {
+        if run.path().phase == 0 {
+            saves.push((run.packing(), run.run_state(), run.request()));
+        }
+        advance(&mut run);
+    }
+    let end = run.packing();
+    assert!(saves.len() > 20, "{} exchanges", saves.len());
+    for (packing, state, request) in saves {
+        let mut second = Simulation::resume(Scene::parse(&scene).unwrap(), &packing, &state).unwrap();
+        assert_eq!(second.request(), request);
+        while second.path().phase < 2 {
+            advance(&mut second);
+        }
+        assert_eq!(second.packing(), end, "resumed at step {}", packing.step);
+        assert_eq!(second.run_state(), run.run_state());
+    }
+}
+
+#[test]
+fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
+    let mut run = begin(&event_driven());
+    while run.path().phase == 0 {
+        let asked = run.request().unwrap();
+        advance(&mut run);
+        let (time, steps) = (run.engine().time(), run.engine().steps());
+        assert_eq!(steps, asked.step + 3);
+        let expected = asked.time + asked.control_interval;
+        assert!((time / expected - 1.0).abs() < 1e-14 && time > asked.time, "{time} {expected}");
+        assert!(run.engine().speed() <= 1.0 + 1e-12);
+        let packing = run.packing().validated().unwrap();
+        let deepest = packing.contacts.iter().map(|c| c.overlap).fold(0.0, f64::max);
+        assert!(deepest < 1e-12 * 2e-4, "{deepest:e}");
+    }
+    let reached = run.packing().solid_fraction();
+    assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
+    assert!(run.engine().speed() > 0.9, "still a gas: {}", run.engine().speed());
+    // The contact law takes over at its own time step.
+    assert!(run.engine().time_step() < 1e-6, "{}", run.engine().time_step());
+}
+
+#[test]
+fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
+    let mut run = begin(&event_driven());
+    advance(&mut run);
+    let before = (run.packing(), run.run_state());
+    let error = run.advance(&[-60.0, -60.0, -50.0, 0.0, 0.0, 0.0]).unwrap_err().to_string();
+    assert!(error.contains("not isotropic"), "{error}");
+    let error = run.advance(&[f64::NAN; 6]).unwrap_err().to_string();
+    assert!(error.contains("finite"), "{error}");
+    // Refused, the run is back at a state from which it can go on.
+    assert!(run.engine().steps() <= before.0.step);
+    assert!(advance(&mut run));
+
+    let mut run = begin(&event_driven().replace("solid_fraction = 0.55", "solid_fraction = 0.76"));
+    let error = loop {
+        let rate = run.request().unwrap().controls.map(|c| match c {
+            grainlab_core::ComponentControl::StrainRate(rate) => rate,
+            _ => 0.0,
+        });
+        if let Err(error) = run.advance(&rate) {
+            break error;
+        }
+    };
+    assert!(matches!(error, ExperimentError::Engine(DemError::Jammed { .. })), "{error}");
+    assert!(run.packing().validated().is_ok());
+}
+
+#[test]
+fn observing_changes_nothing() {
+    let (mut plain, mut watched) = (start(), start());
+    while advance(&mut plain) {
+        let _ = (watched.packing(), watched.run_state(), watched.engine().observables());
+        assert!(advance(&mut watched));
+    }
+    assert_eq!(plain.packing(), watched.packing());
+}
+
+#[test]
+fn a_foreign_or_broken_run_state_is_refused() {
+    let run = start();
+    let (packing, state) = (run.packing(), run.run_state());
+    let resume =
+        |scene: &str, state: &[u8]| Simulation::resume(Scene::parse(scene).unwrap(), &packing, state);
+    assert!(resume(SCENE, &state).is_ok());
+    assert!(
+        resume(&SCENE.replace("seed = 5", "seed = 6"), &state)
+            .unwrap_err()
+            .to_string()
+            .contains("another scene")
+    );
+    assert!(resume(SCENE, &[]).unwrap_err().to_string().contains("no run state"));
+    assert!(resume(SCENE, &state[..40]).unwrap_err().to_string().contains("bytes"));
+    let mut old = state.clone();
+    old[0] = 99;
+    assert!(resume(SCENE, &old).unwrap_err().to_string().contains("version 99"));
+}

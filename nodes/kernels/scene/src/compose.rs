@@ -1,0 +1,166 @@
+//! A scene from a base and what changes it.
+//!
+//! One rule: tables are merged key by key, everything else replaces what the base has, and `"unset"` forgets it. A path is
+//! an array, so `[[phase]]` replaces it whole; `[phase.NAME]` changes the phase of that name, `remove` leaves phases out and
+//! `[[append]]` adds some, in this order. What is set on a command line is merged in the same way.
+
+use crate::built_in::built_in;
+use crate::fault::{Fault, SceneError};
+use crate::model::Scene;
+use crate::overlay::overlay;
+use crate::parse::{Resolved, read};
+use crate::reader::as_number;
+use grainlab_core::Packing;
+use toml::{Table, Value};
+
+/// A text that a base names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// What identifies it: the built-in name, or the whole path.
+    pub name: String,
+    /// The text.
+    pub text: String,
+}
+
+/// Looks a base up: its name as it is written, and the name of the source that it is written in. The error says why there
+/// is none.
+pub type Library<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
+
+/// A scene as a table: its bases are merged, its values are not judged yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draft {
+    table: Table,
+    /// The source that names the packing to start from.
+    start_from: Option<String>,
+}
+
+/// The packing that a scene starts from, as its text names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StartFile {
+    /// A path, seen from the source that names it.
+    pub path: String,
+    /// That source; none where it was set beside the scene.
+    pub from: Option<String>,
+    /// Solver step of the packing in a recording; the last one if there is none.
+    pub step: Option<u64>,
+}
+
+impl Scene {
+    /// Parses a scene; every fault of the text is in the error. Its base, if it has one, is built in.
+    ///
+    /// ```
+    /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
+    /// assert!(faults.iter().any(|f| f.place == "friktion" && f.message.starts_with("unknown key")));
+    /// ```
+    pub fn parse(text: &str) -> Result<Scene, SceneError> {
+        Ok(Draft::of_text(text)?.resolve()?.scene)
+    }
+}
+
+impl Draft {
+    /// Of a text whose base, if it has one, is built in.
+    pub fn of_text(text: &str) -> Result<Draft, SceneError> {
+        let source = Source { name: "scene".into(), text: text.into() };
+        Self::of(&source, &|base, _| {
+            let text = built_in(base).ok_or("only built-in scenes are known here")?;
+            Ok(Source { name: base.into(), text: text.into() })
+        })
+    }
+
+    /// Of a text, with bases from `library`.
+    ///
+    /// # Errors
+    /// A text that is no TOML, a base that is not found, a circle of bases, and overrides of what is not there.
+    pub fn of(source: &Source, library: Library<'_>) -> Result<Draft, SceneError> {
+        let (mut layers, mut names) = (Vec::new(), vec![source.name.clone()]);
+        let mut next = Some(source.clone());
+        while let Some(source) = next.take() {
+            let mut table = parse(&source, names.len() > 1)?;
+            if let Some(base) = table.remove("base") {
+                let found = find(&base, &source.name, library).map_err(|m| fault("base", m))?;
+                let circle = names.contains(&found.name);
+                names.push(found.name.clone());
+                if circle {
+                    return Err(fault("base", format!("goes in a circle: {}", names.join(" -> "))));
+                }
+                next = Some(found);
+            }
+            layers.push((source.name, table));
+        }
+        let start_from = layers.iter().find(|(_, table)| names_start(table)).map(|(name, _)| name.clone());
+        let mut table = layers.pop().unwrap_or_default().1;
+        let mut faults = Vec::new();
+        for (_, layer) in layers.into_iter().rev() {
+            faults.extend(overlay(&mut table, layer));
+        }
+        if faults.is_empty() { Ok(Draft { table, start_from }) } else { Err(SceneError { faults }) }
+    }
+
+    /// Lays keys over the scene, as [`crate::assignment`] reads them.
+    pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
+        if names_start(&keys) {
+            self.start_from = None;
+        }
+        let faults = overlay(&mut self.table, keys);
+        if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
+    }
+
+    /// The packing that the scene starts from, if it does: to be read, and given to [`Draft::resolve_from`].
+    pub fn start(&self) -> Option<StartFile> {
+        let start = self.table.get("start")?.as_table()?;
+        let path = start.get("packing")?.as_str()?.to_owned();
+        let step = start.get("step").and_then(Value::as_integer).and_then(|s| u64::try_from(s).ok());
+        Some(StartFile { path, from: self.start_from.clone(), step })
+    }
+
+    /// Names the packing to start from by the whole path of its file and its solver step.
+    pub fn start_at(&mut self, path: &str, step: u64) {
+        let entries = [("packing", Value::from(path)), ("step", Value::from(step as i64))];
+        let start = entries.map(|(key, value)| (key.to_owned(), value));
+        self.table.insert("start".into(), Value::Table(Table::from_iter(start)));
+        self.start_from = None;
+    }
+
+    /// The friction of the first phase: its own, or that of the scene.
+    pub fn first_friction(&self) -> Option<f64> {
+        let first = self.table.get("phase").and_then(|phases| phases.get(0)?.get("friction"));
+        as_number(first.or_else(|| self.table.get("friction"))?)
+    }
+
+    /// A value given under `[material]`: what a file of a packing may not say.
+    pub fn material(&self, key: &str) -> Option<f64> {
+        as_number(self.table.get("material")?.as_table()?.get(key)?)
+    }
+
+    /// The scene, if all its values hold. One that starts from a packing needs it: see [`Draft::resolve_from`].
+    pub fn resolve(&self) -> Result<Resolved, SceneError> {
+        read(&self.table, None)
+    }
+
+    /// A scene that starts from this packing.
+    pub fn resolve_from(&self, packing: &Packing) -> Result<Resolved, SceneError> {
+        read(&self.table, Some(packing))
+    }
+}
+
+fn names_start(table: &Table) -> bool {
+    table.get("start").and_then(Value::as_table).is_some_and(|start| start.contains_key("packing"))
+}
+
+fn fault(place: &str, message: impl Into<String>) -> SceneError {
+    SceneError { faults: vec![Fault { place: place.into(), message: message.into() }] }
+}
+
+fn parse(source: &Source, is_base: bool) -> Result<Table, SceneError> {
+    source.text.parse().map_err(|e: toml::de::Error| {
+        let place = if is_base { source.name.as_str() } else { "scene" };
+        fault(place, e.to_string().trim_end())
+    })
+}
+
+fn find(base: &Value, from: &str, library: Library<'_>) -> Result<Source, String> {
+    let Value::String(name) = base else {
+        return Err(format!("is {base}; it must be the name of a scene or the path of a file, in quotes"));
+    };
+    library(name, from).map_err(|why| format!("is {name:?}: {why}"))
+}

@@ -1,0 +1,139 @@
+//! A key of the format: what it means, and what values it takes.
+
+use std::fmt;
+use std::ops::Bound;
+
+/// A key of the format.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Tables and name, as in `grains.count`; the keys of a phase begin with `phase`.
+    pub path: &'static str,
+    /// Kinds of phases that have it; empty for all, and for keys outside phases.
+    pub kinds: &'static [&'static str],
+    /// Unit; empty for none.
+    pub unit: &'static str,
+    /// Values that it takes.
+    pub domain: Domain,
+    /// Value where the scene names none.
+    pub default: DefaultValue,
+    /// One line for people.
+    pub meaning: &'static str,
+}
+
+/// Values that a key takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Domain {
+    /// A number.
+    Number(Interval),
+    /// A whole number from the first to the second.
+    Whole(u64, u64),
+    /// True or false.
+    Flag,
+    /// Text.
+    Text,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+    /// Something else, in words.
+    Form(&'static str),
+}
+
+/// Value of a key that the scene does not name.
+#[derive(Clone, Copy, Debug)]
+pub enum DefaultValue {
+    /// There is none: the scene must name it.
+    Required,
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Whole(u64),
+    /// True or false.
+    Flag(bool),
+    /// Text.
+    Text(&'static str),
+    /// Depends on other keys, or means that the key has no effect; in words.
+    Words(&'static str),
+}
+
+/// Numbers between two bounds; infinity only where there is no upper bound.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval {
+    /// Lower bound.
+    pub low: Bound<f64>,
+    /// Upper bound.
+    pub high: Bound<f64>,
+}
+
+impl Interval {
+    /// Finite numbers.
+    pub(crate) const FINITE: Self =
+        Self { low: Bound::Excluded(f64::NEG_INFINITY), high: Bound::Excluded(f64::INFINITY) };
+    /// Finite numbers above 0.
+    pub(crate) const POSITIVE: Self = Self { low: Bound::Excluded(0.0), ..Self::FINITE };
+    /// Finite numbers below 0.
+    pub(crate) const NEGATIVE: Self = Self { high: Bound::Excluded(0.0), ..Self::FINITE };
+    /// Finite numbers from 0.
+    pub(crate) const FROM_ZERO: Self = Self { low: Bound::Included(0.0), ..Self::FINITE };
+    /// Numbers from 0, infinity too.
+    pub(crate) const FROM_ZERO_TO_INFINITY: Self = Self { high: Bound::Unbounded, ..Self::FROM_ZERO };
+
+    /// Numbers from `low` to `high`, both included.
+    pub(crate) const fn from_to(low: f64, high: f64) -> Self {
+        Self { low: Bound::Included(low), high: Bound::Included(high) }
+    }
+
+    /// Whether `value` is one of them; NaN never is.
+    pub fn contains(&self, value: f64) -> bool {
+        let above = match self.low {
+            Bound::Included(low) => value >= low,
+            Bound::Excluded(low) => value > low,
+            Bound::Unbounded => !value.is_nan(),
+        };
+        let below = match self.high {
+            Bound::Included(high) => value <= high,
+            Bound::Excluded(high) => value < high,
+            Bound::Unbounded => !value.is_nan(),
+        };
+        above && below
+    }
+}
+
+impl fmt::Display for Interval {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        use Bound::{Excluded, Included};
+        match (self.low, self.high) {
+            (Included(low), Included(high)) => write!(f, "from {low} to {high}"),
+            (Included(low), Excluded(high)) if high.is_finite() => {
+                write!(f, "{low} or more, below {high}")
+            }
+            (Excluded(low), Included(high)) => write!(f, "more than {low}, at most {high}"),
+            (Excluded(low), Excluded(high)) if low.is_finite() && high.is_finite() => {
+                write!(f, "more than {low}, below {high}")
+            }
+            (Included(low), Excluded(_)) => write!(f, "{low} or more"),
+            (Included(low), Bound::Unbounded) => write!(f, "{low} or more, inf too"),
+            (Excluded(low), Excluded(_)) if low.is_finite() => write!(f, "more than {low}"),
+            (_, Excluded(high)) if high.is_finite() => write!(f, "below {high}"),
+            _ => f.write_str("finite"),
+        }
+    }
+}
+
+impl Key {
+    /// Its name in its table.
+    pub fn name(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// What its value must be: "a number in m, more than 0".
+    pub fn requirement(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" in {}", self.unit) };
+        match self.domain {
+            Domain::Number(range) => format!("a number{unit}, {range}"),
+            Domain::Whole(min, max) => format!("a whole number{unit} from {min} to {max}"),
+            Domain::Flag => "true or false".into(),
+            Domain::Text => "text in quotes".into(),
+            Domain::Choice(words) => words.iter().map(|w| format!("{w:?}")).collect::<Vec<_>>().join(" or "),
+            Domain::Form(words) => words.into(),
+        }
+    }
+}

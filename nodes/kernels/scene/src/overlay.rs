@@ -1,0 +1,210 @@
+//! Merging one table over another.
+
+use crate::fault::Fault;
+use crate::nearest::{hint, nearest};
+use crate::reader::kind;
+use toml::{Table, Value};
+
+/// Forgets what the base says of a key.
+const UNSET: &str = "unset";
+
+/// Merges `over` over a scene; the faults are what it changes and the scene does not have.
+pub(crate) fn overlay(scene: &mut Table, mut over: Table) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let (removed, appended) = (over.remove("remove"), over.remove("append"));
+    if let Some(names) = removed {
+        remove(path(scene), names, &mut faults);
+    }
+    if matches!(over.get("phase"), Some(Value::Table(_)))
+        && let Some(Value::Table(changes)) = over.remove("phase")
+    {
+        changes.into_iter().for_each(|(name, change)| change_phase(path(scene), &name, change, &mut faults));
+    }
+    merge(scene, over, "", &mut faults);
+    if let Some(phases) = appended {
+        append(path(scene), phases, &mut faults);
+    }
+    faults
+}
+
+/// The phases of a scene, or of a cycle. What is no array is a fault when the scene is read.
+fn path(table: &mut Table) -> Option<&mut Vec<Value>> {
+    table.get_mut("phase").and_then(Value::as_array_mut)
+}
+
+fn merge(table: &mut Table, over: Table, place: &str, faults: &mut Vec<Fault>) {
+    for (key, value) in over {
+        let place = if place.is_empty() { key.clone() } else { format!("{place}.{key}") };
+        match (table.get_mut(&key), value) {
+            (Some(_), Value::String(word)) if word == UNSET => {
+                table.remove(&key);
+            }
+            (None, Value::String(word)) if word == UNSET => {
+                let hint =
+                    nearest(&key, table.keys().map(String::as_str)).map(|k| hint(&k)).unwrap_or_default();
+                faults.push(Fault { place, message: format!("is unset, but there is none{hint}") });
+            }
+            // What is imposed on a component is one value.
+            (Some(Value::Table(under)), Value::Table(over)) if !is_component(&place) => {
+                merge(under, over, &place, faults);
+            }
+            (_, value) => {
+                table.insert(key, value);
+            }
+        }
+    }
+}
+
+fn is_component(place: &str) -> bool {
+    place.rsplit('.').nth(1) == Some("control")
+}
+
+fn change_phase(phases: Option<&mut Vec<Value>>, pattern: &str, change: Value, faults: &mut Vec<Fault>) {
+    let place = format!("phase.{pattern}");
+    let Value::Table(change) = change else {
+        let message = format!("is {}; it must be a table of keys of this phase", kind(&change));
+        faults.push(Fault { place, message });
+        return;
+    };
+    let (mut found, mut names) = (Vec::new(), Vec::new());
+    if let Some(phases) = phases {
+        visit(phases, &mut |name, _| names.push(name.to_owned()));
+        select(phases, pattern, &mut found);
+    }
+    match found.len() {
+        0 => faults.push(Fault { place, message: unknown(pattern, &names) }),
+        2.. if !pattern.contains('*') => {
+            let message = format!("{} phases have this name; {pattern}* means all of them", found.len());
+            faults.push(Fault { place, message });
+        }
+        _ => found.into_iter().for_each(|table| merge(table, change.clone(), &place, faults)),
+    }
+}
+
+fn remove(phases: Option<&mut Vec<Value>>, names: Value, faults: &mut Vec<Fault>) {
+    let patterns: Option<Vec<&str>> = names.as_array().and_then(|a| a.iter().map(Value::as_str).collect());
+    let (Some(patterns), Some(phases)) = (patterns, phases) else {
+        let message = format!("is {}; it must be names of phases of a base, as in [\"rest\"]", kind(&names));
+        faults.push(Fault { place: "remove".into(), message });
+        return;
+    };
+    for pattern in patterns {
+        let mut known = Vec::new();
+        visit(phases, &mut |name, _| known.push(name.to_owned()));
+        if known.iter().any(|name| matches(pattern, name)) {
+            leave_out(phases, pattern);
+        } else {
+            faults.push(Fault { place: "remove".into(), message: unknown(pattern, &known) });
+        }
+    }
+}
+
+fn leave_out(phases: &mut Vec<Value>, pattern: &str) {
+    phases.retain(|p| p.as_table().is_none_or(|t| !matches(pattern, name_of(t))));
+    for body in phases.iter_mut().filter_map(|p| path(p.as_table_mut()?)) {
+        leave_out(body, pattern);
+    }
+}
+
+fn append(phases: Option<&mut Vec<Value>>, added: Value, faults: &mut Vec<Fault>) {
+    let (Value::Array(added), Some(phases)) = (added, phases) else {
+        let message = "must be an array of tables over a base, one per phase: [[append]]".into();
+        faults.push(Fault { place: "append".into(), message });
+        return;
+    };
+    // Those behind one phase keep their order.
+    let mut last: Vec<(String, String)> = Vec::new();
+    for (i, mut entry) in added.into_iter().enumerate() {
+        let after = entry.as_table_mut().and_then(|t| t.remove("after"));
+        let Some(after) = after else {
+            phases.push(entry);
+            continue;
+        };
+        let place = format!("append[{i}].after");
+        let Some(after) = after.as_str() else {
+            let message = format!("is {after}; it must be the name of a phase, in quotes");
+            faults.push(Fault { place, message });
+            continue;
+        };
+        let name = entry.as_table().map(|t| name_of(t).to_owned()).unwrap_or_default();
+        let behind = last.iter().rev().find(|(a, _)| a == after).map_or(after, |(_, name)| name).to_owned();
+        if insert(phases, &behind, entry) {
+            last.push((after.to_owned(), name));
+        } else {
+            let mut known = Vec::new();
+            visit(phases, &mut |name, _| known.push(name.to_owned()));
+            faults.push(Fault { place, message: unknown(after, &known) });
+        }
+    }
+}
+
+/// Inserts a phase behind the first one of this name, at whatever depth.
+fn insert(phases: &mut Vec<Value>, behind: &str, phase: Value) -> bool {
+    if let Some(at) = phases.iter().position(|p| p.as_table().is_some_and(|t| name_of(t) == behind)) {
+        phases.insert(at + 1, phase);
+        return true;
+    }
+    phases.iter_mut().filter_map(|p| path(p.as_table_mut()?)).any(|body| insert(body, behind, phase.clone()))
+}
+
+/// Every phase, those of cycles too.
+fn visit(phases: &[Value], see: &mut dyn FnMut(&str, &Table)) {
+    for table in phases.iter().filter_map(Value::as_table) {
+        see(name_of(table), table);
+        if let Some(body) = table.get("phase").and_then(Value::as_array) {
+            visit(body, see);
+        }
+    }
+}
+
+/// The phases whose name fits the pattern. A cycle that fits stands for itself, not for its body.
+fn select<'a>(phases: &'a mut [Value], pattern: &str, found: &mut Vec<&'a mut Table>) {
+    for table in phases.iter_mut().filter_map(Value::as_table_mut) {
+        if matches(pattern, name_of(table)) && !(pattern.contains('*') && is_cycle(table)) {
+            found.push(table);
+        } else if let Some(body) = path(table) {
+            select(body, pattern, found);
+        }
+    }
+}
+
+fn is_cycle(table: &Table) -> bool {
+    table.get("kind").and_then(Value::as_str) == Some("cycle")
+}
+
+/// The name of a phase: its kind where it has none.
+fn name_of(table: &Table) -> &str {
+    table.get("name").or(table.get("kind")).and_then(Value::as_str).unwrap_or_default()
+}
+
+/// Whether a name fits a pattern, in which `*` stands for any letters.
+fn matches(pattern: &str, name: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
+    let Some(mut name) = name.strip_prefix(start) else { return false };
+    let (middle, end) = rest.rsplit_once('*').unwrap_or(("", rest));
+    for part in middle.split('*') {
+        let Some(at) = name.find(part) else { return false };
+        name = &name[at + part.len()..];
+    }
+    name.ends_with(end)
+}
+
+fn unknown(name: &str, known: &[String]) -> String {
+    let hint = nearest(name, known.iter().map(String::as_str)).map(|k| hint(&k)).unwrap_or_default();
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    format!("no phase is named {name:?}{hint}; there are: {known}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_stands_for_any_letters() {
+        let fits = |pattern, names: [&str; 3]| names.map(|name| matches(pattern, name));
+        assert_eq!(fits("load-*", ["load-50kPa", "load-", "unload-50kPa"]), [true, true, false]);
+        assert_eq!(fits("*load*Pa", ["unload-50kPa", "load-50kPb", "settle"]), [true, false, false]);
+        assert_eq!(fits("*", ["gas", "", "rest"]), [true; 3]);
+        assert_eq!(fits("a*a", ["a", "aa", "aba"]), [false, true, true]);
+    }
+}

@@ -1,0 +1,291 @@
+//! Reading a TOML table key by key: every fault is collected instead of stopping at the first, and what is read is kept,
+//! defaults too, as the canonical form of the table.
+
+use crate::canonical::{Entries, Entry, number};
+use crate::fault::Fault;
+use crate::key::{DefaultValue, Domain, Key};
+use crate::nearest::{hint, nearest};
+use toml::{Table, Value};
+
+/// One table being read: knows its place in the text and which of its keys were asked for.
+pub(crate) struct Reader<'a> {
+    place: String,
+    table: &'a Table,
+    asked: Vec<&'static str>,
+    faults: Vec<Fault>,
+    entries: Entries,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(place: impl Into<String>, table: &'a Table) -> Self {
+        let (asked, faults, entries) = <_>::default();
+        Self { place: place.into(), table, asked, faults, entries }
+    }
+
+    /// Notes a fault at `key`, or at the table itself if `key` is empty.
+    pub(crate) fn fault(&mut self, key: &str, message: impl Into<String>) {
+        let place = self.place_of(key);
+        self.faults.push(Fault { place, message: message.into() });
+    }
+
+    pub(crate) fn place_of(&self, key: &str) -> String {
+        match (self.place.as_str(), key) {
+            ("", k) => k.to_string(),
+            (p, "") => p.to_string(),
+            (p, k) => format!("{p}.{k}"),
+        }
+    }
+
+    /// Notes that a key is missing or has a wrong value.
+    pub(crate) fn refuse(&mut self, key: &Key, value: Option<&Value>) {
+        let found = match value {
+            None => "is missing".into(),
+            Some(v @ (Value::Table(_) | Value::Array(_))) => format!("is {}", kind(v)),
+            Some(v) => format!("is {}", brief(v)),
+        };
+        self.fault(key.name(), format!("{found}; it must be {}", key.requirement()));
+    }
+
+    pub(crate) fn has(&self, key: &Key) -> bool {
+        self.table.contains_key(key.name())
+    }
+
+    pub(crate) fn get(&mut self, key: &Key) -> Option<&'a Value> {
+        self.asked.push(key.name());
+        self.table.get(key.name())
+    }
+
+    /// A value that is looked at before it is read.
+    pub(crate) fn peek(&self, key: &Key) -> Option<&'a Value> {
+        self.table.get(key.name())
+    }
+
+    /// The same for a key that is no row of the table of keys: a component.
+    pub(crate) fn get_named(&mut self, name: &'static str) -> Option<&'a Value> {
+        self.asked.push(name);
+        self.table.get(name)
+    }
+
+    /// Adds to the canonical form what a method of this reader did not add by itself.
+    pub(crate) fn keep(&mut self, key: &Key, entry: Entry) {
+        self.keep_named(key.name(), entry);
+    }
+
+    pub(crate) fn keep_named(&mut self, name: &'static str, entry: Entry) {
+        self.entries.push((name, entry));
+    }
+
+    /// Leaves out of the canonical form what has no effect.
+    pub(crate) fn leave_out(&mut self, keys: &[&Key]) {
+        self.entries.retain(|(name, _)| keys.iter().all(|k| k.name() != *name));
+    }
+
+    /// A number with the default of its key.
+    pub(crate) fn number(&mut self, key: &'static Key) -> f64 {
+        let default = if let DefaultValue::Number(value) = key.default { Some(value) } else { None };
+        self.number_or(key, default)
+    }
+
+    /// A number; `default` where it is absent, a fault where there is none.
+    pub(crate) fn number_or(&mut self, key: &'static Key, default: Option<f64>) -> f64 {
+        if !self.has(key) && default.is_none() {
+            self.asked.push(key.name());
+            self.refuse(key, None);
+            return f64::NAN;
+        }
+        let value = self.found(key).flatten().or(default).unwrap_or(f64::NAN);
+        self.keep(key, number(value));
+        value
+    }
+
+    /// A number, if it is there; a wrong one is a fault, and 1.
+    pub(crate) fn optional(&mut self, key: &'static Key) -> Option<f64> {
+        let value = self.found(key)?.unwrap_or(1.0);
+        self.keep(key, number(value));
+        Some(value)
+    }
+
+    /// A number, if there is something; nothing within, and a fault, if it is wrong.
+    fn found(&mut self, key: &'static Key) -> Option<Option<f64>> {
+        let value = self.get(key)?;
+        let found = as_number(value).filter(|v| match key.domain {
+            Domain::Number(range) => range.contains(*v),
+            _ => v.is_finite(),
+        });
+        if found.is_none() {
+            self.refuse(key, Some(value));
+        }
+        Some(found)
+    }
+
+    /// A whole number with the default of its key.
+    pub(crate) fn whole(&mut self, key: &'static Key) -> u64 {
+        let default = if let DefaultValue::Whole(value) = key.default { Some(value) } else { None };
+        self.whole_or(key, default)
+    }
+
+    pub(crate) fn whole_or(&mut self, key: &'static Key, default: Option<u64>) -> u64 {
+        let (min, max) = if let Domain::Whole(min, max) = key.domain { (min, max) } else { (0, u64::MAX) };
+        let value = self.get(key);
+        let found = match value {
+            None => default,
+            Some(value) => value.as_integer().and_then(|v| u64::try_from(v).ok()),
+        };
+        match found.filter(|v| (min..=max).contains(v)) {
+            Some(v) => {
+                self.keep(key, Entry::Value(v.to_string()));
+                v
+            }
+            None => {
+                self.refuse(key, value);
+                default.unwrap_or(min)
+            }
+        }
+    }
+
+    pub(crate) fn flag(&mut self, key: &'static Key) -> bool {
+        let default = matches!(key.default, DefaultValue::Flag(true));
+        let value = match self.get(key) {
+            None => default,
+            Some(Value::Boolean(b)) => *b,
+            Some(other) => {
+                self.refuse(key, Some(other));
+                default
+            }
+        };
+        self.keep(key, Entry::Value(value.to_string()));
+        value
+    }
+
+    /// A text with the default of its key.
+    pub(crate) fn text(&mut self, key: &'static Key) -> String {
+        let default = if let DefaultValue::Text(value) = key.default { Some(value) } else { None };
+        self.text_or(key, default)
+    }
+
+    pub(crate) fn text_or(&mut self, key: &'static Key, default: Option<&str>) -> String {
+        let value = self.get(key);
+        let text = match value {
+            Some(Value::String(s)) => s.as_str(),
+            Some(_) => {
+                self.refuse(key, value);
+                ""
+            }
+            None => {
+                if default.is_none() {
+                    self.refuse(key, None);
+                }
+                default.unwrap_or_default()
+            }
+        };
+        self.keep(key, Entry::Value(Value::from(text).to_string()));
+        text.to_string()
+    }
+
+    /// One of the named choices; the words are those of the key.
+    pub(crate) fn choice<T: Copy>(
+        &mut self,
+        key: &'static Key,
+        default: &str,
+        choices: &[(&'static str, T)],
+    ) -> T {
+        let named = |word: Option<&str>| choices.iter().find(|c| Some(c.0) == word);
+        let value = self.get(key);
+        let word = value.map_or(Some(default), Value::as_str);
+        let Some((word, chosen)) = named(word).or_else(|| {
+            self.refuse(key, value);
+            named(Some(default)).or(choices.first())
+        }) else {
+            unreachable!("a choice of nothing")
+        };
+        self.keep(key, Entry::Value(format!("{word:?}")));
+        *chosen
+    }
+
+    /// A sub-table, read by `read`; `None` where it is absent.
+    pub(crate) fn sub<T>(&mut self, key: &'static Key, read: impl FnOnce(&mut Reader<'_>) -> T) -> Option<T> {
+        match self.get(key) {
+            None => None,
+            Some(Value::Table(table)) => Some(self.read_table(key.name(), table, read)),
+            Some(other) => {
+                self.fault(key.name(), format!("is {}; it must be a table", kind(other)));
+                None
+            }
+        }
+    }
+
+    /// A table at the top of the scene, read by `read` whether it is there or not: its keys have defaults.
+    pub(crate) fn section<T>(&mut self, name: &'static str, read: impl FnOnce(&mut Reader<'_>) -> T) -> T {
+        self.asked.push(name);
+        let empty = Table::new();
+        match self.table.get(name) {
+            Some(Value::Table(table)) => self.read_table(name, table, read),
+            None => self.read_table(name, &empty, read),
+            Some(other) => {
+                self.fault(name, format!("is {}; it must be a table", kind(other)));
+                read(&mut Reader::new(name, &empty))
+            }
+        }
+    }
+
+    fn read_table<T>(
+        &mut self,
+        name: &'static str,
+        table: &Table,
+        read: impl FnOnce(&mut Reader<'_>) -> T,
+    ) -> T {
+        let mut reader = Reader::new(self.place_of(name), table);
+        let out = read(&mut reader);
+        let (entries, faults) = reader.finish();
+        self.faults.extend(faults);
+        self.entries.push((name, Entry::Table(entries)));
+        out
+    }
+
+    pub(crate) fn adopt(&mut self, faults: Vec<Fault>) {
+        self.faults.extend(faults);
+    }
+
+    /// Ends the reading: keys never asked for are faults.
+    pub(crate) fn finish(mut self) -> (Entries, Vec<Fault>) {
+        let mut known = std::mem::take(&mut self.asked);
+        known.sort_unstable();
+        known.dedup();
+        for key in self.table.keys().filter(|k| !known.contains(&k.as_str())) {
+            let hint = nearest(key, known.iter().copied()).map_or_else(|| elsewhere(key), |k| hint(&k));
+            let place = self.place_of(key);
+            let message = format!("unknown key{hint}; known here: {}", known.join(", "));
+            self.faults.push(Fault { place, message });
+        }
+        (self.entries, self.faults)
+    }
+}
+
+/// Where a key of this name is known.
+fn elsewhere(name: &str) -> String {
+    let found = crate::keys::KEYS.iter().find(|k| k.name() == name);
+    found.map_or_else(String::new, |k| hint(&k.path.replacen("phase.", "phase.NAME.", 1)))
+}
+
+pub(crate) fn as_number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(v) => Some(*v),
+        Value::Integer(v) => Some(*v as f64),
+        _ => None,
+    }
+}
+
+/// A value as it is quoted in a message.
+fn brief(value: &Value) -> String {
+    match value {
+        Value::Float(v) => v.to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// What a value is, with its article.
+pub(crate) fn kind(value: &Value) -> String {
+    let kind = value.type_str();
+    let article = if kind.starts_with(['a', 'i']) { "an" } else { "a" };
+    format!("{article} {kind}")
+}

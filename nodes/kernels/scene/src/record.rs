@@ -1,0 +1,64 @@
+//! Packings within a phase: how often one is published.
+
+use crate::keys;
+use crate::model::Record;
+use crate::reader::Reader;
+
+/// How far a phase has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Travelled {
+    /// Solver steps of the run.
+    pub steps: u64,
+    /// Simulated time since the phase began, s.
+    pub time: f64,
+    /// Strain since the phase began: the integral over time of the largest component of the strain rate, to and fro alike.
+    pub strain: f64,
+}
+
+impl Record {
+    /// Whether a packing is due, having come from `before` to `now`.
+    pub fn is_due(&self, before: &Travelled, now: &Travelled) -> bool {
+        let passed = |from: f64, to: f64, every: f64| (to / every).floor() > (from / every).floor();
+        match *self {
+            Record::EverySteps(every) => now.steps / every > before.steps / every,
+            Record::EveryTime(every) => passed(before.time, now.time, every),
+            Record::EveryStrain(every) => passed(before.strain, now.strain, every),
+        }
+    }
+}
+
+/// How often, in the text; `None` where the phase publishes no packing within.
+pub(crate) fn read(r: &mut Reader<'_>) -> Option<Record> {
+    r.sub(&keys::RECORD, |r| {
+        let steps = r.has(&keys::EVERY_STEPS).then(|| Record::EverySteps(r.whole(&keys::EVERY_STEPS)));
+        let strain = r.optional(&keys::EVERY_STRAIN).map(Record::EveryStrain);
+        let time = r.optional(&keys::EVERY_TIME).map(Record::EveryTime);
+        let found: Vec<Record> = [steps, strain, time].into_iter().flatten().collect();
+        if found.len() != 1 {
+            r.get(&keys::EVERY_STEPS);
+            let count = if found.is_empty() { "none" } else { "more than one" };
+            r.fault("", format!("has {count} of every_steps, every_strain and every_time; it takes one"));
+        }
+        found.first().copied()
+    })
+    .flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_packing_is_due_where_a_multiple_is_passed() {
+        let at = |steps, time, strain| Travelled { steps, time, strain };
+        let due = |record: Record, before, now| record.is_due(&before, &now);
+        assert!(due(Record::EverySteps(100), at(190, 0.0, 0.0), at(200, 0.0, 0.0)));
+        assert!(!due(Record::EverySteps(100), at(200, 0.0, 0.0), at(299, 0.0, 0.0)));
+        assert!(due(Record::EveryStrain(1e-3), at(0, 0.0, 1.9e-3), at(0, 0.0, 2.1e-3)));
+        assert!(!due(Record::EveryStrain(1e-3), at(0, 0.0, 2.1e-3), at(0, 0.0, 2.9e-3)));
+        assert!(
+            due(Record::EveryTime(0.5), at(0, 0.2, 0.0), at(0, 1.4, 0.0)),
+            "one, of two that were passed"
+        );
+    }
+}

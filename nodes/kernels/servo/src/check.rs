@@ -1,0 +1,88 @@
+//! Checks of an input.
+
+use crate::error::ServoError;
+use crate::input::ServoInput;
+use crate::stability::critical_gain;
+use grainlab_core::{ComponentControl, ServoLaw};
+
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// The first fault of an input.
+pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
+    finite("stress", &input.stress.voigt())?;
+    finite("rate", &input.rate)?;
+    finite("tangent", &input.tangent)?;
+    finite("setpoint", &input.controls.map(setpoint))?;
+    for (component, &value) in COMPONENTS.iter().zip(&input.tangent) {
+        if value < 0.0 {
+            return Err(ServoError::NegativeTangent { component, value });
+        }
+    }
+    positive("rate_limit", input.rate_limit, "1/s")?;
+    positive("control_interval", input.control_interval, "s")?;
+    check_stability(&input.law, &input.tangent, &input.controls, input.control_interval)
+}
+
+/// Whether `law` is stable with `tangent` (C_iiii and C_ijij, Pa) and `control_interval` (s): a part of the checks of
+/// [`crate::control`], for callers that need to know before.
+///
+/// Without a stress target there is no control loop, and any law is accepted.
+pub fn check_stability(
+    law: &ServoLaw,
+    tangent: &[f64; 6],
+    controls: &[ComponentControl; 6],
+    control_interval: f64,
+) -> Result<(), ServoError> {
+    if !controls.iter().any(|c| matches!(c, ComponentControl::Stress(_))) {
+        return Ok(());
+    }
+    match *law {
+        ServoLaw::Scaled { response_time } => {
+            positive("response_time", response_time, "s")?;
+            if control_interval >= 2.0 * response_time {
+                return Err(ServoError::Unstable { control_interval, response_time });
+            }
+        }
+        ServoLaw::Normalised { share, leak } => {
+            if !(share > 0.0 && share < 1.0) {
+                return Err(ServoError::Share { value: share });
+            }
+            check_leak(leak)?;
+        }
+        ServoLaw::Integral { gain, leak } => {
+            positive("gain", gain, "1/(Pa s)")?;
+            check_leak(leak)?;
+            let critical = critical_gain(tangent, controls, control_interval, leak);
+            if gain >= critical {
+                return Err(ServoError::Gain { gain, critical, control_interval });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_leak(value: f64) -> Result<(), ServoError> {
+    if (0.0..=1.0).contains(&value) { Ok(()) } else { Err(ServoError::Leak { value }) }
+}
+
+fn setpoint(control: ComponentControl) -> f64 {
+    match control {
+        ComponentControl::Held => 0.0,
+        ComponentControl::Stress(value) | ComponentControl::StrainRate(value) => value,
+    }
+}
+
+fn finite(field: &'static str, values: &[f64; 6]) -> Result<(), ServoError> {
+    match COMPONENTS.iter().zip(values).find(|(_, v)| !v.is_finite()) {
+        Some((component, &value)) => Err(ServoError::ComponentNotFinite { field, component, value }),
+        None => Ok(()),
+    }
+}
+
+fn positive(field: &'static str, value: f64, unit: &'static str) -> Result<(), ServoError> {
+    if value > 0.0 && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ServoError::NotPositive { field, value, unit })
+    }
+}

@@ -1,0 +1,105 @@
+//! A launch from the first process to the report.
+
+use super::finish::finish;
+use super::order;
+use crate::launch::Run;
+use crate::launch::plan::NodePlan;
+use crate::launch::supervisor::{Supervised, Supervisor};
+use grainlab_console::Failure;
+use grainlab_console::Format;
+use grainlab_console::network::FreeDomain;
+use grainlab_console::scenes::SceneText;
+use grainlab_node_kit::{Exit, Network, RunId};
+use grainlab_scene::Scene;
+use std::path::Path;
+
+/// Starts the processes, follows the run to its end, and reports it.
+pub(super) fn conduct(
+    mut plans: Vec<NodePlan>,
+    domain: u16,
+    lock: Option<FreeDomain>,
+    directory: &Path,
+    scene: &SceneText,
+    format: Format,
+) -> Result<Exit, Failure> {
+    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    let run = Run { id: RunId::fresh(), domain };
+    grainlab_console::say!(
+        "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
+        scene.scene.name,
+        scene.scene.seed,
+        scene.scene.grains,
+        run.id,
+        directory.display()
+    );
+    let supervised = supervise(plans, run, directory, &scene.scene);
+    drop(lock);
+    let supervised = supervised.inspect_err(|_| _ = remove_if_unused(directory))?;
+    let failed = matches!(supervised.exit, Exit::Failure | Exit::Usage);
+    if failed && remove_if_unused(directory) {
+        return Ok(supervised.exit);
+    }
+    finish(format, directory, scene, run, supervised)
+}
+
+/// Removes the directory of a run that did not start, if it holds only the scene and empty logs. False if there is
+/// more.
+fn remove_if_unused(directory: &Path) -> bool {
+    let logs = directory.join("logs");
+    let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
+    let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
+        entries.all(|e| {
+            e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs)
+        })
+    });
+    let silent = match std::fs::read_dir(&logs) {
+        Ok(mut entries) => entries.all(|e| e.as_ref().is_ok_and(empty)),
+        Err(_) => true,
+    };
+    // A failure to remove it is not reported: the reason why the run did not start is.
+    unused && silent && std::fs::remove_dir_all(directory).is_ok()
+}
+
+fn network() -> Result<Network, Failure> {
+    Network::from_env().map_err(Failure::usage)
+}
+
+/// The domain of the environment, else a free one, which is reserved until the second value is dropped.
+pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
+    let network = network()?;
+    if std::env::var("ROS_DOMAIN_ID").is_ok_and(|v| !v.trim().is_empty()) {
+        return Ok((network.domain, None));
+    }
+    let free = FreeDomain::take()?;
+    Ok((free.id, Some(free)))
+}
+
+fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) -> Result<Supervised, Failure> {
+    let phases = scene.phases.len();
+    let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
+    let ends_within = last.is_some_and(|p| !p.publish);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
+    runtime.block_on(async { Supervisor::new(plans, run, directory, phases, ends_within)?.run().await })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_directory_of_a_run_that_left_nothing_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        for (file, content, kept) in
+            [("logs/servo.log", "", false), ("logs/servo.log", "why", true), ("a_0.mcap", "", true)]
+        {
+            let run = folder.path().join("run");
+            std::fs::create_dir_all(run.join("logs")).unwrap();
+            std::fs::write(run.join("scene.toml"), "name = 'x'").unwrap();
+            std::fs::write(run.join(file), content).unwrap();
+            remove_if_unused(&run);
+            assert_eq!(run.exists(), kept, "{file} {content:?}");
+            let _ = std::fs::remove_dir_all(&run);
+        }
+    }
+}

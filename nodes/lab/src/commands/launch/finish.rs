@@ -1,0 +1,113 @@
+//! The result of a run, read back from its recording.
+
+use crate::launch::Run;
+use crate::launch::supervisor::{Heard, Supervised};
+use crate::nodes::NodeKind;
+use crate::results::continuity;
+use crate::results::measured_packing;
+use crate::results::read_back::{self, ReadBack};
+use crate::results::summary::{Launched, NodeEnd, Summary};
+use crate::results::summary_text;
+use grainlab_console::scenes::SceneText;
+use grainlab_console::{Failure, worse};
+use grainlab_console::{Format, json, print};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::Recording;
+use std::path::Path;
+
+/// Published results that the recording lacks.
+fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
+    let mut missing = Vec::new();
+    if let Some(published) = heard.packings.filter(|n| back.packings < *n as usize) {
+        missing.push(format!("{} of {published} packings are in the recording", back.packings));
+    }
+    for (topic, steps) in &heard.results {
+        let recorded = back.results.get(topic);
+        for step in steps.iter().filter(|step| recorded.is_none_or(|known| !known.contains(step))) {
+            missing.push(format!("the {topic} of step {step} was published and is not in the recording"));
+        }
+    }
+    missing
+}
+
+/// Reads the recording back, prints the result and writes it beside the recording.
+pub(super) fn finish(
+    format: Format,
+    directory: &Path,
+    scene: &SceneText,
+    run: Run,
+    supervised: Supervised,
+) -> Result<Exit, Failure> {
+    let mut exit = supervised.exit;
+    let recording = Recording::open(directory);
+    let (back, tallies) = match &recording {
+        Ok(recording) => (read_back::read(recording), recording.ledger()),
+        Err(error) => (ReadBack { complaints: vec![error.to_string()], ..ReadBack::default() }, None),
+    };
+    if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
+        exit = worse(exit, Exit::DataLoss);
+    }
+    let mut back = back;
+    let mut missing = missing(&supervised.heard, &back);
+    // An interrupted run may end with an unanswered request.
+    if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
+        missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
+    }
+    let has = |node: NodeKind| supervised.children.iter().any(|c| c.plan.is(node));
+    let unanswered = (has(NodeKind::FabricAnalyzer) && back.not_analysed > 0)
+        || (has(NodeKind::EmtInversion) && back.not_inverted > 0);
+    if !missing.is_empty() || unanswered {
+        exit = worse(exit, Exit::DataLoss);
+        back.complaints.extend(missing);
+    }
+    let nodes = supervised.children.iter().map(|c| NodeEnd {
+        name: c.plan.name.clone(),
+        pid: c.last_pid,
+        exit: c.code,
+        restarts: c.restarts.len(),
+    });
+    let launched = Launched {
+        scene: scene.scene.name.clone(),
+        seed: scene.scene.seed,
+        domain: run.domain,
+        run: run.id.to_string(),
+        wall_seconds: supervised.wall.as_secs_f64(),
+        nodes: nodes.collect(),
+        recording: recording.is_ok().then(|| directory.display().to_string()),
+        exit,
+    };
+    let summary = Summary::new(launched, back, tallies.as_deref());
+    let path = directory.join("summary.json");
+    let text = json(&summary)?;
+    summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
+    let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
+    // Printed before writing, so that a full disk does not lose the result.
+    let printed = print(&match format {
+        Format::Json => text.clone(),
+        Format::Csv => measured_packing::table(&packings).csv(),
+        Format::Table => {
+            let text = summary_text::text(&summary);
+            format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())
+        }
+    });
+    for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
+        grainlab_console::say!("grainlab: {failure}");
+        // With a full disk the exit stays that of the data loss.
+        exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
+    }
+    Ok(exit)
+}
+
+/// Writes a file atomically.
+fn write_whole(path: &Path, text: &str) -> Result<(), Failure> {
+    let partial = path.with_extension("json.part");
+    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
+    written.map_err(|e| {
+        let _ = std::fs::remove_file(&partial);
+        Failure::failed(format!("{}: {e}; the result was printed, and is in the recording", path.display()))
+    })
+}
+
+#[cfg(test)]
+mod tests;

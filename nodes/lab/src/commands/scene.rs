@@ -1,0 +1,136 @@
+//! `grainlab scene`: what can be run, and whether it can.
+
+use clap::Subcommand;
+use grainlab_console::scenes;
+use grainlab_console::{Failure, worse};
+use grainlab_console::{Table, print, say};
+use grainlab_node_kit::Exit;
+use grainlab_scene::BUILT_IN;
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::PathBuf;
+
+/// What to do with scenes.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// List the built-in scenes.
+    List,
+    /// Show a scene as it would be run: bases applied, every default written out.
+    Show(Show),
+    /// Read scenes and name all that is wrong with them; exit 2 if anything is.
+    Check(Check),
+    /// Write a scene to start from, with comments.
+    New(New),
+    /// Show every key of the format with its unit, default and range, as Markdown.
+    Keys,
+}
+
+/// A scene and what is set over it.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Show {
+    /// Scene: a built-in name or a file
+    #[arg(value_name = "SCENE")]
+    scene: String,
+    /// Sets a key of the scene, as in grains.count=500; repeat it for more
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Seed of every random choice [default: the one of the scene]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+}
+
+/// Scenes to read.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Check {
+    /// Scenes: files or built-in names
+    #[arg(value_name = "FILE", required = true)]
+    scenes: Vec<String>,
+}
+
+/// A scene to write.
+#[derive(Debug, clap::Args)]
+pub(crate) struct New {
+    /// Name of the scene; the file is NAME.toml, which must not exist
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Changes this scene instead of being a whole one
+    #[arg(long, value_name = "SCENE")]
+    base: Option<String>,
+}
+
+/// Runs the command.
+pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
+    match command {
+        Command::List => list(),
+        Command::Show(show) => {
+            print(&scenes::load(&show.scene, &show.set, show.seed)?.text)?;
+            Ok(Exit::Done)
+        }
+        Command::Check(check) => check_all(&check.scenes),
+        Command::New(new) => create(new),
+        Command::Keys => {
+            print(&grainlab_scene::reference())?;
+            Ok(Exit::Done)
+        }
+    }
+}
+
+fn list() -> Result<Exit, Failure> {
+    let mut lines = String::new();
+    for (name, _) in BUILT_IN {
+        lines += &format!("{name:6}{}\n", scenes::load(name, &[], None)?.scene.description);
+    }
+    print(&lines)?;
+    Ok(Exit::Done)
+}
+
+/// Reads every scene, also after one that has faults.
+fn check_all(names: &[String]) -> Result<Exit, Failure> {
+    let mut table = Table::new(["scene", "grains", "phases", "packings"]);
+    let (mut exit, mut sound) = (Exit::Done, false);
+    for name in names {
+        match scenes::load(name, &[], None) {
+            Ok(found) => {
+                let (scene, published) = (&found.scene, found.scene.phases.iter().filter(|p| p.publish));
+                let numbers = [scene.grains as usize, scene.phases.len(), published.count()];
+                table.row([name.clone()].into_iter().chain(numbers.map(|n| n.to_string())));
+                sound = true;
+            }
+            Err(failure) => {
+                say!("grainlab: {failure}");
+                exit = worse(exit, failure.exit);
+            }
+        }
+    }
+    if sound {
+        print(&table.text())?;
+    }
+    Ok(exit)
+}
+
+fn create(new: &New) -> Result<Exit, Failure> {
+    let name = &new.name;
+    let text = match &new.base {
+        None => grainlab_scene::template(name),
+        Some(base) => {
+            scenes::load(base, &[], None)?;
+            format!(
+                "# What differs from {base}; `grainlab scene show {name}.toml` shows the whole.\nbase = {base:?}\nname = {name:?}\n"
+            )
+        }
+    };
+    let path = PathBuf::from(format!("{name}.toml"));
+    // A name that no scene may have is refused before there is a file.
+    grainlab_scene::assignment(&format!("name={name}"))
+        .and_then(|name| {
+            let mut draft = grainlab_scene::Draft::of_text(&grainlab_scene::template("new"))?;
+            draft.set(name)?;
+            draft.resolve()
+        })
+        .map_err(Failure::usage)?;
+    let file = OpenOptions::new().write(true).create_new(true).open(&path);
+    let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    print(&format!("{}\n", path.display()))?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,257 @@
+//! The pending results of the last packing: one microstructure for every kind of data that the run's nodes measure.
+
+use super::plan::NodePlan;
+use crate::nodes::NodeKind;
+use grainlab_msgs::topics;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// Who measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// A node of ours.
+    Node(NodeKind),
+    /// The programs of a launch file that are not ours.
+    Instrument,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Node(node) => write!(f, "{node}"),
+            Self::Instrument => f.write_str("instrument"),
+        }
+    }
+}
+
+/// One kind of data, by the topic that carries it.
+#[derive(Debug)]
+struct Kind {
+    /// Topic of the data: the `source` of a microstructure.
+    topic: &'static str,
+    /// Who writes it.
+    source: Source,
+    measured: BTreeSet<u64>,
+    /// Step of the packing, and member number of the inversion.
+    inverted: BTreeSet<(u64, u8)>,
+    declined: BTreeSet<u64>,
+}
+
+impl Kind {
+    fn new(topic: &'static str, source: Source) -> Self {
+        let (measured, inverted, declined) = Default::default();
+        Self { topic, source, measured, inverted, declined }
+    }
+}
+
+/// The state of the results of one packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ResultState {
+    /// Every kind of data is inverted.
+    Complete,
+    /// Nothing is to come any more, and this node found nothing to invert.
+    Declined(Source),
+    /// This node measured a structure, and nothing that could be inverted has come.
+    Bare(Source),
+    /// What is there is not inverted yet; this node measured it.
+    Measured(Source),
+    /// This node has not measured it yet.
+    Open(Source),
+}
+
+/// The known results of every kind of data.
+#[derive(Debug)]
+pub(crate) struct PendingResults {
+    kinds: Vec<Kind>,
+    /// Number of inversions of the run, each of which inverts every kind of data. 1 for a run without inversion: its
+    /// results stay pending.
+    inversions: usize,
+    /// Whether third-party programs run, which may publish wave speeds. If they published those of one packing, the run
+    /// waits for those of its last packing.
+    instruments: bool,
+    /// Steps of the packings whose structure was measured.
+    structures: BTreeSet<u64>,
+}
+
+impl PendingResults {
+    /// For the nodes of a run. A microstructure from the moduli is expected even without an analyzer: a user who
+    /// launches without analyzer and probe is informed that nothing is inferred.
+    pub(crate) fn of(plans: &[NodePlan]) -> Self {
+        let has = |node: NodeKind| plans.iter().any(|p| p.is(node));
+        let kind = |node: NodeKind| Some(Kind::new(node.measures()?.name, Source::Node(node)));
+        let mut kinds: Vec<Kind> = NodeKind::all().filter(|node| has(*node)).filter_map(kind).collect();
+        if kinds.is_empty() {
+            kinds.extend(kind(NodeKind::FabricAnalyzer));
+        }
+        let inversions = plans.iter().filter(|p| p.is(NodeKind::EmtInversion)).count().max(1);
+        let instruments = !has(NodeKind::AcousticProbe) && plans.iter().any(|p| p.node.is_none());
+        Self { kinds, inversions, instruments, structures: BTreeSet::new() }
+    }
+
+    /// The structure of the packing of `step` was published. If the packing has moduli, they follow at once.
+    pub(crate) fn structure(&mut self, step: u64) {
+        self.structures.insert(step);
+    }
+
+    /// The data of this topic about the packing of `step` were published.
+    pub(crate) fn measured(&mut self, topic: &str, step: u64) {
+        // Step 0 stands for no packing.
+        let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
+        if instrument && self.of_topic(topic).next().is_none() {
+            self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
+        }
+        self.of_topic(topic).for_each(|k| {
+            k.measured.insert(step);
+        });
+    }
+
+    /// All third-party programs have ended.
+    pub(crate) fn instruments_left(&mut self) {
+        self.instruments = false;
+    }
+
+    /// The inversion with this member number published a microstructure from the data of this topic.
+    pub(crate) fn inverted(&mut self, topic: &str, step: u64, member: u8) {
+        self.of_topic(topic).for_each(|k| {
+            k.inverted.insert((step, member));
+        });
+    }
+
+    /// There will be no data of this topic about the packing of `step`.
+    pub(crate) fn declined(&mut self, topic: &str, step: u64) {
+        self.of_topic(topic).for_each(|k| {
+            k.declined.insert(step);
+        });
+    }
+
+    fn of_topic<'a>(&'a mut self, topic: &str) -> impl Iterator<Item = &'a mut Kind> {
+        self.kinds.iter_mut().filter(move |k| k.topic == topic)
+    }
+
+    /// The state of the results of the packing of `step`: that of the slowest one.
+    pub(crate) fn state_of(&self, step: u64) -> ResultState {
+        let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
+        // A program that is gone sends nothing more.
+        let never =
+            |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.measured.contains(&step);
+        let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));
+        let due = || owed().filter(|k| !k.declined.contains(&step));
+        let without_moduli = |k: &Kind| k.topic == topics::MODULI.name && self.structures.contains(&step);
+        if let Some(open) = due().find(|k| !k.measured.contains(&step) && !without_moduli(k)) {
+            return ResultState::Open(open.source);
+        }
+        if let Some(bare) = due().find(|k| !k.measured.contains(&step)) {
+            return ResultState::Bare(bare.source);
+        }
+        if let Some(measured) = due().next() {
+            return ResultState::Measured(measured.source);
+        }
+        owed().next().map_or(ResultState::Complete, |k| ResultState::Declined(k.source))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ANALYZER: Source = Source::Node(NodeKind::FabricAnalyzer);
+    const PROBE: Source = Source::Node(NodeKind::AcousticProbe);
+
+    fn pending(nodes: &[NodeKind]) -> PendingResults {
+        let plan = |node: &NodeKind| NodePlan {
+            name: node.to_string(),
+            node: Some(*node),
+            program: "grainlab".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        PendingResults::of(&nodes.iter().map(plan).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn an_instrument_that_measured_one_packing_is_waited_for_at_the_last_unless_it_left() {
+        let foreign = NodePlan {
+            name: "instrument".to_owned(),
+            node: None,
+            program: "python3".to_owned(),
+            arguments: Vec::new(),
+            respawn: false,
+        };
+        let ours = NodePlan { node: Some(NodeKind::FabricAnalyzer), ..foreign.clone() };
+        let mut d = PendingResults::of(&[ours, foreign]);
+        for step in [7, 9] {
+            d.measured("moduli", step);
+            d.inverted("moduli", step, 2);
+        }
+        d.measured("wave_speeds", 0);
+        assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
+        d.measured("wave_speeds", 7);
+        assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
+        d.measured("wave_speeds", 9);
+        assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));
+        d.inverted("wave_speeds", 9, 2);
+        assert_eq!(d.state_of(9), ResultState::Complete);
+        assert_eq!(d.state_of(11), ResultState::Open(ANALYZER));
+        d.measured("moduli", 11);
+        d.inverted("moduli", 11, 2);
+        d.instruments_left();
+        assert_eq!(d.state_of(11), ResultState::Complete);
+    }
+
+    #[test]
+    fn with_a_probe_both_kinds_of_data_must_be_inverted() {
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
+        assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
+        d.measured("moduli", 7);
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Open(PROBE));
+        d.measured("wave_speeds", 7);
+        assert_eq!(d.state_of(7), ResultState::Measured(PROBE));
+        d.inverted("wave_speeds", 6, 2);
+        assert_eq!(d.state_of(7), ResultState::Measured(PROBE), "another packing");
+        d.inverted("wave_speeds", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Complete);
+    }
+
+    #[test]
+    fn without_a_probe_wave_speeds_from_elsewhere_are_not_waited_for() {
+        let mut d = pending(&[NodeKind::FabricAnalyzer]);
+        d.inverted("wave_speeds", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Open(ANALYZER));
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Complete);
+        assert_eq!(pending(&[]).state_of(7), ResultState::Open(ANALYZER));
+        let mut d = pending(&[NodeKind::AcousticProbe]);
+        d.inverted("wave_speeds", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Complete);
+    }
+
+    #[test]
+    fn a_probe_that_declines_is_not_waited_for() {
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::AcousticProbe]);
+        d.declined("wave_speeds", 7);
+        d.measured("moduli", 7);
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Declined(PROBE));
+    }
+    #[test]
+    fn every_inversion_of_the_run_is_waited_for() {
+        let mut d = pending(&[NodeKind::FabricAnalyzer, NodeKind::EmtInversion, NodeKind::EmtInversion]);
+        d.measured("moduli", 7);
+        d.inverted("moduli", 7, 2);
+        d.inverted("moduli", 7, 2);
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
+        d.inverted("moduli", 7, 3);
+        assert_eq!(d.state_of(7), ResultState::Complete);
+    }
+
+    #[test]
+    fn a_structure_without_moduli_is_not_waited_for_as_if_it_were_not_measured() {
+        let mut d = pending(&[NodeKind::FabricAnalyzer]);
+        d.structure(7);
+        assert_eq!(d.state_of(7), ResultState::Bare(ANALYZER));
+        d.measured("moduli", 7);
+        assert_eq!(d.state_of(7), ResultState::Measured(ANALYZER));
+    }
+}

@@ -1,0 +1,222 @@
+//! Every node: a kind for each, and all that differs between them outside their own crates.
+//!
+//! To add a node: its crate, a variant here with what the compiler then asks for, and the launch files that start it.
+
+use crate::results::last_packing;
+use clap::ValueEnum;
+use grainlab_acoustic_probe::AcousticProbe;
+use grainlab_console::{Failure, scenes};
+use grainlab_dem_simulator::DemSimulator;
+use grainlab_emt_inversion::EmtInversion;
+use grainlab_fabric_analyzer::FabricAnalyzer;
+use grainlab_msgs::{Topic, topics};
+use grainlab_node_kit::NodeSpec;
+use grainlab_node_kit::{Bus, Exit, Node, NodeError, ParameterSpec, Parameters, Scope};
+use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
+use grainlab_recordings::input;
+use grainlab_servo_controller::ServoController;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use std::str::FromStr;
+
+/// A node of the laboratory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NodeKind {
+    DemSimulator,
+    ServoController,
+    FabricAnalyzer,
+    AcousticProbe,
+    EmtInversion,
+    Recorder,
+}
+
+/// A name that is none of a node's.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no node {0:?}; there are: {known}", known = NodeKind::names())]
+pub(crate) struct UnknownNode(pub(crate) String);
+
+impl NodeKind {
+    /// Every node, in the order of the help.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        Self::value_variants().iter().copied()
+    }
+
+    /// Its name, unless `__node` gives another.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::DemSimulator => "dem_simulator",
+            Self::ServoController => "servo_controller",
+            Self::FabricAnalyzer => "fabric_analyzer",
+            Self::AcousticProbe => "acoustic_probe",
+            Self::EmtInversion => "emt_inversion",
+            Self::Recorder => "recorder",
+        }
+    }
+
+    /// The names of all, comma separated.
+    pub(crate) fn names() -> String {
+        Self::all().map(Self::name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What it does, in a line.
+    pub(crate) fn summary(self) -> &'static str {
+        match self {
+            Self::DemSimulator => "owns the run: publishes stress and packings, obeys strain rates",
+            Self::ServoController => "answers every stress with a strain rate",
+            Self::FabricAnalyzer => "turns packings into fabric and moduli",
+            Self::AcousticProbe => "sends waves through packings: turns them into wave speeds",
+            Self::EmtInversion => "turns moduli and wave speeds into microstructure",
+            Self::Recorder => "records every topic to MCAP",
+        }
+    }
+
+    /// What can be set.
+    pub(crate) fn parameters(self) -> Vec<ParameterSpec> {
+        match self {
+            Self::DemSimulator => simulator_parameters(),
+            Self::ServoController => grainlab_servo_controller::parameters(),
+            Self::FabricAnalyzer => grainlab_fabric_analyzer::parameters(),
+            Self::AcousticProbe => grainlab_acoustic_probe::parameters(),
+            Self::EmtInversion => grainlab_emt_inversion::parameters(),
+            Self::Recorder => recorder::parameters(),
+        }
+    }
+
+    /// Whose samples it takes where it is started by hand: the lockstep and its record keep apart from launched runs; a node
+    /// that measures takes those of everyone.
+    fn scope(self) -> Scope {
+        match self {
+            Self::DemSimulator | Self::ServoController | Self::Recorder => Scope::OwnRun,
+            Self::FabricAnalyzer | Self::AcousticProbe | Self::EmtInversion => Scope::Everyone,
+        }
+    }
+
+    /// What it is run with.
+    pub(crate) fn spec(self) -> NodeSpec {
+        NodeSpec {
+            name: self.name(),
+            summary: self.summary(),
+            scope: self.scope(),
+            parameters: self.parameters(),
+        }
+    }
+
+    /// How many of it a run may have, as numbers and in words: two of those that one run has one of would contradict each
+    /// other.
+    pub(crate) fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
+        match self {
+            Self::Recorder | Self::DemSimulator => (1..=1, "one"),
+            Self::ServoController | Self::FabricAnalyzer | Self::AcousticProbe => (0..=1, "at most one"),
+            Self::EmtInversion => (0..=usize::MAX, "any number"),
+        }
+    }
+
+    /// The topic of the data that it measures, from each of which a microstructure is inferred.
+    pub(crate) fn measures(self) -> Option<Topic> {
+        match self {
+            Self::FabricAnalyzer => Some(topics::MODULI),
+            Self::AcousticProbe => Some(topics::WAVE_SPEEDS),
+            Self::DemSimulator | Self::ServoController | Self::EmtInversion | Self::Recorder => None,
+        }
+    }
+
+    /// Makes the node on its bus. A recorder leaves what it finished in `recorded`.
+    pub(crate) fn build(
+        self,
+        bus: &mut dyn Bus,
+        parameters: &Parameters,
+        recorded: &ResultSlot,
+    ) -> Result<Box<dyn Node>, NodeError> {
+        let usage = |e: &dyn fmt::Display| NodeError::new(Exit::Usage, e.to_string());
+        Ok(match self {
+            Self::DemSimulator => Box::new(simulator(bus, parameters)?),
+            Self::ServoController => Box::new(ServoController::new(bus, parameters.into())?),
+            Self::FabricAnalyzer => {
+                let settings = grainlab_fabric_analyzer::Settings::try_from(parameters);
+                Box::new(FabricAnalyzer::new(bus, settings.map_err(|e| usage(&e))?)?)
+            }
+            Self::AcousticProbe => {
+                let settings = grainlab_acoustic_probe::Settings::try_from(parameters);
+                Box::new(AcousticProbe::new(bus, settings.map_err(|e| usage(&e))?)?)
+            }
+            Self::EmtInversion => {
+                let read =
+                    |path: &str| input::text(Path::new(path), input::SETTINGS).map_err(|e| e.to_string());
+                let settings = grainlab_emt_inversion::Settings::new(parameters, read);
+                Box::new(EmtInversion::new(bus, settings.map_err(|e| usage(&e))?)?)
+            }
+            Self::Recorder => {
+                let settings = recorder::Settings::of(parameters).map_err(|e| node_error(&e))?;
+                Box::new(Recorder::new(bus, &settings, recorded.clone())?)
+            }
+        })
+    }
+}
+
+impl fmt::Display for NodeKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for NodeKind {
+    type Err = UnknownNode;
+
+    fn from_str(name: &str) -> Result<Self, UnknownNode> {
+        Self::all().find(|kind| kind.name() == name).ok_or_else(|| UnknownNode(name.to_owned()))
+    }
+}
+
+fn simulator_parameters() -> Vec<ParameterSpec> {
+    let mut all = vec![
+        ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
+        scenes::set_parameter(),
+        ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
+        ParameterSpec::new(
+            "resume",
+            "",
+            "recording to go on from: the run continues from its last packing, to the same bytes; empty: from the beginning",
+        ),
+    ];
+    all.extend(grainlab_dem_simulator::parameters());
+    all
+}
+
+fn simulator(bus: &mut dyn Bus, parameters: &Parameters) -> Result<DemSimulator, NodeError> {
+    let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
+    let name: String = parameters.get("scene");
+    let sets: Vec<String> = parameters.get("set");
+    let scene = scenes::load(&name, &sets, seed).map_err(|e| node_error(&e))?;
+    let recording: String = parameters.get("resume");
+    let from = (!recording.is_empty()).then(|| last_packing::read(Path::new(&recording)));
+    let from = from.transpose().map_err(|e| node_error(&e))?;
+    let from = from.or(scene.start.map(|packing| (packing, Vec::new())));
+    DemSimulator::new(bus, scene.scene, from, parameters.into())
+        .map_err(|e| NodeError::new(Exit::Failure, e.to_string()))
+}
+
+fn node_error(failure: &Failure) -> NodeError {
+    NodeError::new(failure.exit, failure.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_means_its_node_and_an_unknown_one_lists_all() {
+        for kind in NodeKind::all() {
+            assert_eq!(kind.to_string().parse(), Ok(kind));
+        }
+        let error = "dem_simulater".parse::<NodeKind>().unwrap_err().to_string();
+        assert!(error.starts_with("no node \"dem_simulater\"; there are: dem_simulator, servo"), "{error}");
+    }
+
+    #[test]
+    fn who_measures_is_who_writes_the_topic() {
+        for (kind, topic) in NodeKind::all().filter_map(|kind| Some((kind, kind.measures()?))) {
+            assert_eq!(kind.name(), topic.writer);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Errors of the bus.
+
+use crate::names::NameError;
+
+/// Errors of a bus operation.
+#[derive(Debug, thiserror::Error)]
+pub enum BusError {
+    /// The topic name is invalid.
+    #[error("topic name: {0}")]
+    Name(#[from] NameError),
+    /// A reliable reader is so far behind that the window stayed full until the time limit. The sample was dropped.
+    #[error("{topic}: a reliable reader is more than {window} samples behind; the sample was dropped")]
+    Full {
+        /// Resolved topic name.
+        topic: String,
+        /// Samples that may be unacknowledged.
+        window: u32,
+    },
+    /// The body does not begin with the encapsulation header.
+    #[error(
+        "{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)"
+    )]
+    Encapsulation {
+        /// Resolved topic name.
+        topic: String,
+        /// Its first bytes, at most four.
+        found: Vec<u8>,
+    },
+    /// The handle belongs to another bus.
+    #[error("{0}: this handle does not belong to this bus")]
+    Handle(&'static str),
+    /// The network returned an error.
+    #[error("{what}: {reason}")]
+    Network {
+        /// What was attempted.
+        what: String,
+        /// The error of DDS.
+        reason: String,
+    },
+}

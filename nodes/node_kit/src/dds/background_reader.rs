@@ -1,0 +1,92 @@
+//! Empties the readers while the node computes.
+//!
+//! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the
+//! marker of what is complete leaves with the writer). A node that computes for seconds would lose the last packing of
+//! a simulator that ended meanwhile. The background reader moves samples into our own queues as soon as the node has
+//! not used the bus for a while; it does nothing for a node with short steps.
+
+use super::inbox::Inbox;
+use rustdds::mio1::Waker;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Time without use of the bus after which the background reader empties the readers. An ending node stays longer than
+/// this.
+const ABSENCE: Duration = Duration::from_millis(20);
+
+/// Readers of one bus, shared with the background reader.
+pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;
+
+/// Locks, whether or not another thread panicked while it held the lock: queues are valid after every statement.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+struct Shared {
+    start: Instant,
+    /// Time at which the node last used the bus, ns since `start`.
+    last_seen: AtomicU64,
+    stopped: Mutex<bool>,
+    stop: Condvar,
+}
+
+/// The thread; it ends when this is dropped.
+pub(super) struct BackgroundReader {
+    shared: Arc<Shared>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+impl BackgroundReader {
+    pub(super) fn spawn(inboxes: Inboxes, waker: Arc<Waker>) -> std::io::Result<Self> {
+        let shared = Arc::new(Shared {
+            start: Instant::now(),
+            last_seen: AtomicU64::new(0),
+            stopped: Mutex::new(false),
+            stop: Condvar::new(),
+        });
+        let its = Arc::clone(&shared);
+        let thread = std::thread::Builder::new()
+            .name("bus reader".into())
+            .spawn(move || run(&its, &inboxes, &waker))?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Notes that the node uses the bus now.
+    pub(super) fn seen(&self) {
+        self.shared.last_seen.store(self.shared.start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+    }
+}
+
+impl Drop for BackgroundReader {
+    fn drop(&mut self) {
+        *lock(&self.shared.stopped) = true;
+        self.shared.stop.notify_all();
+        if let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            log::error!("the bus reader panicked");
+        }
+    }
+}
+
+fn run(shared: &Shared, inboxes: &Inboxes, waker: &Waker) {
+    let mut stopped = lock(&shared.stopped);
+    while !*stopped {
+        stopped = shared.stop.wait_timeout(stopped, ABSENCE).unwrap_or_else(PoisonError::into_inner).0;
+        let absent = shared.start.elapsed().as_nanos() as u64 - shared.last_seen.load(Ordering::Relaxed);
+        if *stopped || absent < ABSENCE.as_nanos() as u64 {
+            continue;
+        }
+        let all: Vec<Arc<Mutex<Inbox>>> = lock(inboxes).clone();
+        let mut moved = false;
+        for inbox in &all {
+            // The node's next take returns the error of a failing reader.
+            moved |= lock(inbox).collect().unwrap_or(false);
+        }
+        // The node may have begun to wait meanwhile: the reader is empty now, so wake it again.
+        if moved && let Err(error) = waker.wake() {
+            log::error!("cannot wake the node: {error}");
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Quality of service of a subscription.
+
+use grainlab_msgs::Topic;
+
+/// The requested quality of service: at most what the topic offers, so that it always matches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Demand {
+    /// Whether lost samples are repeated and a late reader receives the last samples of a latched topic.
+    pub reliable: bool,
+    /// Maximum number of queued samples; a full queue drops the oldest. At least the largest backlog.
+    pub depth: u32,
+}
+
+impl Demand {
+    /// Every sample, and for a late reader the latched ones: at least the topic's depth of them, possibly more.
+    pub const fn reliable(depth: u32) -> Self {
+        Self { reliable: true, depth }
+    }
+
+    /// No repetition by the bus: for nodes that repeat by themselves and must not block a writer when they crash.
+    pub const fn best_effort(depth: u32) -> Self {
+        Self { reliable: false, depth }
+    }
+
+    /// The demand that `topic` can meet.
+    pub fn within(self, topic: &Topic) -> Self {
+        Self { reliable: self.reliable && topic.qos.reliable, depth: self.depth.max(1) }
+    }
+
+    /// Whether a subscription with this demand also serves `other`.
+    pub fn covers(self, other: Self) -> bool {
+        self.reliable >= other.reliable && self.depth >= other.depth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_msgs::topics;
+
+    #[test]
+    fn a_demand_never_exceeds_what_the_topic_offers() {
+        let of_clock = Demand::reliable(20_000).within(&topics::CLOCK);
+        assert_eq!(of_clock.reliable, topics::CLOCK.qos.reliable);
+        assert!(Demand::reliable(10).within(&topics::PACKING).reliable);
+        assert_eq!(Demand::best_effort(0).within(&topics::PACKING), Demand::best_effort(1));
+    }
+}

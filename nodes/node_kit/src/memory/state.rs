@@ -1,0 +1,167 @@
+//! The state of a network in memory: time, writers and readers.
+
+use super::faults::{Dice, Faults};
+use crate::admission::Participant;
+use crate::demand::Demand;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
+use grainlab_msgs::topics::Qos;
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+/// Virtual time zero as wall-clock time, ns since 1970.
+const EPOCH_NANOS: u64 = 1_700_000_000_000_000_000;
+
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) now: Duration,
+    /// Offset by which the wall clock was set, ns.
+    wall_offset: i64,
+    dice: Dice,
+    faults: BTreeMap<String, Faults>,
+    participants: u32,
+    pub(super) writers: Vec<Writer>,
+    pub(super) readers: Vec<Reader>,
+}
+
+#[derive(Debug)]
+pub(super) struct Writer {
+    pub(super) id: WriterId,
+    pub(super) topic: String,
+    pub(super) qos: Qos,
+    pub(super) count: u64,
+    latched: VecDeque<Sample>,
+    pub(super) alive: bool,
+}
+
+#[derive(Debug)]
+pub(super) struct Reader {
+    pub(super) participant: Participant,
+    pub(super) topic: String,
+    pub(super) demand: Demand,
+    /// Due time and sample, in the order of due time.
+    queue: VecDeque<(Duration, Sample)>,
+    pub(super) taken: u64,
+    pub(super) refused: u64,
+    pub(super) alive: bool,
+}
+
+/// The GUID of a participant's endpoint.
+pub(super) fn writer_id(participant: Participant, entity: usize) -> WriterId {
+    let mut bytes = [0; 16];
+    bytes[..12].copy_from_slice(&participant);
+    bytes[12..].copy_from_slice(&(entity as u32).to_be_bytes());
+    WriterId(bytes)
+}
+
+impl State {
+    pub(super) fn new(seed: u64) -> Self {
+        Self {
+            now: Duration::ZERO,
+            wall_offset: 0,
+            dice: Dice::new(seed),
+            faults: BTreeMap::new(),
+            participants: 0,
+            writers: Vec::new(),
+            readers: Vec::new(),
+        }
+    }
+
+    /// Counts a new participant; its number.
+    pub(super) fn count_participant(&mut self) -> u32 {
+        self.participants += 1;
+        self.participants
+    }
+
+    pub(super) fn set_faults(&mut self, topic: &str, faults: Faults) {
+        self.faults.insert(topic.into(), faults);
+    }
+
+    pub(super) fn set_wall_clock(&mut self, forward_nanos: i64) {
+        self.wall_offset += forward_nanos;
+    }
+
+    /// Time of the next arrival of a sample in transit, if any.
+    pub(super) fn next_arrival(&self) -> Option<Duration> {
+        let next = |r: &Reader| r.queue.iter().map(|(due, _)| *due).find(|due| *due > self.now);
+        self.readers.iter().filter(|r| r.alive).filter_map(next).min()
+    }
+
+    pub(super) fn wall_nanos(&self) -> u64 {
+        (EPOCH_NANOS + self.now.as_nanos() as u64).saturating_add_signed(self.wall_offset)
+    }
+
+    pub(super) fn add_writer(&mut self, participant: Participant, topic: String, qos: Qos) -> usize {
+        let id = writer_id(participant, self.writers.len());
+        self.writers.push(Writer { id, topic, qos, count: 0, latched: VecDeque::new(), alive: true });
+        self.writers.len() - 1
+    }
+
+    pub(super) fn add_reader(&mut self, participant: Participant, topic: String, demand: Demand) -> usize {
+        let mut queue = VecDeque::new();
+        if demand.reliable {
+            for writer in self.writers.iter().filter(|w| w.alive && w.topic == topic) {
+                queue.extend(writer.latched.iter().map(|sample| (self.now, sample.clone())));
+            }
+        }
+        self.readers.push(Reader { participant, topic, demand, queue, taken: 0, refused: 0, alive: true });
+        self.readers.len() - 1
+    }
+
+    pub(super) fn publish(&mut self, writer: usize, body: &[u8], about: Option<SampleId>) -> i64 {
+        let (now, received) = (self.now, self.wall_nanos());
+        let writer = &mut self.writers[writer];
+        writer.count += 1;
+        let info = SampleInfo {
+            writer: writer.id,
+            sequence: writer.count as i64,
+            source_time: Some(received),
+            received,
+            about,
+        };
+        let sample = Sample { body: body.to_vec(), info };
+        if writer.qos.transient_local {
+            writer.latched.push_back(sample.clone());
+            while writer.latched.len() > writer.qos.depth as usize {
+                writer.latched.pop_front();
+            }
+        }
+        let faults = self.faults.get(&writer.topic).copied().unwrap_or_default();
+        for reader in self.readers.iter_mut().filter(|r| r.alive && r.topic == writer.topic) {
+            let reliable = reader.demand.reliable && writer.qos.reliable;
+            for delay in self.dice.arrivals(&faults, reliable) {
+                reader.deliver(now + delay, sample.clone(), reliable);
+            }
+        }
+        info.sequence
+    }
+}
+
+impl Reader {
+    /// Inserts a sample by its due time; a reliable one not before an earlier one of the same writer.
+    fn deliver(&mut self, due: Duration, mut sample: Sample, reliable: bool) {
+        let writer = sample.info.writer;
+        let behind = self.queue.iter().filter(|(_, s)| s.info.writer == writer).map(|(due, _)| *due).max();
+        let due = if reliable { behind.map_or(due, |b| b.max(due)) } else { due };
+        sample.info.received = EPOCH_NANOS + due.as_nanos() as u64;
+        let place = self.queue.partition_point(|(other, _)| *other <= due);
+        self.queue.insert(place, (due, sample));
+        while self.queue.len() > self.demand.depth as usize {
+            self.queue.pop_front();
+        }
+    }
+
+    pub(super) fn has_data(&self, now: Duration) -> bool {
+        self.queue.front().is_some_and(|(due, _)| *due <= now)
+    }
+
+    pub(super) fn next_due(&self) -> Option<Duration> {
+        self.queue.front().map(|(due, _)| *due)
+    }
+
+    pub(super) fn take(&mut self, now: Duration) -> Option<Sample> {
+        if !self.has_data(now) {
+            return None;
+        }
+        self.queue.pop_front().map(|(_, sample)| sample)
+    }
+}

@@ -1,0 +1,425 @@
+//! The node.
+
+use crate::Settings;
+use crate::binding::{Binding, Outside};
+use crate::repeats::{Novelty, Repeats};
+use crate::strangers::{self, Authors, StrangerView};
+use crate::tallies::losses;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::{Topic, from_cdr, topics};
+use grainlab_node_kit::{
+    BulkSubscription, Bus, BusError, Demand, Exit, Health, Next, Node, NodeError, Report, Sample, Stranger,
+    SubscriptionId, WriterId,
+};
+use grainlab_node_kit::{Published, member_of, run_of};
+use grainlab_recordings::Finished;
+use grainlab_recordings::Guid;
+use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, WriterOptions};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many
+/// of each topic, also after they were taken, so that a topic of few or long messages gets less.
+fn backlog(topic: &Topic) -> u32 {
+    match topic.name {
+        name if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&name) => 20_000,
+        name if name == topics::PACKING.name => 16,
+        name if name == topics::WAVEFORM.name => 512,
+        _ => 1_000,
+    }
+}
+
+/// Period of the writer's `tick`.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Longer than the time before any message is written.
+const OLD_ENOUGH: Duration = Duration::from_secs(1);
+
+/// A recorder without a step for this long was stopped by a signal, or its disk was slow.
+const STALLED: Duration = Duration::from_secs(2);
+
+/// How long an ending recorder waits for reported messages that it lacks, and how long for a pause of messages, unless
+/// every process has sent its last report.
+const LAST_CALL: Duration = Duration::from_secs(2);
+const SILENCE: Duration = Duration::from_millis(200);
+
+/// The recording that a recorder finished, for the code that started it.
+pub type ResultSlot = Rc<RefCell<Option<Finished>>>;
+
+type Participant = [u8; 12];
+
+/// How the messages of a topic are received and written.
+enum Source {
+    Samples(SubscriptionId),
+    /// Large ones in parts: recorded whole, as one sample.
+    Bulk(Box<BulkSubscription>),
+}
+
+impl Source {
+    fn take(&mut self, bus: &mut dyn Bus) -> Result<Option<Sample>, BusError> {
+        match self {
+            Self::Samples(subscription) => bus.take(*subscription),
+            Self::Bulk(bulk) => bulk.take(bus),
+        }
+    }
+}
+
+struct Channel {
+    topic: Topic,
+    source: Source,
+    name: String,
+    reports: bool,
+    /// A result: written at once.
+    precious: bool,
+}
+
+/// The recorder.
+pub struct Recorder {
+    /// `None` after the end.
+    writer: Option<RunWriter>,
+    channels: Vec<Channel>,
+    /// Resolved names of the channels.
+    names: BTreeSet<String>,
+    result: ResultSlot,
+    whole_run: bool,
+    recorded: u64,
+    company: Company,
+    /// For a run whose processes share no run id.
+    binding: Option<Binding>,
+    /// For the recording of one run.
+    repeats: Option<Repeats>,
+    contradictions: u64,
+    /// The writer of each result.
+    authors: Authors,
+    /// Time of the last step, since the bus was opened.
+    stepped: Option<Duration>,
+    /// The recorder had no step for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
+    stalled: bool,
+}
+
+/// The processes that published, and those that sent their last report, which counts all messages of the process.
+#[derive(Debug, Default)]
+struct Company {
+    own: Option<Participant>,
+    heard: BTreeSet<Participant>,
+    left: BTreeSet<Participant>,
+}
+
+impl Company {
+    fn hear(&mut self, writer: WriterId) {
+        self.heard.insert(writer.participant());
+    }
+
+    /// Number of processes that left without a last report.
+    fn missing(&self, present: &[WriterId]) -> usize {
+        let there: BTreeSet<_> = present.iter().map(WriterId::participant).chain(self.own).collect();
+        self.heard.iter().filter(|p| !self.left.contains(*p) && !there.contains(*p)).count()
+    }
+
+    /// Whether every process that published, or has a writer in `present`, has sent its last report.
+    fn all_left(&self, present: &[WriterId]) -> bool {
+        let mut known = self.heard.iter().copied().chain(present.iter().map(WriterId::participant));
+        known.all(|p| Some(p) == self.own || self.left.contains(&p))
+    }
+}
+
+impl Recorder {
+    /// Subscribes, strongest demand first, and begins the recording.
+    pub fn new(bus: &mut dyn Bus, settings: &Settings, result: ResultSlot) -> Result<Self, NodeError> {
+        let failed = |e: &dyn std::fmt::Display| NodeError::new(Exit::Failure, e.to_string());
+        let mut channels = Vec::new();
+        let mut specs = Vec::new();
+        for topic in &settings.topics {
+            let demand = Demand::reliable(backlog(topic));
+            let source = if topic.info == topics::PACKING.info {
+                Source::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
+            } else {
+                Source::Samples(bus.subscribe(topic, demand)?)
+            };
+            let name = match &source {
+                Source::Bulk(bulk) => bulk.topic().to_owned(),
+                Source::Samples(_) => {
+                    bus.received().last().map_or_else(|| topic.absolute_name(), |r| r.topic.clone())
+                }
+            };
+            specs.push(TopicSpec::of_contract(topic, &name));
+            let reports = topic.name == topics::DIAGNOSTICS.name;
+            let precious = topic.qos.transient_local && topic.reproducible;
+            channels.push(Channel { topic: *topic, source, name, reports, precious });
+        }
+        let directory = settings.directory().map_err(|e| failed(&e))?;
+        let name =
+            directory.file_name().map_or_else(|| "recording".into(), |n| n.to_string_lossy().into_owned());
+        let mut repeats = settings.whole_run.then(Repeats::default);
+        let mut authors = Authors::default();
+        let before = if settings.append { Recording::open(&directory).ok() } else { None };
+        if let Some(recording) = &before {
+            authors = strangers::authors(recording);
+            if let Some(repeats) = &mut repeats {
+                repeats.remember(recording).map_err(|e| failed(&e))?;
+            }
+        }
+        let begin = if before.is_some() { RunWriter::append } else { RunWriter::create };
+        let mut writer =
+            begin(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        if let Some(scene) = &settings.scene {
+            writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
+            writer.set_metadata("scene", &scene.scene.name);
+            writer.set_metadata("seed", &scene.scene.seed.to_string());
+        }
+        writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
+        for channel in channels.iter().filter(|c| !c.topic.reproducible) {
+            writer.ledger_mut().count_from_first(&channel.name);
+        }
+        let run = bus.identity().run;
+        if let Some(run) = run {
+            writer.set_metadata("run", &run.to_string());
+        }
+        log::info!("recording to {}", writer.file().display());
+        let company = Company::default();
+        Ok(Self {
+            writer: Some(writer),
+            names: channels.iter().map(|c| c.name.clone()).collect(),
+            channels,
+            result,
+            whole_run: settings.whole_run,
+            recorded: 0,
+            company,
+            binding: (settings.whole_run && run.is_none()).then(Binding::default),
+            repeats,
+            contradictions: 0,
+            authors,
+            stepped: None,
+            stalled: false,
+        })
+    }
+
+    /// Records all samples that arrived; true if there were any.
+    fn take_all(&mut self, bus: &mut dyn Bus) -> Result<bool, NodeError> {
+        let Some(writer) = self.writer.as_mut() else { return Ok(false) };
+        let mut any = false;
+        for channel in &mut self.channels {
+            while let Some(sample) = channel.source.take(bus)? {
+                any = true;
+                let (topic, info) = (&channel.topic, &sample.info);
+                if let Some(binding) = &mut self.binding
+                    && let Err(outside) = binding.takes(topic, info, |t| bus.foreign_writers(t))
+                {
+                    note_outside(outside, topic, bus.describe(info.writer), binding);
+                    writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
+                    continue;
+                }
+                self.company.hear(sample.info.writer);
+                if channel.reports && enter_reports(writer, &self.names, &sample) {
+                    self.company.left.insert(sample.info.writer.participant());
+                }
+                let incoming = Incoming {
+                    guid: Guid(sample.info.writer.0),
+                    sequence: sample.info.sequence,
+                    source_time: sample.info.source_time,
+                    receive_time: sample.info.received,
+                    payload: &sample.body,
+                };
+                let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
+                    repeats.enter(&channel.topic, author(sample.info.writer), &sample.body)
+                });
+                if novelty != Novelty::New {
+                    writer.ledger_mut().repeat(&channel.name, incoming.guid, incoming.sequence);
+                    if let Novelty::Contradiction { sequence } = novelty {
+                        self.contradictions += 1;
+                        if self.contradictions.is_power_of_two() {
+                            let who = bus.describe(sample.info.writer);
+                            log::error!(
+                                "{}: message {sequence} of {who} is not the one that was recorded under this number: it is \
+                                 left out ({} so far)",
+                                channel.name,
+                                self.contradictions
+                            );
+                        }
+                    }
+                    continue;
+                }
+                let outcome = writer.write(&channel.name, &incoming).map_err(|e| lost(&e))?;
+                self.recorded += 1;
+                if channel.precious {
+                    if let Outcome::Recorded { log_time } = outcome {
+                        self.authors.enter(&channel.name, log_time, incoming.guid);
+                    }
+                    // With this time the writer counts all queued messages as old enough.
+                    writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
+                }
+            }
+        }
+        writer.tick(Instant::now()).map_err(|e| lost(&e))?;
+        Ok(any)
+    }
+
+    /// The processes whose messages were left out.
+    fn strangers(&self, bus: &dyn Bus) -> Vec<StrangerView> {
+        let of_bus = bus.strangers();
+        let of_binding = self.binding.iter().flat_map(|b| b.ignored()).map(|(participant, topics)| {
+            let ignored = topics.iter().map(|(topic, count)| ((*topic).to_owned(), *count)).collect();
+            Stranger { ignored, ..bus.describe(WriterId::of_participant(*participant)) }
+        });
+        strangers::grouped(of_bus.into_iter().chain(of_binding))
+    }
+
+    /// Waits for messages known to be in transit, then for a short pause if any process may still publish.
+    fn last_call(&mut self, bus: &mut dyn Bus) -> Result<(), NodeError> {
+        self.company.own = bus.published().first().map(|p| p.writer.participant());
+        let end = bus.now() + LAST_CALL;
+        let mut quiet_since = bus.now();
+        loop {
+            let now = bus.now();
+            if self.take_all(bus)? {
+                quiet_since = now;
+            }
+            let outstanding = self.writer.as_ref().map_or(0, |w| w.ledger().outstanding());
+            let settled = || {
+                self.company.all_left(&bus.foreign_writers(&topics::DIAGNOSTICS))
+                    || now - quiet_since >= SILENCE
+            };
+            if now >= end || (outstanding == 0 && settled()) {
+                return Ok(());
+            }
+            bus.wait(Duration::from_millis(20));
+        }
+    }
+}
+
+/// The same value for a process of a launched run and for its restarted successor.
+fn author(writer: WriterId) -> u64 {
+    let participant = writer.participant();
+    match (run_of(&participant), member_of(&participant)) {
+        (Some(_), member @ 1..) => u64::from(member),
+        _ => participant[4..].iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
+    }
+}
+
+/// Logs a process whose messages are left out, once for each kind of message.
+fn note_outside(outside: Outside, topic: &Topic, who: Stranger, binding: &Binding) {
+    let first =
+        binding.ignored().get(&who.participant).is_some_and(|topics| topics.get(topic.name) == Some(&1));
+    if !first {
+        return;
+    }
+    match outside {
+        Outside::Stranger => {
+            log::warn!("{}: {who} is not of this run: its messages are left out", topic.name)
+        }
+        Outside::Second => log::error!(
+            "{}: {who} publishes about this run in addition to the first process: its messages are left out",
+            topic.name
+        ),
+    }
+}
+
+/// A recording that cannot continue has lost data.
+fn lost(error: &dyn std::fmt::Display) -> NodeError {
+    NodeError::new(Exit::DataLoss, error.to_string())
+}
+
+/// Passes the counts of a report to the recording, with the node's name; true for the last report of a process.
+fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
+    let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
+    let mut goodbye = false;
+    for report in Report::from_message(&message) {
+        // A replayed report refers to writers that do not exist.
+        let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
+        goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
+        for published in report.published.iter().filter(own) {
+            let guid = Guid(published.writer.0);
+            writer.ledger_mut().name(guid, &report.node);
+            // Topics that are not recorded are not counted.
+            if recorded.contains(&published.topic) {
+                writer.ledger_mut().report(&published.topic, guid, published.count);
+            }
+        }
+    }
+    goodbye
+}
+
+impl Node for Recorder {
+    fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
+        let now = bus.now();
+        let last = self.stepped.replace(now).unwrap_or(now);
+        if now.saturating_sub(last) > STALLED {
+            self.stalled = true;
+            log::warn!(
+                "nothing was recorded for {:.1} s: the recorder was stopped, or its disk was slow",
+                (now - last).as_secs_f64()
+            );
+        }
+        self.take_all(bus)?;
+        Ok(Next::Wait(TICK))
+    }
+
+    fn health(&self) -> Health {
+        let lost: u64 = self.writer.as_ref().map_or(0, |w| w.ledger().tallies().iter().map(|t| t.lost).sum());
+        let text = format!("{} messages", self.recorded);
+        if lost == 0 { Health::ok(text) } else { Health::warn(text) }
+            .with("recorded", self.recorded)
+            .with("missing", lost)
+    }
+
+    /// Finishes the file. What this process publishes after that is not recorded.
+    fn on_shutdown(&mut self, bus: &mut dyn Bus) -> Result<Exit, NodeError> {
+        self.last_call(bus)?;
+        let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
+        let strangers = self.strangers(bus);
+        let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
+        let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
+        writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
+        writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);
+        if let Some(run) = self.binding.as_ref().and_then(Binding::run) {
+            writer.set_metadata("run", &WriterId::of_participant(run).to_string()[..24]);
+        }
+        let finished = writer.finish().map_err(|e| lost(&e))?;
+        let (before, after) = losses(&finished.ledger.tallies());
+        *self.result.borrow_mut() = Some(finished);
+        if before > 0 && !self.whole_run {
+            log::info!("{before} messages were published before the recording began");
+        }
+        let lost = if self.whole_run { before + after } else { after };
+        if lost > 0 {
+            log::error!("{lost} messages were published and are not in the recording");
+            return Ok(Exit::DataLoss);
+        }
+        if self.stalled && missing > 0 && !self.whole_run {
+            log::error!(
+                "{missing} processes left without a last report, and the recorder was stopped for a while: how many of their \
+                 messages are missing is not known"
+            );
+            return Ok(Exit::DataLoss);
+        }
+        let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
+        if seconds > 0 || self.contradictions > 0 {
+            log::error!(
+                "two processes wrote what one should: which of them is right cannot be told. Start the processes of a run \
+                 with a run of their own (GRAINLAB_RUN=any_name for each of them)"
+            );
+            return Ok(Exit::Failure);
+        }
+        Ok(Exit::Done)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+        let writer = |who| WriterId([who; 16]);
+        let mut company = Company { own: Some([1; 12]), ..Company::default() };
+        assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
+        company.hear(writer(2));
+        assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
+        assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
+        company.left.insert([2; 12]);
+        assert!(company.all_left(&[writer(1), writer(2)]));
+        assert!(!company.all_left(&[writer(2), writer(3)]), "one that was never heard may still speak");
+    }
+}

@@ -1,0 +1,92 @@
+//! Settings of the recorder.
+
+use grainlab_console::Failure;
+use grainlab_console::scenes::{self, SceneText};
+use grainlab_msgs::{TOPICS, Topic};
+use grainlab_node_kit::{ParameterSpec, Parameters};
+use grainlab_recordings::runs::{RUNS, create_run_directory};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Settings of the recorder.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The run directory; `None` makes the next one under `recordings/runs`.
+    pub output: Option<PathBuf>,
+    /// Rows of the topic table.
+    pub topics: Vec<Topic>,
+    /// The scene of the run, attached to the recording.
+    pub scene: Option<SceneText>,
+    /// One run is recorded, from its first message on: messages missing at its beginning count as lost, too, and
+    /// repetitions are recorded once.
+    pub whole_run: bool,
+    /// Continues the existing recording, in its next file.
+    pub append: bool,
+}
+
+/// The parameters of the node.
+pub fn parameters() -> Vec<ParameterSpec> {
+    vec![
+        ParameterSpec::new(
+            "output",
+            "",
+            "directory to make and record into; empty: the next one under recordings/runs",
+        ),
+        ParameterSpec::new(
+            "topics",
+            Vec::<String>::new(),
+            "topics to record; empty: every topic of the laboratory",
+        ),
+        ParameterSpec::new(
+            "scene",
+            "",
+            "scene of the run, a built-in name or a file, attached to the recording",
+        ),
+        scenes::set_parameter(),
+        ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
+        ParameterSpec::new("append", false, "go on with the recording in output, in its next file"),
+    ]
+}
+
+impl Settings {
+    /// From the parameters of [`parameters`].
+    pub fn of(parameters: &Parameters) -> Result<Self, Failure> {
+        let text = |name: &str| Some(parameters.get::<String>(name)).filter(|t| !t.is_empty());
+        let seed = u64::try_from(parameters.get::<i64>("seed")).ok();
+        Ok(Self {
+            output: text("output").map(PathBuf::from),
+            topics: contract_topics(&parameters.get::<Vec<String>>("topics"))?,
+            scene: text("scene")
+                .map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed))
+                .transpose()?,
+            whole_run: true,
+            append: parameters.get("append"),
+        })
+    }
+
+    /// The directory to record into.
+    pub(super) fn directory(&self) -> io::Result<PathBuf> {
+        match (&self.output, &self.scene) {
+            (Some(directory), _) => Ok(directory.clone()),
+            (None, Some(s)) => create_run_directory(Path::new(RUNS), &s.scene.name, s.scene.seed),
+            (None, None) => create_run_directory(Path::new(RUNS), "recording", 0),
+        }
+    }
+}
+
+/// Rows of the topic table by name; without names all, except those for parts of another topic's messages.
+pub fn contract_topics(names: &[String]) -> Result<Vec<Topic>, Failure> {
+    let recorded = || TOPICS.iter().filter(|t| !t.is_transport());
+    if names.is_empty() {
+        return Ok(recorded().copied().collect());
+    }
+    let known = || recorded().map(|t| t.name).collect::<Vec<_>>().join(", ");
+    let row = |name: &String| match Topic::by_name(name) {
+        Some(row) if row.is_transport() => Err(Failure::usage(format!(
+            "topic {name:?} has only parts of large packings: record packing, which has them whole"
+        ))),
+        Some(row) => Ok(*row),
+        None => Err(Failure::usage(format!("no topic {name:?} in the laboratory; there are: {}", known()))),
+    };
+    names.iter().map(row).collect()
+}

@@ -1,0 +1,103 @@
+//! Who was on the bus beside the run, and who wrote which result.
+
+use grainlab_node_kit::Stranger;
+use grainlab_node_kit::member_of;
+use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Key of the metadata record of a recording under which the processes beside the run stand.
+pub const STRANGERS: &str = "strangers";
+
+/// Key of the metadata record of a recording under which the writers of the results stand.
+pub const AUTHORS: &str = "authors";
+
+/// A process whose messages were left out of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StrangerView {
+    /// Its process, or its DDS participant.
+    pub who: String,
+    /// The run that it says it belongs to.
+    pub run: Option<String>,
+    /// Messages left out, by topic.
+    pub ignored: BTreeMap<String, u64>,
+}
+
+/// The name under which a stranger is counted: `run ID` for every process of another launched run, else the process itself.
+pub fn name(stranger: &Stranger) -> String {
+    match stranger.run {
+        Some(run) if member_of(&stranger.participant) != 0 => format!("run {run}"),
+        _ => stranger.to_string(),
+    }
+}
+
+/// For a recording, and for `summary.json`: one for each process, and one for each other run.
+pub fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
+    let mut views: BTreeMap<String, StrangerView> = BTreeMap::new();
+    for stranger in strangers {
+        let run = stranger.run.map(|run| run.to_string());
+        let who = name(&stranger);
+        let new = StrangerView { who: who.clone(), run, ignored: BTreeMap::new() };
+        let view = views.entry(who).or_insert(new);
+        for (topic, count) in stranger.ignored {
+            *view.ignored.entry(topic).or_default() += count;
+        }
+    }
+    views.into_values().collect()
+}
+
+impl StrangerView {
+    /// For people.
+    pub fn line(&self) -> String {
+        let counts: Vec<String> = self.ignored.iter().map(|(topic, n)| format!("{n} on {topic}")).collect();
+        format!("not of this run and left out: {}: {}", self.who, counts.join(", "))
+    }
+}
+
+/// Who wrote each result: log times and writers, by topic. A message in a recording does not say its writer.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Authors(BTreeMap<String, Vec<(u64, String)>>);
+
+impl Authors {
+    /// A message of `topic` was recorded at this log time.
+    pub fn enter(&mut self, topic: &str, log_time: u64, writer: Guid) {
+        self.0.entry(topic.to_owned()).or_default().push((log_time, writer.to_string()));
+    }
+
+    /// The writer of the message of `topic` at this log time.
+    pub fn writer(&self, topic: &str, log_time: u64) -> Option<&str> {
+        let known = self.0.get(topic)?;
+        let place = known.binary_search_by_key(&log_time, |(time, _)| *time).ok()?;
+        Some(&known[place].1)
+    }
+}
+
+/// Who a recording says was beside its run.
+pub fn strangers(recording: &Recording) -> Vec<StrangerView> {
+    read(recording, STRANGERS).unwrap_or_default()
+}
+
+/// Who a recording says wrote which result.
+pub fn authors(recording: &Recording) -> Authors {
+    read(recording, AUTHORS).unwrap_or_default()
+}
+
+fn read<T: for<'a> Deserialize<'a>>(recording: &Recording, key: &str) -> Option<T> {
+    serde_json::from_str(recording.metadata(METADATA_RECORD)?.get(key)?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_writer_of_a_result_is_found_by_its_log_time() {
+        let mut authors = Authors::default();
+        authors.enter("/microstructure", 5, Guid([1; 16]));
+        authors.enter("/microstructure", 9, Guid([2; 16]));
+        let authors: Authors = serde_json::from_str(&serde_json::to_string(&authors).unwrap()).unwrap();
+        assert_eq!(authors.writer("/microstructure", 9), Some(Guid([2; 16]).to_string().as_str()));
+        assert_eq!(authors.writer("/microstructure", 6), None);
+        assert_eq!(authors.writer("/moduli", 9), None);
+    }
+}

@@ -1,0 +1,19 @@
+//! A packing from an external source.
+
+use grainlab_core::Packing;
+use grainlab_msgs::std_msgs::Header;
+
+/// A packing and its source.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Imported {
+    /// The packing.
+    pub packing: Packing,
+    /// The header of its message: the recorded one, or the one that a message of it would have.
+    pub header: Header,
+    /// Solver step of the state; 0 if unknown.
+    pub step: u64,
+    /// Description of its source, for the user.
+    pub source: String,
+    /// Warnings: contacts found rather than given, quantities that disagree.
+    pub notes: Vec<String>,
+}

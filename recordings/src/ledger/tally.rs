@@ -1,0 +1,48 @@
+//! Counts of topics and writers.
+
+use serde::{Deserialize, Serialize};
+
+/// Counts of one topic, all writers together.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TopicTally {
+    /// Name of the topic, absolute.
+    pub name: String,
+    /// Messages published: a writer's own count if reported, else its highest received sequence number.
+    pub published: u64,
+    /// Messages in the recording.
+    pub recorded: u64,
+    /// Published but not recorded.
+    pub lost: u64,
+    /// Repetitions of recorded messages, delivered or published once more; not recorded again.
+    pub repeated: u64,
+    /// The writers, in order of GUID.
+    pub writers: Vec<WriterTally>,
+}
+
+/// Counts of one writer of one topic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WriterTally {
+    /// GUID, 32 hexadecimal digits.
+    pub guid: String,
+    /// Name of the node, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub node: Option<String>,
+    /// Messages recorded.
+    pub recorded: u64,
+    /// Count reported by the writer; `None` if it crashed or has not ended.
+    pub reported: Option<u64>,
+    /// Lowest sequence number recorded; `None` if nothing was.
+    pub first: Option<i64>,
+    /// Highest sequence number recorded; `None` if nothing was.
+    pub last: Option<i64>,
+    /// Published but not recorded.
+    pub lost: u64,
+    /// Ranges of sequence numbers, both ends included, that are missing below the highest received one. At most
+    /// 32 are kept here; `lost` counts all.
+    pub gaps: Vec<(i64, i64)>,
+    /// Deliveries of a message that was already recorded.
+    pub repeated: u64,
+}
+
+/// Maximum number of ranges in a [`WriterTally`].
+pub(super) const LISTED_GAPS: usize = 32;

@@ -1,0 +1,11 @@
+//! Keys of the metadata records.
+
+/// Name of the metadata record of the laboratory: the caller's keys, and [`LEDGER_KEY`].
+pub const METADATA_RECORD: &str = "grainlab";
+
+/// Key of the ledger, as JSON, in the metadata record [`METADATA_RECORD`].
+pub const LEDGER_KEY: &str = "ledger";
+
+/// Key of the recorder's session in the metadata record [`METADATA_RECORD`]. The ledger of the last file of a session
+/// covers its earlier files, too.
+pub const SESSION_KEY: &str = "session";

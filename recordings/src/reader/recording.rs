@@ -1,0 +1,159 @@
+//! An opened recording: its files, topics, stored files and ledger.
+
+use super::channel::ChannelInfo;
+use super::error::{ReadError, Warning};
+use super::file::OpenFile;
+use super::files;
+use super::stored_file::{FileCount, StoredFile};
+use crate::ledger::{TopicTally, merge};
+use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// An opened recording.
+#[derive(Debug)]
+pub struct Recording {
+    pub(super) path: PathBuf,
+    pub(super) files: Vec<OpenFile>,
+    warnings: Mutex<BTreeSet<Warning>>,
+}
+
+impl Recording {
+    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` lists, else all that it
+    /// holds.
+    ///
+    /// # Errors
+    /// If nothing is there, or it is not MCAP. A damaged recording is not an error: see
+    /// [`Recording::warnings`].
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let mut warnings = BTreeSet::new();
+        let paths = files::of_recording(path, &mut warnings)?;
+        let mut files = Vec::with_capacity(paths.len());
+        for file in paths {
+            files.push(OpenFile::map(&file, &mut warnings)?);
+        }
+        Ok(Self { path: path.to_owned(), files, warnings: Mutex::new(warnings) })
+    }
+
+    /// Reads an MCAP file in memory; `name` replaces its path in messages.
+    ///
+    /// # Errors
+    /// If the bytes are not MCAP.
+    pub fn from_bytes(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        let mut warnings = BTreeSet::new();
+        let file = OpenFile::in_memory(Path::new(name), bytes, &mut warnings)?;
+        Ok(Self { path: PathBuf::from(name), files: vec![file], warnings: Mutex::new(warnings) })
+    }
+
+    /// Size of all files, bytes.
+    pub(super) fn size(&self) -> u64 {
+        self.files.iter().map(|f| f.bytes().len() as u64).sum()
+    }
+
+    /// The path passed to [`Recording::open`].
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its files, in order.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.files.iter().map(|f| f.path.clone()).collect()
+    }
+
+    /// The parts that could not be read so far: damage inside a chunk is found when the chunk is read. Data was lost if
+    /// this is not empty.
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    pub(super) fn warn(&self, warning: Warning) {
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).insert(warning);
+    }
+
+    /// The topics, sorted by name; a topic of several files or channels is listed once.
+    pub fn channels(&self) -> Vec<Arc<ChannelInfo>> {
+        let mut by_topic = BTreeMap::new();
+        for channel in self.files.iter().flat_map(|f| f.index.channels.values()) {
+            by_topic.entry(channel.topic.clone()).or_insert_with(|| channel.clone());
+        }
+        by_topic.into_values().collect()
+    }
+
+    /// The topic of this name, with or without the leading slash.
+    ///
+    /// # Errors
+    /// If it does not exist; the message lists the existing ones.
+    pub fn channel(&self, topic: &str) -> Result<Arc<ChannelInfo>, ReadError> {
+        let channels = self.channels();
+        let wanted = topic.trim_start_matches('/');
+        channels.iter().find(|c| c.topic.trim_start_matches('/') == wanted).cloned().ok_or_else(|| {
+            let known = channels.iter().map(|c| c.topic.as_str()).collect::<Vec<_>>().join(", ");
+            ReadError::NoSuchTopic { path: self.path.clone(), topic: topic.to_owned(), known }
+        })
+    }
+
+    /// First and last log time, ns since 1970; `None` without messages.
+    pub fn time_range(&self) -> Option<(u64, u64)> {
+        let times = self.files.iter().flat_map(|f| &f.index.blocks).map(|b| (b.start, b.end));
+        times.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    /// The files stored in the recording, in order.
+    pub fn stored_files(&self) -> Vec<StoredFile> {
+        self.files.iter().flat_map(|f| f.stored_files(|w| self.warn(w))).collect()
+    }
+
+    /// The metadata record of this name; the last one counts if there are several.
+    pub fn metadata(&self, name: &str) -> Option<BTreeMap<String, String>> {
+        self.files.iter().rev().find_map(|f| f.metadata(name, |w| self.warn(w)))
+    }
+
+    /// Names of the metadata records.
+    pub fn metadata_names(&self) -> BTreeSet<String> {
+        self.files.iter().flat_map(|f| f.index.metadata.iter().map(|m| m.name.clone())).collect()
+    }
+
+    /// The ledger of the recorders, if our recorder finished the recording: that of several recorders one after the
+    /// other, and of the files of each, as one. [`Recording::unaccounted`] lists the files that it does not cover.
+    pub fn ledger(&self) -> Option<Vec<TopicTally>> {
+        let mut sessions = BTreeMap::new();
+        for (order, file) in self.files.iter().enumerate() {
+            if let Some((session, tallies)) = self.account(file) {
+                // The ledger of a recorder's last file covers those before.
+                let order = sessions.remove(&session).map_or(order, |(first, _)| first);
+                sessions.insert(session, (order, tallies));
+            }
+        }
+        let mut accounts: Vec<_> = sessions.into_values().collect();
+        accounts.sort_by_key(|(order, _)| *order);
+        if accounts.is_empty() {
+            return None;
+        }
+        Some(merge(accounts.into_iter().map(|(_, tallies)| tallies).collect()))
+    }
+
+    /// The files without a ledger: the recorder was killed, or is still running.
+    pub fn unaccounted(&self) -> Vec<PathBuf> {
+        self.files.iter().filter(|f| self.account(f).is_none()).map(|f| f.path.clone()).collect()
+    }
+
+    /// The session of a file's recorder and its ledger so far.
+    fn account(&self, file: &OpenFile) -> Option<(String, Vec<TopicTally>)> {
+        let metadata = file.metadata(METADATA_RECORD, |w| self.warn(w))?;
+        let tallies = serde_json::from_str(metadata.get(LEDGER_KEY)?).ok()?;
+        // Files of an earlier version have no session: each counts as one.
+        let session = metadata.get(SESSION_KEY).cloned();
+        Some((session.unwrap_or_else(|| file.path.display().to_string()), tallies))
+    }
+
+    /// Name, times and messages of each file.
+    pub(crate) fn parts(&self) -> Vec<FileCount> {
+        self.files.iter().map(OpenFile::count).collect()
+    }
+
+    /// Messages on a topic, by its full name.
+    pub(crate) fn count(&self, topic: &str) -> u64 {
+        self.files.iter().map(|f| f.count_of(topic)).sum()
+    }
+}

@@ -1,0 +1,23 @@
+//! Files of a recording, and files stored in it.
+
+/// Information on one file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FileCount {
+    pub(crate) name: String,
+    /// First and last log time, ns since 1970; `None` without messages.
+    pub(crate) bounds: Option<(u64, u64)>,
+    pub(crate) messages: u64,
+}
+
+/// A file stored in a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StoredFile {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Time at which it was stored, ns since 1970.
+    pub time: u64,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
