@@ -95,7 +95,7 @@ pub trait Bus {
         self.publish_about(publisher, body, None)
     }
 
-    /// The same for a message that refers to a received sample; see [`SampleInfo::about`].
+    /// The same for a message that refers to a received sample; see [`SampleInfo::about`](crate::SampleInfo::about).
     fn publish_about(
         &mut self,
         publisher: PublisherId,

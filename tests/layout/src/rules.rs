@@ -15,7 +15,7 @@ pub fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let imports = imports(modules);
     let number: BTreeMap<&ModulePath, usize> =
         imports.keys().enumerate().map(|(i, path)| (path, i)).collect();
-    let names: Vec<String> = imports.keys().map(|path| name(path)).collect();
+    let names: Vec<String> = imports.keys().map(name).collect();
     let edges = imports.iter().flat_map(|(from, used)| used.iter().map(|to| (number[from], number[to])));
     let graph = DiGraphMap::<usize, ()>::from_edges(edges);
     let in_words = |circle: Vec<usize>| {

@@ -225,9 +225,10 @@ pub(crate) fn rayleigh(state: &State) -> f64 {
     std::f64::consts::PI * radius * (m.density / m.shear_modulus).sqrt() / (0.1631 * m.poisson_ratio + 0.8766)
 }
 
-/// Stable time step of a collision at relative speed `speed` (m/s): that of the stiffness at its largest overlap.
+/// Stable time step of a collision at relative speed `speed` (m/s): that of the stiffness at its largest overlap. Two of the
+/// smallest grains need the shortest step, 13 % less than the smallest with a much larger one.
 pub(crate) fn collision(state: &State, speed: f64, damping: f64) -> f64 {
-    let radius = state.largest_radius;
+    let radius = state.smallest_radius;
     let (r_eff, m_eff) = (0.5 * radius, 0.5 * state.material.sphere_mass(radius));
     let stiffness = state.law.visit(&state.material, CollisionStiffness { r_eff, m_eff, speed });
     2.0 * (m_eff / stiffness).sqrt() * ((1.0 + damping * damping).sqrt() - damping)
