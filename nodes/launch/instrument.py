@@ -73,8 +73,9 @@ def main():
     print(f"{'inferred by':<17} {'k':>15} {'z':>15} {'eps':>17}  status")
     status = ["ok", "extrapolated", "undetermined", "failed"]
     for e in found.estimates:
-        values = [(e.k_known, e.k, 0), (e.z_known, e.z, 12), (e.eps_known, e.eps, 18)]
-        cells = [f"{v:.4f} +- {e.covariance[i]**0.5:.4f}" if known else "-" for known, v, i in values]
+        sigma = lambda i: e.covariance[i]**0.5 if e.covariance else float("nan")
+        values = [(e.k, 0), (e.z, 12), (e.eps, 18)]
+        cells = [f"{v[0]:.4f} +- {sigma(i):.4f}" if v else "-" for v, i in values]
         print(f"{e.model:<17} {cells[0]:>15} {cells[1]:>15} {cells[2]:>17}  {status[e.status]}")
         print("".join(f"    {warning}\n" for warning in e.warnings), end="")
 

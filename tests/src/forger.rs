@@ -155,12 +155,14 @@ fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<grainlab
         }
         Forgery::Moduli => {
             let mut moduli: Moduli = decoded(sample);
-            (moduli.g12, moduli.g13, moduli.theta) = (2.0 * moduli.g12, 2.0 * moduli.g13, 2.0 * moduli.theta);
+            for modulus in [&mut moduli.g12, &mut moduli.g13, &mut moduli.theta] {
+                modulus.iter_mut().for_each(|value| *value *= 2.0);
+            }
             grainlab_msgs::to_cdr(&moduli)
         }
         Forgery::Microstructure => {
             let mut found: Microstructure = decoded(sample);
-            found.estimates.iter_mut().for_each(|e| e.k = 9.0);
+            found.estimates.iter_mut().for_each(|e| e.k = vec![9.0]);
             grainlab_msgs::to_cdr(&found)
         }
         Forgery::Finished | Forgery::Failed => {

@@ -61,8 +61,9 @@ fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_m
     for estimate in &answer.estimates {
         let line = printed.lines().find(|l| l.split_whitespace().next() == Some(&estimate.model));
         let line = line.unwrap_or_else(|| panic!("no line of {}:\n{printed}", estimate.model));
-        assert!(!estimate.k_known || line.contains(&format!("{:.4} +- ", estimate.k)), "{line}");
-        assert!(!estimate.z_known || line.contains(&format!("{:.4} +- ", estimate.z)), "{line}");
+        for value in estimate.k.iter().chain(&estimate.z) {
+            assert!(line.contains(&format!("{value:.4} +- ")), "{line}");
+        }
     }
 }
 

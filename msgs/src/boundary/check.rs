@@ -2,9 +2,10 @@
 
 use super::BoundaryError;
 use crate::geometry_msgs::Vector3;
-use crate::msg::SymmetricTensor;
+use crate::msg::{self, SymmetricTensor};
 use crate::std_msgs::Header;
-use grainlab_core::{Anisotropy, SymTensor, Vec3};
+use grainlab_core::results::StrainRatios;
+use grainlab_core::{SymTensor, Vec3};
 
 /// Names of the components in Voigt order.
 pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
@@ -42,6 +43,32 @@ impl Check {
         self.that((0.0..=1.0).contains(&value), field, value, "between 0 and 1")
     }
 
+    /// What may be missing: an array of one entry, or of none. The entry must pass `check`, which gets its field.
+    pub(super) fn optional<T, U>(
+        self,
+        field: &str,
+        entries: &[T],
+        check: impl FnOnce(&str, &T) -> Checked<U>,
+    ) -> Checked<Option<U>> {
+        self.length(field, entries.len(), entries.len().min(1), "or none, if it is not known")?;
+        entries.first().map(|entry| check(field, entry)).transpose()
+    }
+
+    /// A finite number that may be missing.
+    pub(super) fn optional_finite(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
+        self.optional(field, entries, |field, v| self.finite(field, *v))
+    }
+
+    /// A number of 0 or more that may be missing.
+    pub(super) fn optional_not_negative(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
+        self.optional(field, entries, |field, v| self.not_negative(field, *v))
+    }
+
+    /// A positive number that may be missing.
+    pub(super) fn optional_positive(self, field: &str, entries: &[f64]) -> Checked<Option<f64>> {
+        self.optional(field, entries, |field, v| self.positive(field, *v))
+    }
+
     /// A quantity for which 0 stands for unknown.
     pub(super) fn known(self, field: &str, value: f64) -> Checked<Option<f64>> {
         Ok(Some(self.not_negative(field, value)?).filter(|v| *v > 0.0))
@@ -53,7 +80,7 @@ impl Check {
 
     pub(super) fn length(
         self,
-        field: &'static str,
+        field: &str,
         found: usize,
         expected: usize,
         reason: &'static str,
@@ -61,7 +88,7 @@ impl Check {
         if found == expected {
             return Ok(());
         }
-        Err(BoundaryError::Length { message: self.0, field, found, expected, reason })
+        Err(BoundaryError::Length { message: self.0, field: field.to_owned(), found, expected, reason })
     }
 
     pub(super) fn header(self, header: &Header) -> Checked<()> {
@@ -103,21 +130,42 @@ impl Check {
         Ok(Some(vector))
     }
 
-    /// One of the three ratios γ/Δ: known or not, and its value.
-    pub(super) fn ratio(self, field: &str, (known, value): (bool, f64)) -> Checked<Option<f64>> {
-        if known { self.finite(field, value).map(Some) } else { Ok(None) }
+    /// A unit vector.
+    pub(super) fn unit(self, field: &str, v: &Vector3) -> Checked<Vec3> {
+        let known = self.direction(field, v)?;
+        known.map_or_else(|| self.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
     }
 
-    /// A covariance, row-major; `None` if it is all zero.
+    /// The field `strain_ratios` of a message.
+    pub(super) fn strain_ratios(self, m: &msg::StrainRatios) -> Checked<StrainRatios> {
+        Ok(StrainRatios {
+            total: self.optional_finite("strain_ratios.total", &m.total)?,
+            elastic: self.optional_finite("strain_ratios.elastic", &m.elastic)?,
+            contact: self.optional_finite("strain_ratios.contact", &m.contact)?,
+        })
+    }
+
+    /// As many numbers as stated; `None` if there are none.
+    pub(super) fn array<const ENTRIES: usize>(
+        self,
+        field: &str,
+        values: &[f64],
+    ) -> Checked<Option<[f64; ENTRIES]>> {
+        if values.is_empty() {
+            return Ok(None);
+        }
+        self.length(field, values.len(), ENTRIES, "or none, if they are not known")?;
+        Ok(values.try_into().ok())
+    }
+
+    /// A covariance, row-major; `None` if it is not known.
     pub(super) fn covariance<const ENTRIES: usize>(
         self,
         field: &str,
-        c: &[f64; ENTRIES],
+        values: &[f64],
     ) -> Checked<Option<[f64; ENTRIES]>> {
-        self.all_finite(field, c)?;
-        if c.iter().all(|v| *v == 0.0) {
-            return Ok(None);
-        }
+        let Some(c) = self.array::<ENTRIES>(field, values)? else { return Ok(None) };
+        self.all_finite(field, &c)?;
         let side = ENTRIES.isqrt();
         let variance = |i: usize| c[(side + 1) * i];
         for i in 0..side {
@@ -131,7 +179,7 @@ impl Check {
                 self.that(good, &name, lower, "symmetric and at most 1 as a correlation")?;
             }
         }
-        Ok(Some(*c))
+        Ok(Some(c))
     }
 
     /// The one of `allowed` that `word` is; `listed` is all of them in words.
@@ -165,7 +213,12 @@ pub(super) fn vector_message(v: &Vec3) -> Vector3 {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// The three ratios as on the wire: total, elastic, contact.
-pub(super) fn ratios(g: &Anisotropy) -> [(bool, f64); 3] {
-    [g.total, g.elastic, g.contact].map(|v| (v.is_some(), v.unwrap_or(0.0)))
+/// What may be missing, as messages have it.
+pub(super) fn one_or_none<T>(value: Option<T>) -> Vec<T> {
+    value.into_iter().collect()
+}
+
+pub(super) fn strain_ratios_message(g: &StrainRatios) -> msg::StrainRatios {
+    let [total, elastic, contact] = [g.total, g.elastic, g.contact].map(one_or_none);
+    msg::StrainRatios { total, elastic, contact }
 }

@@ -119,12 +119,11 @@ fn strain_ratio(m: &Estimate) -> Result<Option<StrainRatio>, BoundaryError> {
     const SOURCES: [&str; 6] = ["total", "elastic", "contact", "given", "zero", "none"];
     let listed = "total, elastic, contact, given, zero, none";
     let source = CHECK.word("gamma_over_delta_source", &m.gamma_over_delta_source, &SOURCES, listed)?;
-    let value = CHECK.finite("gamma_over_delta", m.gamma_over_delta)?;
-    if source == "none" {
-        CHECK.that(value == 0.0, "gamma_over_delta", value, "0 where its source is none")?;
-        return Ok(None);
-    }
-    Ok(Some(StrainRatio { value, source }))
+    let value = CHECK.optional_finite("gamma_over_delta", &m.gamma_over_delta)?;
+    let expected = usize::from(source != "none");
+    let reason = "one strain ratio, or none where its source is none";
+    CHECK.length("gamma_over_delta", m.gamma_over_delta.len(), expected, reason)?;
+    Ok(value.map(|value| StrainRatio { value, source }))
 }
 
 fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
@@ -142,18 +141,9 @@ fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
 }
 
 fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
-    let fields = [
-        (m.k_known, m.k),
-        (m.k_hat_known, m.k_hat),
-        (m.z_known, m.z),
-        (m.eps_known, m.eps),
-        (m.eps_stiffness_known, m.eps_stiffness),
-    ];
     let mut values = [None; 5];
-    for (i, (known, value)) in fields.into_iter().enumerate() {
-        if known {
-            values[i] = Some(CHECK.finite(QUANTITIES[i], value)?);
-        }
+    for (i, value) in [&m.k, &m.k_hat, &m.z, &m.eps, &m.eps_stiffness].into_iter().enumerate() {
+        values[i] = CHECK.optional_finite(QUANTITIES[i], value)?;
     }
     let any = values.iter().any(Option::is_some);
     CHECK.that(
@@ -169,8 +159,8 @@ fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
 const NOTHING: &str = "0, because its quantity is not known";
 
 fn covariance(
-    field: &str,
-    values: &[f64; 25],
+    field: &'static str,
+    values: &[f64],
     known: &[bool; 5],
 ) -> Result<Option<[f64; 25]>, BoundaryError> {
     let checked = CHECK.covariance(field, values)?;
@@ -183,8 +173,9 @@ fn covariance(
 
 fn covariance_model(m: &Estimate, known: &[bool; 5]) -> Result<Option<[f64; 25]>, BoundaryError> {
     let part = covariance("covariance_model", &m.covariance_model, known)?;
-    for at in (0..25).step_by(6) {
-        let (part, whole) = (m.covariance_model[at], m.covariance[at]);
+    for at in (0..m.covariance_model.len()).step_by(6) {
+        let whole = m.covariance.get(at).copied().unwrap_or_default();
+        let part = m.covariance_model[at];
         let fits = part <= whole * (1.0 + 1e-9);
         CHECK.that(fits, &format!("covariance_model[{at}]"), part, "at most the same entry of covariance")?;
     }
@@ -197,20 +188,17 @@ fn interval(m: &Estimate, known: &[bool; 5]) -> Result<Option<Interval>, Boundar
         return Ok(None);
     }
     CHECK.all_finite("interval", &m.interval)?;
+    let ends = CHECK.array::<10>("interval", &m.interval)?.unwrap_or_default();
     let mut bounds = [None; 5];
     for (i, bounds) in bounds.iter_mut().enumerate() {
-        let (low, high) = (m.interval[2 * i], m.interval[2 * i + 1]);
+        let (low, high) = (ends[2 * i], ends[2 * i + 1]);
         let name = format!("interval[{}]", 2 * i);
         if known[i] {
             CHECK.that(low <= high, &name, low, "at most the upper bound that follows it")?;
             *bounds = Some([low, high]);
         } else {
-            CHECK.that(
-                low == 0.0 && high == 0.0,
-                &name,
-                low,
-                "0 as the bound after it, because its quantity is not known",
-            )?;
+            let requirement = "0 as the bound after it, because its quantity is not known";
+            CHECK.that(low == 0.0 && high == 0.0, &name, low, requirement)?;
         }
     }
     Ok(Some(Interval { level, bounds }))
@@ -226,10 +214,9 @@ fn misfit(m: &Estimate) -> Result<Option<Misfit>, BoundaryError> {
 }
 
 fn condition_number(m: &Estimate) -> Result<Option<f64>, BoundaryError> {
-    let number = m.condition_number;
-    let good = number == 0.0 || (number.is_finite() && number >= 1.0);
-    CHECK.that(good, "condition_number", number, "finite and 1 or more, or 0 if unknown")?;
-    Ok((number != 0.0).then_some(number))
+    CHECK.optional("condition_number", &m.condition_number, |field, number| {
+        CHECK.that(number.is_finite() && *number >= 1.0, field, *number, "finite and 1 or more")
+    })
 }
 
 fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; 9]>; 5], BoundaryError> {

@@ -1,83 +1,153 @@
 //! `Fabric`: structure of a packing.
 
 use super::BoundaryError;
-use super::check::{Check, ratios, tensor_message, vector_message};
-use super::structure::{structure, structure_message};
+use super::check::{Check, one_or_none, strain_ratios_message, tensor_message, vector_message};
+use super::contact_statistics::{contact_statistics, contact_statistics_message, every_contact};
+use super::stress_decomposition::{stress_decomposition, stress_decomposition_message};
 use crate::msg;
 use crate::std_msgs::Header;
-use grainlab_core::{Anisotropy, Fabric, Vec3};
+use grainlab_core::results::{
+    ContactStatistics, Fabric, FourthOrderFabric, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
+    PackingReport, PrincipalAxis, StrainRatios, StressDecomposition,
+};
 
-pub(super) const CHECK: Check = Check("Fabric");
+const CHECK: Check = Check("Fabric");
 
-/// The message of a fabric; `header` and `source_step` are those of the packing measured.
-pub fn fabric_message(header: Header, source_step: u64, f: &Fabric) -> Result<msg::Fabric, BoundaryError> {
-    let [total, elastic, contact] = ratios(&f.anisotropy);
+/// What a `Fabric` message holds, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FabricReading {
+    /// Contacts and the forces they carry.
+    pub contacts: ContactStatistics,
+    /// Orientation of the contacts.
+    pub fabric: Fabric,
+    /// Which forces and which contacts carry the stress.
+    pub stress_decomposition: StressDecomposition,
+    /// The three ratios γ/Δ.
+    pub strain_ratios: StrainRatios,
+}
+
+/// The message of the structure of a packing; `header` is that of the packing measured.
+pub fn fabric_message(header: Header, report: &PackingReport) -> Result<msg::Fabric, BoundaryError> {
+    let f = &report.fabric;
     let message = msg::Fabric {
         header,
-        source_step,
-        grains: f.grains,
-        contacts: f.contacts,
-        rattlers: f.rattlers,
-        k: f.k,
-        z: f.z,
+        source_step: report.step,
+        contacts: contact_statistics_message(&report.contacts),
+        reference_axis: vector_message(&f.reference_axis),
         contact_fabric: tensor_message(&f.contact_fabric),
-        force_fabric: tensor_message(&f.force_fabric),
+        normal_force_fabric: tensor_message(&f.normal_force_fabric),
+        tangential_force_fabric: tensor_message(&f.tangential_force_fabric),
         stiffness_fabric: tensor_message(&f.stiffness_fabric),
-        eps: f.eps,
-        axis: vector_message(&f.axis),
-        fourth_order: f.fourth_order,
-        gamma_over_delta_total_known: total.0,
-        gamma_over_delta_total: total.1,
-        gamma_over_delta_elastic_known: elastic.0,
-        gamma_over_delta_elastic: elastic.1,
-        gamma_over_delta_contact_known: contact.0,
-        gamma_over_delta_contact: contact.1,
-        mobilised: f.mobilised,
-        ..structure_message(&f.structure)
+        contact_anisotropy: f.contact_anisotropy,
+        p4_coefficient: f.p4_coefficient,
+        fourth_order_fabric: f.fourth_order.components,
+        fourth_order_magnitude: f.fourth_order.magnitude,
+        principal_axis: principal_axis_message(&f.principal_axis),
+        orientation: orientation_message(&f.orientation),
+        stress: stress_decomposition_message(&report.stress_decomposition),
+        strain_ratios: strain_ratios_message(&report.strain_ratios),
     };
-    Fabric::try_from(&message)?;
+    FabricReading::try_from(&message)?;
     Ok(message)
 }
 
-impl TryFrom<&msg::Fabric> for Fabric {
+impl TryFrom<&msg::Fabric> for FabricReading {
     type Error = BoundaryError;
 
     fn try_from(m: &msg::Fabric) -> Result<Self, BoundaryError> {
         CHECK.header(&m.header)?;
-        CHECK.that(
-            m.rattlers <= m.grains,
-            "rattlers",
-            f64::from(m.rattlers),
-            "at most the number of grains",
-        )?;
+        CHECK.all_finite("fourth_order_fabric", &m.fourth_order_fabric)?;
         Ok(Self {
-            grains: m.grains,
-            contacts: m.contacts,
-            rattlers: m.rattlers,
-            k: CHECK.not_negative("k", m.k)?,
-            z: CHECK.not_negative("z", m.z)?,
-            contact_fabric: CHECK.tensor("contact_fabric", &m.contact_fabric)?,
-            force_fabric: CHECK.tensor("force_fabric", &m.force_fabric)?,
-            stiffness_fabric: CHECK.tensor("stiffness_fabric", &m.stiffness_fabric)?,
-            eps: CHECK.finite("eps", m.eps)?,
-            axis: CHECK.direction("axis", &m.axis)?.unwrap_or_else(Vec3::zeros),
-            fourth_order: CHECK.finite("fourth_order", m.fourth_order)?,
-            anisotropy: Anisotropy {
-                total: CHECK.ratio(
-                    "gamma_over_delta_total",
-                    (m.gamma_over_delta_total_known, m.gamma_over_delta_total),
-                )?,
-                elastic: CHECK.ratio(
-                    "gamma_over_delta_elastic",
-                    (m.gamma_over_delta_elastic_known, m.gamma_over_delta_elastic),
-                )?,
-                contact: CHECK.ratio(
-                    "gamma_over_delta_contact",
-                    (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact),
-                )?,
+            contacts: contact_statistics(CHECK, &m.contacts)?,
+            fabric: Fabric {
+                reference_axis: CHECK.unit("reference_axis", &m.reference_axis)?,
+                contact_fabric: CHECK.tensor("contact_fabric", &m.contact_fabric)?,
+                normal_force_fabric: CHECK.tensor("normal_force_fabric", &m.normal_force_fabric)?,
+                tangential_force_fabric: CHECK
+                    .tensor("tangential_force_fabric", &m.tangential_force_fabric)?,
+                stiffness_fabric: CHECK.tensor("stiffness_fabric", &m.stiffness_fabric)?,
+                contact_anisotropy: CHECK.finite("contact_anisotropy", m.contact_anisotropy)?,
+                p4_coefficient: CHECK.finite("p4_coefficient", m.p4_coefficient)?,
+                fourth_order: FourthOrderFabric {
+                    components: m.fourth_order_fabric,
+                    magnitude: CHECK.not_negative("fourth_order_magnitude", m.fourth_order_magnitude)?,
+                },
+                principal_axis: principal_axis(&m.principal_axis)?,
+                orientation: orientation(&m.orientation, m.contacts.contacts)?,
             },
-            mobilised: CHECK.share("mobilised", m.mobilised)?,
-            structure: structure(m)?,
+            stress_decomposition: stress_decomposition(CHECK, &m.stress, m.contacts.contacts)?,
+            strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
         })
     }
+}
+
+fn principal_axis_message(axis: &PrincipalAxis) -> msg::PrincipalAxis {
+    msg::PrincipalAxis {
+        direction: vector_message(&axis.direction),
+        contact_anisotropy: axis.contact_anisotropy,
+        contact_anisotropy_stddev: one_or_none(axis.contact_anisotropy_stddev),
+        angle_stddev: one_or_none(axis.angle_stddev),
+        determined: axis.determined,
+    }
+}
+
+fn principal_axis(m: &msg::PrincipalAxis) -> Result<PrincipalAxis, BoundaryError> {
+    Ok(PrincipalAxis {
+        direction: CHECK.unit("principal_axis.direction", &m.direction)?,
+        contact_anisotropy: CHECK.finite("principal_axis.contact_anisotropy", m.contact_anisotropy)?,
+        contact_anisotropy_stddev: CHECK.optional_not_negative(
+            "principal_axis.contact_anisotropy_stddev",
+            &m.contact_anisotropy_stddev,
+        )?,
+        angle_stddev: CHECK.optional_not_negative("principal_axis.angle_stddev", &m.angle_stddev)?,
+        determined: m.determined,
+    })
+}
+
+fn orientation_message(o: &OrientationHistogram) -> msg::OrientationHistogram {
+    let contact_fit = o.contact_fit.map(|f| msg::OrientationFit {
+        eps: f.eps,
+        eps_stddev: f.eps_stddev,
+        chi2_per_dof: f.chi2_per_dof,
+    });
+    let overlap_fit =
+        o.overlap_fit.map(|f| msg::OverlapAnisotropyFit { g: f.g, g_stddev: one_or_none(f.g_stddev) });
+    msg::OrientationHistogram {
+        contacts: o.contacts,
+        overlap: o.overlap,
+        sqrt_overlap: o.sqrt_overlap,
+        contact_fit: one_or_none(contact_fit),
+        overlap_fit: one_or_none(overlap_fit),
+    }
+}
+
+fn orientation(m: &msg::OrientationHistogram, contacts: u32) -> Result<OrientationHistogram, BoundaryError> {
+    every_contact(CHECK, "orientation.contacts", &m.contacts, contacts)?;
+    for (field, means) in [("overlap", &m.overlap), ("sqrt_overlap", &m.sqrt_overlap)] {
+        for (index, mean) in means.iter().enumerate() {
+            CHECK.not_negative(&format!("orientation.{field}[{index}]"), *mean)?;
+        }
+    }
+    let contact_fit = CHECK.optional("orientation.contact_fit", &m.contact_fit, |field, fit| {
+        let requirement = "between -1/2 and 1, where no contact density is negative";
+        let eps = fit.eps;
+        Ok(OrientationFit {
+            eps: CHECK.that((-0.5..=1.0).contains(&eps), &format!("{field}.eps"), eps, requirement)?,
+            eps_stddev: CHECK.not_negative(&format!("{field}.eps_stddev"), fit.eps_stddev)?,
+            chi2_per_dof: CHECK.not_negative(&format!("{field}.chi2_per_dof"), fit.chi2_per_dof)?,
+        })
+    })?;
+    let overlap_fit = CHECK.optional("orientation.overlap_fit", &m.overlap_fit, |field, fit| {
+        Ok(OverlapAnisotropyFit {
+            g: CHECK.finite(&format!("{field}.g"), fit.g)?,
+            g_stddev: CHECK.optional_not_negative(&format!("{field}.g_stddev"), &fit.g_stddev)?,
+        })
+    })?;
+    Ok(OrientationHistogram {
+        contacts: m.contacts,
+        overlap: m.overlap,
+        sqrt_overlap: m.sqrt_overlap,
+        contact_fit,
+        overlap_fit,
+    })
 }

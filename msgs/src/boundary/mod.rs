@@ -3,6 +3,8 @@
 //! checks, so that no node publishes what another would refuse.
 
 mod check;
+mod contact_statistics;
+mod elastic_stiffness;
 mod estimate;
 mod fabric;
 mod microstructure;
@@ -11,16 +13,16 @@ mod packing;
 mod run_state;
 mod strain_rate;
 mod stress;
-mod structure;
+mod stress_decomposition;
 mod wave_speeds;
 mod waveform;
 
 pub use estimate::{
     DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
 };
-pub use fabric::fabric_message;
+pub use fabric::{FabricReading, fabric_message};
 pub use microstructure::MicrostructureReading;
-pub use moduli::{ModuliMethod, ModuliReading, moduli_message};
+pub use moduli::{ModuliReading, moduli_message};
 pub use packing::{packing_header, packing_message};
 pub use run_state::{RunStateReading, RunStatus};
 pub use strain_rate::StrainRateAnswer;
@@ -76,7 +78,7 @@ pub enum BoundaryError {
         /// Name of the message.
         message: &'static str,
         /// Name of the field.
-        field: &'static str,
+        field: String,
         /// Entries it has.
         found: usize,
         /// Entries it must have.

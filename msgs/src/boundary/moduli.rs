@@ -1,76 +1,22 @@
-//! `Moduli`: stiffness, and what an inversion needs beside it.
+//! `Moduli`: elastic moduli, and what an inversion needs beside them.
 
 use super::BoundaryError;
-use super::check::{Check, ratios, vector_message};
-use crate::builtin_interfaces::Time;
+use super::check::{Check, strain_ratios_message, vector_message};
+use super::elastic_stiffness::{elastic_stiffness, elastic_stiffness_message};
 use crate::msg;
 use crate::std_msgs::Header;
-use grainlab_core::{Anisotropy, Fabric, Material, Method, Moduli, Stiffness, Vec3};
+use grainlab_core::results::{ElasticStiffness, PackingReport, StrainRatios};
+use grainlab_core::{Material, Vec3};
 
 const CHECK: Check = Check("Moduli");
-
-/// How moduli were obtained.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ModuliMethod {
-    /// Relaxed frozen network, solved.
-    FrozenNetwork,
-    /// Every grain moves with the mean deformation.
-    Affine,
-    /// Small strains imposed on a simulation.
-    Probe,
-    /// From wave speeds.
-    Acoustic,
-    /// Relaxed frozen network with the prestress term, solved.
-    PrestressedNetwork,
-}
-
-impl ModuliMethod {
-    /// One word for it, as tables and files have it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::FrozenNetwork => "frozen_network",
-            Self::Affine => "affine",
-            Self::Probe => "probe",
-            Self::Acoustic => "acoustic",
-            Self::PrestressedNetwork => "prestressed_network",
-        }
-    }
-
-    /// As messages have it.
-    pub fn code(self) -> u8 {
-        match self {
-            Self::FrozenNetwork => msg::Moduli::METHOD_FROZEN_NETWORK,
-            Self::Affine => msg::Moduli::METHOD_AFFINE,
-            Self::Probe => msg::Moduli::METHOD_PROBE,
-            Self::Acoustic => msg::Moduli::METHOD_ACOUSTIC,
-            Self::PrestressedNetwork => msg::Moduli::METHOD_PRESTRESSED_NETWORK,
-        }
-    }
-}
-
-impl From<Method> for ModuliMethod {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::FrozenNetwork => Self::FrozenNetwork,
-            Method::PrestressedNetwork => Self::PrestressedNetwork,
-            Method::Probe => Self::Probe,
-        }
-    }
-}
 
 /// Moduli as an inversion takes them: checked, and with `None` for what the sender did not know.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModuliReading {
-    /// Stamp of the source.
-    pub stamp: Time,
-    /// Step of the packing measured.
-    pub source_step: u64,
-    /// How they were obtained.
-    pub method: ModuliMethod,
     /// Number of grains.
     pub grains: Option<u32>,
-    /// Reference axis h, unit, which g12, g13, c11, c33, c13, the covariance, γ/Δ and ε are about; e3 if the sender named
-    /// none. Stiffnesses are in the frame of the cell.
+    /// Reference axis h, unit, which g12, g13, the covariance and γ/Δ are about; e3 if the sender named none. The stiffness
+    /// is in the frame of the cell.
     pub reference_axis: Vec3,
     /// Shear modulus in the plane of isotropy, Pa.
     pub g12: Option<f64>,
@@ -78,24 +24,6 @@ pub struct ModuliReading {
     pub g13: Option<f64>,
     /// Voigt bulk modulus Θ, Pa.
     pub theta: Option<f64>,
-    /// Reuss bulk modulus, Pa.
-    pub theta_reuss: Option<f64>,
-    /// Lower bound of that, Pa.
-    pub theta_bound: Option<f64>,
-    /// Projected C11, Pa.
-    pub c11: Option<f64>,
-    /// C33, Pa.
-    pub c33: Option<f64>,
-    /// Projected C13, Pa.
-    pub c13: Option<f64>,
-    /// Full stiffness.
-    pub stiffness: Option<Stiffness>,
-    /// Standard error of each entry of the stiffness, as a measurement of one packing.
-    pub stddev: Option<Stiffness>,
-    /// Affine stiffness.
-    pub affine: Option<Stiffness>,
-    /// Stiffness of affine motion with one spin of all grains.
-    pub mean_spin: Option<Stiffness>,
     /// Covariance of (g12, g13, Θ), row-major, Pa².
     pub covariance: Option<[f64; 9]>,
     /// Confining pressure, Pa, 0 or more.
@@ -105,64 +33,39 @@ pub struct ModuliReading {
     /// Unit axis of symmetry found.
     pub axis: Option<Vec3>,
     /// The three ratios γ/Δ.
-    pub gamma_over_delta: Anisotropy,
-    /// Measured coordination number k.
-    pub k: Option<f64>,
-    /// Measured coordination number without rattlers.
-    pub z: Option<f64>,
-    /// Measured fabric anisotropy ε; known if `k` is.
-    pub eps: Option<f64>,
+    pub strain_ratios: StrainRatios,
     /// Material of the grains.
     pub material: Material,
+    /// The full stiffness, of a packing.
+    pub stiffness: Option<ElasticStiffness>,
 }
 
-/// The message of the moduli of a packing about the reference axis of `fabric`; `header` and `source_step` are those of the packing. `pressure` in Pa. The
-/// covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
+/// The message of the stiffness of a packing, moduli about the reference axis of its fabric; `header` is that of the packing.
+/// The covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
 pub fn moduli_message(
     header: Header,
-    source_step: u64,
-    fabric: &Fabric,
-    moduli: &Moduli,
-    pressure: f64,
-    solid_fraction: f64,
-    material: &Material,
+    report: &PackingReport,
+    stiffness: &ElasticStiffness,
 ) -> Result<msg::Moduli, BoundaryError> {
-    let axis = fabric.structure.reference_axis;
-    let projected = moduli.stiffness.transverse_isotropy_about(&axis);
-    let [total, elastic, contact] = ratios(&fabric.anisotropy);
+    let axis = report.fabric.reference_axis;
+    let projected = stiffness.tensor.transverse_isotropy_about(&axis);
     let message = msg::Moduli {
         header,
-        source_step,
-        method: ModuliMethod::from(moduli.method).code(),
-        grains: fabric.grains,
-        stiffness: moduli.stiffness.row_major(),
-        stiffness_stddev: moduli.stddev.row_major(),
-        stiffness_affine: moduli.affine.row_major(),
-        stiffness_mean_spin: moduli.mean_spin.row_major(),
+        source_step: report.step,
+        grains: report.contacts.grains,
         reference_axis: vector_message(&axis),
-        g12: projected.g12,
-        g13: projected.g13,
-        theta: moduli.stiffness.bulk_voigt(),
-        theta_reuss: moduli.stiffness.bulk_reuss().unwrap_or(0.0),
-        theta_bound: moduli.reuss_bound.unwrap_or(0.0),
-        covariance: [0.0; 9],
-        pressure,
-        solid_fraction,
-        axis: vector_message(&fabric.axis),
-        gamma_over_delta_total_known: total.0,
-        gamma_over_delta_total: total.1,
-        gamma_over_delta_elastic_known: elastic.0,
-        gamma_over_delta_elastic: elastic.1,
-        gamma_over_delta_contact_known: contact.0,
-        gamma_over_delta_contact: contact.1,
-        k: fabric.k,
-        z: fabric.z,
-        eps: fabric.eps,
-        grain_shear_modulus: material.shear_modulus,
-        grain_poisson_ratio: material.poisson_ratio,
-        grain_density: material.density,
-        residual: moduli.residual,
-        iterations: moduli.iterations,
+        g12: vec![projected.g12],
+        g13: vec![projected.g13],
+        theta: vec![stiffness.tensor.bulk_voigt()],
+        covariance: Vec::new(),
+        pressure: report.pressure(),
+        solid_fraction: vec![report.solid_fraction],
+        axis: vector_message(&report.fabric.principal_axis.direction),
+        strain_ratios: strain_ratios_message(&report.strain_ratios),
+        grain_shear_modulus: report.material.shear_modulus,
+        grain_poisson_ratio: report.material.poisson_ratio,
+        grain_density: report.material.density,
+        stiffness: vec![elastic_stiffness_message(stiffness)],
     };
     ModuliReading::try_from(&message)?;
     Ok(message)
@@ -173,115 +76,21 @@ impl TryFrom<&msg::Moduli> for ModuliReading {
 
     fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
         CHECK.header(&m.header)?;
-        let stiffness = known_stiffness("stiffness", &m.stiffness)?;
-        let reference_axis = CHECK.direction("reference_axis", &m.reference_axis)?.unwrap_or_else(Vec3::z);
-        let projected = stiffness.map(|c| c.transverse_isotropy_about(&reference_axis));
-        for (i, stddev) in m.stiffness_stddev.iter().enumerate() {
-            CHECK.not_negative(&format!("stiffness_stddev[{i}]"), *stddev)?;
-        }
-        CHECK.not_negative("residual", m.residual)?;
-        let k = CHECK.known("k", m.k)?;
         Ok(Self {
-            stamp: m.header.stamp,
-            source_step: m.source_step,
-            method: method(m.method)?,
             grains: Some(m.grains).filter(|n| *n > 0),
-            reference_axis,
-            g12: not_zero("g12", m.g12)?,
-            g13: not_zero("g13", m.g13)?,
-            theta: not_zero("theta", m.theta)?,
-            theta_reuss: not_zero("theta_reuss", m.theta_reuss)?,
-            c11: projected.map(|t| t.c11),
-            c33: projected.map(|t| t.c33),
-            c13: projected.map(|t| t.c13),
-            theta_bound: CHECK.known("theta_bound", m.theta_bound)?,
-            stiffness,
-            stddev: known_stiffness("stiffness_stddev", &m.stiffness_stddev)?,
-            mean_spin: known_stiffness("stiffness_mean_spin", &m.stiffness_mean_spin)?,
-            affine: known_stiffness("stiffness_affine", &m.stiffness_affine)?,
+            reference_axis: CHECK.direction("reference_axis", &m.reference_axis)?.unwrap_or_else(Vec3::z),
+            g12: CHECK.optional_finite("g12", &m.g12)?,
+            g13: CHECK.optional_finite("g13", &m.g13)?,
+            theta: CHECK.optional_finite("theta", &m.theta)?,
             covariance: CHECK.covariance("covariance", &m.covariance)?,
             pressure: CHECK.not_negative("pressure", m.pressure)?,
-            solid_fraction: CHECK.known("solid_fraction", m.solid_fraction)?,
+            solid_fraction: CHECK.optional_positive("solid_fraction", &m.solid_fraction)?,
             axis: CHECK.direction("axis", &m.axis)?,
-            gamma_over_delta: anisotropy(m)?,
-            k,
-            z: CHECK.known("z", m.z)?,
-            eps: match k {
-                Some(_) => Some(CHECK.finite("eps", m.eps)?),
-                None => None,
-            },
+            strain_ratios: CHECK.strain_ratios(&m.strain_ratios)?,
             material: material(m)?,
+            stiffness: CHECK.optional("stiffness", &m.stiffness, |_, s| elastic_stiffness(CHECK, s))?,
         })
     }
-}
-
-/// The kernels' moduli, of a message that knows both stiffnesses.
-impl TryFrom<&msg::Moduli> for Moduli {
-    type Error = BoundaryError;
-
-    fn try_from(m: &msg::Moduli) -> Result<Self, BoundaryError> {
-        let reading = ModuliReading::try_from(m)?;
-        let missing = |field: &str| BoundaryError::Value {
-            message: "Moduli",
-            field: field.to_owned(),
-            value: 0.0,
-            requirement: "known: the message holds only zeros there",
-        };
-        Ok(Self {
-            stiffness: reading.stiffness.ok_or_else(|| missing("stiffness"))?,
-            stddev: reading.stddev.ok_or_else(|| missing("stiffness_stddev"))?,
-            affine: reading.affine.ok_or_else(|| missing("stiffness_affine"))?,
-            mean_spin: reading.mean_spin.ok_or_else(|| missing("stiffness_mean_spin"))?,
-            method: match reading.method {
-                ModuliMethod::FrozenNetwork => Method::FrozenNetwork,
-                ModuliMethod::PrestressedNetwork => Method::PrestressedNetwork,
-                ModuliMethod::Probe => Method::Probe,
-                ModuliMethod::Affine | ModuliMethod::Acoustic => {
-                    let measured = "0 (frozen network), 2 (probe), 4 (prestressed network)";
-                    return Err(CHECK.code("method", m.method, measured));
-                }
-            },
-            reuss_bound: reading.theta_bound,
-            residual: m.residual,
-            iterations: m.iterations,
-        })
-    }
-}
-
-/// A finite number of either sign; `None` if it is 0.
-fn not_zero(field: &str, value: f64) -> Result<Option<f64>, BoundaryError> {
-    Ok(Some(CHECK.finite(field, value)?).filter(|v| *v != 0.0))
-}
-
-fn known_stiffness(field: &str, values: &[f64; 36]) -> Result<Option<Stiffness>, BoundaryError> {
-    CHECK.all_finite(field, values)?;
-    let known = values.iter().any(|v| *v != 0.0);
-    Ok(known.then(|| Stiffness::from_row_major(values)))
-}
-
-fn method(code: u8) -> Result<ModuliMethod, BoundaryError> {
-    match code {
-        msg::Moduli::METHOD_FROZEN_NETWORK => Ok(ModuliMethod::FrozenNetwork),
-        msg::Moduli::METHOD_AFFINE => Ok(ModuliMethod::Affine),
-        msg::Moduli::METHOD_PROBE => Ok(ModuliMethod::Probe),
-        msg::Moduli::METHOD_ACOUSTIC => Ok(ModuliMethod::Acoustic),
-        msg::Moduli::METHOD_PRESTRESSED_NETWORK => Ok(ModuliMethod::PrestressedNetwork),
-        other => {
-            let known = "0 (frozen network), 1 (affine), 2 (probe), 3 (acoustic), 4 (prestressed network)";
-            Err(CHECK.code("method", other, known))
-        }
-    }
-}
-
-fn anisotropy(m: &msg::Moduli) -> Result<Anisotropy, BoundaryError> {
-    let total = (m.gamma_over_delta_total_known, m.gamma_over_delta_total);
-    let elastic = (m.gamma_over_delta_elastic_known, m.gamma_over_delta_elastic);
-    let contact = (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact);
-    Ok(Anisotropy {
-        total: CHECK.ratio("gamma_over_delta_total", total)?,
-        elastic: CHECK.ratio("gamma_over_delta_elastic", elastic)?,
-        contact: CHECK.ratio("gamma_over_delta_contact", contact)?,
-    })
 }
 
 fn material(m: &msg::Moduli) -> Result<Material, BoundaryError> {

@@ -14,19 +14,18 @@ fn estimate() -> Estimate {
         model: "ratio".into(),
         calibration: "paper".into(),
         status: Estimate::STATUS_OK,
-        gamma_over_delta: -0.0623,
+        gamma_over_delta: vec![-0.0623],
         gamma_over_delta_source: "total".into(),
-        k_known: true,
-        k: 5.2,
-        k_hat_known: true,
-        k_hat: 5.1,
-        eps_known: true,
-        eps: 0.06,
-        interval: [5.1, 5.3, 4.9, 5.3, 0.0, 0.0, 0.05, 0.07, 0.0, 0.0],
+        k: vec![5.2],
+        k_hat: vec![5.1],
+        eps: vec![0.06],
+        covariance: vec![0.0; 25],
+        covariance_model: vec![0.0; 25],
+        interval: vec![5.1, 5.3, 4.9, 5.3, 0.0, 0.0, 0.05, 0.07, 0.0, 0.0],
         credible_level: 0.68,
         chi_square: 1.5,
         degrees_of_freedom: 2,
-        condition_number: 12.0,
+        condition_number: vec![12.0],
         ..Estimate::default()
     };
     for (at, variance) in [(0, 0.01), (6, 0.04), (18, 1e-4)] {
@@ -65,8 +64,8 @@ fn an_estimate_is_read_with_none_for_what_the_model_has_no_word_on() {
 }
 
 #[test]
-fn zeros_stand_for_unknown_and_a_zero_that_is_known_for_zero() {
-    let bare = Estimate { gamma_over_delta_source: "none".into(), eps_known: true, ..Estimate::default() };
+fn what_is_left_out_is_not_known_and_a_zero_is_zero() {
+    let bare = Estimate { gamma_over_delta_source: "none".into(), eps: vec![0.0], ..Estimate::default() };
     let e = read(bare);
     assert_eq!(e.strain_ratio, None);
     let found = e.inferred.unwrap();
@@ -77,22 +76,16 @@ fn zeros_stand_for_unknown_and_a_zero_that_is_known_for_zero() {
 
 #[test]
 fn each_quantity_is_read_from_its_own_field() {
-    type Set = fn(&mut Estimate) -> (&mut bool, &mut f64);
-    let fields: [Set; 5] = [
-        |e| (&mut e.k_known, &mut e.k),
-        |e| (&mut e.k_hat_known, &mut e.k_hat),
-        |e| (&mut e.z_known, &mut e.z),
-        |e| (&mut e.eps_known, &mut e.eps),
-        |e| (&mut e.eps_stiffness_known, &mut e.eps_stiffness),
-    ];
+    type Field = fn(&mut Estimate) -> &mut Vec<f64>;
+    let fields: [Field; 5] =
+        [|e| &mut e.k, |e| &mut e.k_hat, |e| &mut e.z, |e| &mut e.eps, |e| &mut e.eps_stiffness];
     for (i, field) in fields.into_iter().enumerate() {
         let mut e = Estimate { gamma_over_delta_source: "none".into(), ..Estimate::default() };
-        let (known, value) = field(&mut e);
-        (*known, *value) = (true, 0.5);
+        field(&mut e).push(0.5);
         let found = read(e.clone()).inferred.unwrap();
         let expected: Vec<Option<f64>> = (0..5).map(|j| (j == i).then_some(0.5)).collect();
         assert_eq!(found.values.to_vec(), expected);
-        *field(&mut e).1 = NAN;
+        field(&mut e)[0] = NAN;
         let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
         assert_eq!(refused, format!("Estimate.{} = NaN is refused: it must be finite", QUANTITIES[i]));
     }
@@ -104,7 +97,7 @@ fn estimates_without_an_answer_have_no_values() {
         (Estimate::STATUS_UNDETERMINED, EstimateStatus::Undetermined),
         (Estimate::STATUS_FAILED, EstimateStatus::Failed),
     ] {
-        let e = read(Estimate { status, k: NAN, ..estimate() });
+        let e = read(Estimate { status, k: vec![NAN], ..estimate() });
         assert_eq!((e.status, e.inferred), (expected, None));
         assert_eq!(e.strain_ratio.map(|g| g.value), Some(-0.0623), "what it was fed with stays");
     }
@@ -116,19 +109,19 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
         &message(vec![estimate()]),
         &[
             (|m| m.estimates[0].status = 4, "Estimate.status = 4 is refused: it must be one of 0 (ok)"),
-            (|m| m.estimates[0].gamma_over_delta = NAN, "Estimate.gamma_over_delta = NaN is refused"),
+            (|m| m.estimates[0].gamma_over_delta[0] = NAN, "Estimate.gamma_over_delta = NaN is refused"),
             (
                 |m| m.estimates[0].gamma_over_delta_source = "plastic".into(),
                 "Estimate.gamma_over_delta_source = \"plastic\" is refused: it must be one of total, elastic",
             ),
             (
                 |m| m.estimates[0].gamma_over_delta_source = "none".into(),
-                "Estimate.gamma_over_delta = -0.0623 is refused: it must be 0 where its source is none",
+                "Estimate.gamma_over_delta has 1 entries and is refused: it must have 0 (one strain ratio",
             ),
             (
                 |m| {
                     m.estimates[0] =
-                        Estimate { gamma_over_delta_source: "zero".into(), ..Estimate::default() }
+                        Estimate { gamma_over_delta_source: "none".into(), ..Estimate::default() }
                 },
                 "Estimate.number of known quantities = 0.0 is refused: it must be 1 or more",
             ),
@@ -163,8 +156,8 @@ fn each_fault_of_an_estimate_is_refused_by_name() {
                 |m| m.estimates[0].degrees_of_freedom = 0,
                 "Estimate.chi_square = 1.5 is refused: it must be 0 where degrees_of_freedom is 0",
             ),
-            (|m| m.estimates[0].condition_number = 0.5, "Estimate.condition_number = 0.5 is refused"),
-            (|m| m.estimates[0].condition_number = NAN, "Estimate.condition_number = NaN is refused"),
+            (|m| m.estimates[0].condition_number[0] = 0.5, "Estimate.condition_number = 0.5 is refused"),
+            (|m| m.estimates[0].condition_number[0] = NAN, "Estimate.condition_number = NaN is refused"),
             (|m| m.estimates[0].information[44] = NAN, "Estimate.information[44] = NaN is refused"),
             (
                 |m| m.estimates[0].information[20] = 1.0,

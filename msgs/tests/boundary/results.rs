@@ -1,10 +1,12 @@
 use super::refuses;
-use super::structure::structure;
-use grainlab_core::{
-    Anisotropy, Fabric, Material, Method, Moduli, Stiffness, SymTensor, TransverseIsotropy, Vec3,
+use super::structure::{contacts, fabric, stress_decomposition};
+use grainlab_core::results::{
+    ElasticStiffness, Elasticity, PackingReport, StiffnessBounds, StiffnessMethod, StrainRatios,
 };
+use grainlab_core::stress::Stress;
+use grainlab_core::{Material, Stiffness, SymTensor, TransverseIsotropy, Vec3};
 use grainlab_msgs::boundary::{
-    ModuliMethod, ModuliReading, RunStateReading, RunStatus, fabric_message, moduli_message,
+    FabricReading, ModuliReading, RunStateReading, RunStatus, fabric_message, moduli_message,
 };
 use grainlab_msgs::msg;
 use grainlab_msgs::std_msgs::Header;
@@ -17,26 +19,33 @@ pub(crate) fn header() -> Header {
     Header { stamp: stamp(0.25), frame_id: "cell".into() }
 }
 
-pub(crate) fn fabric() -> Fabric {
-    Fabric {
-        grains: 500,
-        contacts: 1300,
-        rattlers: 20,
-        k: 5.2,
-        z: 5.4,
-        contact_fabric: SymTensor::from_voigt([0.33, 0.32, 0.35, 0.001, -0.002, 0.003]),
-        force_fabric: SymTensor::isotropic(1.0 / 3.0),
-        stiffness_fabric: SymTensor::from_voigt([0.3, 0.3, 0.4, 0.0, 0.0, 0.0]),
-        eps: 0.0625,
-        axis: Vec3::z(),
-        fourth_order: -0.01,
-        anisotropy: Anisotropy { total: Some(-0.3), elastic: Some(0.02), contact: None },
-        mobilised: 0.125,
-        structure: structure(),
+pub(crate) fn report() -> PackingReport {
+    PackingReport {
+        step: 7,
+        material: Material::GLASS,
+        solid_fraction: 0.64,
+        stress: Stress { tensor: SymTensor::isotropic(5e4), asymmetry: 0.0 },
+        unbalanced_force_ratio: None,
+        contacts: contacts(),
+        fabric: fabric(),
+        stress_decomposition: stress_decomposition(),
+        strain_ratios: StrainRatios { total: Some(-0.3), elastic: Some(0.02), contact: None },
+        elasticity: Elasticity::Jammed(Box::new(stiffness())),
+        symmetry: None,
     }
 }
 
-fn moduli() -> Moduli {
+/// What of a report a `Fabric` message holds.
+pub(crate) fn fabric_of(report: &PackingReport) -> FabricReading {
+    FabricReading {
+        contacts: report.contacts,
+        fabric: report.fabric,
+        stress_decomposition: report.stress_decomposition,
+        strain_ratios: report.strain_ratios,
+    }
+}
+
+fn stiffness() -> ElasticStiffness {
     let relaxed = TransverseIsotropy {
         c11: 360e6,
         c12: 80e6,
@@ -47,38 +56,40 @@ fn moduli() -> Moduli {
         residual: 0.0,
     };
     let affine = TransverseIsotropy { c11: 460e6, g13: 200e6, ..relaxed };
-    let mean_spin = TransverseIsotropy { c11: 460e6, g13: 199e6, ..relaxed };
-    Moduli {
-        method: Method::FrozenNetwork,
-        stiffness: relaxed.stiffness(),
+    let uniform_rotation = TransverseIsotropy { c11: 460e6, g13: 199e6, ..relaxed };
+    ElasticStiffness {
+        method: StiffnessMethod::FrozenNetwork,
+        tensor: relaxed.stiffness(),
         stddev: Stiffness::from_row_major(&[0.5; 36]),
-        affine: affine.stiffness(),
-        mean_spin: mean_spin.stiffness(),
-        reuss_bound: Some(1.2e8),
         residual: 1e-9,
         iterations: 91,
+        bounds: StiffnessBounds {
+            affine: affine.stiffness(),
+            uniform_rotation: uniform_rotation.stiffness(),
+            bulk_reuss: Some(1.2e8),
+        },
     }
 }
 
 fn moduli_sent() -> msg::Moduli {
-    moduli_message(header(), 7, &fabric(), &moduli(), 5e4, 0.64, &Material::GLASS).unwrap()
+    moduli_message(header(), &report(), &stiffness()).unwrap()
 }
 
 #[test]
 fn a_fabric_crosses_the_wire_and_back() {
-    let sent = fabric_message(header(), 7, &fabric()).unwrap();
+    let sent = fabric_message(header(), &report()).unwrap();
     let received: msg::Fabric = from_cdr(&to_cdr(&sent)).unwrap();
-    assert_eq!(Fabric::try_from(&received).unwrap(), fabric());
+    assert_eq!(FabricReading::try_from(&received).unwrap(), fabric_of(&report()));
     assert_eq!((received.source_step, received.header), (7, header()));
 }
 
 #[test]
 fn moduli_cross_the_wire_and_back() {
-    for method in [Method::FrozenNetwork, Method::PrestressedNetwork, Method::Probe] {
-        let moduli = Moduli { method, ..moduli() };
-        let sent = moduli_message(header(), 7, &fabric(), &moduli, 5e4, 0.64, &Material::GLASS).unwrap();
+    for method in StiffnessMethod::ALL {
+        let stiffness = ElasticStiffness { method, ..stiffness() };
+        let sent = moduli_message(header(), &report(), &stiffness).unwrap();
         let received: msg::Moduli = from_cdr(&to_cdr(&sent)).unwrap();
-        assert_eq!(Moduli::try_from(&received).unwrap(), moduli);
+        assert_eq!(ModuliReading::try_from(&received).unwrap().stiffness, Some(stiffness));
     }
 }
 
@@ -86,21 +97,21 @@ fn moduli_cross_the_wire_and_back() {
 #[test]
 fn moduli_are_about_the_reference_axis_of_the_fabric_which_the_message_carries() {
     let sent = moduli_sent();
-    let about = fabric().structure.reference_axis;
+    let about = report().fabric.reference_axis;
     assert_eq!(about, Vec3::x());
     let r = ModuliReading::try_from(&sent).unwrap();
-    let t = moduli().stiffness.transverse_isotropy_about(&about);
-    assert_eq!((r.reference_axis, r.g12, r.g13, r.c33), (about, Some(t.g12), Some(t.g13), Some(t.c33)));
-    assert!((t.c33 / moduli().stiffness.0[(0, 0)] - 1.0).abs() < 1e-14, "C11 is along x");
+    let t = stiffness().tensor.transverse_isotropy_about(&about);
+    assert_eq!((r.reference_axis, r.g12, r.g13), (about, Some(t.g12), Some(t.g13)));
+    assert!((t.c33 / stiffness().tensor.0[(0, 0)] - 1.0).abs() < 1e-14, "C11 is along x");
     let nameless = msg::Moduli { reference_axis: Default::default(), ..sent };
     assert_eq!(ModuliReading::try_from(&nameless).unwrap().reference_axis, Vec3::z());
 }
 
 #[test]
 fn an_inversion_reads_what_the_analysis_measured() {
-    let mut upright = fabric();
-    upright.structure.reference_axis = Vec3::z();
-    let sent = moduli_message(header(), 7, &upright, &moduli(), 5e4, 0.64, &Material::GLASS).unwrap();
+    let mut upright = report();
+    upright.fabric.reference_axis = Vec3::z();
+    let sent = moduli_message(header(), &upright, &stiffness()).unwrap();
     let r = ModuliReading::try_from(&sent).unwrap();
     assert_eq!(r.reference_axis, Vec3::z());
     // The projection of a stiffness that is transversely isotropic is exact up to rounding.
@@ -108,98 +119,82 @@ fn an_inversion_reads_what_the_analysis_measured() {
         (r.g12.unwrap(), 140e6),
         (r.g13.unwrap(), 150e6),
         (r.theta.unwrap(), (2.0 * 360e6 + 400e6 + 2.0 * 80e6 + 4.0 * 70e6) / 9.0),
-        (r.c11.unwrap(), 360e6),
-        (r.c33.unwrap(), 400e6),
-        (r.c13.unwrap(), 70e6),
     ] {
         assert!((read / measured - 1.0f64).abs() < 1e-14, "{read} {measured}");
     }
-    assert_eq!(r.theta_reuss, moduli().stiffness.bulk_reuss());
-    assert_eq!((r.k, r.z, r.eps), (Some(5.2), Some(5.4), Some(0.0625)));
-    assert_eq!(r.gamma_over_delta, fabric().anisotropy);
+    assert_eq!(r.strain_ratios, report().strain_ratios);
     assert_eq!((r.pressure, r.solid_fraction, r.material), (5e4, Some(0.64), Material::GLASS));
-    assert_eq!((r.source_step, r.stamp, r.grains, r.axis), (7, stamp(0.25), Some(500), Some(Vec3::z())));
-    assert_eq!((r.method, r.covariance), (ModuliMethod::FrozenNetwork, None));
+    assert_eq!((r.grains, r.axis, r.covariance), (Some(500), Some(Vec3::z()), None));
+    assert_eq!((sent.source_step, &sent.header), (7, &header()));
 }
 
-/// An instrument knows two or three moduli, pressure and the glass; nothing else, and the wire has no word for "nothing".
+/// An instrument knows two or three moduli, pressure and the glass; what it leaves out is not known.
 #[test]
 fn what_an_instrument_does_not_know_is_none() {
     let message = msg::Moduli {
-        method: msg::Moduli::METHOD_ACOUSTIC,
-        covariance: [4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
-        g12: 140e6,
-        g13: 150e6,
-        theta: 170e6,
+        covariance: vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
+        g12: vec![140e6],
+        g13: vec![150e6],
+        theta: vec![170e6],
         pressure: 5e4,
-        solid_fraction: 0.64,
-        eps: 9.0,
-        gamma_over_delta_total: 9.0,
+        solid_fraction: vec![0.64],
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
         grain_density: 2500.0,
         ..msg::Moduli::default()
     };
     let r = ModuliReading::try_from(&message).unwrap();
-    assert_eq!(r.method, ModuliMethod::Acoustic);
-    assert_eq!((r.k, r.z, r.eps, r.grains), (None, None, None, None));
-    assert_eq!((r.c11, r.c33, r.c13, r.theta_reuss), (None, None, None, None));
-    assert_eq!((r.stiffness, r.affine, r.axis), (None, None, None));
-    assert_eq!(r.gamma_over_delta, Anisotropy::default());
-    assert_eq!(r.covariance, Some(message.covariance));
-    let shear_alone = msg::Moduli { theta: 0.0, solid_fraction: 0.0, ..message.clone() };
+    assert_eq!((r.grains, r.stiffness, r.axis, r.strain_ratios), (None, None, None, StrainRatios::default()));
+    assert_eq!(r.covariance.unwrap().to_vec(), message.covariance);
+    let shear_alone = msg::Moduli { theta: vec![], solid_fraction: vec![], ..message };
     let r = ModuliReading::try_from(&shear_alone).unwrap();
     assert_eq!((r.g12, r.g13, r.theta, r.solid_fraction), (Some(140e6), Some(150e6), None, None));
-    let fault = Moduli::try_from(&message).unwrap_err().to_string();
-    assert_eq!(
-        fault,
-        "Moduli.stiffness = 0.0 is refused: it must be known: the message holds only zeros there"
-    );
-}
-
-#[test]
-fn a_singular_stiffness_has_no_reuss_modulus() {
-    let broken = Moduli { stiffness: Stiffness::from_row_major(&[0.0; 36]), ..moduli() };
-    let m = moduli_message(header(), 7, &fabric(), &broken, 5e4, 0.64, &Material::GLASS).unwrap();
-    assert_eq!(ModuliReading::try_from(&m).unwrap().theta_reuss, None);
 }
 
 #[test]
 fn each_fault_of_the_moduli_is_refused_by_name() {
+    let mut good = moduli_sent();
+    good.covariance = vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12];
     refuses(
-        &moduli_sent(),
+        &good,
         &[
             (|m| m.header.stamp.nanosec = u32::MAX, "Moduli.header.stamp.nanosec"),
-            (|m| m.method = 5, "Moduli.method = 5 is refused: it must be one of 0 (frozen network)"),
-            (|m| m.stiffness[35] = NAN, "Moduli.stiffness[35] = NaN is refused"),
-            (|m| m.stiffness_stddev[3] = -1.0, "Moduli.stiffness_stddev[3] = -1.0 is refused"),
-            (|m| m.stiffness_affine[0] = INF, "Moduli.stiffness_affine[0] = inf is refused"),
-            (|m| m.stiffness_mean_spin[7] = NAN, "Moduli.stiffness_mean_spin[7] = NaN is refused"),
-            (|m| m.theta_bound = -1.0, "Moduli.theta_bound = -1.0 is refused"),
-            (|m| m.g12 = NAN, "Moduli.g12 = NaN is refused"),
-            (|m| m.g13 = INF, "Moduli.g13 = inf is refused"),
-            (|m| m.theta = NAN, "Moduli.theta = NaN is refused"),
-            (|m| m.theta_reuss = NAN, "Moduli.theta_reuss = NaN is refused"),
+            (
+                |m| m.stiffness[0].method = 1,
+                "Moduli.stiffness.method = 1 is refused: it must be one of 0 (frozen network)",
+            ),
+            (|m| m.stiffness[0].stiffness[35] = NAN, "Moduli.stiffness.stiffness[35] = NaN is refused"),
+            (|m| m.stiffness[0].stddev[3] = -1.0, "Moduli.stiffness.stddev[3] = -1.0 is refused"),
+            (|m| m.stiffness[0].affine[0] = INF, "Moduli.stiffness.affine[0] = inf is refused"),
+            (
+                |m| m.stiffness[0].uniform_rotation[7] = NAN,
+                "Moduli.stiffness.uniform_rotation[7] = NaN is refused",
+            ),
+            (
+                |m| m.stiffness[0].bulk_reuss_bound[0] = -1.0,
+                "Moduli.stiffness.bulk_reuss_bound = -1.0 is refused",
+            ),
+            (|m| m.stiffness[0].residual = NAN, "Moduli.stiffness.residual = NaN is refused"),
+            (
+                |m| m.stiffness.push(Default::default()),
+                "Moduli.stiffness has 2 entries and is refused: it must have 1 (or none, if it is not known)",
+            ),
+            (|m| m.g12[0] = NAN, "Moduli.g12 = NaN is refused"),
+            (|m| m.g13[0] = INF, "Moduli.g13 = inf is refused"),
+            (|m| m.theta.push(1.0), "Moduli.theta has 2 entries and is refused: it must have 1"),
+            (|m| _ = m.covariance.pop(), "Moduli.covariance has 8 entries and is refused: it must have 9"),
             (|m| m.covariance[1] = NAN, "Moduli.covariance[1] = NaN is refused"),
             (|m| m.covariance[4] = -1.0, "Moduli.covariance[4] = -1.0 is refused"),
             (|m| m.covariance[3] = 1.0, "Moduli.covariance[3] = 1.0 is refused: it must be symmetric"),
             (|m| m.pressure = -5e4, "Moduli.pressure = -50000.0 is refused"),
-            (|m| m.solid_fraction = -0.6, "Moduli.solid_fraction = -0.6 is refused"),
+            (|m| m.solid_fraction[0] = 0.0, "Moduli.solid_fraction = 0.0 is refused"),
             (|m| m.axis.z = 0.5, "Moduli.|axis| = 0.5 is refused: it must be 1"),
             (|m| m.axis.x = NAN, "Moduli.|axis| = NaN is refused"),
-            (|m| m.gamma_over_delta_total = NAN, "Moduli.gamma_over_delta_total = NaN is refused"),
-            (|m| m.gamma_over_delta_elastic = INF, "Moduli.gamma_over_delta_elastic = inf is refused"),
-            (
-                |m| (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact) = (true, NAN),
-                "Moduli.gamma_over_delta_contact = NaN is refused",
-            ),
-            (|m| m.k = NAN, "Moduli.k = NaN is refused"),
-            (|m| m.z = -1.0, "Moduli.z = -1.0 is refused"),
-            (|m| m.eps = NAN, "Moduli.eps = NaN is refused"),
+            (|m| m.strain_ratios.total[0] = NAN, "Moduli.strain_ratios.total = NaN is refused"),
+            (|m| m.strain_ratios.contact.push(INF), "Moduli.strain_ratios.contact = inf is refused"),
             (|m| m.grain_shear_modulus = 0.0, "Moduli.grain_shear_modulus = 0.0 is refused"),
             (|m| m.grain_poisson_ratio = 0.51, "Moduli.grain_poisson_ratio = 0.51 is refused"),
             (|m| m.grain_density = -1.0, "Moduli.grain_density = -1.0 is refused"),
-            (|m| m.residual = NAN, "Moduli.residual = NaN is refused"),
         ],
         |m| ModuliReading::try_from(m),
     );
@@ -208,27 +203,37 @@ fn each_fault_of_the_moduli_is_refused_by_name() {
 #[test]
 fn each_fault_of_a_fabric_is_refused_by_name() {
     refuses(
-        &fabric_message(header(), 7, &fabric()).unwrap(),
+        &fabric_message(header(), &report()).unwrap(),
         &[
             (
-                |m| m.rattlers = 501,
-                "Fabric.rattlers = 501.0 is refused: it must be at most the number of grains",
+                |m| m.contacts.rattlers = 501,
+                "Fabric.contacts.rattlers = 501.0 is refused: it must be at most the number of grains",
             ),
-            (|m| m.k = NAN, "Fabric.k = NaN is refused"),
-            (|m| m.z = -1.0, "Fabric.z = -1.0 is refused"),
+            (|m| m.contacts.coordination = NAN, "Fabric.contacts.coordination = NaN is refused"),
+            (
+                |m| m.contacts.mechanical_coordination = -1.0,
+                "Fabric.contacts.mechanical_coordination = -1.0 is refused",
+            ),
             (|m| m.contact_fabric.yy = NAN, "Fabric.contact_fabric.yy = NaN is refused"),
-            (|m| m.force_fabric.xy = INF, "Fabric.force_fabric.xy = inf is refused"),
+            (|m| m.normal_force_fabric.xy = INF, "Fabric.normal_force_fabric.xy = inf is refused"),
             (|m| m.stiffness_fabric.yz = NAN, "Fabric.stiffness_fabric.yz = NaN is refused"),
-            (|m| m.eps = INF, "Fabric.eps = inf is refused"),
-            (|m| m.axis.x = 1.0, "Fabric.|axis| = 1.4142135623730951 is refused"),
-            (|m| m.fourth_order = NAN, "Fabric.fourth_order = NaN is refused"),
-            (|m| m.gamma_over_delta_total = NAN, "Fabric.gamma_over_delta_total = NaN is refused"),
-            (|m| m.mobilised = 1.5, "Fabric.mobilised = 1.5 is refused: it must be between 0 and 1"),
+            (|m| m.contact_anisotropy = INF, "Fabric.contact_anisotropy = inf is refused"),
+            (
+                |m| m.principal_axis.direction.x = 1.0,
+                "Fabric.|principal_axis.direction| = 1.4142135623730951 is refused",
+            ),
+            (|m| m.p4_coefficient = NAN, "Fabric.p4_coefficient = NaN is refused"),
+            (|m| m.strain_ratios.total[0] = NAN, "Fabric.strain_ratios.total = NaN is refused"),
+            (
+                |m| m.contacts.sliding_fraction = 1.5,
+                "Fabric.contacts.sliding_fraction = 1.5 is refused: it must be between 0 and 1",
+            ),
         ],
-        |m| Fabric::try_from(m),
+        |m| FabricReading::try_from(m),
     );
-    let broken = Fabric { eps: NAN, ..fabric() };
-    assert!(fabric_message(header(), 7, &broken).is_err(), "nor is it written");
+    let mut broken = report();
+    broken.fabric.contact_anisotropy = NAN;
+    assert!(fabric_message(header(), &broken).is_err(), "nor is it written");
 }
 
 #[test]

@@ -1,149 +1,226 @@
-//! The part of a fabric that is its structure.
+//! The structure of a packing, as a `Fabric` message has it.
 
 use super::refuses;
-use super::results::{fabric, header};
-use grainlab_core::structure::{
-    AxisFound, ContactFit, Forces, FourthOrderFabric, Mobilisation, NetworkPart, Orientation, OverlapFit,
-    StressForceFabric, StressParts,
+use super::results::{fabric_of, header, report};
+use grainlab_core::results::{
+    ContactStatistics, Fabric, ForceStatistics, FourthOrderFabric, MobilisedFriction, OrientationFit,
+    OrientationHistogram, OverlapAnisotropyFit, PackingReport, PrincipalAxis, StressDecomposition,
+    StressForceFabric, SubNetwork,
 };
-use grainlab_core::{Fabric, Structure, SymTensor, Vec3};
-use grainlab_msgs::boundary::fabric_message;
+use grainlab_core::{SymTensor, Vec3};
+use grainlab_msgs::boundary::{FabricReading, fabric_message};
 use grainlab_msgs::{from_cdr, msg, to_cdr};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
 
-/// Every field differs from every other, so that none is mistaken for another.
-pub(crate) fn structure() -> Structure {
-    let tensor = |seed: f64| SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64));
-    let network = |contacts, seed| NetworkPart {
-        contacts,
-        fabric: tensor(seed),
-        eps: seed + 0.5,
-        stress: tensor(seed + 100.0),
-    };
-    let mut forces = Forces {
+fn tensor(seed: f64) -> SymTensor {
+    SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64))
+}
+
+// Every field differs from every other, so that none is mistaken for another.
+
+pub(crate) fn contacts() -> ContactStatistics {
+    let mut forces = ForceStatistics {
         mean_normal: 4e-3,
         mean_tangential: 3e-4,
         moments: [1.5, 2.8, 6.3],
         largest: 4.1,
-        ..Forces::default()
+        ..ForceStatistics::default()
     };
-    forces.contacts[3] = 1300;
-    let mut mobilisation = Mobilisation { mean: 0.75, ..Mobilisation::default() };
-    mobilisation.contacts[9] = 1300;
-    Structure {
+    forces.histogram[3] = 1300;
+    let mut friction = MobilisedFriction { mean: 0.75, ..MobilisedFriction::default() };
+    friction.histogram[9] = 1300;
+    ContactStatistics {
+        grains: 500,
+        contacts: 1300,
+        rattlers: 20,
+        coordination: 5.2,
+        mechanical_coordination: 5.4,
+        sliding_fraction: 0.125,
+        forces: Some(forces),
+        friction: Some(friction),
+    }
+}
+
+pub(crate) fn fabric() -> Fabric {
+    Fabric {
         reference_axis: Vec3::x(),
-        axis: AxisFound { eps: -0.07, eps_stddev: Some(0.018), angle_stddev: Some(0.125), determined: true },
-        tangential_fabric: tensor(1.0),
+        contact_fabric: SymTensor::from_voigt([0.33, 0.32, 0.35, 0.001, -0.002, 0.003]),
+        normal_force_fabric: SymTensor::isotropic(1.0 / 3.0),
+        tangential_force_fabric: tensor(1.0),
+        stiffness_fabric: SymTensor::from_voigt([0.3, 0.3, 0.4, 0.0, 0.0, 0.0]),
+        contact_anisotropy: 0.0625,
+        p4_coefficient: -0.01,
         fourth_order: FourthOrderFabric {
             components: std::array::from_fn(|k| 0.0625 * k as f64),
             magnitude: 0.1875,
         },
-        orientation: Orientation {
+        principal_axis: PrincipalAxis {
+            direction: Vec3::z(),
+            contact_anisotropy: -0.07,
+            contact_anisotropy_stddev: Some(0.018),
+            angle_stddev: Some(0.125),
+            determined: true,
+        },
+        orientation: OrientationHistogram {
             contacts: std::array::from_fn(|k| 85 + 10 * k as u32),
             overlap: std::array::from_fn(|k| 1e-8 * (k + 1) as f64),
             sqrt_overlap: std::array::from_fn(|k| 1e-4 * (k + 1) as f64),
-            contact_fit: Some(ContactFit { eps: 0.0575, eps_stddev: 0.031, chi2_per_dof: 2.5 }),
+            contact_fit: Some(OrientationFit { eps: 0.0575, eps_stddev: 0.031, chi2_per_dof: 2.5 }),
             overlap_fit: None,
         },
-        stress: StressParts { normal: tensor(2.0), tangential: tensor(3.0) },
+    }
+}
+
+pub(crate) fn stress_decomposition() -> StressDecomposition {
+    let network = |contacts, seed| SubNetwork {
+        contacts,
+        fabric: tensor(seed),
+        contact_anisotropy: seed + 0.5,
+        stress: tensor(seed + 100.0),
+    };
+    StressDecomposition {
+        normal: tensor(2.0),
+        tangential: tensor(3.0),
+        strong: network(520, 8.0),
+        weak: network(780, 9.0),
         stress_force_fabric: Some(StressForceFabric {
             contacts: tensor(4.0),
             normal_forces: tensor(5.0),
             branches: tensor(6.0),
             tangential_forces: tensor(7.0),
         }),
-        strong: network(520, 8.0),
-        weak: network(780, 9.0),
-        forces: Some(forces),
-        mobilisation: Some(mobilisation),
     }
 }
 
-/// What is not known arrives as not known, and its zeros are not looked at.
+/// What is not known arrives as not known.
 #[test]
 fn a_structure_without_forces_or_fits_crosses_the_wire_and_back() {
-    let bare = Structure {
-        axis: AxisFound { eps: 0.1, ..AxisFound::default() },
-        stress_force_fabric: None,
-        forces: None,
-        mobilisation: None,
-        orientation: Orientation { contact_fit: None, ..structure().orientation },
-        ..structure()
+    let mut r = report();
+    let axis = &mut r.fabric.principal_axis;
+    (axis.contact_anisotropy_stddev, axis.angle_stddev, axis.determined) = (None, None, false);
+    r.fabric.orientation.contact_fit = None;
+    r.stress_decomposition.stress_force_fabric = None;
+    (r.contacts.forces, r.contacts.friction) = (None, None);
+    let cross = |r: &PackingReport| {
+        let sent = fabric_message(header(), r).unwrap();
+        FabricReading::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
     };
-    let mut f = Fabric { structure: bare, ..fabric() };
-    let cross = |f: &Fabric| {
-        let sent = fabric_message(header(), 7, f).unwrap();
-        Fabric::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
-    };
-    assert_eq!(cross(&f), f);
+    assert_eq!(cross(&r), fabric_of(&r));
     // The ratio fitted to the contacts and the fit it comes from are one and the same.
-    f.anisotropy.contact = Some(0.02);
-    f.structure.orientation.overlap_fit = Some(OverlapFit { g: 0.02, g_stddev: Some(0.009) });
-    assert_eq!(cross(&f), f);
-    f.structure.orientation.overlap_fit = Some(OverlapFit { g: 0.02, g_stddev: None });
-    assert_eq!(cross(&f), f);
+    r.strain_ratios.contact = Some(0.02);
+    for g_stddev in [Some(0.009), None] {
+        r.fabric.orientation.overlap_fit = Some(OverlapAnisotropyFit { g: 0.02, g_stddev });
+        assert_eq!(cross(&r), fabric_of(&r));
+    }
 }
 
 #[test]
 fn each_fault_of_a_structure_is_refused_by_name() {
     refuses(
-        &fabric_message(header(), 7, &fabric()).unwrap(),
+        &fabric_message(header(), &report()).unwrap(),
         &[
             (|m| m.reference_axis.x = 0.0, "Fabric.|reference_axis| = 0.0 is refused: it must be 1"),
             (|m| m.reference_axis.y = 1.0, "Fabric.|reference_axis| = 1.4142135623730951 is refused"),
-            (|m| m.axis_eps = NAN, "Fabric.axis_eps = NaN is refused"),
-            (|m| m.axis_eps_stddev = -0.1, "Fabric.axis_eps_stddev = -0.1 is refused"),
-            (|m| m.axis_angle_stddev = INF, "Fabric.axis_angle_stddev = inf is refused"),
-            (|m| m.tangential_fabric.xy = NAN, "Fabric.tangential_fabric.xy = NaN is refused"),
+            (
+                |m| m.principal_axis.contact_anisotropy = NAN,
+                "Fabric.principal_axis.contact_anisotropy = NaN is refused",
+            ),
+            (
+                |m| m.principal_axis.contact_anisotropy_stddev[0] = -0.1,
+                "Fabric.principal_axis.contact_anisotropy_stddev = -0.1 is refused",
+            ),
+            (
+                |m| m.principal_axis.angle_stddev[0] = INF,
+                "Fabric.principal_axis.angle_stddev = inf is refused",
+            ),
+            (|m| m.tangential_force_fabric.xy = NAN, "Fabric.tangential_force_fabric.xy = NaN is refused"),
             (|m| m.fourth_order_fabric[14] = NAN, "Fabric.fourth_order_fabric[14] = NaN is refused"),
             (|m| m.fourth_order_magnitude = -1.0, "Fabric.fourth_order_magnitude = -1.0 is refused"),
-            (|m| m.stress_normal.xx = INF, "Fabric.stress_normal.xx = inf is refused"),
-            (|m| m.stress_tangential.zz = NAN, "Fabric.stress_tangential.zz = NaN is refused"),
-            (|m| m.anisotropy_contacts.xx = NAN, "Fabric.anisotropy_contacts.xx = NaN is refused"),
-            (|m| m.anisotropy_normal_forces.xx = NAN, "Fabric.anisotropy_normal_forces.xx = NaN is refused"),
-            (|m| m.anisotropy_branches.yz = INF, "Fabric.anisotropy_branches.yz = inf is refused"),
+            (|m| m.stress.normal.xx = INF, "Fabric.stress.normal.xx = inf is refused"),
+            (|m| m.stress.tangential.zz = NAN, "Fabric.stress.tangential.zz = NaN is refused"),
             (
-                |m| m.anisotropy_tangential_forces.xx = NAN,
-                "Fabric.anisotropy_tangential_forces.xx = NaN is refused",
+                |m| m.stress.stress_force_fabric[0].contacts.xx = NAN,
+                "Fabric.stress.stress_force_fabric.contacts.xx = NaN is refused",
             ),
             (
-                |m| m.orientation_contacts[4] += 1,
-                "Fabric.sum of orientation_contacts = 1301.0 is refused: it must be the number of contacts",
+                |m| m.stress.stress_force_fabric[0].normal_forces.xx = NAN,
+                "Fabric.stress.stress_force_fabric.normal_forces.xx = NaN is refused",
             ),
-            (|m| m.orientation_overlap[9] = -1e-9, "Fabric.orientation_overlap[9] = -1e-9 is refused"),
-            (|m| m.orientation_sqrt_overlap[0] = NAN, "Fabric.orientation_sqrt_overlap[0] = NaN is refused"),
             (
-                |m| m.orientation_eps = 1.1,
-                "Fabric.orientation_eps = 1.1 is refused: it must be between -1/2 and 1",
+                |m| m.stress.stress_force_fabric[0].branches.yz = INF,
+                "Fabric.stress.stress_force_fabric.branches.yz = inf is refused",
             ),
-            (|m| m.orientation_eps_stddev = NAN, "Fabric.orientation_eps_stddev = NaN is refused"),
-            (|m| m.orientation_chi2 = -1.0, "Fabric.orientation_chi2 = -1.0 is refused"),
+            (
+                |m| m.stress.stress_force_fabric[0].tangential_forces.xx = NAN,
+                "Fabric.stress.stress_force_fabric.tangential_forces.xx = NaN is refused",
+            ),
+            (
+                |m| m.orientation.contacts[4] += 1,
+                "Fabric.sum of orientation.contacts = 1301.0 is refused: it must be the number of contacts",
+            ),
+            (|m| m.orientation.overlap[9] = -1e-9, "Fabric.orientation.overlap[9] = -1e-9 is refused"),
+            (|m| m.orientation.sqrt_overlap[0] = NAN, "Fabric.orientation.sqrt_overlap[0] = NaN is refused"),
+            (
+                |m| m.orientation.contact_fit[0].eps = 1.1,
+                "Fabric.orientation.contact_fit.eps = 1.1 is refused: it must be between -1/2 and 1",
+            ),
+            (
+                |m| m.orientation.contact_fit[0].eps_stddev = NAN,
+                "Fabric.orientation.contact_fit.eps_stddev = NaN is refused",
+            ),
+            (
+                |m| m.orientation.contact_fit[0].chi2_per_dof = -1.0,
+                "Fabric.orientation.contact_fit.chi2_per_dof = -1.0 is refused",
+            ),
             (
                 |m| {
-                    (m.gamma_over_delta_contact_known, m.gamma_over_delta_contact_stddev_known) =
-                        (true, true);
-                    m.gamma_over_delta_contact_stddev = -1.0;
+                    m.orientation.overlap_fit.push(msg::OverlapAnisotropyFit { g: 0.0, g_stddev: vec![-1.0] })
                 },
-                "Fabric.gamma_over_delta_contact_stddev = -1.0 is refused",
+                "Fabric.orientation.overlap_fit.g_stddev = -1.0 is refused",
             ),
-            (|m| m.strong_contacts = 1301, "Fabric.strong_contacts = 1301.0 is refused: it must be at most"),
-            (|m| m.strong_fabric.xx = NAN, "Fabric.strong_fabric.xx = NaN is refused"),
-            (|m| m.weak_fabric.yy = NAN, "Fabric.weak_fabric.yy = NaN is refused"),
-            (|m| m.strong_eps = NAN, "Fabric.strong_eps = NaN is refused"),
-            (|m| m.weak_eps = INF, "Fabric.weak_eps = inf is refused"),
-            (|m| m.strong_stress.xy = NAN, "Fabric.strong_stress.xy = NaN is refused"),
-            (|m| m.weak_stress.xy = NAN, "Fabric.weak_stress.xy = NaN is refused"),
-            (|m| m.force_mean_normal = 0.0, "Fabric.force_mean_normal = 0.0 is refused"),
-            (|m| m.force_mean_tangential = -1.0, "Fabric.force_mean_tangential = -1.0 is refused"),
-            (|m| m.force_moments[0] = 0.0, "Fabric.force_moments[0] = 0.0 is refused"),
-            (|m| m.force_moments[2] = NAN, "Fabric.force_moments[2] = NaN is refused"),
-            (|m| m.force_largest = NAN, "Fabric.force_largest = NaN is refused"),
-            (|m| m.force_contacts[0] = u32::MAX, "Fabric.sum of force_contacts = 4294968595.0 is refused"),
-            (|m| m.mobilisation_mean = 1.01, "Fabric.mobilisation_mean = 1.01 is refused"),
-            (|m| m.mobilisation_contacts[9] = 0, "Fabric.sum of mobilisation_contacts = 0.0 is refused"),
+            (
+                |m| m.contacts.forces.push(msg::ForceStatistics::default()),
+                "Fabric.contacts.forces has 2 entries and is refused: it must have 1",
+            ),
+            (
+                |m| m.stress.strong.contacts = 521,
+                "Fabric.sum of stress.strong.contacts and stress.weak.contacts = 1301.0 is refused",
+            ),
+            (|m| m.stress.strong.fabric.xx = NAN, "Fabric.stress.strong.fabric.xx = NaN is refused"),
+            (|m| m.stress.weak.fabric.yy = NAN, "Fabric.stress.weak.fabric.yy = NaN is refused"),
+            (
+                |m| m.stress.strong.contact_anisotropy = NAN,
+                "Fabric.stress.strong.contact_anisotropy = NaN is refused",
+            ),
+            (
+                |m| m.stress.weak.contact_anisotropy = INF,
+                "Fabric.stress.weak.contact_anisotropy = inf is refused",
+            ),
+            (|m| m.stress.strong.stress.xy = NAN, "Fabric.stress.strong.stress.xy = NaN is refused"),
+            (|m| m.stress.weak.stress.xy = NAN, "Fabric.stress.weak.stress.xy = NaN is refused"),
+            (
+                |m| m.contacts.forces[0].mean_normal = 0.0,
+                "Fabric.contacts.forces.mean_normal = 0.0 is refused",
+            ),
+            (
+                |m| m.contacts.forces[0].mean_tangential = -1.0,
+                "Fabric.contacts.forces.mean_tangential = -1.0 is refused",
+            ),
+            (|m| m.contacts.forces[0].moments[0] = 0.0, "Fabric.contacts.forces.moments[0] = 0.0 is refused"),
+            (|m| m.contacts.forces[0].moments[2] = NAN, "Fabric.contacts.forces.moments[2] = NaN is refused"),
+            (|m| m.contacts.forces[0].largest = NAN, "Fabric.contacts.forces.largest = NaN is refused"),
+            (
+                |m| m.contacts.forces[0].histogram[0] = u32::MAX,
+                "Fabric.sum of contacts.forces.histogram = 4294968595.0 is refused",
+            ),
+            (|m| m.contacts.friction[0].mean = 1.01, "Fabric.contacts.friction.mean = 1.01 is refused"),
+            (
+                |m| m.contacts.friction[0].histogram[9] = 0,
+                "Fabric.sum of contacts.friction.histogram = 0.0 is refused",
+            ),
         ],
-        |m| Fabric::try_from(m),
+        |m| FabricReading::try_from(m),
     );
 }

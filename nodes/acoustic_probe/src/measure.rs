@@ -2,8 +2,8 @@
 
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, WaveMethod, stress};
-use grainlab_micromechanics::NoNetwork;
 use grainlab_msgs::boundary::{
     BoundaryError, TraceReading, WaveSpeedsReading, WaveformReading, wave_speeds_message, waveform_message,
 };
@@ -30,11 +30,11 @@ pub enum MeasureError {
     Refused(BoundaryError),
     /// Nothing carries a wave. Not a fault: sound does not cross a gas of grains.
     #[error("packing of step {step} has no wave speeds: {reason}")]
-    NoNetwork {
+    NotJammed {
         /// Its step.
         step: u64,
         /// What it lacks.
-        reason: NoNetwork,
+        reason: NotJammed,
     },
     /// The measurement failed.
     #[error("wave speeds of the packing of step {step} are not measured: {reason}")]
@@ -59,7 +59,7 @@ impl MeasureError {
     pub fn step(&self) -> Option<u64> {
         match self {
             Self::Undecodable(_) | Self::Refused(_) => None,
-            Self::NoNetwork { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
+            Self::NotJammed { step, .. } | Self::Acoustics { step, .. } | Self::Result { step, .. } => {
                 Some(*step)
             }
         }
@@ -71,7 +71,7 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
     let found = grainlab_acoustics::measure(&packing, &settings.0).map_err(|e| match e {
-        AcousticsError::NoNetwork(reason) => MeasureError::NoNetwork { step, reason },
+        AcousticsError::NotJammed(reason) => MeasureError::NotJammed { step, reason },
         reason => MeasureError::Acoustics { step, reason },
     })?;
     messages(&message.header, &packing, &found).map_err(|reason| MeasureError::Result { step, reason })

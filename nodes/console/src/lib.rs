@@ -14,4 +14,4 @@ pub mod scenes;
 mod start;
 
 pub use failure::{Failure, worse};
-pub use output::{Format, Table, exact, fixed, json, print, push_csv};
+pub use output::{CsvText, Format, Table, exact, fixed, json, print};

@@ -106,28 +106,39 @@ impl Table {
 
     /// Comma-separated, quoted where need be (RFC 4180, but with bare newlines).
     pub fn csv(&self) -> String {
-        let mut text = String::new();
-        self.rows.iter().for_each(|row| push_csv(&mut text, row));
-        text
+        let mut text = CsvText::new();
+        self.rows.iter().for_each(|row| text.row(row));
+        text.finish()
     }
 }
 
-/// Adds a line of CSV to `text`, as [`Table::csv`] has it.
-pub fn push_csv<S: AsRef<str>>(text: &mut String, cells: impl IntoIterator<Item = S>) {
-    for (i, cell) in cells.into_iter().enumerate() {
-        let cell = cell.as_ref();
-        if i > 0 {
-            text.push(',');
-        }
-        if cell.contains([',', '"', '\n', '\r']) {
-            text.push('"');
-            text.push_str(&cell.replace('"', "\"\""));
-            text.push('"');
-        } else {
-            text.push_str(cell);
-        }
+/// Lines of CSV, one after the other.
+#[derive(Debug)]
+pub struct CsvText(csv::Writer<Vec<u8>>);
+
+impl Default for CsvText {
+    fn default() -> Self {
+        Self::new()
     }
-    text.push('\n');
+}
+
+impl CsvText {
+    /// No lines yet.
+    pub fn new() -> Self {
+        Self(csv::WriterBuilder::new().flexible(true).from_writer(Vec::new()))
+    }
+
+    /// Adds a line.
+    pub fn row<C: AsRef<[u8]>>(&mut self, cells: impl IntoIterator<Item = C>) {
+        // Writing to a vector cannot fail.
+        let _ = self.0.write_record(cells);
+    }
+
+    /// The lines.
+    pub fn finish(self) -> String {
+        let bytes = self.0.into_inner().unwrap_or_default();
+        String::from_utf8(bytes).unwrap_or_default()
+    }
 }
 
 /// A number at full precision for CSV, empty if there is none.

@@ -2,7 +2,7 @@
 
 use crate::observed::{Observed, Unobservable};
 use grainlab_emt::{
-    CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, QUANTITIES, Quantity, Status, StrainRatio,
+    CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Quantity, Status, StrainRatio,
     StructureCovariance,
 };
 use grainlab_msgs::boundary::EstimateReading;
@@ -27,8 +27,7 @@ pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg:
 
 fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let structure = &estimate.structure;
-    let value = |q| structure.get(q).unwrap_or_default();
-    let known = |q| structure.get(q).is_some();
+    let [k, k_hat, z, eps, eps_stiffness] = structure.values().map(|v| v.into_iter().collect());
     let status = match estimate.status {
         _ if structure.values().iter().all(Option::is_none) => msg::Estimate::STATUS_UNDETERMINED,
         Status::Ok if !observed.in_conflict => msg::Estimate::STATUS_OK,
@@ -45,23 +44,19 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
         status,
         gamma_over_delta,
         gamma_over_delta_source,
-        k_known: known(Quantity::K),
-        k: value(Quantity::K),
-        k_hat_known: known(Quantity::KHat),
-        k_hat: value(Quantity::KHat),
-        z_known: known(Quantity::Z),
-        z: value(Quantity::Z),
-        eps_known: known(Quantity::Eps),
-        eps: value(Quantity::Eps),
-        eps_stiffness_known: known(Quantity::EpsStiffness),
-        eps_stiffness: value(Quantity::EpsStiffness),
+        k,
+        k_hat,
+        z,
+        eps,
+        eps_stiffness,
         covariance: entries(covariance),
         covariance_model: entries(known_covariance(estimate.model_covariance)),
-        interval: std::array::from_fn(|i| bounds[i / 2].map_or(0.0, |b| b[i % 2])),
+        interval: covariance
+            .map_or_else(Vec::new, |_| bounds.into_iter().flat_map(Option::unwrap_or_default).collect()),
         credible_level: if covariance.is_some() { CREDIBLE_LEVEL } else { 0.0 },
         chi_square: misfit.chi_square,
         degrees_of_freedom: misfit.degrees_of_freedom as u32,
-        condition_number: estimate.condition_number().unwrap_or_default(),
+        condition_number: estimate.condition_number().into_iter().collect(),
         information: std::array::from_fn(|i| shares[i / INPUTS].map_or(0.0, |s| s[i % INPUTS])),
         warnings: observed
             .notes
@@ -90,19 +85,18 @@ fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
     })
 }
 
-/// A covariance of zeros is on the wire one that is not known.
+/// A covariance of zeros says nothing.
 fn known_covariance(covariance: Option<StructureCovariance>) -> Option<StructureCovariance> {
     covariance.filter(|c| c.amax() > 0.0)
 }
 
-fn entries(covariance: Option<StructureCovariance>) -> [f64; QUANTITIES * QUANTITIES] {
-    covariance.map_or([0.0; QUANTITIES * QUANTITIES], |c| {
-        std::array::from_fn(|i| c[(i / QUANTITIES, i % QUANTITIES)])
-    })
+fn entries(covariance: Option<StructureCovariance>) -> Vec<f64> {
+    let row_major = |c: StructureCovariance| c.transpose().iter().copied().collect();
+    covariance.map_or_else(Vec::new, row_major)
 }
 
-fn gamma_fields(gamma: Option<StrainRatio>) -> (f64, String) {
-    (gamma.map_or(0.0, |g| g.value), gamma.map_or("none", |g| g.source.name()).to_owned())
+fn gamma_fields(gamma: Option<StrainRatio>) -> (Vec<f64>, String) {
+    (gamma.iter().map(|g| g.value).collect(), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
 /// The message of a model that has no estimate.

@@ -30,7 +30,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     let conditions = Conditions {
         pressure: Measured::exact(reading.pressure),
         gamma: {
-            let gamma = StrainRatio::of(&reading.gamma_over_delta, settings.gamma);
+            let gamma = StrainRatio::of(&reading.strain_ratios, settings.gamma);
             if as_stated { gamma } else { about(&axis, gamma) }
         },
         solid_fraction: reading.solid_fraction.map(Measured::exact),
@@ -39,8 +39,8 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     // The covariance of the message is that of the moduli about the axis stated.
     let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));
     let observation = match &reading.stiffness {
-        Some(stiffness) if along_e3 => Observation::of_stiffness(stiffness, conditions),
-        Some(stiffness) => turned(stiffness, &axis, conditions),
+        Some(stiffness) if along_e3 => Observation::of_stiffness(&stiffness.tensor, conditions),
+        Some(stiffness) => turned(&stiffness.tensor, &axis, conditions),
         None if as_stated => {
             let (g12, g13, theta) = (reading.g12, reading.g13, reading.theta);
             Observation::new(Moduli::of_values([g12, g13, theta, None, None, None]), conditions)

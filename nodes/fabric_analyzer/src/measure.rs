@@ -2,7 +2,8 @@
 
 use crate::Settings;
 use grainlab_core::Packing;
-use grainlab_micromechanics::{Analysis, MicroError, NoNetwork};
+use grainlab_core::results::{Elasticity, NotJammed, PackingReport};
+use grainlab_micromechanics::{MicroError, analyze};
 use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
@@ -13,7 +14,7 @@ pub struct Measured {
     /// Its structure.
     pub fabric: msg::Fabric,
     /// Its stiffness, or why it has none.
-    pub moduli: Result<msg::Moduli, NoNetwork>,
+    pub moduli: Result<msg::Moduli, NotJammed>,
 }
 
 /// Why a packing is not measured.
@@ -47,30 +48,18 @@ pub enum MeasureError {
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
-    let found = grainlab_micromechanics::analyse(&packing, &settings.0)
-        .map_err(|reason| MeasureError::Analysis { step, reason })?;
-    messages(&message.header, &packing, found)
+    let found = analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
+    messages(&message.header, &found.report)
 }
 
 /// The messages about a packing that has been measured; `header` is that of the packing's own message.
-pub fn messages(header: &Header, packing: &Packing, found: Analysis) -> Result<Measured, MeasureError> {
-    let step = packing.step;
-    let unfit = |reason| MeasureError::Result { step, reason };
-    let fabric = fabric_message(header.clone(), step, &found.fabric).map_err(unfit)?;
-    let moduli = match found.moduli {
-        Err(none) => Err(none),
-        Ok(moduli) => {
-            let message = moduli_message(
-                header.clone(),
-                step,
-                &found.fabric,
-                &moduli,
-                found.pressure,
-                found.solid_fraction,
-                &packing.material,
-            )
-            .map_err(unfit)?;
-            Ok(message)
+pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, MeasureError> {
+    let unfit = |reason| MeasureError::Result { step: report.step, reason };
+    let fabric = fabric_message(header.clone(), report).map_err(unfit)?;
+    let moduli = match &report.elasticity {
+        Elasticity::NotJammed(why) => Err(*why),
+        Elasticity::Jammed(stiffness) => {
+            Ok(moduli_message(header.clone(), report, stiffness).map_err(unfit)?)
         }
     };
     Ok(Measured { fabric, moduli })

@@ -48,9 +48,11 @@ impl Measure for Analysis {
         match &measured.moduli {
             Ok(moduli) => {
                 self.moduli.publish_about(bus, moduli, about)?;
-                let (k, z, eps) = (moduli.k, moduli.z, moduli.eps);
+                let fabric = &measured.fabric;
+                let (k, z) = (fabric.contacts.coordination, fabric.contacts.mechanical_coordination);
                 log::info!(
-                    "packing of step {step}: k {k:.3}, z {z:.3}, eps {eps:.4}, p {:.4e} Pa",
+                    "packing of step {step}: k {k:.3}, z {z:.3}, eps {:.4}, p {:.4e} Pa",
+                    fabric.contact_anisotropy,
                     moduli.pressure
                 );
             }

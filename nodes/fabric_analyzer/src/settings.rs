@@ -1,6 +1,8 @@
 //! What can be set.
 
 use grainlab_core::Vec3;
+use grainlab_micromechanics::network::Springs;
+use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
@@ -27,7 +29,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
              term), probe (small strains of the packing itself, a hundred times slower)",
         )
         .within(Range::Choice(&["network", "prestressed", "probe"])),
-        ParameterSpec::new("amplitude", grainlab_micromechanics::Probe::default().amplitude, "strain of the probe, 1")
+        ParameterSpec::new("amplitude", StrainProbe::default().amplitude, "strain of the probe, 1")
             .within(Range::Double { min: 1e-12, max: 1e-2 }),
     ]
 }
@@ -50,12 +52,15 @@ impl TryFrom<&Parameters> for Settings {
         let axis = direction.ok_or(SettingsError(axis))?;
         let method: String = parameters.get("method");
         let amplitude = parameters.get("amplitude");
-        let probe = grainlab_micromechanics::Probe { amplitude, ..grainlab_micromechanics::Probe::default() };
+        let probe = StrainProbe { amplitude, ..StrainProbe::default() };
         Ok(Self(grainlab_micromechanics::Settings {
             tolerance: parameters.get("tolerance"),
             axis,
-            tangential: method != "prestressed",
-            prestress: method == "prestressed",
+            springs: if method == "prestressed" {
+                Springs::PrestressedNormal
+            } else {
+                Springs::NormalAndTangential
+            },
             probe: (method == "probe").then_some(probe),
             ..grainlab_micromechanics::Settings::default()
         }))

@@ -1,7 +1,7 @@
 //! The analyzer over DDS, while it analyses. One test: the watchdog counts the DDS threads of the whole process.
 
+use grainlab_core::results::NotJammed;
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
-use grainlab_micromechanics::NoNetwork;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Packing};
 use grainlab_msgs::topics;
@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// A fabric with the packing's step, and no moduli: what this costs is up to the gate.
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
     let fabric = Fabric { source_step: packing.step, ..Fabric::default() };
-    Ok(Measured { fabric, moduli: Err(NoNetwork::NoContacts { grains: 0 }) })
+    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }) })
 }
 
 /// An analyzer whose every measurement waits for a word from its gate, and what is heard of it.

@@ -3,7 +3,7 @@
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
-use grainlab_msgs::msg::{Fabric, Moduli, Packing};
+use grainlab_msgs::msg::{ElasticStiffness, Fabric, Moduli, Packing};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publisher, RosArgs, Subscription};
 
@@ -55,11 +55,14 @@ fn a_simple_cubic_lattice_has_the_moduli_of_its_springs() {
     let (fabric, moduli) = (measured.fabric, measured.moduli.unwrap());
     assert_eq!((&fabric.header, fabric.source_step), (&packing.header, 12));
     assert_eq!((&moduli.header, moduli.source_step), (&packing.header, 12));
-    assert_eq!((fabric.k, fabric.z, fabric.rattlers, moduli.k), (6.0, 6.0, 0, 6.0));
+    let contacts = &fabric.contacts;
+    assert_eq!((contacts.coordination, contacts.mechanical_coordination), (6.0, 6.0));
+    assert_eq!(contacts.rattlers, 0);
     // C_iiii = k_n l²/V = k_n/l with l = V^(1/3); nothing relaxes by symmetry. The solve stops at 1e-9.
     let edge = DIAMETER - OVERLAP;
     let c11 = Material::GLASS.normal_stiffness(DIAMETER / 4.0, OVERLAP) / edge;
-    assert!((moduli.stiffness[0] / c11 - 1.0).abs() < 1e-8, "{} {c11}", moduli.stiffness[0]);
+    let found = moduli.stiffness[0].stiffness[0];
+    assert!((found / c11 - 1.0).abs() < 1e-8, "{found} {c11}");
     // Three contacts of force F over the faces: p = F/l².
     let pressure = Material::GLASS.normal_force(DIAMETER / 4.0, OVERLAP) / (edge * edge);
     assert!((moduli.pressure / pressure - 1.0).abs() < 1e-12);
@@ -99,7 +102,7 @@ fn without_a_network_there_is_a_fabric_and_a_warning_and_no_moduli() {
     let mut node_bus = hub.bus(Names::new("fabric_analyzer").unwrap());
     let mut node = FabricAnalyzer::new(&mut node_bus, Settings::default()).unwrap();
     node.step(&mut node_bus).unwrap();
-    assert_eq!(fabrics.take_valid(&mut bus).unwrap().unwrap().0.contacts, 0);
+    assert_eq!(fabrics.take_valid(&mut bus).unwrap().unwrap().0.contacts.contacts, 0);
     assert!(moduli.take_valid(&mut bus).unwrap().is_none());
     let health = node.health();
     assert!(health.level == Level::Warn && health.message.contains("no contact network"), "{health:?}");
@@ -148,11 +151,13 @@ fn the_method_asked_for_is_used_and_said() {
         measure(&message(OVERLAP), &Settings::try_from(&parameters).unwrap())
     };
     let [network, probe] = ["network", "probe"].map(|method| with(method).unwrap().moduli.unwrap());
-    assert_eq!([network.method, probe.method], [Moduli::METHOD_FROZEN_NETWORK, Moduli::METHOD_PROBE]);
+    let [network, probe] = [&network.stiffness[0], &probe.stiffness[0]];
+    let expected = [ElasticStiffness::METHOD_FROZEN_NETWORK, ElasticStiffness::METHOD_PROBE];
+    assert_eq!([network.method, probe.method], expected);
     // C44 of the lattice, k_t/(2 D), up to terms of the pressure.
-    let c44 = [&network, &probe].map(|m| m.stiffness[21]);
+    let c44 = [network, probe].map(|s| s.stiffness[21]);
     assert!(c44[0] > 0.0 && (c44[1] / c44[0] - 1.0).abs() < 1e-2, "{c44:?}");
-    assert!(network.stiffness_stddev.iter().all(|s| *s > 0.0));
+    assert!(network.stddev.iter().all(|s| *s > 0.0));
     // Smooth grains on such a lattice slip past each other under the least pressure.
     assert!(matches!(with("prestressed"), Err(MeasureError::Analysis { step: 12, .. })));
 }

@@ -1,10 +1,10 @@
 //! CDR of every message, and the boundary to the kernels' types.
 
 use fuzzing::{Counting, Target};
-use grainlab_core::{Cell, Contact, Fabric, Mat3, Material, Moduli, Packing, Vec3};
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
-    EstimateReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer, StressRequest,
-    WaveSpeedsReading, WaveformReading, packing_message,
+    EstimateReading, FabricReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
+    StressRequest, WaveSpeedsReading, WaveformReading, packing_message,
 };
 use grainlab_msgs::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs, to_cdr};
@@ -64,10 +64,10 @@ fn every_message_gives_a_value_or_an_error() {
     decode("cdr-stress", msg::Stress::default(), |m| drop(StressRequest::try_from(m)));
     decode("cdr-strain-rate", msg::StrainRate::default(), |m| drop(StrainRateAnswer::try_from(m)));
     decode("cdr-run-state", msg::RunState::default(), |m| drop(RunStateReading::try_from(m)));
-    decode("cdr-fabric", msg::Fabric::default(), |m| drop(Fabric::try_from(m)));
-    decode("cdr-moduli", msg::Moduli::default(), |m| {
-        drop(Moduli::try_from(m));
-        drop(ModuliReading::try_from(m));
+    decode("cdr-fabric", msg::Fabric::default(), |m| drop(FabricReading::try_from(m)));
+    let stiffness = vec![msg::ElasticStiffness::default()];
+    decode("cdr-moduli", msg::Moduli { stiffness, ..Default::default() }, |m| {
+        drop(ModuliReading::try_from(m))
     });
     decode(
         "cdr-wave-speeds",

@@ -22,7 +22,7 @@ impl Message for Microstructure {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
-    const HASH: &'static str = "RIHS01_1534e9d71d6d1fac74bb1178f1fc5f903decb88f5c6b7cdc1f59b868a29a8ef2";
+    const HASH: &'static str = "RIHS01_9897c63c07bdcb0ff119df4aeac2dbd997010d883b3fdd88621aefc99001ef43";
     const DEFINITION: &'static str = definition!(
         "msg/Microstructure.msg",
         "grainlab_msgs/Estimate" => "msg/Estimate.msg",

@@ -1,7 +1,7 @@
 use crate::sample::{DIAMETER, OVERLAP, lattice, measurement, message};
 use grainlab_acoustic_probe::{AcousticProbe, DECLINED_STEP, MeasureError, Settings, measure, messages};
 use grainlab_core::Material;
-use grainlab_micromechanics::NoNetwork;
+use grainlab_core::results::NotJammed;
 use grainlab_msgs::boundary::{WaveSpeedsReading, WaveformReading};
 use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
@@ -38,7 +38,7 @@ fn probe(bus: &mut MemoryBus) -> AcousticProbe {
         let packing = grainlab_core::Packing::try_from(message).map_err(MeasureError::Refused)?;
         let step = packing.step;
         if packing.contacts.is_empty() {
-            return Err(MeasureError::NoNetwork { step, reason: NoNetwork::NoContacts { grains: 1 } });
+            return Err(MeasureError::NotJammed { step, reason: NotJammed::NoContacts { grains: 1 } });
         }
         messages(&message.header, &packing, &measurement())
             .map_err(|reason| MeasureError::Result { step, reason })
@@ -124,7 +124,7 @@ fn a_malformed_packing_is_refused_by_name_and_the_next_one_is_measured() {
 #[test]
 fn a_gas_is_declined_by_the_measurement_itself() {
     let error = measure(&message(-OVERLAP), &Settings::default()).unwrap_err();
-    assert!(matches!(error, MeasureError::NoNetwork { step: 12, .. }), "{error}");
+    assert!(matches!(error, MeasureError::NotJammed { step: 12, .. }), "{error}");
     assert_eq!(error.step(), Some(12));
 }
 

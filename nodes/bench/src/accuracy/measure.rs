@@ -53,14 +53,9 @@ pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
 }
 
 fn observe(run: &Simulation) -> Result<Observables<f64>, String> {
-    let a = grainlab_micromechanics::analyse(&run.packing(), &grainlab_micromechanics::Settings::default())
-        .map_err(|e| e.to_string())?;
-    let c = a.moduli.map_err(|e| e.to_string())?.stiffness;
-    Ok(Observables {
-        k: a.fabric.k,
-        eps: a.fabric.eps,
-        phi: a.solid_fraction,
-        g12: c.transverse_isotropy().g12,
-        theta: c.bulk_voigt(),
-    })
+    let settings = grainlab_micromechanics::Settings::default();
+    let r = grainlab_micromechanics::analyze(&run.packing(), &settings).map_err(|e| e.to_string())?.report;
+    let (k, eps, phi) = (r.contacts.coordination, r.fabric.contact_anisotropy, r.solid_fraction);
+    let c = r.elasticity.into_stiffness().map_err(|e| e.to_string())?.tensor;
+    Ok(Observables { k, eps, phi, g12: c.transverse_isotropy().g12, theta: c.bulk_voigt() })
 }

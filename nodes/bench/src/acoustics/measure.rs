@@ -10,18 +10,20 @@ use grainlab_acoustics::{
 use grainlab_console::Failure;
 use grainlab_core::{Packing, Stiffness};
 use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
+use grainlab_micromechanics::network::Springs;
 use grainlab_node_kit::Exit;
 use std::time::Instant;
 
 /// One row a way and value.
 pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
-    let analysis = grainlab_micromechanics::analyse(
+    let springs = Springs::with_friction(packing.friction);
+    let analysis = grainlab_micromechanics::analyze(
         packing,
-        &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        &grainlab_micromechanics::Settings { springs, ..Default::default() },
     )
     .map_err(|e| invalid(&e))?;
-    let stiffness = analysis.moduli.map_err(|e| invalid(&e))?.stiffness;
+    let stiffness = analysis.report.elasticity.into_stiffness().map_err(|e| invalid(&e))?.tensor;
     let mut rows = Vec::new();
     for method in args.methods() {
         for (value, way) in ways(*method, args) {

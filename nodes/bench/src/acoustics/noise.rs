@@ -4,9 +4,10 @@ use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
-use grainlab_core::{Fabric, Packing};
+use grainlab_core::Packing;
+use grainlab_core::results::PackingReport;
 use grainlab_emt::Quantity;
-use grainlab_micromechanics::fabric::eps;
+use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
 use grainlab_node_kit::Exit;
@@ -69,14 +70,15 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
     let measurement = grainlab_acoustics::measure(packing, &settings).map_err(|e| invalid(&e))?;
-    let analysis = grainlab_micromechanics::analyse(
+    let springs = Springs::with_friction(packing.friction);
+    let truth = grainlab_micromechanics::analyze(
         packing,
-        &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
+        &grainlab_micromechanics::Settings { springs, ..Default::default() },
     )
-    .map_err(|e| invalid(&e))?;
-    let truth = Counted::of(&analysis.fabric);
+    .map_err(|e| invalid(&e))?
+    .report;
     let header = Default::default();
-    let analysed = grainlab_fabric_analyzer::messages(&header, packing, analysis).map_err(|e| invalid(&e))?;
+    let analysed = grainlab_fabric_analyzer::messages(&header, &truth).map_err(|e| invalid(&e))?;
     let moduli = analysed.moduli.map_err(|e| invalid(&e))?;
     let inversion = inversion()?;
     let by_moduli =
@@ -104,29 +106,16 @@ fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
     Ok(grainlab_emt_inversion::Settings { models, ..Default::default() })
 }
 
-/// What is counted in a packing.
-struct Counted {
-    fabric: Fabric,
-    eps_stiffness: Option<f64>,
-}
-
-impl Counted {
-    fn of(fabric: &Fabric) -> Self {
-        let weighted = || eps(&fabric.stiffness_fabric, &fabric.structure.reference_axis);
-        Self { fabric: fabric.clone(), eps_stiffness: (fabric.contacts > 0).then(weighted) }
-    }
-}
-
-fn compared(found: &Microstructure, truth: &Counted) -> Errors {
+fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let reading = MicrostructureReading::try_from(found).ok();
     let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
     let of = |quantity: Quantity| {
         let (inferred, at) = (inferred.as_ref()?, quantity as usize);
         let counted = match quantity {
-            Quantity::K => truth.fabric.k,
-            Quantity::Z => truth.fabric.z,
-            Quantity::Eps => truth.fabric.eps,
-            Quantity::EpsStiffness => truth.eps_stiffness?,
+            Quantity::K => truth.contacts.coordination,
+            Quantity::Z => truth.contacts.mechanical_coordination,
+            Quantity::Eps => truth.fabric.contact_anisotropy,
+            Quantity::EpsStiffness => truth.stiffness_anisotropy()?,
             Quantity::KHat => return None,
         };
         let error = inferred.values[at]? - counted;

@@ -96,7 +96,7 @@ fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
         }
         Forgery::Moduli => {
             let mut moduli: Moduli = decoded(sample)?;
-            moduli.g12 *= by;
+            moduli.g12.iter_mut().for_each(|g12| *g12 *= by);
             to_cdr(&moduli)
         }
         Forgery::Microstructure => {

@@ -5,8 +5,13 @@ use super::report::{Error, Row};
 use crate::cpu_time::thread_seconds;
 use crate::numbers::median;
 use grainlab_console::{Failure, say};
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Stiffness};
-use grainlab_micromechanics::{Network, Probe, Solver, stiffness};
+use grainlab_micromechanics::PackingView;
+use grainlab_micromechanics::network::{
+    Solver, SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
+};
+use grainlab_micromechanics::probe::{StrainProbe, strain_probe};
 use grainlab_node_kit::Exit;
 
 /// Residual of the direct solve: the factorisation alone comes close to it.
@@ -18,7 +23,8 @@ type Found = Result<(Stiffness, Option<u32>), String>;
 /// Rows of the packing, in the order of time that they take.
 pub(super) fn rows(packing: &Packing, replicated: bool, args: &Args) -> Result<Vec<Row>, Failure> {
     say!("grainlab: {} grains, {} contacts", packing.grains(), packing.contacts.len());
-    let bench = Bench { packing, tangential: !args.frictionless };
+    let springs = if args.frictionless { Springs::Normal } else { Springs::NormalAndTangential };
+    let bench = Bench { view: PackingView::new(packing), springs };
     let direct = packing.grains() as u64 <= args.direct_up_to;
     let (converged, against) = bench.converged(direct)?;
     let coordination = 2.0 * packing.contacts.len() as f64 / packing.grains() as f64;
@@ -57,28 +63,30 @@ pub(super) fn rows(packing: &Packing, replicated: bool, args: &Args) -> Result<V
 }
 
 struct Bench<'a> {
-    packing: &'a Packing,
-    tangential: bool,
+    view: PackingView<'a>,
+    springs: Springs,
 }
 
 impl Bench<'_> {
-    fn network(&self) -> Result<Network, String> {
-        Network::new(self.packing, self.tangential).map_err(|e| e.to_string())
+    fn network(&self) -> Result<SpringNetwork, String> {
+        SpringNetwork::new(&self.view, self.springs).map_err(|e| e.to_string())
     }
 
     fn affine(&self) -> Found {
-        Ok((Stiffness(self.network()?.stiffness(None).0), None))
+        Ok((self.network()?.affine_stiffness(), None))
     }
 
     fn mean_spin(&self) -> Found {
-        Ok((grainlab_micromechanics::bounds::mean_spin(&self.network()?), None))
+        let network = self.network()?;
+        Ok((uniform_rotation_stiffness(&network, &network.affine_stiffness()), None))
     }
 
     fn solved(&self, solver: Solver, tolerance: f64) -> Found {
         let most = grainlab_micromechanics::Settings::default().max_iterations;
-        let found = stiffness::moduli(&self.network()?, solver, tolerance, most);
-        let moduli = found.map_err(|e| e.to_string())?.map_err(|none| none.to_string())?;
-        Ok((moduli.stiffness, Some(moduli.iterations)))
+        let network = self.network()?;
+        let found = relaxed_stiffness(&network, solver, tolerance, most).map_err(|e| e.to_string())?;
+        let found = found.ok_or_else(|| NotJammed::Floppy { contacts: network.contacts() }.to_string())?;
+        Ok((found.relaxed, Some(found.iterations)))
     }
 
     /// What errors are measured against, with its name: near isostaticity only the factorisation comes so far.
@@ -94,12 +102,10 @@ impl Bench<'_> {
     }
 
     fn probed(&self, amplitude: f64) -> Found {
-        let friction = if self.tangential { f64::INFINITY } else { 0.0 };
-        let found =
-            grainlab_micromechanics::probe(self.packing, &Probe { amplitude, friction, ..Probe::default() });
-        let found = found.map_err(|e| e.to_string())?;
-        let steps = found.rest_steps + found.columns.iter().map(|c| c.steps).sum::<u32>();
-        Ok((found.stiffness, Some(steps)))
+        let friction = if self.springs.has_tangential() { f64::INFINITY } else { 0.0 };
+        let settings = StrainProbe { amplitude, friction, ..StrainProbe::default() };
+        let found = strain_probe(self.view.packing, &settings).map_err(|e| e.to_string())?;
+        Ok((found.stiffness, Some(found.steps())))
     }
 }
 

@@ -8,7 +8,7 @@ mod speeds;
 
 use grainlab_emt_inversion::{Settings, microstructure_message};
 use grainlab_msgs::boundary::MicrostructureReading;
-use grainlab_msgs::msg::{Estimate, Microstructure, Moduli};
+use grainlab_msgs::msg::{ElasticStiffness, Estimate, Microstructure, Moduli, StrainRatios};
 use grainlab_msgs::stamp;
 use grainlab_msgs::std_msgs::Header;
 
@@ -17,21 +17,22 @@ fn s1() -> Moduli {
     Moduli {
         header: Header { stamp: stamp(0.125), frame_id: "cell".into() },
         source_step: 42,
-        method: Moduli::METHOD_PROBE,
-        g12: 121.71e6,
-        g13: 127.37e6,
-        theta: 144.38e6,
+        g12: vec![121.71e6],
+        g13: vec![127.37e6],
+        theta: vec![144.38e6],
         pressure: 50e3,
-        solid_fraction: 0.636,
-        gamma_over_delta_total_known: true,
-        gamma_over_delta_total: -0.0623,
-        gamma_over_delta_contact_known: true,
-        gamma_over_delta_contact: -0.02,
+        solid_fraction: vec![0.636],
+        strain_ratios: StrainRatios { total: vec![-0.0623], contact: vec![-0.02], ..StrainRatios::default() },
         grain_shear_modulus: 29e9,
         grain_poisson_ratio: 0.2,
         grain_density: 2500.0,
         ..Moduli::default()
     }
+}
+
+/// A stiffness as the analyzer sends it, of which an inversion takes the tensor alone.
+fn sent(stiffness: &grainlab_core::Stiffness) -> Vec<ElasticStiffness> {
+    vec![ElasticStiffness { stiffness: stiffness.row_major(), ..ElasticStiffness::default() }]
 }
 
 /// Of model `ratio`, as every reader takes it.

@@ -18,7 +18,7 @@ fn a_latched_set_of_moduli_is_inverted_by_a_node_that_comes_late_and_a_broken_on
     node.step(&mut node_bus).unwrap();
     let (message, _) = found.take_valid(&mut bus).unwrap().unwrap();
     assert_eq!(message, microstructure_message(&s1(), &Settings::default()).unwrap());
-    source.publish(&mut bus, &Moduli { g12: f64::NAN, ..s1() }).unwrap();
+    source.publish(&mut bus, &Moduli { g12: vec![f64::NAN], ..s1() }).unwrap();
     node.step(&mut node_bus).unwrap();
     assert!(found.take_valid(&mut bus).unwrap().is_none());
     assert_eq!((node_bus.received()[0].refused, node.health().level), (1, Level::Warn));

@@ -54,14 +54,14 @@ fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() 
     let lying = everywhere(&s1_medium().rotated(turn.matrix()));
     let expected = answer(&upright(), &Settings::default());
     let e = answer(&lying, &Settings { axis: FOUND, ..Settings::default() });
-    assert!((e.k - expected.k).abs() < 1e-5 && (e.eps - expected.eps).abs() < 1e-6, "{e:?}");
+    assert!((e.k[0] - expected.k[0]).abs() < 1e-5 && (e.eps[0] - expected.eps[0]).abs() < 1e-6, "{e:?}");
     assert_eq!(e.status, Estimate::STATUS_OK);
     let axis = turn * Vec3::z();
     let named = format!("no axis was named: ({:.4}, {:.4}, {:.4}) was found", axis.x, axis.y, axis.z);
     assert!(says(&e, &named) && says(&e, "degrees (one sigma)"), "{:?}", e.warnings);
     // Unasked, e3 is taken as ever; that it is the wrong axis is seen.
     let e = answer(&lying, &Settings::default());
-    assert!(!says(&e, "was found") && (e.eps - expected.eps).abs() > 1e-3, "{e:?}");
+    assert!(!says(&e, "was found") && (e.eps[0] - expected.eps[0]).abs() > 1e-3, "{e:?}");
     assert!(says(&e, "fit another axis better") && e.status == Estimate::STATUS_EXTRAPOLATED, "{e:?}");
     // An axis that is named is taken.
     let named = WaveSpeeds { axis: wire(&axis), ..lying };
@@ -81,7 +81,7 @@ fn of_a_medium_that_looks_isotropic_e3_is_taken_and_that_is_said() {
         residual: 0.0,
     };
     let e = answer(&everywhere(&isotropic.stiffness()), &Settings { axis: FOUND, ..Settings::default() });
-    assert!(e.eps_known && e.eps.abs() < 1e-6 && e.status == Estimate::STATUS_OK, "{e:?}");
+    assert!(!e.eps.is_empty() && e.eps[0].abs() < 1e-6 && e.status == Estimate::STATUS_OK, "{e:?}");
     assert!(says(&e, "e3 was taken") && says(&e, "any axis would serve"), "{:?}", e.warnings);
 }
 
@@ -97,20 +97,23 @@ fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
     assert_eq!(e.status, Estimate::STATUS_OK);
     let exact = answer(&everywhere(&s1_medium()), &Settings::default());
     assert!(e.covariance[18] > 4.0 * exact.covariance[18], "{} {}", e.covariance[18], exact.covariance[18]);
-    assert!((e.eps - exact.eps).abs() < 3.0 * e.covariance[18].sqrt());
+    assert!((e.eps[0] - exact.eps[0]).abs() < 3.0 * e.covariance[18].sqrt());
 }
 
 #[test]
 fn shear_waves_alone_tell_eps_to_the_ratios_and_all_to_the_relaxed_network() {
     let shear = all(&only(|s| !is_compressional(s)));
     let ratio = shear("ratio");
-    assert_eq!((ratio.status, ratio.k_known, ratio.eps_known), (Estimate::STATUS_OK, false, true));
+    assert_eq!(
+        (ratio.status, !ratio.k.is_empty(), !ratio.eps.is_empty()),
+        (Estimate::STATUS_OK, false, true)
+    );
     assert!(
         says(&ratio, "do not determine k, k_hat") && says(&ratio, "do not determine Theta, C11, C33, C13")
     );
     let (relaxed, directional) = (shear("relaxed"), shear("directional"));
-    assert!(relaxed.z_known && relaxed.k_known && relaxed.eps_known, "{relaxed:?}");
-    assert!(directional.k_known && directional.eps_known, "{directional:?}");
+    assert!(!relaxed.z.is_empty() && !relaxed.k.is_empty() && !relaxed.eps.is_empty(), "{relaxed:?}");
+    assert!(!directional.k.is_empty() && !directional.eps.is_empty(), "{directional:?}");
     assert!(!says(&relaxed, "the data do not determine"), "{:?}", relaxed.warnings);
 }
 
@@ -121,7 +124,7 @@ fn compression_alone_tells_the_relaxed_network_something_and_the_ratios_say_what
     assert_eq!(ratio.status, Estimate::STATUS_UNDETERMINED);
     assert!(says(&ratio, "needs G12") && says(&ratio, "do not determine G12, G13, Theta, C13"), "{ratio:?}");
     let relaxed = compression("relaxed");
-    assert!(relaxed.z_known && relaxed.eps_known, "{relaxed:?}");
+    assert!(!relaxed.z.is_empty() && !relaxed.eps.is_empty(), "{relaxed:?}");
     // Less well than with all of them.
     let whole = all(&upright())("relaxed");
     assert!(relaxed.covariance[12] > whole.covariance[12] && relaxed.covariance[18] > whole.covariance[18]);
@@ -134,7 +137,10 @@ fn one_wave_tells_the_relaxed_network_z_and_that_eps_is_open() {
         one.speeds = vec![one.speeds.swap_remove(at)];
         let of = all(&one);
         let relaxed = of("relaxed");
-        assert!(relaxed.z_known && !relaxed.eps_known && !relaxed.eps_stiffness_known, "{at} {relaxed:?}");
+        assert!(
+            !relaxed.z.is_empty() && relaxed.eps.is_empty() && relaxed.eps_stiffness.is_empty(),
+            "{at} {relaxed:?}"
+        );
         assert!(says(&relaxed, "the data do not determine eps"), "{at} {:?}", relaxed.warnings);
         for model in ["ratio", "directional", "emt"] {
             let e = of(model);

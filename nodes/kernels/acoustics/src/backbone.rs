@@ -11,15 +11,16 @@ mod cluster;
 use crate::effective_density::EffectiveDensity;
 use crate::error::AcousticsError;
 use cluster::{Cluster, clusters};
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_micromechanics::rattlers::{contacts_needed, participating};
-use grainlab_micromechanics::{Network, NoNetwork};
+use grainlab_micromechanics::network::{SpringNetwork, Springs};
+use grainlab_micromechanics::{PackingView, min_contacts, non_rattlers};
 
 /// The grains that carry force, with masses and contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Backbone {
     /// Contacts between grains that carry force.
-    pub(crate) network: Network,
+    pub(crate) network: SpringNetwork,
     /// Mass of each grain, kg; 0 for rattlers.
     pub(crate) mass: Vec<f64>,
     /// Moment of inertia of each grain over a², with a the length that scales rotations, kg; 0 for rattlers.
@@ -36,17 +37,18 @@ impl Backbone {
     pub(crate) fn new(packing: &Packing) -> Result<Self, AcousticsError> {
         let grains = packing.grains();
         if packing.contacts.is_empty() {
-            return Err(NoNetwork::NoContacts { grains }.into());
+            return Err(NotJammed::NoContacts { grains }.into());
         }
-        let carries = participating(packing);
+        let carries = non_rattlers(packing);
         if carries.iter().all(|c| !c) {
-            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(packing.friction) }.into());
+            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }.into());
         }
         let held = |g: u32| carries[g as usize];
         let mut carrying = packing.clone();
         carrying.contacts.retain(|c| held(c.i) && held(c.j));
-        let network = Network::new(&carrying, packing.friction > 0.0)?;
-        let a = network.rotation_length();
+        let network =
+            SpringNetwork::new(&PackingView::new(&carrying), Springs::with_friction(packing.friction))?;
+        let a = network.spin_scale();
         let mass: Vec<f64> = packing.radii.iter().map(|r| packing.material.sphere_mass(*r)).collect();
         let bulk = mass.iter().sum::<f64>() / packing.cell.volume();
         let of = |g: usize, value: f64| if carries[g] { value } else { 0.0 };

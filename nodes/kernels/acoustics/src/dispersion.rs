@@ -156,7 +156,7 @@ fn acoustic_tensors(
         let modes = modes(&bloch, polarizations, &near, tolerance, max_iterations).map_err(|error| {
             let contacts = backbone.network.contacts();
             match error {
-                SolveError::Floppy => grainlab_micromechanics::NoNetwork::Floppy { contacts }.into(),
+                SolveError::Floppy => grainlab_core::results::NotJammed::Floppy { contacts }.into(),
                 error => AcousticsError::NotConverged {
                     direction: ray.direction.into(),
                     wavelength: wavelength * diameter,

@@ -1,6 +1,6 @@
 //! Why a measurement failed.
 
-use grainlab_micromechanics::NoNetwork;
+use grainlab_core::results::NotJammed;
 
 /// Why a packing's wave speeds could not be measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -17,7 +17,7 @@ pub enum AcousticsError {
     },
     /// Nothing carries a wave.
     #[error(transparent)]
-    NoNetwork(#[from] NoNetwork),
+    NotJammed(#[from] NotJammed),
     /// Waves of this frequency do not propagate in the packing.
     #[error(
         "a frequency of {frequency:.4e} Hz is above the cut-off of {cutoff:.4e} Hz, where waves along {} are two grains long and \

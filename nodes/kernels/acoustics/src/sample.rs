@@ -2,12 +2,11 @@
 
 use crate::error::AcousticsError;
 use grainlab_core::contact::TangentialLaw;
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
-use grainlab_micromechanics::NoNetwork;
-use grainlab_micromechanics::balance::unbalanced;
-use grainlab_micromechanics::rattlers::{contacts_needed, participating};
-use grainlab_micromechanics::relax::Relaxation;
+use grainlab_micromechanics::probe::Relaxation;
+use grainlab_micromechanics::{min_contacts, non_rattlers, unbalanced_force_ratio};
 
 /// Time step over the stability bound; contacts stiffen very little.
 const SAFETY: f64 = 0.8;
@@ -52,12 +51,12 @@ impl Sample {
         }
         let grains = packing.grains();
         if packing.contacts.is_empty() {
-            return Err(NoNetwork::NoContacts { grains }.into());
+            return Err(NotJammed::NoContacts { grains }.into());
         }
         let mut packing = Packing { friction, ..packing.clone() };
-        let present = participating(&packing);
+        let present = non_rattlers(&packing);
         if present.iter().all(|p| !p) {
-            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(friction) }.into());
+            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(friction) }.into());
         }
         packing.velocities.fill(Vec3::zeros());
         packing.spins.fill(Vec3::zeros());
@@ -80,7 +79,7 @@ impl Sample {
         let mut rest = Relaxation::new(vec![engine]);
         let not_at_rest = |rest: &Relaxation| {
             let now = rest.engines()[0].packing(Mat3::identity());
-            unbalanced(&now, &present).filter(|u| u.is_nan() || *u >= AT_REST)
+            unbalanced_force_ratio(&now, &present).filter(|u| u.is_nan() || *u >= AT_REST)
         };
         for step in 0..REST_STEPS {
             if step % REST_LOOK == 0 && not_at_rest(&rest).is_none() {
@@ -92,9 +91,9 @@ impl Sample {
         let mut rested = rest.engines()[0].packing(packing.deformation);
         rested.velocities.fill(Vec3::zeros());
         rested.spins.fill(Vec3::zeros());
-        let present = participating(&rested);
+        let present = non_rattlers(&rested);
         if present.iter().all(|p| !p) {
-            return Err(NoNetwork::OnlyRattlers { grains, needed: contacts_needed(friction) }.into());
+            return Err(NotJammed::OnlyRattlers { grains, needed: min_contacts(friction) }.into());
         }
         Ok(Self { packing: rested, present, setting, diameter, unbalanced })
     }

@@ -15,8 +15,8 @@
 //! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
 //! - [`control`]: what a loading path asks of each strain component, and the law that answers
 //! - [`waves`]: plane waves in a medium, measured speeds of them
-//! - [`structure`]: what is measured on a contact network beyond coordination and fabric
-//! - [`results`]: what the kernels report
+//! - [`results`]: what is measured on a packing
+//! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
 pub mod cell;
 mod consistency;
@@ -25,10 +25,10 @@ pub mod control;
 pub mod lanes;
 pub mod material;
 pub mod packing;
+pub mod quantity;
 pub mod results;
 pub mod stiffness;
 pub mod stress;
-pub mod structure;
 pub mod symmetry;
 pub mod tensor;
 pub mod waves;
@@ -37,9 +37,7 @@ pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
 pub use material::Material;
 pub use packing::{Contact, Packing, PackingError};
-pub use results::{Anisotropy, Fabric, Method, Moduli};
 pub use stiffness::{Stiffness, TransverseIsotropy};
-pub use structure::Structure;
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};
 pub use tensor::{Mat3, SymTensor, Vec3};
 pub use waves::{MeasuredWave, PlaneWaves, WaveMethod, WaveMode, WaveSpeed};

@@ -1,7 +1,8 @@
 //! The state in which the moduli were measured.
 
 use crate::error::EmtError;
-use grainlab_core::{Anisotropy, Material};
+use grainlab_core::Material;
+use grainlab_core::results::StrainRatios;
 use std::fmt;
 
 /// The source of a γ/Δ.
@@ -53,7 +54,7 @@ impl StrainRatio {
     }
 
     /// Whether the ratio of this source was measured.
-    pub fn is_known(measured: &Anisotropy, source: StrainRatioSource) -> bool {
+    pub fn is_known(measured: &StrainRatios, source: StrainRatioSource) -> bool {
         match source {
             StrainRatioSource::Total => measured.total.is_some(),
             StrainRatioSource::Elastic => measured.elastic.is_some(),
@@ -63,12 +64,12 @@ impl StrainRatio {
     }
 
     /// The ratio for the paper's models: the total one if it is known, else that of the contacts, else zero.
-    pub fn preferred(measured: &Anisotropy) -> Self {
+    pub fn preferred(measured: &StrainRatios) -> Self {
         Self::of(measured, StrainRatioSource::Total)
     }
 
     /// The ratio of this source; if it is not known, that of the contacts, else zero.
-    pub fn of(measured: &Anisotropy, source: StrainRatioSource) -> Self {
+    pub fn of(measured: &StrainRatios, source: StrainRatioSource) -> Self {
         let with = |value: Option<f64>, source| value.map(|value| StrainRatio { value, stddev: 0.0, source });
         let wanted = match source {
             StrainRatioSource::Total => with(measured.total, source),

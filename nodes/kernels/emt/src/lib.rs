@@ -18,7 +18,7 @@
 //! - `calibration`, `learn`: the constants of the models, and how they are learned from packings
 //! - `moments`, `eq16`, `overlap`, `medium`, `invariants`: the theory that the models share
 //! - `propagation`, `sampling`: errors to first order; the distribution, where they are large
-//! - [`christoffel`]: moduli from wave speeds
+//! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
 //! use grainlab_emt::{Calibration, Observation, Quantity, StrainRatio};
@@ -56,6 +56,7 @@ mod root;
 mod sampling;
 mod structure;
 mod warning;
+mod wave_moduli;
 
 pub use calibration::{
     AmplitudeLaw, Calibration, CalibrationError, IsotropicCalibration, ModelDiscrepancy,
@@ -79,3 +80,4 @@ pub use registry::{model, models};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;
+pub use wave_moduli::WaveModuli;

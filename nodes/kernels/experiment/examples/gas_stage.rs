@@ -52,12 +52,10 @@ fn run(text: &str) -> Result<Outcome, Box<dyn std::error::Error>> {
             Some("jam") => out.jammed = run.packing().solid_fraction(),
             Some("load") => {
                 let packing = run.packing();
-                let fabric = grainlab_micromechanics::analyse(
-                    &packing,
-                    &grainlab_micromechanics::Settings::default(),
-                )?
-                .fabric;
-                out.loaded = [packing.solid_fraction(), fabric.k, fabric.z];
+                let settings = grainlab_micromechanics::Settings::default();
+                let contacts = grainlab_micromechanics::analyze(&packing, &settings)?.report.contacts;
+                out.loaded =
+                    [packing.solid_fraction(), contacts.coordination, contacts.mechanical_coordination];
             }
             _ => {}
         }

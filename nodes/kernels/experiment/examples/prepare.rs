@@ -47,34 +47,35 @@ fn off_target(stress: &[f64; 6], controls: &[ComponentControl; 6]) -> f64 {
 }
 
 fn report(packing: &grainlab_core::Packing) -> Result<(), Box<dyn std::error::Error>> {
-    let a = grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default())?;
-    let f = &a.fabric;
+    let r = grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default())?.report;
+    let (c, f) = (&r.contacts, &r.fabric);
     let l = f.contact_fabric;
     println!(
         "  phi {:.4} p {:.2} q/p {:.1e} k {:.3} z {:.3} rattlers {} L {:.4} {:.4} {:.4} eps {:.4} g {:?}",
-        a.solid_fraction,
-        a.pressure,
-        a.deviatoric / a.pressure,
-        f.k,
-        f.z,
-        f.rattlers,
+        r.solid_fraction,
+        r.pressure(),
+        r.stress_ratio().unwrap_or(f64::NAN),
+        c.coordination,
+        c.mechanical_coordination,
+        c.rattlers,
         l.xx,
         l.yy,
         l.zz,
-        f.eps,
-        f.anisotropy
+        f.contact_anisotropy,
+        r.strain_ratios
     );
-    let (moduli, begin) = (a.moduli?, Instant::now());
-    let (t, v) = (moduli.stiffness.transverse_isotropy(), moduli.affine.transverse_isotropy());
+    let (stiffness, begin) = (r.elasticity.into_stiffness()?, Instant::now());
+    let (relaxed, affine) = (stiffness.tensor, stiffness.bounds.affine);
+    let (t, v) = (relaxed.transverse_isotropy(), affine.transverse_isotropy());
     println!(
         "  G12 {:.2} G13 {:.2} theta {:.2} MPa, affine/relaxed {:.3} {:.3} {:.3}, {} iterations {:?}",
         t.g12 / 1e6,
         t.g13 / 1e6,
-        moduli.stiffness.bulk_voigt() / 1e6,
+        relaxed.bulk_voigt() / 1e6,
         v.g12 / t.g12,
         v.g13 / t.g13,
-        moduli.affine.bulk_voigt() / moduli.stiffness.bulk_voigt(),
-        moduli.iterations,
+        affine.bulk_voigt() / relaxed.bulk_voigt(),
+        stiffness.iterations,
         begin.elapsed()
     );
     Ok(())

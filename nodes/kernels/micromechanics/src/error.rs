@@ -1,35 +1,6 @@
 //! What can go wrong, typed.
 
-/// Why a packing has no stiffness to speak of. Not a fault: a gas has none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoNetwork {
-    /// No two grains touch.
-    #[error("no contact network: none of the {grains} grains touches another; compress the packing first")]
-    NoContacts {
-        /// Number of grains.
-        grains: usize,
-    },
-    /// Every grain was removed as a rattler.
-    #[error(
-        "no contact network: all {grains} grains are rattlers (fewer than {needed} contacts each, found recursively); \
-         compress the packing first"
-    )]
-    OnlyRattlers {
-        /// Number of grains.
-        grains: usize,
-        /// Contacts that a grain needs in order to carry force.
-        needed: u32,
-    },
-    /// Contacts exist but resist no deformation of the cell.
-    #[error(
-        "no contact network: the {contacts} contacts do not span the cell, every strain relaxes to zero stress; \
-         compress the packing first"
-    )]
-    Floppy {
-        /// Number of contacts.
-        contacts: usize,
-    },
-}
+use grainlab_core::results::NotJammed;
 
 /// Why a packing could not be analysed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -98,7 +69,7 @@ pub enum MicroError {
          withheld"
     )]
     OutOfBounds {
-        /// Which bound was broken: "C" or "A - C".
+        /// Which of C, B − C and A − B, with B of affine motion and a uniform rotation: as "C", "B - C", "A - B".
         what: &'static str,
         /// The offending eigenvalue, Pa.
         eigenvalue: f64,
@@ -123,7 +94,7 @@ pub enum ProbeError {
     },
     /// There is nothing to probe.
     #[error(transparent)]
-    NoNetwork(#[from] NoNetwork),
+    NotJammed(#[from] NotJammed),
     /// The packing did not come to rest before it was strained.
     #[error(
         "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
@@ -146,9 +117,9 @@ pub enum ProbeError {
     NotConverged {
         /// Voigt component of the strain.
         component: &'static str,
-        /// See [`crate::column::Column::residual`].
+        /// See [`crate::probe::ProbeColumn::residual`].
         residual: f64,
-        /// See [`crate::column::Column::drift`].
+        /// See [`crate::probe::ProbeColumn::drift`].
         drift: f64,
         /// The tolerance asked for.
         tolerance: f64,

@@ -1,17 +1,17 @@
-//! Who carries force.
+//! Grains that carry no force.
 
 use grainlab_core::Packing;
 
 /// Contacts that a grain needs in order to carry force: 2 with friction, 4 without.
-pub fn contacts_needed(friction: f64) -> u32 {
+pub fn min_contacts(friction: f64) -> u32 {
     if friction > 0.0 { 2 } else { 4 }
 }
 
-/// For each grain, whether it takes part in the contact network: what is left after removing, again and again, grains
-/// with fewer than [`contacts_needed`] contacts with grains that are left. A contact with an own image counts twice,
+/// Whether each grain takes part in the contact network: what is left after removing, again and again, grains with fewer
+/// than [`min_contacts`] contacts with grains that are left. A contact with an own image counts twice,
 /// as it touches the grain on two sides.
-pub fn participating(packing: &Packing) -> Vec<bool> {
-    let needed = contacts_needed(packing.friction);
+pub fn non_rattlers(packing: &Packing) -> Vec<bool> {
+    let needed = min_contacts(packing.friction);
     let n = packing.grains();
     let mut neighbours = vec![Vec::new(); n];
     let mut degree = vec![0u32; n];

@@ -10,9 +10,13 @@ mod outlet;
 
 use super::packings::import::{self, in_range};
 use super::packings::{files, printer::Printer};
+use crate::results::quantities::help;
 use crate::tape::Tape;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
+use grainlab_core::results::QUANTITIES;
+use grainlab_micromechanics::network::{self, Springs};
+use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::yade;
@@ -37,7 +41,11 @@ Examples:
 
 /// Files to measure, and what they do not say. A flag goes before what a file or its sidecar says.
 #[derive(Debug, clap::Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
+#[command(
+    after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS),
+    after_long_help = format!("{EXAMPLES}\n\n{}\n\nQuantities, as keys of JSON and columns of CSV:\n{}", import::FORMATS, help(QUANTITIES)),
+    allow_negative_numbers = true
+)]
 pub(crate) struct Args {
     /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
     /// as .gz
@@ -74,7 +82,7 @@ pub(crate) struct Args {
     #[arg(long)]
     smooth: bool,
     /// Strain of the probe, forward and backward; far below overlap/diameter
-    #[arg(long, value_name = "STRAIN", default_value_t = grainlab_micromechanics::Probe::default().amplitude)]
+    #[arg(long, value_name = "STRAIN", default_value_t = StrainProbe::default().amplitude)]
     amplitude: f64,
     /// Probe with each of these strains, too, and find over which the response is linear
     #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
@@ -137,30 +145,31 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
     in_range("amplitude", Some(amplitude), "a strain, more than 0 and at most 0.01", |a| {
         a > 0.0 && a <= 0.01
     })?;
-    let prestress = args.method == Method::Prestressed;
-    let tangential = !(args.smooth || prestress);
-    let probe = (args.method == Method::Probe)
-        .then(|| grainlab_micromechanics::Probe { amplitude, ..explicit(tangential) });
+    let springs = match args.method {
+        Method::Prestressed => Springs::PrestressedNormal,
+        _ if args.smooth => Springs::Normal,
+        _ => Springs::NormalAndTangential,
+    };
+    let probe = (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..explicit(springs) });
     let solver = match args.solver {
-        Solver::Iterative => grainlab_micromechanics::Solver::Iterative,
-        Solver::Direct => grainlab_micromechanics::Solver::Direct,
+        Solver::Iterative => network::Solver::Iterative,
+        Solver::Direct => network::Solver::Direct,
     };
     let settings = grainlab_micromechanics::Settings::default();
     Ok(grainlab_micromechanics::Settings {
         axis,
         tolerance: args.tolerance,
         solver,
-        tangential,
-        prestress,
+        springs,
         probe,
         ..settings
     })
 }
 
 /// A probe in which contacts stick, or slide freely.
-fn explicit(tangential: bool) -> grainlab_micromechanics::Probe {
-    let probe = grainlab_micromechanics::Probe::default();
-    grainlab_micromechanics::Probe { friction: if tangential { probe.friction } else { 0.0 }, ..probe }
+fn explicit(springs: Springs) -> StrainProbe {
+    let probe = StrainProbe::default();
+    StrainProbe { friction: if springs.has_tangential() { probe.friction } else { 0.0 }, ..probe }
 }
 
 fn scan(args: &Args) -> Result<Vec<f64>, Failure> {

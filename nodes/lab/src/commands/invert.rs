@@ -1,7 +1,7 @@
 //! `grainlab invert`: moduli in, microstructure out.
 //!
 //! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
-//! - [`lines`], [`cells`], [`columns`], [`rows`]: a table as it comes, each row a state
+//! - [`inputs`]: what a table may say of a state; [`lines`], [`columns`], [`rows`]: a table as it comes, each row a state
 //! - [`table`], [`mod@print`]: answers in order, as text
 //! - [`explain`]: which datum decides which unknown; [`sampled`]: the posterior by sampling
 //! - [`judge`]: answers against the truth of a table
@@ -9,9 +9,9 @@
 
 mod answer;
 mod calibrations;
-mod cells;
 mod columns;
 mod explain;
+mod inputs;
 mod judge;
 mod lines;
 mod print;
@@ -43,25 +43,16 @@ Examples:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
 A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
-columns are ignored:
-  p_kpa, p_pa or pressure_pa           confining pressure, the one that is needed
-  g12_pa g13_pa theta_pa c11_pa c33_pa c13_pa   moduli about the axis (c66_pa and c44_pa are other names of g12_pa and g13_pa)
-  c11_pa c12_pa ... c66_pa             all 36, or one half: a stiffness, projected on its medium isotropic about
-  reference_axis_x reference_axis_y reference_axis_z   this axis, which all other columns are about, too; without, e3
-  ti_c11_pa ti_c33_pa ti_c13_pa        the same moduli as grainlab analyze has projected them
-  g12_sigma_pa ... c13_sigma_pa        standard deviations; also pressure_sigma_pa, gamma_over_delta_sigma, phi_sigma
-  gamma_over_delta                     ratio of deviatoric to volumetric strain; as grainlab analyze measures it: g_total,
-                                       g_elastic, g_contact (see --gamma)
-  phi grain_shear_modulus_pa poisson   solid fraction; of the grains
-  theta_printed_pa                     what the model ratio-as-printed takes for theta_pa
-  sample, or source and step           kept with the result
-  k z eps eps_stiffness                what the microstructure is, for --judge
-A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
+columns are ignored. The pressure is needed, and one modulus at least; k, z and eps are for --judge:
+  sample, or source and step         kept with the result
+  c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on its medium isotropic about
+  reference_axis_x _y _z             this axis, which all other columns are about, too; without, e3
+{COLUMNS}A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
 in the results, and does not stop the rest; the exit code is that of the worst row.";
 
 /// What to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(after_help = EXAMPLES.replace("{COLUMNS}", &inputs::reference()), allow_negative_numbers = true)]
 pub(crate) struct Args {
     /// Shear modulus in the plane of isotropy, Pa
     #[arg(long, value_name = "PA", conflicts_with = "table")]

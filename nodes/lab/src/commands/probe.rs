@@ -8,6 +8,8 @@ mod measure;
 mod outlet;
 
 use super::packings::{files, import, printer::Printer};
+use crate::results::acoustic::ACOUSTIC;
+use crate::results::quantities::help;
 use crate::tape::Tape;
 use flags::Flags;
 use grainlab_console::{Failure, Format};
@@ -30,7 +32,11 @@ Examples:
 
 /// Files to send waves through, and what they do not say.
 #[derive(Debug, clap::Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
+#[command(
+    after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS),
+    after_long_help = format!("{EXAMPLES}\n\n{}\n\nQuantities, as keys of JSON and columns of CSV:\n{}", import::FORMATS, help(ACOUSTIC)),
+    allow_negative_numbers = true
+)]
 pub(crate) struct Args {
     /// Recordings (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data files, YADE text exports; text also
     /// as .gz

@@ -1,82 +1,130 @@
-//! What wave speeds say of one packing, with the stable keys of `acoustic`.
+//! Wave speeds of one packing, and the moduli of the medium whose waves they are.
 
-use grainlab_core::{MeasuredWave, Packing, Vec3};
-use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
+use super::quantities::entries;
+use grainlab_core::quantities;
+use grainlab_core::quantity::{Quantity, Shape::*};
+use grainlab_core::{MeasuredWave, Packing};
+use grainlab_emt::{Conditions, Measured, Modulus, WaveModuli};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
 
-pub(crate) use super::acoustic_text::{heading, text};
-
-/// Wave speeds, and the moduli of the medium whose waves they are.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct AcousticView {
-    /// How the speeds were measured; null without speeds, `several` if they are not all of one kind.
-    pub(crate) method: Option<&'static str>,
-    /// Of the mass that moves with the waves, kg/m³.
-    pub(crate) density: f64,
-    pub(crate) density_stddev: Option<f64>,
+/// Wave speeds, and the moduli that they tell.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct AcousticReport {
+    pub(crate) reading: WaveSpeedsReading,
     /// Of all grains, kg/m³.
-    pub(crate) density_bulk: f64,
-    pub(crate) pressure_pa: f64,
-    /// The axis that the rays were sent about; null if it was not known.
-    pub(crate) axis: Option<[f64; 3]>,
-    /// The axis that the moduli are about: that one, else the one that the speeds tell, else e3.
-    pub(crate) moduli_axis: [f64; 3],
-    pub(crate) speeds: Vec<SpeedView>,
-    /// Of a medium isotropic about that axis, by Christoffel's equation; null where the speeds do not determine one.
-    pub(crate) moduli: ModuliView,
-    /// Their standard deviations.
-    pub(crate) sigma: ModuliView,
-    /// Misfit of the speeds by their errors; null where these are not known.
-    pub(crate) chi_square: Option<f64>,
-    /// Speeds less combinations of moduli that they determine; null where there is no medium.
-    pub(crate) degrees_of_freedom: Option<usize>,
-    /// Root mean square of the relative residuals of the speeds per degree of freedom.
-    pub(crate) scatter: Option<f64>,
-    /// Relative scatter of rho v^2 that is the packing's own, which is not quite isotropic about any axis; half of it is an error
-    /// of every speed. Null where the errors of the speeds explain all.
-    pub(crate) departure: Option<f64>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) bulk_density: f64,
+    pub(crate) medium: WaveModuli,
+}
+
+/// Every quantity of an [`AcousticReport`]. Those of the medium are null where the speeds do not determine them.
+pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
+    "method" "" "" "how the speeds were measured; several if they are not all of one kind" Scalar, |a| a.method();
+    "speed_count" "" "1" "number of speeds" Scalar, |a| a.reading.speeds.len();
+    "density" "ρ" "kg/m3" "density of the mass that moves with the waves" Scalar, |a| a.reading.density;
+    "density_sigma" "" "kg/m3" "its standard deviation" Scalar, |a| a.reading.density_stddev;
+    "density_bulk" "" "kg/m3" "density of all grains" Scalar, |a| a.bulk_density;
+    "pressure_pa" "p" "Pa" "confining pressure" Aside, |a| a.reading.pressure;
+    "axis_named" "" "1" "axis that the rays were sent about" List, |a| a.reading.axis.map(<[f64; 3]>::from);
+    "axis" "" "1" "axis that the moduli are about: that one, else the one that the speeds tell, else e3"
+        Vector, |a| a.medium.axis;
+    "g12_pa" "G12" "Pa" "C66 about the axis, by Christoffel's equation" Scalar, |a| a.medium.modulus(Modulus::G12);
+    "g12_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G12);
+    "g13_pa" "G13" "Pa" "C44 about the axis" Scalar, |a| a.medium.modulus(Modulus::G13);
+    "g13_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G13);
+    "theta_pa" "Θ" "Pa" "bulk modulus, where all the others are known, from which it follows" Scalar, |a| a.theta();
+    "theta_sigma_pa" "" "Pa" "its standard deviation" Aside, |a| a.medium.stddev(Modulus::Theta);
+    "ti_c11_pa" "C11" "Pa" "P modulus across the axis" Scalar, |a| a.medium.modulus(Modulus::C11);
+    "c11_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::C11);
+    "ti_c33_pa" "C33" "Pa" "P modulus along the axis" Scalar, |a| a.medium.modulus(Modulus::C33);
+    "c33_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::C33);
+    "ti_c13_pa" "C13" "Pa" "modulus that couples the two" Scalar, |a| a.medium.modulus(Modulus::C13);
+    "c13_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::C13);
+    "chi_square" "χ²" "1" "misfit of the speeds by their errors" Scalar, |a| a.medium.fitted.as_ref().ok().and_then(|f| f.chi_square);
+    "degrees_of_freedom" "" "1" "speeds less combinations of moduli that they determine"
+        Scalar, |a| a.medium.fitted.as_ref().ok().map(|f| f.degrees_of_freedom);
+    "scatter" "" "1" "root mean square of the relative residuals of the speeds per degree of freedom"
+        Scalar, |a| a.scatter();
+    "departure" "" "1" "relative scatter of rho v^2 that is the packing's own; half of it is an error of every speed"
+        Aside, |a| a.departure();
+};
+
+impl AcousticReport {
+    /// Of the speeds of this packing.
+    pub(crate) fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
+        let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
+        let conditions = Conditions::at(reading.pressure);
+        let medium = WaveModuli::of_speeds(&reading.measured(), density, reading.axis, conditions);
+        Self { reading, bulk_density: packing.solid_fraction() * packing.material.density, medium }
+    }
+
+    pub(crate) fn method(&self) -> Option<&'static str> {
+        let mut methods = self.reading.speeds.iter().map(|s| s.method);
+        let first = methods.next()?;
+        Some(if methods.all(|m| m == first) { first.word() } else { "several" })
+    }
+
+    pub(crate) fn scatter(&self) -> Option<f64> {
+        self.medium.fitted.as_ref().ok()?.scatter()
+    }
+
+    pub(crate) fn departure(&self) -> Option<f64> {
+        Some(self.medium.fitted.as_ref().ok()?.anisotropy_scatter?.scatter)
+    }
+
+    /// Θ, Pa, where all other moduli are known: a table cannot say that Θ follows from moduli of which one is missing.
+    fn theta(&self) -> Option<f64> {
+        let known = |m: &Modulus| self.medium.modulus(*m).is_some();
+        Modulus::ALL.iter().all(known).then(|| self.medium.modulus(Modulus::Theta))?
+    }
+
+    /// Mean of the relative standard deviations of the speeds that have one.
+    pub(crate) fn relative_error(&self) -> Option<f64> {
+        let speeds = self.reading.speeds.iter().map(|s| s.wave);
+        let errors: Vec<f64> = speeds.filter_map(|s| Some(s.stddev? / s.speed)).collect();
+        (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
+    }
+
+    /// What a reader should know of the speeds and of their medium.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.reading.warnings.clone();
+        warnings.extend(match &self.medium.fitted {
+            Ok(fitted) => fitted.conflict.as_ref().map(|conflict| {
+                format!(
+                    "the wave speeds contradict each other: speeds[{}] is {:.1} sigma from what the others say",
+                    conflict.worst, conflict.sigma
+                )
+            }),
+            Err(error) => Some(error.to_string()),
+        });
+        warnings
+    }
+}
+
+impl Serialize for AcousticReport {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        entries(&mut map, ACOUSTIC, self)?;
+        let speeds: Vec<SpeedView> = self.reading.speeds.iter().map(SpeedView::from).collect();
+        map.serialize_entry("speeds", &speeds)?;
+        map.serialize_entry("warnings", &self.warnings())?;
+        map.end()
+    }
 }
 
 /// One speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct SpeedView {
-    pub(crate) direction: [f64; 3],
-    pub(crate) polarization: [f64; 3],
+struct SpeedView {
+    direction: [f64; 3],
+    polarization: [f64; 3],
     /// m/s.
-    pub(crate) speed: f64,
-    pub(crate) stddev: Option<f64>,
-    pub(crate) method: &'static str,
+    speed: f64,
+    stddev: Option<f64>,
+    method: &'static str,
     /// Hz; null if extrapolated to zero.
-    pub(crate) frequency: Option<f64>,
-    pub(crate) strain_amplitude: f64,
-}
-
-/// Moduli about an axis, Pa.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct ModuliView {
-    pub(crate) c33_pa: Option<f64>,
-    pub(crate) c11_pa: Option<f64>,
-    /// C44.
-    pub(crate) g13_pa: Option<f64>,
-    /// C66.
-    pub(crate) g12_pa: Option<f64>,
-    pub(crate) c13_pa: Option<f64>,
-    pub(crate) theta_pa: Option<f64>,
-}
-
-impl ModuliView {
-    fn of(value: impl Fn(Modulus) -> Option<f64>) -> Self {
-        Self {
-            c33_pa: value(Modulus::C33),
-            c11_pa: value(Modulus::C11),
-            g13_pa: value(Modulus::G13),
-            g12_pa: value(Modulus::G12),
-            c13_pa: value(Modulus::C13),
-            theta_pa: value(Modulus::Theta),
-        }
-    }
+    frequency: Option<f64>,
+    strain_amplitude: f64,
 }
 
 impl From<&MeasuredWave> for SpeedView {
@@ -93,72 +141,12 @@ impl From<&MeasuredWave> for SpeedView {
     }
 }
 
-impl AcousticView {
-    /// Of the speeds of this packing.
-    pub(crate) fn new(packing: &Packing, found: &WaveSpeedsReading) -> Self {
-        let mut warnings = found.warnings.clone();
-        let speeds = found.measured();
-        let told = || christoffel::find_axis(&speeds).ok().map(|found| found.axis);
-        let axis = found.axis.or_else(told).unwrap_or_else(Vec3::z);
-        let density = Measured { value: found.density, stddev: found.density_stddev.unwrap_or(0.0) };
-        let conditions = Conditions::at(found.pressure);
-        let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions);
-        let (mut moduli, mut sigma) = (ModuliView::default(), ModuliView::default());
-        match &fitted {
-            Ok(fitted) => {
-                let o = &fitted.observation;
-                moduli = ModuliView::of(|m| o.moduli.get(m));
-                sigma = ModuliView::of(|m| {
-                    let (c, at) = (o.covariance?, m as usize);
-                    o.moduli.get(m).map(|_| c[(at, at)].max(0.0).sqrt())
-                });
-                if let Some(conflict) = &fitted.conflict {
-                    warnings.push(format!(
-                        "the wave speeds contradict each other: speeds[{}] is {:.1} sigma from what the others say",
-                        conflict.worst, conflict.sigma
-                    ));
-                }
-            }
-            Err(error) => warnings.push(error.to_string()),
-        }
-        let first = found.speeds.first().map(|s| s.method);
-        let method = first.map(|m| match found.speeds.iter().all(|s| s.method == m) {
-            true => m.word(),
-            false => "several",
-        });
-        let fitted = fitted.ok();
-        Self {
-            method,
-            density: found.density,
-            density_stddev: found.density_stddev,
-            density_bulk: packing.solid_fraction() * packing.material.density,
-            pressure_pa: found.pressure,
-            axis: found.axis.map(Into::into),
-            moduli_axis: axis.into(),
-            speeds: found.speeds.iter().map(SpeedView::from).collect(),
-            moduli,
-            sigma,
-            chi_square: fitted.as_ref().and_then(|f| f.chi_square),
-            degrees_of_freedom: fitted.as_ref().map(|f| f.degrees_of_freedom),
-            scatter: fitted.as_ref().and_then(christoffel::SpeedFit::scatter),
-            departure: fitted.as_ref().and_then(|f| Some(f.anisotropy_scatter?.scatter)),
-            warnings,
-        }
-    }
-
-    /// Mean of the relative standard deviations of the speeds that have one.
-    pub(crate) fn relative_error(&self) -> Option<f64> {
-        let errors: Vec<f64> = self.speeds.iter().filter_map(|s| Some(s.stddev? / s.speed)).collect();
-        (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainlab_core::{TransverseIsotropy, WaveMethod, WaveSpeed};
+    use grainlab_core::{TransverseIsotropy, Vec3, WaveMethod, WaveSpeed};
 
-    pub(crate) const MEDIUM: TransverseIsotropy = TransverseIsotropy {
+    const MEDIUM: TransverseIsotropy = TransverseIsotropy {
         c11: 360e6,
         c12: 80e6,
         c13: 70e6,
@@ -169,7 +157,7 @@ mod tests {
     };
 
     /// A gas of one grain: nothing but its density is asked for.
-    pub(crate) fn packing() -> Packing {
+    fn packing() -> Packing {
         use grainlab_core::{Cell, Mat3, Material};
         Packing {
             step: 12,
@@ -190,7 +178,7 @@ mod tests {
     }
 
     /// Exact speeds of [`MEDIUM`] along these directions, each known to 0.3 %.
-    pub(crate) fn speeds(directions: &[Vec3]) -> WaveSpeedsReading {
+    fn speeds(directions: &[Vec3]) -> WaveSpeedsReading {
         let density = 1500.0;
         let stiffness = MEDIUM.stiffness();
         let along = |n: &Vec3| {
@@ -221,35 +209,34 @@ mod tests {
     #[test]
     fn the_moduli_are_those_of_the_medium_whose_speeds_were_measured() {
         let diagonal = Vec3::new(1.0, 0.0, 1.0).normalize();
-        let view = AcousticView::new(&packing(), &speeds(&[Vec3::z(), Vec3::x(), diagonal]));
-        let m = view.moduli;
-        for (found, truth) in [
-            (m.c33_pa, 400e6),
-            (m.c11_pa, 360e6),
-            (m.g13_pa, 150e6),
-            (m.g12_pa, 140e6),
-            (m.c13_pa, 70e6),
-            (m.theta_pa, MEDIUM.stiffness().bulk_voigt()),
+        let report = AcousticReport::new(&packing(), speeds(&[Vec3::z(), Vec3::x(), diagonal]));
+        let json = serde_json::to_value(&report).unwrap();
+        for (key, truth) in [
+            ("ti_c33_pa", 400e6),
+            ("ti_c11_pa", 360e6),
+            ("g13_pa", 150e6),
+            ("g12_pa", 140e6),
+            ("ti_c13_pa", 70e6),
+            ("theta_pa", MEDIUM.stiffness().bulk_voigt()),
         ] {
-            assert!((found.unwrap() / truth - 1.0).abs() < 1e-6, "{m:?}");
+            assert!((json[key].as_f64().unwrap() / truth - 1.0).abs() < 1e-6, "{key}: {json}");
         }
         // A modulus of one speed: twice the speed's error, and the density's.
-        let one = view.sigma.c33_pa.unwrap() / 400e6;
+        let one = json["c33_sigma_pa"].as_f64().unwrap() / 400e6;
         assert!(one > 0.002 && one < 0.0064, "{one}");
-        assert_eq!(
-            (view.method, view.speeds.len(), view.degrees_of_freedom),
-            (Some("dispersion"), 9, Some(4))
-        );
-        assert!((view.relative_error().unwrap() - 0.003).abs() < 1e-12);
-        assert_eq!(view.warnings, ["send less"]);
+        assert_eq!((&json["method"], &json["speed_count"]), (&"dispersion".into(), &9.into()));
+        assert_eq!(json["degrees_of_freedom"], 4);
+        assert!((report.relative_error().unwrap() - 0.003).abs() < 1e-12);
+        assert_eq!(report.warnings(), ["send less"]);
     }
 
     #[test]
     fn what_the_speeds_leave_open_is_null_and_why_there_is_no_medium_is_said() {
-        let view = AcousticView::new(&packing(), &speeds(&[Vec3::z()]));
-        assert!(view.moduli.c33_pa.is_some() && view.moduli.c11_pa.is_none() && view.sigma.c11_pa.is_none());
-        let none = AcousticView::new(&packing(), &speeds(&[]));
-        assert_eq!((none.moduli, none.method), (ModuliView::default(), None));
-        assert_eq!(none.warnings.len(), 2, "{:?}", none.warnings);
+        let one = AcousticReport::new(&packing(), speeds(&[Vec3::z()])).medium;
+        assert!(one.modulus(Modulus::C33).is_some());
+        assert!(one.modulus(Modulus::C11).is_none() && one.stddev(Modulus::C11).is_none());
+        let none = AcousticReport::new(&packing(), speeds(&[]));
+        assert!(Modulus::ALL.iter().all(|m| none.medium.modulus(*m).is_none()) && none.method().is_none());
+        assert_eq!(none.warnings().len(), 2, "{:?}", none.warnings());
     }
 }

@@ -1,7 +1,7 @@
 //! What makes a measured state doubtful, said beside it.
 
-use super::state::State;
 use grainlab_core::Packing;
+use grainlab_core::results::PackingReport;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
 
@@ -12,16 +12,16 @@ const RESTLESS: f64 = 0.01;
 /// Θ may be below its bound by this share: packings whose stress is not quite isotropic.
 const BELOW: f64 = 1e-3;
 
-/// Every doubt about `packing` and what was measured on it, in words.
-pub(crate) fn doubts(packing: &Packing, state: &State) -> Vec<String> {
-    [restless(state), below_its_bound(state), pulling(packing), missing(packing, state)]
+/// Every doubt about `packing` and what was measured on it, in words; `notes` are those of whoever read it.
+pub(crate) fn doubts(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
+    [restless(report), below_its_bound(report), pulling(packing), missing(packing, notes)]
         .into_iter()
         .flatten()
         .collect()
 }
 
-fn restless(state: &State) -> Option<String> {
-    let unbalanced = state.unbalanced.filter(|u| u.is_nan() || *u > RESTLESS)?;
+fn restless(report: &PackingReport) -> Option<String> {
+    let unbalanced = report.unbalanced_force_ratio.filter(|u| u.is_nan() || *u > RESTLESS)?;
     Some(format!(
         "forces do not balance: the mean net force of a grain is {unbalanced:.2e} of the mean contact force (more than \
          {RESTLESS}): the packing moves, or contact forces are missing or wrong; stress and stiffness are those of a packing \
@@ -29,8 +29,9 @@ fn restless(state: &State) -> Option<String> {
     ))
 }
 
-fn below_its_bound(state: &State) -> Option<String> {
-    let (theta, bound) = (state.theta_pa?, state.theta_bound_pa?);
+fn below_its_bound(report: &PackingReport) -> Option<String> {
+    let stiffness = report.stiffness()?;
+    let (theta, bound) = (stiffness.tensor.bulk_voigt(), stiffness.bounds.bulk_reuss?);
     (theta < bound * (1.0 - BELOW)).then(|| {
         format!(
             "Theta {:.4e} Pa is below its lower bound by the forces present, {:.4e} Pa: contacts are missing, or forces are \
@@ -51,8 +52,8 @@ fn pulling(packing: &Packing) -> Option<String> {
 }
 
 /// Contacts by position that the list lacks; files have said so when they were read.
-fn missing(packing: &Packing, state: &State) -> Option<String> {
-    if state.warnings.iter().any(|w| w.contains("are not listed")) {
+fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
+    if notes.iter().any(|w| w.contains("are not listed")) {
         return None;
     }
     let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
@@ -77,7 +78,9 @@ fn missing(packing: &Packing, state: &State) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_core::results::Elasticity;
     use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
+    use grainlab_micromechanics::{Settings, analyze};
 
     /// A simple cubic lattice of one grain, at rest.
     fn lattice() -> Packing {
@@ -106,13 +109,14 @@ mod tests {
         }
     }
 
+    fn report(packing: &Packing) -> PackingReport {
+        analyze(packing, &Settings::default()).unwrap().report
+    }
+
     fn said(change: impl FnOnce(&mut Packing)) -> String {
         let mut packing = lattice();
         change(&mut packing);
-        let a = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
-            .unwrap();
-        let state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
-        doubts(&packing, &state).join("; ")
+        doubts(&packing, &report(&packing), &[]).join("; ")
     }
 
     #[test]
@@ -132,13 +136,12 @@ mod tests {
     #[test]
     fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_said() {
         let packing = lattice();
-        let a = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
-            .unwrap();
-        let mut state = State::new("lattice".into(), &packing, &a.fabric, a.moduli.as_ref().ok());
-        assert_eq!(state.unbalanced, Some(0.0));
-        state.theta_bound_pa = state.theta_pa.map(|t| 1.1 * t);
-        state.unbalanced = Some(0.2);
-        let said = doubts(&packing, &state).join("; ");
+        let mut report = report(&packing);
+        assert_eq!(report.unbalanced_force_ratio, Some(0.0));
+        let Elasticity::Jammed(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
+        stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
+        report.unbalanced_force_ratio = Some(0.2);
+        let said = doubts(&packing, &report, &[]).join("; ");
         assert!(
             said.contains("below its lower bound") && said.contains("2.00e-1 of the mean contact force"),
             "{said}"

@@ -190,11 +190,11 @@ mod tests {
     #[test]
     fn a_result_read_back_from_a_message_is_the_one_that_the_kernel_gave() {
         let message = Moduli {
-            g12: 121.71e6,
-            g13: 127.37e6,
-            theta: 144.38e6,
+            g12: vec![121.71e6],
+            g13: vec![127.37e6],
+            theta: vec![144.38e6],
             pressure: 50e3,
-            solid_fraction: 0.636,
+            solid_fraction: vec![0.636],
             grain_shear_modulus: Material::GLASS.shear_modulus,
             grain_poisson_ratio: Material::GLASS.poisson_ratio,
             grain_density: Material::GLASS.density,

@@ -2,6 +2,7 @@
 
 use super::inference::Inference;
 use grainlab_console::{Table, exact, fixed};
+use grainlab_emt::Quantity;
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].
@@ -21,39 +22,15 @@ impl Inference {
     }
 
     /// Names of the cells of [`Inference::exact_cells`].
-    pub(crate) const EXACT_COLUMNS: [&str; 31] = [
-        "model",
-        "calibration",
-        "k",
-        "k_hat",
-        "z",
-        "eps",
-        "eps_stiffness",
-        "sigma_k",
-        "sigma_k_hat",
-        "sigma_z",
-        "sigma_eps",
-        "sigma_eps_stiffness",
-        "sigma_model_k",
-        "sigma_model_k_hat",
-        "sigma_model_z",
-        "sigma_model_eps",
-        "sigma_model_eps_stiffness",
-        "k_low",
-        "k_high",
-        "k_hat_low",
-        "k_hat_high",
-        "z_low",
-        "z_high",
-        "eps_low",
-        "eps_high",
-        "eps_stiffness_low",
-        "eps_stiffness_high",
-        "chi_square",
-        "degrees_of_freedom",
-        "condition_number",
-        "status",
-    ];
+    pub(crate) fn exact_columns() -> Vec<String> {
+        let names = Quantity::ALL.map(Quantity::name);
+        let with = |prefix: &'static str| names.into_iter().map(move |name| format!("{prefix}{name}"));
+        let mut columns: Vec<String> = ["model", "calibration"].map(str::to_owned).into();
+        columns.extend(["", "sigma_", "sigma_model_"].into_iter().flat_map(with));
+        columns.extend(names.into_iter().flat_map(|name| [format!("{name}_low"), format!("{name}_high")]));
+        columns.extend(["chi_square", "degrees_of_freedom", "condition_number", "status"].map(str::to_owned));
+        columns
+    }
 
     /// As cells at full precision.
     pub(crate) fn exact_cells(&self) -> Vec<String> {
@@ -128,8 +105,9 @@ mod tests {
         r.interval.bounds.eps_stiffness = Some([-0.01, 0.05]);
         (r.chi_square, r.degrees_of_freedom) = (Some(1.5), Some(2));
         let cells = r.exact_cells();
-        assert_eq!(cells.len(), Inference::EXACT_COLUMNS.len());
-        let cell = |name| cells[Inference::EXACT_COLUMNS.iter().position(|c| *c == name).unwrap()].as_str();
+        let columns = Inference::exact_columns();
+        assert_eq!(cells.len(), columns.len());
+        let cell = |name| cells[columns.iter().position(|c| *c == name).unwrap()].as_str();
         assert_eq!((cell("model"), cell("status")), ("ratio", "ok"));
         assert_eq!((cell("z"), cell("sigma_z"), cell("eps_stiffness")), ("5.9", "", "0.02"));
         assert_eq!((cell("sigma_model_z"), cell("sigma_model_eps")), ("0.04", ""));

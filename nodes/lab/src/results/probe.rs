@@ -1,8 +1,8 @@
 //! How an explicit probe went, for the results of `grainlab analyze`.
 
 use grainlab_console::Table;
-use grainlab_micromechanics::ProbeResult;
-use grainlab_micromechanics::scan::Scan;
+use grainlab_core::Stiffness;
+use grainlab_micromechanics::probe::{AmplitudeSweep, StrainProbeResult};
 use serde::Serialize;
 
 /// One probe: all six columns.
@@ -24,19 +24,16 @@ pub(crate) struct ProbeView {
 }
 
 impl ProbeView {
-    pub(crate) fn new(amplitude: f64, probe: &ProbeResult) -> Self {
-        let sum = |part: fn(&grainlab_micromechanics::column::Column) -> u32| {
-            probe.columns.iter().map(part).sum::<u32>()
-        };
+    pub(crate) fn new(amplitude: f64, probe: &StrainProbeResult) -> Self {
         Self {
             amplitude,
             asymmetry: probe.asymmetry,
-            steps: probe.rest_steps + sum(|c| c.steps),
-            opened: sum(|c| c.opened),
-            closed: sum(|c| c.closed),
-            sliding: sum(|c| c.sliding),
-            forward_backward: probe.columns.iter().filter_map(|c| c.forward_backward).reduce(f64::max),
-            error: probe.stddev().0.amax() / probe.stiffness.0.amax(),
+            steps: probe.steps(),
+            opened: probe.sum(|c| c.opened),
+            closed: probe.sum(|c| c.closed),
+            sliding: probe.sum(|c| c.sliding),
+            forward_backward: probe.forward_backward(),
+            error: probe.relative_error(),
         }
     }
 }
@@ -62,7 +59,7 @@ pub(crate) struct ScannedView {
 
 impl ScanView {
     /// With the stiffness of the frozen network, where there is one.
-    pub(crate) fn new(scan: &Scan, network: Option<&grainlab_core::Stiffness>) -> Self {
+    pub(crate) fn new(scan: &AmplitudeSweep, network: Option<&Stiffness>) -> Self {
         let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
             amplitude: *amplitude,
             probe: found.as_ref().ok().map(|p| ProbeView::new(*amplitude, p)),

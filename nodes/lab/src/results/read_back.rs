@@ -1,11 +1,13 @@
 //! What a recording of a run says: its states, and the counters of its nodes.
 
-use super::acoustic::AcousticView;
+use super::acoustic::AcousticReport;
 use super::inference::Inference;
-use super::state::State;
-use grainlab_core::{Fabric, Moduli, Packing};
+use super::measured_packing::MeasuredPacking;
+use grainlab_core::Packing;
+use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
 use grainlab_experiment::is_frame;
-use grainlab_msgs::boundary::{MicrostructureReading, WaveSpeedsReading};
+use grainlab_micromechanics::{PackingView, ReportParts, report};
+use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
 use grainlab_node_kit::Report;
@@ -14,13 +16,13 @@ use grainlab_recordings::{Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A state and what was inferred from it.
+/// A packing and what was inferred from it.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct InvertedState {
+pub(crate) struct InvertedPacking {
     #[serde(flatten)]
-    pub(crate) state: State,
+    pub(crate) packing: MeasuredPacking,
     /// Null where no wave speeds were published.
-    pub(crate) acoustic: Option<AcousticView>,
+    pub(crate) acoustic: Option<AcousticReport>,
     pub(crate) results: Vec<Inference>,
 }
 
@@ -31,7 +33,7 @@ const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
 #[derive(Debug, Default)]
 pub(crate) struct ReadBack {
     /// Every packing, in order of steps.
-    pub(crate) states: Vec<InvertedState>,
+    pub(crate) states: Vec<InvertedPacking>,
     /// The last report of each process, by node and process id.
     pub(crate) reports: BTreeMap<(String, u32), Report>,
     /// Messages of packings.
@@ -69,8 +71,8 @@ struct About {
     /// It was published within a phase: it need not be at rest, and may have nothing to measure.
     within: bool,
     packing: Option<Packing>,
-    fabric: Option<Fabric>,
-    moduli: Option<Moduli>,
+    fabric: Option<FabricReading>,
+    stiffness: Option<ElasticStiffness>,
     wave_speeds: Option<WaveSpeedsReading>,
     /// In the order in which they came.
     results: Vec<Inference>,
@@ -130,18 +132,16 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         if about.within {
             back.film.packings += 1;
             back.film.structures += usize::from(about.fabric.is_some());
-            back.film.moduli += usize::from(about.moduli.is_some());
+            back.film.moduli += usize::from(about.stiffness.is_some());
             continue;
         }
         match (about.packing, about.fabric) {
             (Some(packing), Some(fabric)) => {
-                let mut state = State::new(source.clone(), &packing, &fabric, about.moduli.as_ref());
-                if about.moduli.is_none() {
-                    state.warnings.push("no moduli were published for this packing".to_owned());
-                }
-                let acoustic = about.wave_speeds.as_ref().map(|w| AcousticView::new(&packing, w));
-                let results = about.results;
-                back.states.push(InvertedState { state, acoustic, results });
+                let report = reported(&packing, fabric, about.stiffness);
+                let mut measured = MeasuredPacking::new(source.clone(), report);
+                measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
+                let acoustic = about.wave_speeds.map(|reading| AcousticReport::new(&packing, reading));
+                back.states.push(InvertedPacking { packing: measured, acoustic, results: about.results });
             }
             // An instrument's data are of no packing of the run.
             (None, None) if step == 0 => {}
@@ -162,6 +162,15 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
     }
     back.complaints.extend(recording.warnings().iter().map(ToString::to_string));
     back
+}
+
+/// The report that the messages about a packing add up to.
+fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticStiffness>) -> PackingReport {
+    let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
+    let elasticity =
+        stiffness.map_or(Elasticity::NotJammed(NotJammed::NotReported), |s| Elasticity::Jammed(Box::new(s)));
+    let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
+    report(&PackingView::new(packing), parts)
 }
 
 fn decoded<T: Message>(payload: &[u8]) -> Result<T, String> {
@@ -189,13 +198,13 @@ fn enter(
         name if name == topics::FABRIC.name => {
             let message: msg::Fabric = decoded(payload)?;
             about.entry(message.source_step).or_default().fabric =
-                Some(Fabric::try_from(&message).map_err(text)?);
+                Some(FabricReading::try_from(&message).map_err(text)?);
             Ok(message.source_step)
         }
         name if name == topics::MODULI.name => {
             let message: msg::Moduli = decoded(payload)?;
             let about = about.entry(message.source_step).or_default();
-            about.moduli = Some(Moduli::try_from(&message).map_err(text)?);
+            about.stiffness = ModuliReading::try_from(&message).map_err(text)?.stiffness;
             Ok(message.source_step)
         }
         name if name == topics::WAVE_SPEEDS.name => {

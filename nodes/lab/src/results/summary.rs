@@ -1,6 +1,6 @@
 //! What a launched run came to, with the stable keys of `summary.json`.
 
-use super::read_back::{Film, InvertedState, ReadBack};
+use super::read_back::{Film, InvertedPacking, ReadBack};
 use grainlab_node_kit::{Exit, Report};
 use grainlab_recorder::strangers::StrangerView;
 use grainlab_recordings::TopicTally;
@@ -25,7 +25,7 @@ pub(crate) struct Summary {
     pub(crate) waiting_fraction: Option<f64>,
     /// While computing.
     pub(crate) particle_steps_per_second: Option<f64>,
-    pub(crate) states: Vec<InvertedState>,
+    pub(crate) states: Vec<InvertedPacking>,
     /// Packings published within phases.
     pub(crate) film: Film,
     pub(crate) recording: Option<String>,

@@ -1,9 +1,10 @@
 //! A launched run for people.
 
-use super::acoustic;
+use super::acoustic_text;
 use super::inference::{Inference, warning_lines};
-use super::read_back::{Film, InvertedState};
-use super::state_text::{self, indented};
+use super::packing_text;
+use super::packing_text::indented;
+use super::read_back::{Film, InvertedPacking};
 use super::summary::Summary;
 use grainlab_console::{Table, fixed};
 use grainlab_msgs::topics;
@@ -13,11 +14,11 @@ use std::collections::BTreeSet;
 pub(crate) fn text(s: &Summary) -> String {
     let mut text = String::new();
     for (n, state) in s.states.iter().enumerate() {
-        let (number, of, step) = (n + 1, s.states.len(), state.state.step);
+        let (number, of, step) = (n + 1, s.states.len(), state.packing.step);
         text += &format!("State {number} of {of}: scene {}, seed {}, step {step}\n", s.scene, s.seed);
-        text += &state_text::text(&state.state);
+        text += &packing_text::text(&state.packing);
         if let Some(a) = &state.acoustic {
-            text += &acoustic::text(a, &state.state);
+            text += &acoustic_text::text(a, &state.packing.report);
         }
         text += &inferred(state);
         text.push('\n');
@@ -53,7 +54,7 @@ pub(crate) fn text(s: &Summary) -> String {
 }
 
 /// What each model infers, a block for each kind of data.
-fn inferred(s: &InvertedState) -> String {
+fn inferred(s: &InvertedPacking) -> String {
     let origin = |r: &Inference| (r.source.clone(), r.by.clone());
     let origins: BTreeSet<_> = s.results.iter().map(origin).collect();
     let sources: BTreeSet<_> = origins.iter().map(|(source, _)| source).collect();
@@ -67,9 +68,9 @@ fn inferred(s: &InvertedState) -> String {
         }
         if sources.len() > 1 {
             let data = match (source.as_deref(), &s.acoustic) {
-                (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic::heading(a),
+                (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
                 (Some(name), _) if name == topics::MODULI.name => {
-                    let method = s.state.method.unwrap_or("given");
+                    let method = s.packing.report.stiffness().map_or("given", |s| s.method.name());
                     format!("moduli ({})", method.replace('_', " "))
                 }
                 (name, _) => name.unwrap_or("data").to_owned(),
@@ -82,7 +83,7 @@ fn inferred(s: &InvertedState) -> String {
 }
 
 /// What each model infers from one kind of data, with its error against what was measured.
-fn block(results: &[Inference], s: &InvertedState) -> String {
+fn block(results: &[Inference], s: &InvertedPacking) -> String {
     let mut t = Table::new([
         "inferred by",
         "k",
@@ -101,21 +102,22 @@ fn block(results: &[Inference], s: &InvertedState) -> String {
     let off = |found: Option<f64>, truth: f64, digits: usize| {
         found.map_or_else(|| "-".to_owned(), |v| format!("{:+.digits$}", v - truth))
     };
+    let truth = &s.packing.report.contacts;
     for r in results {
         let (v, sigma) = (&r.values, &r.sigma);
         t.row([
             r.model.clone(),
             fixed(v.k, 3),
             fixed(sigma.k, 3),
-            off(v.k, s.state.k, 3),
+            off(v.k, truth.coordination, 3),
             fixed(v.k_hat, 3),
             fixed(sigma.k_hat, 3),
             fixed(v.z, 3),
             fixed(sigma.z, 3),
-            off(v.z, s.state.z, 3),
+            off(v.z, truth.mechanical_coordination, 3),
             fixed(v.eps, 4),
             fixed(sigma.eps, 4),
-            off(v.eps, s.state.eps, 4),
+            off(v.eps, s.packing.report.fabric.contact_anisotropy, 4),
             r.status.to_owned(),
         ]);
     }

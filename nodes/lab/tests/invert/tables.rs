@@ -159,7 +159,7 @@ fn the_csv_of_analyze_is_a_table_of_states() {
         flag("g13", &state["g13_pa"]),
         flag("theta", &state["theta_pa"]),
         flag("pressure", &state["pressure_pa"]),
-        flag("gamma-over-delta", &state["g"]["contact"]),
+        flag("gamma-over-delta", &state["g_contact"]),
     ];
     let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
     let alone = grainlab(&[&["invert", "--format=json"], &RATIO[..], &flags].concat(), b"");

@@ -1,7 +1,7 @@
 //! Grains with few contacts, and their softest motions.
 
 use grainlab_core::{Mat3, Vec3};
-use grainlab_micromechanics::{Link, Network};
+use grainlab_micromechanics::network::{ContactSpring, SpringNetwork};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Largest number of contacts of a loosely held grain: with one more it cannot move without straining contacts.
@@ -38,10 +38,10 @@ pub(crate) struct Soft {
 }
 
 /// The softest motions of single grains and of groups of neighbours with few contacts, with all other grains at rest.
-pub(crate) fn clusters(network: &Network, mass: &[f64], inertia: &[f64]) -> Vec<Cluster> {
+pub(crate) fn clusters(network: &SpringNetwork, mass: &[f64], inertia: &[f64]) -> Vec<Cluster> {
     let mut neighbours = vec![Vec::new(); network.grains()];
     let mut links = vec![Vec::new(); network.grains()];
-    for link in network.links() {
+    for link in network.contact_springs() {
         neighbours[link.i as usize].push(link.j);
         neighbours[link.j as usize].push(link.i);
         links[link.i as usize].push(link);
@@ -84,7 +84,7 @@ pub(crate) fn clusters(network: &Network, mass: &[f64], inertia: &[f64]) -> Vec<
 fn softest(
     cluster: Vec<u32>,
     offsets: Vec<Vec3>,
-    links: &[Vec<Link>],
+    links: &[Vec<ContactSpring>],
     mass: &[f64],
     inertia: &[f64],
 ) -> Option<Cluster> {
@@ -111,7 +111,7 @@ fn softest(
                     }
                 }
             }
-            let spring = Mat3::identity() * link.tangential + n * n.transpose() * link.excess;
+            let spring = Mat3::identity() * link.tangential + n * n.transpose() * link.kn_minus_kt;
             stiffness += felt.transpose() * spring * &felt;
         }
     }

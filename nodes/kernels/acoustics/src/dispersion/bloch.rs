@@ -9,8 +9,7 @@
 use crate::backbone::Backbone;
 use crate::dispersion::waves::{Amplitude, Row};
 use grainlab_core::Vec3;
-use grainlab_micromechanics::Link;
-use grainlab_micromechanics::preconditioner::{Block, generalised_inverse};
+use grainlab_micromechanics::network::{Block, ContactSpring, generalised_inverse};
 
 /// One contact.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +22,7 @@ struct BlochContact {
     /// Levers of i and j over their mean: exactly 1 where radii are equal.
     share: [f64; 2],
     tangential: f64,
-    excess: f64,
+    kn_minus_kt: f64,
     cos: f64,
     sin: f64,
 }
@@ -39,14 +38,24 @@ pub(crate) struct Bloch<'a> {
 
 impl<'a> Bloch<'a> {
     pub(crate) fn new(backbone: &'a Backbone, q: &Vec3) -> Self {
-        let contact = |l: Link| {
+        let contact = |l: ContactSpring| {
             let half = 0.5 * q.dot(&Vec3::from(l.branch));
-            let Link { i, j, normal, levers, tangential, excess, .. } = l;
+            let ContactSpring { i, j, normal, levers, tangential, kn_minus_kt, .. } = l;
             let lever = 0.5 * (levers[0] + levers[1]);
             let share = levers.map(|own| own / lever);
-            BlochContact { i, j, normal, lever, share, tangential, excess, cos: half.cos(), sin: half.sin() }
+            BlochContact {
+                i,
+                j,
+                normal,
+                lever,
+                share,
+                tangential,
+                kn_minus_kt,
+                cos: half.cos(),
+                sin: half.sin(),
+            }
         };
-        let contacts: Vec<BlochContact> = backbone.network.links().map(contact).collect();
+        let contacts: Vec<BlochContact> = backbone.network.contact_springs().map(contact).collect();
         let mut blocks = vec![[[0.0; 6]; 6]; backbone.mass.len()];
         for contact in &contacts {
             for (grain, block) in contact.blocks() {
@@ -172,7 +181,7 @@ impl BlochContact {
         let wx = felt[0] - (mz * felt[4] - my * felt[5]);
         let wy = felt[1] - (mx * felt[5] - mz * felt[3]);
         let wz = felt[2] - (my * felt[3] - mx * felt[4]);
-        let along = self.excess * (nx * wx + ny * wy + nz * wz);
+        let along = self.kn_minus_kt * (nx * wx + ny * wy + nz * wz);
         let fx = self.tangential * wx + nx * along;
         let fy = self.tangential * wy + ny * along;
         let fz = self.tangential * wz + nz * along;

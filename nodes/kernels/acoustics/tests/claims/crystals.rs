@@ -164,5 +164,5 @@ fn a_chain_has_its_dispersion_relation_and_resists_nothing_across() {
     assert_closed_form(&along, "P", |q| 4.0 * k.normal / k.mass * (0.5 * q * branch).sin().powi(2));
     let ray = Ray { direction: Vec3::z(), indices: None, polarizations: vec![Vec3::x()] };
     let error = curves(&packing, &[ray], &Settings::default()).unwrap_err();
-    assert!(matches!(error, grainlab_acoustics::AcousticsError::NoNetwork(_)), "{error}");
+    assert!(matches!(error, grainlab_acoustics::AcousticsError::NotJammed(_)), "{error}");
 }

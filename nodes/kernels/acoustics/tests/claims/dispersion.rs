@@ -10,11 +10,12 @@ use grainlab_emt::{Conditions, Measured, Modulus, christoffel};
 use std::sync::LazyLock;
 
 fn stiffness(packing: &Packing) -> Stiffness {
-    grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default())
+    grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default())
         .unwrap()
-        .moduli
+        .report
+        .stiffness()
         .unwrap()
-        .stiffness
+        .tensor
 }
 
 /// The whole survey of both packings, by default settings, beside their static stiffness.

@@ -7,8 +7,8 @@ use grainlab_acoustics::time_of_flight::Arrivals;
 use grainlab_acoustics::time_of_flight::{ArrivalPick, Settings, curve, curves};
 use grainlab_acoustics::{Instrument, Ray};
 use grainlab_core::packing::Contact;
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
-use grainlab_micromechanics::NoNetwork;
 use std::f64::consts::{PI, TAU};
 
 const DIAMETER: f64 = 2e-4;
@@ -207,14 +207,14 @@ fn grains_that_do_not_touch_carry_no_wave() {
         |packing: &Packing| curves(packing, &up(packing), &Settings::default(), &Instrument::default());
     let found = sent(&packing);
     assert!(
-        matches!(found, Err(AcousticsError::NoNetwork(NoNetwork::NoContacts { grains: 8 }))),
+        matches!(found, Err(AcousticsError::NotJammed(NotJammed::NoContacts { grains: 8 }))),
         "{found:?}"
     );
     // A chain with a gap: all its grains are rattlers, one after the other.
     let mut packing = chain(false);
     packing.contacts.truncate(3);
     let found = sent(&packing);
-    assert!(matches!(found, Err(AcousticsError::NoNetwork(NoNetwork::OnlyRattlers { .. }))), "{found:?}");
+    assert!(matches!(found, Err(AcousticsError::NotJammed(NotJammed::OnlyRattlers { .. }))), "{found:?}");
 }
 
 #[test]
@@ -270,9 +270,9 @@ fn a_wave_that_noise_hides_is_no_speed() {
 /// pᵀΓp/ρ of the frozen network, m²/s².
 fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
     let analysis =
-        grainlab_micromechanics::analyse(packing, &grainlab_micromechanics::Settings::default()).unwrap();
-    let stiffness = analysis.moduli.unwrap().stiffness;
-    let present = grainlab_micromechanics::rattlers::participating(packing);
+        grainlab_micromechanics::analyze(packing, &grainlab_micromechanics::Settings::default()).unwrap();
+    let stiffness = analysis.report.stiffness().unwrap().tensor;
+    let present = grainlab_micromechanics::non_rattlers(packing);
     let masses = packing.radii.iter().zip(&present).filter(|(_, p)| **p);
     let mass: f64 = masses.map(|(r, _)| packing.material.sphere_mass(*r)).sum();
     let polarization = ray.polarizations[0];

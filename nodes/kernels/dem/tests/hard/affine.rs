@@ -6,7 +6,7 @@ use crate::support::*;
 use grainlab_core::Packing;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_dem::Engine;
-use grainlab_micromechanics::{Settings, analyse};
+use grainlab_micromechanics::{Settings, analyze};
 
 /// A packing at rest, to the last digits.
 fn sample() -> Packing {
@@ -33,8 +33,8 @@ fn probe(p: &Packing, k: usize, strain: f64) -> [f64; 6] {
 #[test]
 fn moduli_from_straining_are_those_of_the_network() {
     let p = sample();
-    let solved = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
-    let (exact, affine) = (solved.stiffness.0, solved.affine.0);
+    let solved = *analyze(&p, &Settings::default()).unwrap().report.stiffness().unwrap();
+    let (exact, affine) = (solved.tensor.0, solved.bounds.affine.0);
     for column in 0..6 {
         // Engineering shear: a tensor strain of half of it.
         let strain = if column < 3 { 1e-7 } else { 0.5e-7 };
@@ -55,7 +55,7 @@ fn moduli_from_straining_are_those_of_the_network() {
 #[test]
 fn the_tangent_of_a_snapshot_is_the_affine_stiffness() {
     let p = sample();
-    let affine = analyse(&p, &Settings::default()).unwrap().moduli.unwrap().affine.0;
+    let affine = analyze(&p, &Settings::default()).unwrap().report.stiffness().unwrap().bounds.affine.0;
     let mut e = Engine::from_packing(&p, setting(0.3, p.time_step));
     e.initialise().unwrap();
     let seen = e.observables().unwrap();

@@ -3,7 +3,7 @@
 use crate::support::*;
 use grainlab_core::ServoLaw;
 use grainlab_dem::{Engine, TimeStep};
-use grainlab_micromechanics::rattlers::participating;
+use grainlab_micromechanics::non_rattlers;
 
 /// Expected: under p → 0 a frictionless packing keeps just the contacts that balance needs, 3 (N − 1) forces and 6
 /// stresses, and the servo still settles it.
@@ -29,7 +29,7 @@ fn a_frictionless_packing_at_ten_pascal_has_just_the_contacts_that_balance_needs
             assert!(period < 199_999, "at {pressure} Pa: off by {error}, unbalanced {}", seen.unbalanced);
         }
         let p = packing(&e);
-        let bearing = participating(&p);
+        let bearing = non_rattlers(&p);
         let grains = bearing.iter().filter(|b| **b).count();
         let contacts = p.contacts.iter().filter(|c| bearing[c.i as usize] && bearing[c.j as usize]).count();
         excess.push(contacts as i64 - (3 * (grains as i64 - 1) + 6));

@@ -3,7 +3,8 @@
 use crate::conditions::{Conditions, Measured, StrainRatio, StrainRatioSource};
 use crate::moduli::Moduli;
 use crate::observation::Observation;
-use grainlab_core::{Anisotropy, Material};
+use grainlab_core::Material;
+use grainlab_core::results::StrainRatios;
 
 /// One packing: its moduli, and its structure counted from the contacts.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub struct CalibrationSample {
     /// All six moduli, Pa.
     pub moduli: Moduli,
     /// γ/Δ.
-    pub gamma: Anisotropy,
+    pub gamma: StrainRatios,
     /// Coordination number of all grains.
     pub k: f64,
     /// Coordination number without rattlers.

@@ -1,7 +1,8 @@
 //! Every error and every warning.
 
 use crate::{PAPER_MODELS, model};
-use grainlab_core::{Anisotropy, Mat3, Material, Stiffness, TransverseIsotropy};
+use grainlab_core::results::StrainRatios;
+use grainlab_core::{Mat3, Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::{
     Calibration, CalibrationError, Conditions, EmtError, Estimate, IsotropicCalibration, Measured, Moduli,
     ModuliCovariance, Modulus, Observation, Quantity, Status, StrainRatio, StrainRatioSource, Structure,
@@ -231,11 +232,11 @@ fn an_orthotropic_stiffness_is_used_with_a_warning_that_tells_its_asymmetry() {
 
 #[test]
 fn gamma_is_taken_from_the_total_strain_then_from_the_contacts_then_as_zero_with_a_warning() {
-    let measured = Anisotropy { total: Some(-0.06), elastic: Some(0.01), contact: Some(0.02) };
-    let of = |a: &Anisotropy| (StrainRatio::preferred(a).source, StrainRatio::preferred(a).value);
+    let measured = StrainRatios { total: Some(-0.06), elastic: Some(0.01), contact: Some(0.02) };
+    let of = |a: &StrainRatios| (StrainRatio::preferred(a).source, StrainRatio::preferred(a).value);
     assert_eq!(of(&measured), (StrainRatioSource::Total, -0.06));
-    assert_eq!(of(&Anisotropy { total: None, ..measured }), (StrainRatioSource::Contact, 0.02));
-    assert_eq!(of(&Anisotropy::default()), (StrainRatioSource::Zero, 0.0));
+    assert_eq!(of(&StrainRatios { total: None, ..measured }), (StrainRatioSource::Contact, 0.02));
+    assert_eq!(of(&StrainRatios::default()), (StrainRatioSource::Zero, 0.0));
     let mut o = sound();
     o.conditions.gamma = StrainRatio::ZERO;
     let e = estimate(&o);

@@ -1,6 +1,7 @@
 //! Kept measurements, as `grainlab analyze` and the ensemble script wrote them.
 
-use grainlab_core::{Anisotropy, Material};
+use grainlab_core::Material;
+use grainlab_core::results::StrainRatios;
 use grainlab_emt::{CalibrationSample, Moduli, Observation, StrainRatio};
 use std::path::Path;
 
@@ -48,7 +49,7 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
             pressure: number("pressure_pa"),
             solid_fraction: number("phi"),
             moduli: Moduli::of_values(moduli.map(|m| Some(number(m)))),
-            gamma: Anisotropy {
+            gamma: StrainRatios {
                 total: t.cell(row, "g_total").parse().ok(),
                 elastic: t.cell(row, "g_elastic").parse().ok(),
                 contact: t.cell(row, "g_contact").parse().ok(),

@@ -3,13 +3,22 @@
 use crate::golden::reference;
 use crate::samples::{packing, random};
 use grainlab_core::packing::Contact;
-use grainlab_core::{Cell, Mat3, Moduli, Packing, Vec3};
-use grainlab_micromechanics::{MicroError, Network, NoNetwork, Settings, Solver, analyse};
+use grainlab_core::results::{ElasticStiffness, StiffnessMethod};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_micromechanics::network::{
+    Solver, SpringNetwork, Springs, relaxed_stiffness, uniform_rotation_stiffness,
+};
+use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 
 const D: f64 = 2.0e-4;
 
-fn moduli(p: &Packing, settings: &Settings) -> Moduli {
-    analyse(p, settings).unwrap().moduli.unwrap()
+fn moduli(p: &Packing, settings: &Settings) -> ElasticStiffness {
+    analyze(p, settings).unwrap().report.stiffness().copied().unwrap()
+}
+
+fn prestressed(p: &Packing, springs: Springs) -> SpringNetwork {
+    let view = PackingView::new(p);
+    SpringNetwork::new(&view, springs).unwrap().with_prestress(&view)
 }
 
 /// One grain in a cell of three different edges, so that the springs along x and z differ.
@@ -30,11 +39,14 @@ fn a_mean_spin_is_exact_where_two_directions_differ() {
     };
     let (a, b, v) = (weight(0), weight(2), p.cell.volume());
     let expected = a * b / ((a + b) * v);
-    assert!((m.mean_spin.0[(4, 4)] / expected - 1.0).abs() < 1e-12);
-    assert!((m.affine.0[(4, 4)] / ((a + b) / (4.0 * v)) - 1.0).abs() < 1e-12);
+    assert!((m.bounds.uniform_rotation.0[(4, 4)] / expected - 1.0).abs() < 1e-12);
+    assert!((m.bounds.affine.0[(4, 4)] / ((a + b) / (4.0 * v)) - 1.0).abs() < 1e-12);
     // A grain alone has nothing but its spin to relax.
-    assert!((m.mean_spin.0 - m.stiffness.0).amax() < 1e-12 * m.affine.0.amax());
-    assert!(m.mean_spin.0[(4, 4)] < 0.95 * m.affine.0[(4, 4)], "nothing spins: the test shows nothing");
+    assert!((m.bounds.uniform_rotation.0 - m.tensor.0).amax() < 1e-12 * m.bounds.affine.0.amax());
+    assert!(
+        m.bounds.uniform_rotation.0[(4, 4)] < 0.95 * m.bounds.affine.0[(4, 4)],
+        "nothing spins: the test shows nothing"
+    );
 }
 
 #[test]
@@ -42,13 +54,15 @@ fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_
     for seed in 41..45 {
         let p = random(50, 1.2, seed);
         let m = moduli(&p, &Settings::default());
-        for (above, below) in [(&m.affine, &m.mean_spin), (&m.mean_spin, &m.stiffness)] {
-            assert!((above.0 - below.0).symmetric_eigenvalues().min() > -1e-12 * m.affine.0.amax());
+        for (above, below) in
+            [(&m.bounds.affine, &m.bounds.uniform_rotation), (&m.bounds.uniform_rotation, &m.tensor)]
+        {
+            assert!((above.0 - below.0).symmetric_eigenvalues().min() > -1e-12 * m.bounds.affine.0.amax());
         }
-        assert!((m.affine.0 - m.mean_spin.0).amax() > 1e-6 * m.affine.0.amax());
-        let smooth = Network::new(&p, false).unwrap();
-        let affine = smooth.stiffness(None).0;
-        assert_eq!(grainlab_micromechanics::bounds::mean_spin(&smooth).0, affine);
+        assert!((m.bounds.affine.0 - m.bounds.uniform_rotation.0).amax() > 1e-6 * m.bounds.affine.0.amax());
+        let smooth = SpringNetwork::new(&PackingView::new(&p), Springs::Normal).unwrap();
+        let affine = smooth.affine_stiffness();
+        assert_eq!(uniform_rotation_stiffness(&smooth, &affine), affine);
     }
 }
 
@@ -59,11 +73,11 @@ fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() 
     let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
     let m = moduli(&p, &Settings::default());
     let expected = p.contact_stiffness(&p.contacts[0]).0 / (3.0 * edge);
-    assert!((m.reuss_bound.unwrap() / expected - 1.0).abs() < 1e-12);
-    assert!((m.stiffness.bulk_reuss().unwrap() / expected - 1.0).abs() < 1e-12);
+    assert!((m.bounds.bulk_reuss.unwrap() / expected - 1.0).abs() < 1e-12);
+    assert!((m.tensor.bulk_reuss().unwrap() / expected - 1.0).abs() < 1e-12);
 
     let m = moduli(&reference(), &Settings::default());
-    let share = m.reuss_bound.unwrap() / m.stiffness.bulk_reuss().unwrap();
+    let share = m.bounds.bulk_reuss.unwrap() / m.tensor.bulk_reuss().unwrap();
     // .879 by Z̃(5/3) of such packings and their relaxed over affine modulus.
     assert!((0.8..1.0).contains(&share), "{share}");
 }
@@ -74,13 +88,12 @@ fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
     let edge = D * (1.0 - 1e-2);
     let p = packing(Cell::cube(edge).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None);
     let (k_n, k_t) = p.contact_stiffness(&p.contacts[0]);
-    let network = Network::new(&p, true).unwrap().with_prestress(&p);
-    let m =
-        grainlab_micromechanics::stiffness::moduli(&network, Solver::Iterative, 1e-9, 100).unwrap().unwrap();
-    assert_eq!(m.method, grainlab_core::Method::PrestressedNetwork);
+    let network = prestressed(&p, Springs::NormalAndTangential);
+    let m = relaxed_stiffness(&network, Solver::Iterative, 1e-9, 100).unwrap().unwrap();
+    assert!(network.prestressed());
     let expected = (k_t - p.contacts[0].normal_force / edge) / (2.0 * edge);
-    assert!((m.stiffness.0[(3, 3)] / expected - 1.0).abs() < 1e-12);
-    assert!((m.stiffness.0[(0, 0)] * edge / k_n - 1.0).abs() < 1e-12);
+    assert!((m.relaxed.0[(3, 3)] / expected - 1.0).abs() < 1e-12);
+    assert!((m.relaxed.0[(0, 0)] * edge / k_n - 1.0).abs() < 1e-12);
 }
 
 /// Face-centred cubic without tangential springs: prestress acts as springs of −F/D across the contacts, so that
@@ -94,9 +107,10 @@ fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
     let p = packing(Cell::cube(edge).unwrap(), positions, 0.5 * D, 0.0, None);
     assert_eq!(p.contacts.len(), 24);
     let (k, f) = (p.contact_stiffness(&p.contacts[0]).0, p.contacts[0].normal_force / d);
-    let settings = Settings { tangential: false, prestress: true, ..Settings::default() };
-    let c = moduli(&p, &settings).stiffness.0;
-    let root = 2f64.sqrt();
+    let settings = Settings { springs: Springs::PrestressedNormal, ..Settings::default() };
+    let m = moduli(&p, &settings);
+    assert_eq!(m.method, StiffnessMethod::PrestressedNetwork);
+    let (c, root) = (m.tensor.0, 2f64.sqrt());
     for (entry, expected) in [
         (c[(0, 0)], root * (k - f) / d),
         (c[(0, 1)], (k + f) / (root * d)),
@@ -113,9 +127,9 @@ fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
 fn a_prestressed_network_balances_its_loads() {
     for seed in 48..51 {
         let p = random(50, 1.2, seed);
-        let network = Network::new(&p, true).unwrap().with_prestress(&p);
-        let (loads, norms) = network.strain_loads();
-        match grainlab_micromechanics::solve::solve(&network, &loads, &norms, 1e-10, 20_000) {
+        let network = prestressed(&p, Springs::NormalAndTangential);
+        let (loads, norms) = network.affine_loads();
+        match grainlab_micromechanics::network::solve(&network, &loads, &norms, 1e-10, 20_000) {
             Ok(solution) => {
                 let mut forces = vec![[[0.0; 6]; 6]; p.grains()];
                 network.apply(&solution.motion, &mut forces);
@@ -143,15 +157,11 @@ fn a_chain_that_buckles_is_an_error_by_name() {
     // With friction a grain on two contacts is none of the rattlers, which prestress leaves out.
     let p = packing(cell, positions, 0.5 * D, 0.1, None);
     assert!(p.contacts.len() == grains && p.contacts.iter().all(|c: &Contact| c.normal_force > 0.0));
-    let network = Network::new(&p, false).unwrap().with_prestress(&p);
-    let refused = grainlab_micromechanics::stiffness::moduli(&network, Solver::Iterative, 1e-9, 20_000);
+    let network = prestressed(&p, Springs::Normal);
+    let refused = relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000);
     assert!(matches!(refused, Err(MicroError::Unstable { .. })), "{refused:?}");
     // Springs alone let it straighten at no cost.
-    let alone = grainlab_micromechanics::stiffness::moduli(
-        &Network::new(&p, false).unwrap(),
-        Solver::Iterative,
-        1e-9,
-        20_000,
-    );
-    assert_eq!(alone, Ok(Err(NoNetwork::Floppy { contacts: grains })));
+    let network = SpringNetwork::new(&PackingView::new(&p), Springs::Normal).unwrap();
+    assert_eq!(network.contacts(), grains);
+    assert_eq!(relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000), Ok(None));
 }

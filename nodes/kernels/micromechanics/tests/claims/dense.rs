@@ -2,7 +2,8 @@
 
 use crate::samples::random;
 use grainlab_core::{Mat3, Packing, Vec3};
-use grainlab_micromechanics::{Settings, analyse};
+use grainlab_micromechanics::network::Springs;
+use grainlab_micromechanics::{Settings, analyze};
 use nalgebra::{DMatrix, Matrix6};
 
 /// C = A − ΞᵀK⁺Ξ/V by brute force: B_c as a 3×6N matrix with cross-product matrices, K⁺ from all eigenvalues, rotations
@@ -66,11 +67,11 @@ fn random_networks_agree_with_a_dense_pseudo_inverse() {
     let mut rattlers = 0;
     for (swell, seed) in [(1.12, 1), (1.14, 2), (1.16, 3), (1.3, 4)] {
         let p = random(40, swell, seed);
-        let a = analyse(&p, &Settings::default()).unwrap();
-        rattlers += a.fabric.rattlers;
+        let a = analyze(&p, &Settings::default()).unwrap();
+        rattlers += a.report.contacts.rattlers;
         let dense = dense_stiffness(&p, true);
-        let m = a.moduli.unwrap();
-        let error = (m.stiffness.0 - dense).amax() / m.affine.0.amax();
+        let m = a.report.stiffness().copied().unwrap();
+        let error = (m.tensor.0 - dense).amax() / m.bounds.affine.0.amax();
         assert!(error < 1e-9, "swell {swell}: {error:e}");
     }
     assert!(rattlers > 0, "no sample had a rattler");
@@ -80,9 +81,9 @@ fn random_networks_agree_with_a_dense_pseudo_inverse() {
 fn random_networks_without_tangential_springs_agree_with_a_dense_pseudo_inverse() {
     for (swell, seed) in [(1.25, 5), (1.35, 6)] {
         let p = random(40, swell, seed);
-        let settings = Settings { tangential: false, ..Settings::default() };
-        let m = analyse(&p, &settings).unwrap().moduli.unwrap();
-        let error = (m.stiffness.0 - dense_stiffness(&p, false)).amax() / m.affine.0.amax();
+        let settings = Settings { springs: Springs::Normal, ..Settings::default() };
+        let m = analyze(&p, &settings).unwrap().report.stiffness().copied().unwrap();
+        let error = (m.tensor.0 - dense_stiffness(&p, false)).amax() / m.bounds.affine.0.amax();
         assert!(error < 1e-9, "swell {swell}: {error:e}");
     }
 }
@@ -97,12 +98,12 @@ fn two_grains_with_own_images_agree_with_a_dense_pseudo_inverse() {
     let positions = vec![Vec3::zeros(), Vec3::new(0.4, 0.6, 0.7) * d];
     let p = crate::samples::packing(cell, positions, 0.52 * d, 0.1, None);
     assert!(p.contacts.iter().any(|c| c.i == c.j) && p.contacts.iter().any(|c| c.i != c.j));
-    let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
+    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
     let dense = dense_stiffness(&p, true);
-    let error = (m.stiffness.0 - dense).amax() / m.affine.0.amax();
+    let error = (m.tensor.0 - dense).amax() / m.bounds.affine.0.amax();
     assert!(error < 1e-12, "{error:e}");
     assert!(
-        (m.affine.0 - m.stiffness.0).amax() > 1e-3 * m.affine.0.amax(),
+        (m.bounds.affine.0 - m.tensor.0).amax() > 1e-3 * m.bounds.affine.0.amax(),
         "nothing relaxed: the test shows nothing"
     );
 }

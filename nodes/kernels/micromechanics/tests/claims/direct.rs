@@ -1,12 +1,15 @@
 //! The factorisation beside the iterations: one operator, two paths to C = A − ΞᵀK⁺Ξ/V.
 
 use crate::samples::{Dice, packing, random};
-use grainlab_core::{Cell, Mat3, Moduli, Packing, Vec3};
-use grainlab_micromechanics::{MicroError, Settings, Solver, analyse};
+use grainlab_core::results::ElasticStiffness;
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_micromechanics::network::{Solver, Springs};
+use grainlab_micromechanics::{MicroError, Settings, analyze};
 
-fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> Moduli {
-    let settings = Settings { solver, tangential, tolerance: 1e-10, ..Settings::default() };
-    analyse(packing, &settings).unwrap().moduli.unwrap()
+fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> ElasticStiffness {
+    let springs = if tangential { Springs::NormalAndTangential } else { Springs::Normal };
+    let settings = Settings { solver, springs, tolerance: 1e-10, ..Settings::default() };
+    analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap()
 }
 
 /// Both stiffnesses are above the truth by the square of a residual of 1e-10 times the inverse of the softest stiffness.
@@ -14,7 +17,7 @@ fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> Moduli {
 fn agree(packing: &Packing, tangential: bool) -> [u32; 2] {
     let [iterative, direct] =
         [Solver::Iterative, Solver::Direct].map(|solver| moduli(packing, solver, tangential));
-    let error = (iterative.stiffness.0 - direct.stiffness.0).amax() / iterative.affine.0.amax();
+    let error = (iterative.tensor.0 - direct.tensor.0).amax() / iterative.bounds.affine.0.amax();
     assert!(error < 1e-9, "{error:e}");
     assert!(direct.residual <= 1e-10);
     [iterative.iterations, direct.iterations]
@@ -75,8 +78,8 @@ fn grains_without_contacts_and_grains_that_hang_on_one_do_no_harm() {
         true
     });
     let p = p.validated().unwrap();
-    let fabric = analyse(&p, &Settings::default()).unwrap().fabric;
-    assert!(fabric.rattlers > 20, "{}", fabric.rattlers);
+    let rattlers = analyze(&p, &Settings::default()).unwrap().report.contacts.rattlers;
+    assert!(rattlers > 20, "{rattlers}");
     agree(&p, true);
 }
 
@@ -96,10 +99,10 @@ fn contacts_with_own_images_and_several_between_two_grains_are_in_the_matrix() {
 #[test]
 fn the_same_packing_gives_the_same_bits_and_a_round_too_few_is_an_error() {
     let p = random(60, 1.15, 15);
-    let bits = || moduli(&p, Solver::Direct, true).stiffness.row_major().map(f64::to_bits);
+    let bits = || moduli(&p, Solver::Direct, true).tensor.row_major().map(f64::to_bits);
     assert_eq!(bits(), bits());
     let settings =
         Settings { solver: Solver::Direct, tolerance: 1e-13, max_iterations: 0, ..Settings::default() };
-    let refused = analyse(&p, &settings);
+    let refused = analyze(&p, &settings);
     assert!(matches!(refused, Err(MicroError::NotConverged { iterations: 0, .. })), "{refused:?}");
 }

@@ -2,13 +2,14 @@
 
 use crate::golden::reference;
 use crate::samples::{Dice, Pair, drawn, eq6, normal, packing, pairs, random, spread, turned};
-use grainlab_core::{Cell, Fabric, Mat3, Packing, SymTensor, Vec3};
-use grainlab_micromechanics::fabric::fabric;
-use grainlab_micromechanics::orientation::contact_fit;
+use grainlab_core::results::{ContactStatistics, Fabric, StressDecomposition};
+use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3};
+use grainlab_micromechanics::PackingView;
+use grainlab_micromechanics::structure::{contact_statistics, fabric, orientation_fit, stress_decomposition};
 use nalgebra::Rotation3;
 
 fn along_z(p: &Packing) -> Fabric {
-    fabric(p, &Vec3::z())
+    fabric(&PackingView::new(p), &Vec3::z())
 }
 
 fn of_directions(directions: &[Vec3], seed: u64) -> Packing {
@@ -30,7 +31,7 @@ fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
         let (mut pulls, mut chi2) = (Vec::new(), Vec::new());
         for _ in 0..400 {
             let directions = drawn(&mut dice, 1000, eq6(eps));
-            let fit = contact_fit(directions.iter().map(|n| n.z)).unwrap();
+            let fit = orientation_fit(directions.iter().map(|n| n.z)).unwrap();
             pulls.push((fit.eps - eps) / fit.eps_stddev);
             chi2.push(fit.chi2_per_dof);
         }
@@ -51,18 +52,18 @@ fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
 fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
     let fourth = |x: f64| x + 0.125 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
     let directions = drawn(&mut Dice(52), 2000, fourth);
-    let fit = contact_fit(directions.iter().map(|n| n.z)).unwrap();
+    let fit = orientation_fit(directions.iter().map(|n| n.z)).unwrap();
     assert!(fit.chi2_per_dof > 5.0 && fit.eps.abs() < 4.0 * fit.eps_stddev, "{fit:?}");
 }
 
 #[test]
 fn eps_is_kept_where_no_density_is_negative_and_not_fitted_where_nothing_tells() {
-    let chain = contact_fit([1.0, 1.0, -1.0].into_iter()).unwrap();
-    let disc = contact_fit([0.0, 0.0].into_iter()).unwrap();
+    let chain = orientation_fit([1.0, 1.0, -1.0].into_iter()).unwrap();
+    let disc = orientation_fit([0.0, 0.0].into_iter()).unwrap();
     assert_eq!((chain.eps, disc.eps), (1.0, -0.5));
-    assert_eq!(contact_fit([].into_iter()), None);
-    assert_eq!(contact_fit([(1.0f64 / 3.0).sqrt()].into_iter()), None);
-    let one = contact_fit([0.5].into_iter()).unwrap();
+    assert_eq!(orientation_fit([].into_iter()), None);
+    assert_eq!(orientation_fit([(1.0f64 / 3.0).sqrt()].into_iter()), None);
+    let one = orientation_fit([0.5].into_iter()).unwrap();
     assert!(one.eps == -0.5 && one.eps_stddev > 0.5 && one.chi2_per_dof.is_finite());
 }
 
@@ -73,7 +74,7 @@ fn bins_are_of_equal_solid_angle_and_hold_the_overlaps_of_their_contacts() {
         .into_iter()
         .map(|n| Pair { overlap: (1e-4 * (1.0 + g - 3.0 * g * n.z * n.z)).powi(2), ..Pair::along(n) })
         .collect();
-    let o = along_z(&pairs(&contacts, 1)).structure.orientation;
+    let o = along_z(&pairs(&contacts, 1)).orientation;
     assert!(o.contacts.iter().all(|c| c.abs_diff(1000) <= 1), "{:?}", o.contacts);
     for b in 0..10 {
         // Mean of x² over the bin.
@@ -100,7 +101,7 @@ fn scattered_overlaps_give_back_g_with_an_honest_standard_error() {
                         Pair { overlap: root.max(1e-6).powi(2), ..Pair::along(n) }
                     })
                     .collect();
-                let fit = along_z(&pairs(&contacts, 1)).structure.orientation.overlap_fit.unwrap();
+                let fit = along_z(&pairs(&contacts, 1)).orientation.overlap_fit.unwrap();
                 (fit.g - g) / fit.g_stddev.unwrap()
             })
             .collect();
@@ -113,7 +114,7 @@ fn scattered_overlaps_give_back_g_with_an_honest_standard_error() {
 #[test]
 fn fourth_order_fabrics_of_lattices_are_exact_and_contract_to_the_second() {
     let simple = [Vec3::x(), Vec3::y(), Vec3::z()];
-    let found = along_z(&of_directions(&simple, 1)).structure.fourth_order;
+    let found = along_z(&of_directions(&simple, 1)).fourth_order;
     let mut expected = [0.0; 15];
     [0, 10, 14].into_iter().for_each(|k| expected[k] = 1.0 / 3.0);
     assert!(found.components.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15));
@@ -121,13 +122,13 @@ fn fourth_order_fabrics_of_lattices_are_exact_and_contract_to_the_second() {
     assert!((found.magnitude - 9.0 * (35.0f64 / 8.0 * 2.0 / 15.0).sqrt()).abs() < 1e-13);
     let face = [(1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (0, 1, 1), (0, 1, -1)];
     let face = face.map(|(x, y, z)| Vec3::new(f64::from(x), f64::from(y), f64::from(z)).normalize());
-    let found = along_z(&of_directions(&face, 1)).structure.fourth_order;
+    let found = along_z(&of_directions(&face, 1)).fourth_order;
     // H: −1/30 for xxxx, 1/60 for xxyy; |H|² = 1/120.
     assert!((found.magnitude - 9.0 * (35.0f64 / 960.0).sqrt()).abs() < 1e-13);
-    let one = along_z(&of_directions(&[Vec3::new(0.36, 0.48, 0.8)], 1)).structure.fourth_order;
+    let one = along_z(&of_directions(&[Vec3::new(0.36, 0.48, 0.8)], 1)).fourth_order;
     assert!((one.magnitude - 9.0).abs() < 1e-12);
     let f = along_z(&random(60, 1.15, 54));
-    let (c, l) = (f.structure.fourth_order.components, f.contact_fabric);
+    let (c, l) = (f.fourth_order.components, f.contact_fabric);
     let second = [
         (c[0] + c[3] + c[5], l.xx),
         (c[3] + c[10] + c[12], l.yy),
@@ -147,7 +148,7 @@ fn magnitude_of_the_fourth_order_is_that_of_its_p4_about_any_axis() {
     let directions = spread(40_000, cumulative);
     for r in [Rotation3::identity(), Rotation3::from_euler_angles(0.7, -0.4, 2.0)] {
         let turned: Vec<Vec3> = directions.iter().map(|n| r * n).collect();
-        let found = along_z(&of_directions(&turned, 1)).structure.fourth_order;
+        let found = along_z(&of_directions(&turned, 1)).fourth_order;
         assert!((found.magnitude - 0.4).abs() < 1e-3, "{}", found.magnitude);
     }
 }
@@ -159,9 +160,9 @@ fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
     let (mut noise, mut pulls, mut alarms) = (Vec::new(), Vec::new(), 0);
     for seed in 0..200 {
         let f = along_z(&of_directions(&drawn(&mut dice, 800, eq6(0.0)), seed));
-        let a = f.structure.axis;
-        noise.push(a.eps_stddev.unwrap() * 800f64.sqrt());
-        pulls.push(f.eps / a.eps_stddev.unwrap());
+        let a = f.principal_axis;
+        noise.push(a.contact_anisotropy_stddev.unwrap() * 800f64.sqrt());
+        pulls.push(f.contact_anisotropy / a.contact_anisotropy_stddev.unwrap());
         alarms += u32::from(a.determined);
     }
     // sd(ε)·√contacts = (15/4) √(4/45) = 1.118; each estimate is good to 12 %.
@@ -182,10 +183,13 @@ fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
             let r = Rotation3::new(Vec3::from_fn(|_, _| 3.0 * normal(&mut dice)));
             let directions: Vec<Vec3> = drawn(&mut dice, 800, eq6(eps)).iter().map(|n| r * n).collect();
             let f = along_z(&of_directions(&directions, seed));
-            let a = f.structure.axis;
+            let a = f.principal_axis;
             assert!(a.determined, "{eps}: {a:?}");
-            assert!((a.eps - eps).abs() < 4.0 * a.eps_stddev.unwrap(), "{eps}: {a:?}");
-            square += f.axis.cross(&(r * Vec3::z())).norm().asin().powi(2) / 100.0;
+            assert!(
+                (a.contact_anisotropy - eps).abs() < 4.0 * a.contact_anisotropy_stddev.unwrap(),
+                "{eps}: {a:?}"
+            );
+            square += f.principal_axis.direction.cross(&(r * Vec3::z())).norm().asin().powi(2) / 100.0;
             claimed += a.angle_stddev.unwrap().powi(2) / 100.0;
         }
         let ratio = (square / claimed).sqrt();
@@ -208,7 +212,7 @@ fn of_two_axes_that_stand_out_alike_neither_is_chosen() {
     let f = along_z(&of_directions(&directions, 1));
     let l = f.contact_fabric;
     assert!(l.zz - l.xx > 0.1 && (l.yy - 1.0 / 3.0).abs() < 0.02);
-    assert!(!f.structure.axis.determined, "{:?}", f.structure.axis);
+    assert!(!f.principal_axis.determined, "{:?}", f.principal_axis);
 }
 
 #[test]
@@ -220,8 +224,13 @@ fn lattices_and_handfuls_of_contacts_have_no_axis_to_trust() {
             (0..n * n * n).map(|k| Vec3::new(f64::from(k % n), f64::from(k / n % n), f64::from(k / n / n)));
         let p = packing(cell, sites.map(|s| s * 2e-4).collect(), 1e-4 * (1.0 + 1e-4), 0.3, None);
         assert_eq!(p.contacts.len(), 3 * p.grains());
-        let a = along_z(&p).structure.axis;
-        assert!(!a.determined && a.eps.abs() < 1e-12 && a.eps_stddev.is_some() == known, "{a:?}");
+        let a = along_z(&p).principal_axis;
+        assert!(
+            !a.determined
+                && a.contact_anisotropy.abs() < 1e-12
+                && a.contact_anisotropy_stddev.is_some() == known,
+            "{a:?}"
+        );
     }
 }
 
@@ -235,48 +244,58 @@ fn turning_packing_and_axis_changes_no_number() {
         c.tangential_force = c.normal.cross(&any) * 0.3 * c.normal_force;
     }
     let r = Rotation3::from_euler_angles(0.5, 0.8, -0.3);
-    let (f, g) = (along_z(&p), fabric(&turned(&p, r.matrix()), &(r * Vec3::z())));
-    let (a, b) = (&f.structure, &g.structure);
-    let about = |f: &Fabric| {
-        let s = &f.structure;
-        let (fit, h) = (s.orientation.contact_fit.unwrap(), s.reference_axis);
-        let (sff, forces) = (s.stress_force_fabric.unwrap(), s.forces.unwrap());
-        let pressure = s.stress.total().mean();
-        let mut numbers =
-            vec![f.eps, s.axis.eps, s.axis.eps_stddev.unwrap(), s.axis.angle_stddev.unwrap_or(0.0)];
-        numbers.extend([fit.eps, fit.eps_stddev, fit.chi2_per_dof, s.fourth_order.magnitude]);
-        numbers.extend([
-            s.orientation.overlap_fit.unwrap().g,
-            s.orientation.overlap_fit.unwrap().g_stddev.unwrap(),
-        ]);
-        numbers.extend([s.strong.eps, s.weak.eps, s.mobilisation.unwrap().mean, forces.participation()]);
+    let measured = |p: &Packing, h: Vec3| {
+        let view = PackingView::new(p);
+        let fabric = fabric(&view, &h);
+        (contact_statistics(&view), stress_decomposition(&view, &fabric), fabric)
+    };
+    let (one, other) = (measured(&p, Vec3::z()), measured(&turned(&p, r.matrix()), r * Vec3::z()));
+    let numbers = |(c, d, f): &(ContactStatistics, StressDecomposition, Fabric)| {
+        let (fit, h, axis) = (f.orientation.contact_fit.unwrap(), f.reference_axis, f.principal_axis);
+        let (sff, forces) = (d.stress_force_fabric.unwrap(), c.forces.unwrap());
+        let overlaps = f.orientation.overlap_fit.unwrap();
+        let pressure = d.sum().mean();
+        let mut numbers = vec![f.contact_anisotropy, axis.contact_anisotropy];
+        numbers.extend([axis.contact_anisotropy_stddev.unwrap(), axis.angle_stddev.unwrap_or(0.0)]);
+        numbers.extend([fit.eps, fit.eps_stddev, fit.chi2_per_dof, f.fourth_order.magnitude]);
+        numbers.extend([overlaps.g, overlaps.g_stddev.unwrap()]);
+        numbers.extend([d.strong.contact_anisotropy, d.weak.contact_anisotropy]);
+        numbers.extend([c.friction.unwrap().mean, forces.participation_ratio()]);
         let tensors =
             [sff.contacts, sff.normal_forces, sff.branches, sff.tangential_forces, sff.stress_ratio()];
-        let stresses = [s.stress.normal, s.stress.tangential, s.strong.stress, s.weak.stress];
+        let stresses = [d.normal, d.tangential, d.strong.stress, d.weak.stress];
         let scaled = |t: &SymTensor| SymTensor::from_voigt(t.voigt().map(|v| v / pressure));
-        for t in tensors.into_iter().chain(stresses.iter().map(scaled)).chain([s.tangential_fabric]) {
+        let scaled = stresses.iter().map(scaled);
+        for t in tensors.into_iter().chain(scaled).chain([f.tangential_force_fabric]) {
             numbers.extend([t.along(&h), t.deviatoric_invariant()]);
         }
         numbers
     };
-    for (k, (x, y)) in about(&f).into_iter().zip(about(&g)).enumerate() {
+    for (k, (x, y)) in numbers(&one).into_iter().zip(numbers(&other)).enumerate() {
         assert!((x - y).abs() < 1e-11, "{k}: {x} {y}");
     }
-    assert_eq!(a.orientation.contacts, b.orientation.contacts);
-    assert_eq!(
-        (a.forces.unwrap().contacts, a.mobilisation.unwrap().contacts),
-        (b.forces.unwrap().contacts, b.mobilisation.unwrap().contacts)
-    );
-    assert_eq!(a.axis.determined, b.axis.determined);
+    let ((a, _, f), (b, _, g)) = (one, other);
+    assert_eq!(f.orientation.contacts, g.orientation.contacts);
+    assert_eq!(a.forces.unwrap().histogram, b.forces.unwrap().histogram);
+    assert_eq!(a.friction.unwrap().histogram, b.friction.unwrap().histogram);
+    assert_eq!(f.principal_axis.determined, g.principal_axis.determined);
 }
 
 #[test]
 fn the_reference_packing_is_isotropic_within_its_noise() {
     let f = along_z(&reference());
-    let a = f.structure.axis;
+    let a = f.principal_axis;
     // 1,277 contacts: .031 if they were independent; .02 is what packings of 500 grains scatter by.
-    let stddev = a.eps_stddev.unwrap();
-    assert!((0.010..0.025).contains(&stddev) && f.eps.abs() < 3.0 * stddev, "{} {a:?}", f.eps);
-    let fit = f.structure.orientation.contact_fit.unwrap();
-    assert!((fit.eps_stddev - 0.0313).abs() < 0.002 && (fit.eps - f.eps).abs() < 0.01, "{fit:?} {}", f.eps);
+    let stddev = a.contact_anisotropy_stddev.unwrap();
+    assert!(
+        (0.010..0.025).contains(&stddev) && f.contact_anisotropy.abs() < 3.0 * stddev,
+        "{} {a:?}",
+        f.contact_anisotropy
+    );
+    let fit = f.orientation.contact_fit.unwrap();
+    assert!(
+        (fit.eps_stddev - 0.0313).abs() < 0.002 && (fit.eps - f.contact_anisotropy).abs() < 0.01,
+        "{fit:?} {}",
+        f.contact_anisotropy
+    );
 }

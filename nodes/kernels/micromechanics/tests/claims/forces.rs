@@ -2,12 +2,22 @@
 
 use crate::golden::reference;
 use crate::samples::{Dice, Pair, drawn, eq6, packing, pairs, random, spread};
-use grainlab_core::structure::Structure;
+use grainlab_core::results::{ContactStatistics, Fabric, StressDecomposition};
 use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3};
-use grainlab_micromechanics::fabric::fabric;
+use grainlab_micromechanics::PackingView;
+use grainlab_micromechanics::structure::{contact_statistics, fabric, stress_decomposition};
+
+/// What is measured without a stiffness, about z.
+struct Structure {
+    contacts: ContactStatistics,
+    fabric: Fabric,
+    stress: StressDecomposition,
+}
 
 fn structure(p: &Packing) -> Structure {
-    fabric(p, &Vec3::z()).structure
+    let view = PackingView::new(p);
+    let fabric = fabric(&view, &Vec3::z());
+    Structure { contacts: contact_statistics(&view), stress: stress_decomposition(&view, &fabric), fabric }
 }
 
 fn largest(t: &SymTensor) -> f64 {
@@ -48,7 +58,7 @@ fn a_single_pair_has_the_stress_of_its_two_forces() {
     // Half of the shear, as the other half is spin.
     assert!((t.xz - 0.25 * scale).abs() < 1e-9 && (largest(&t) - t.xz).abs() < 1e-9);
     let along_x = SymTensor { xx: 1.0, ..SymTensor::default() };
-    assert!(difference(&s.tangential_fabric, &along_x) < 1e-15);
+    assert!(difference(&s.fabric.tangential_force_fabric, &along_x) < 1e-15);
 }
 
 #[test]
@@ -56,16 +66,16 @@ fn kinds_of_force_and_networks_add_up_to_the_stress() {
     for p in [rough(31), reference()] {
         let s = structure(&p);
         let stress = grainlab_core::stress::stress(&p).tensor;
-        assert!(difference(&s.stress.total(), &stress) < 1e-12 * largest(&stress));
-        let (strong, weak) = (s.strong.stress.voigt(), s.weak.stress.voigt());
+        assert!(difference(&s.stress.sum(), &stress) < 1e-12 * largest(&stress));
+        let (strong, weak) = (s.stress.strong.stress.voigt(), s.stress.weak.stress.voigt());
         let both = SymTensor::from_voigt(std::array::from_fn(|k| strong[k] + weak[k]));
         assert!(difference(&both, &stress) < 1e-12 * largest(&stress));
-        assert_eq!((s.strong.contacts + s.weak.contacts) as usize, p.contacts.len());
-        let (a, b) = (f64::from(s.strong.contacts), f64::from(s.weak.contacts));
-        let (strong, weak) = (s.strong.fabric.voigt(), s.weak.fabric.voigt());
+        assert_eq!((s.stress.strong.contacts + s.stress.weak.contacts) as usize, p.contacts.len());
+        let (a, b) = (f64::from(s.stress.strong.contacts), f64::from(s.stress.weak.contacts));
+        let (strong, weak) = (s.stress.strong.fabric.voigt(), s.stress.weak.fabric.voigt());
         let mean = SymTensor::from_voigt(std::array::from_fn(|k| (a * strong[k] + b * weak[k]) / (a + b)));
-        assert!(difference(&mean, &fabric(&p, &Vec3::z()).contact_fabric) < 1e-14);
-        assert!(s.strong.contacts > 0 && s.weak.contacts > s.strong.contacts);
+        assert!(difference(&mean, &s.fabric.contact_fabric) < 1e-14);
+        assert!(s.stress.strong.contacts > 0 && s.stress.weak.contacts > s.stress.strong.contacts);
     }
 }
 
@@ -89,13 +99,13 @@ fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
             .collect();
         let p = pairs(&contacts, 1);
         let s = structure(&p);
-        let found = s.stress_force_fabric.unwrap();
+        let found = s.stress.stress_force_fabric.unwrap();
         assert!(difference(&found.normal_forces, &a_n) < 1e-12);
         assert!(difference(&found.branches, &a_l) < 1e-10);
         assert!(difference(&found.tangential_forces, &a_t) < 1e-12);
         // a^c = 3 ε (zz − 1/3); the spread of directions is even to 1e-4.
         assert!((found.contacts.zz - 2.0 * eps).abs() < 2e-4 && (found.contacts.xx + eps).abs() < 2e-4);
-        let stress = s.stress.total();
+        let stress = s.stress.sum();
         let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
         errors.push(difference(&measured, &found.stress_ratio()));
         assert!(measured.deviatoric_invariant() > 0.2 * scale);
@@ -120,10 +130,10 @@ fn sizes_from_one_to_five_leave_the_relation_alone() {
         })
         .collect();
     let s = structure(&pairs(&contacts, 1));
-    let found = s.stress_force_fabric.unwrap();
+    let found = s.stress.stress_force_fabric.unwrap();
     // The size is no matter of direction: relative scatter of the force (.7) times about 4 over √60000.
     assert!(largest(&found.branches) < 0.03 && difference(&found.normal_forces, &a_n) < 0.04);
-    let stress = s.stress.total();
+    let stress = s.stress.sum();
     let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
     assert!(difference(&measured, &found.stress_ratio()) < 0.015);
     assert!(measured.deviatoric_invariant() > 0.08);
@@ -133,13 +143,13 @@ fn sizes_from_one_to_five_leave_the_relation_alone() {
 #[test]
 fn directions_that_are_not_there_get_no_anisotropy() {
     let chain = structure(&pairs(&[Pair::along(Vec3::z()), Pair::along(Vec3::z())], 1));
-    let a = chain.stress_force_fabric.unwrap();
+    let a = chain.stress.stress_force_fabric.unwrap();
     assert_eq!((largest(&a.normal_forces), largest(&a.tangential_forces)), (0.0, 0.0));
     let cell = Cell::new(Mat3::identity() * 2e-4).unwrap();
     let cubic = structure(&packing(cell, vec![Vec3::zeros()], 1e-4 * (1.0 + 1e-4), 0.3, None));
-    let a = cubic.stress_force_fabric.unwrap();
+    let a = cubic.stress.stress_force_fabric.unwrap();
     assert!([a.contacts, a.normal_forces, a.tangential_forces].iter().all(|t| largest(t) < 1e-12), "{a:?}");
-    assert_eq!((cubic.strong.contacts, cubic.weak.contacts), (0, 3));
+    assert_eq!((cubic.stress.strong.contacts, cubic.stress.weak.contacts), (0, 3));
 }
 
 #[test]
@@ -147,14 +157,17 @@ fn four_contacts_have_the_moments_and_networks_of_their_forces() {
     let of = |f: f64, n: Vec3| Pair { normal_force: f, ..Pair::along(n) };
     let p = pairs(&[of(1.0, Vec3::x()), of(1.0, Vec3::x()), of(1.0, Vec3::x()), of(5.0, Vec3::z())], 1);
     let s = structure(&p);
-    let f = s.forces.unwrap();
+    let f = s.contacts.forces.unwrap();
     assert_eq!((f.mean_normal, f.mean_tangential, f.largest), (2.0, 0.0, 2.5));
     assert_eq!(f.moments, [1.75, (0.375 + 15.625) / 4.0, (0.1875 + 39.0625) / 4.0]);
-    assert!((f.participation() - 64.0 / 112.0).abs() < 1e-15);
-    assert_eq!((f.contacts[2], f.contacts[10], f.contacts.iter().sum::<u32>()), (3, 1, 4));
-    assert_eq!((s.strong.contacts, s.weak.contacts), (1, 3));
-    assert!((s.strong.eps - 2.5).abs() < 1e-15 && (s.weak.eps + 1.25).abs() < 1e-15);
-    let share = s.strong.stress.trace() / s.stress.total().trace();
+    assert!((f.participation_ratio() - 64.0 / 112.0).abs() < 1e-15);
+    assert_eq!((f.histogram[2], f.histogram[10], f.histogram.iter().sum::<u32>()), (3, 1, 4));
+    assert_eq!((s.stress.strong.contacts, s.stress.weak.contacts), (1, 3));
+    assert!(
+        (s.stress.strong.contact_anisotropy - 2.5).abs() < 1e-15
+            && (s.stress.weak.contact_anisotropy + 1.25).abs() < 1e-15
+    );
+    let share = s.stress.strong.stress.trace() / s.stress.sum().trace();
     assert!((share - 5.0 / 8.0).abs() < 1e-12);
 }
 
@@ -166,16 +179,16 @@ fn exponential_forces_have_the_moments_of_an_exponential() {
         .map(|n| Pair { normal_force: -(1.0 - dice.next()).ln(), ..Pair::along(n) })
         .collect();
     let s = structure(&pairs(&contacts, 1));
-    let f = s.forces.unwrap();
+    let f = s.contacts.forces.unwrap();
     // Standard errors of the moments: .015, .09, .9.
     for (found, (expected, error)) in f.moments.iter().zip([(2.0, 0.06), (6.0, 0.4), (24.0, 4.0)]) {
         assert!((found - expected).abs() < error, "{:?}", f.moments);
     }
     // e^-1 of the contacts are strong, and carry 2/e of the pressure.
     let e = std::f64::consts::E;
-    assert!((f64::from(s.strong.contacts) / 1e5 - 1.0 / e).abs() < 0.006);
-    assert!((s.strong.stress.trace() / s.stress.total().trace() - 2.0 / e).abs() < 0.01);
-    let tail = f64::from(f.contacts[19]) / 1e5;
+    assert!((f64::from(s.stress.strong.contacts) / 1e5 - 1.0 / e).abs() < 0.006);
+    assert!((s.stress.strong.stress.trace() / s.stress.sum().trace() - 2.0 / e).abs() < 0.01);
+    let tail = f64::from(f.histogram[19]) / 1e5;
     assert!((tail - (-4.75f64).exp()).abs() < 0.002, "{tail}");
 }
 
@@ -189,12 +202,13 @@ fn mobilised_friction_is_shared_out_in_tenths_and_has_no_meaning_without_a_limit
     // μ = 0.5: 0, 0.44, 1, more than 1, and contacts without a normal force or with one that pulls.
     let forces = [(2.0, 0.0), (2.0, 0.44), (2.0, 1.0), (2.0, 1.5), (0.0, 0.1), (-4.0, 0.1)];
     let mut p = pairs(&forces.map(|(n, t)| of(n, t)), 1);
-    let m = structure(&p).mobilisation.unwrap();
-    assert_eq!(m.contacts, [1, 0, 0, 0, 1, 0, 0, 0, 0, 4]);
+    let m = structure(&p).contacts.friction.unwrap();
+    assert_eq!(m.histogram, [1, 0, 0, 0, 1, 0, 0, 0, 0, 4]);
     assert!((m.mean - 4.44 / 6.0).abs() < 1e-15);
     for friction in [0.0, f64::INFINITY] {
         p.friction = friction;
-        assert_eq!((structure(&p).mobilisation, fabric(&p, &Vec3::z()).mobilised), (None, 0.0));
+        let found = structure(&p).contacts;
+        assert_eq!((found.friction, found.sliding_fraction), (None, 0.0));
     }
 }
 
@@ -202,16 +216,16 @@ fn mobilised_friction_is_shared_out_in_tenths_and_has_no_meaning_without_a_limit
 fn contacts_without_force_have_a_fabric_and_no_force_statistics() {
     let p = pairs(&[Pair { normal_force: 0.0, ..Pair::along(Vec3::z()) }], 1);
     let s = structure(&p);
-    assert_eq!((s.forces, s.stress_force_fabric), (None, None));
-    assert_eq!((s.orientation.contacts[9], largest(&s.tangential_fabric)), (1, 0.0));
+    assert_eq!((s.contacts.forces, s.stress.stress_force_fabric), (None, None));
+    assert_eq!((s.fabric.orientation.contacts[9], largest(&s.fabric.tangential_force_fabric)), (1, 0.0));
 }
 
 /// The packing of LAMMPS was compressed to a shape, not to a stress: it bears q/p of .05, which the anisotropies say.
 #[test]
 fn the_deviatoric_stress_of_a_real_packing_is_the_one_its_anisotropies_predict() {
     let s = structure(&reference());
-    let a = s.stress_force_fabric.unwrap();
-    let stress = s.stress.total();
+    let a = s.stress.stress_force_fabric.unwrap();
+    let stress = s.stress.sum();
     let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
     assert!((0.045..0.06).contains(&measured.deviatoric_invariant()));
     assert!(difference(&measured, &a.stress_ratio()) < 0.0015, "{measured:?} {:?}", a.stress_ratio());
@@ -221,10 +235,14 @@ fn the_deviatoric_stress_of_a_real_packing_is_the_one_its_anisotropies_predict()
     }
     assert!(0.6 * largest(&a.tangential_forces) > 0.0025);
     assert!(largest(&a.branches) < 1e-4);
-    let f = s.forces.unwrap();
-    assert!((1.2..2.0).contains(&f.moments[0]) && (0.5..0.85).contains(&f.participation()));
-    let m = s.mobilisation.unwrap();
-    assert!((0.4..0.9).contains(&m.mean) && f64::from(m.contacts[9]) / 1277.0 > 0.35);
-    let share = s.strong.stress.trace() / s.stress.total().trace();
-    assert!((0.6..0.8).contains(&share) && s.strong.contacts < 600, "{share} {}", s.strong.contacts);
+    let f = s.contacts.forces.unwrap();
+    assert!((1.2..2.0).contains(&f.moments[0]) && (0.5..0.85).contains(&f.participation_ratio()));
+    let m = s.contacts.friction.unwrap();
+    assert!((0.4..0.9).contains(&m.mean) && f64::from(m.histogram[9]) / 1277.0 > 0.35);
+    let share = s.stress.strong.stress.trace() / s.stress.sum().trace();
+    assert!(
+        (0.6..0.8).contains(&share) && s.stress.strong.contacts < 600,
+        "{share} {}",
+        s.stress.strong.contacts
+    );
 }

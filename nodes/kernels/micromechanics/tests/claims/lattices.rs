@@ -2,7 +2,8 @@
 
 use crate::samples::{packing, turned};
 use grainlab_core::{Cell, Mat3, Packing, SymmetryClass, Vec3, symmetry};
-use grainlab_micromechanics::{Settings, analyse};
+use grainlab_micromechanics::network::Springs;
+use grainlab_micromechanics::{Settings, analyze};
 use nalgebra::{Matrix6, Rotation3};
 
 const D: f64 = 2.0e-4;
@@ -52,12 +53,19 @@ fn simple_cubic_is_exact_with_one_grain_touching_its_own_images() {
     let p = simple_cubic();
     assert_eq!(p.contacts.len(), 3);
     let (k_n, k_t) = springs(&p);
-    let a = analyse(&p, &Settings::default()).unwrap();
-    assert_eq!((a.fabric.k, a.fabric.z, a.fabric.rattlers), (6.0, 6.0, 0));
-    let m = a.moduli.unwrap();
+    let a = analyze(&p, &Settings::default()).unwrap();
+    assert_eq!(
+        (
+            a.report.contacts.coordination,
+            a.report.contacts.mechanical_coordination,
+            a.report.contacts.rattlers
+        ),
+        (6.0, 6.0, 0)
+    );
+    let m = a.report.stiffness().copied().unwrap();
     let expected = cubic(k_n / D, 0.0, 0.5 * k_t / D);
-    assert_equal(&m.stiffness.0, &expected, "relaxed");
-    assert_equal(&m.affine.0, &expected, "affine");
+    assert_equal(&m.tensor.0, &expected, "relaxed");
+    assert_equal(&m.bounds.affine.0, &expected, "affine");
 }
 
 /// Six contacts a grain along ⟨110⟩, V = D³/√2: C11 = √2 (k_n + k_t)/D, C12 = (k_n − k_t)/(√2 D),
@@ -69,9 +77,9 @@ fn fcc_is_exact_with_four_grains() {
     let (k_n, k_t) = springs(&p);
     let root = 2f64.sqrt();
     let expected = cubic(root * (k_n + k_t) / D, (k_n - k_t) / (root * D), (k_n + k_t) / (root * D));
-    let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
-    assert_equal(&m.stiffness.0, &expected, "relaxed");
-    assert_equal(&m.affine.0, &expected, "affine");
+    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    assert_equal(&m.tensor.0, &expected, "relaxed");
+    assert_equal(&m.bounds.affine.0, &expected, "affine");
 }
 
 #[test]
@@ -79,9 +87,9 @@ fn fcc_is_exact_with_one_grain_in_a_skewed_primitive_cell() {
     let h = D / 2f64.sqrt();
     let p = lattice(Mat3::new(0.0, h, h, h, 0.0, h, h, h, 0.0), &[[0.0; 3]]);
     assert_eq!(p.contacts.len(), 6);
-    let four = analyse(&fcc(), &Settings::default()).unwrap().moduli.unwrap();
-    let one = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
-    assert_equal(&one.stiffness.0, &four.stiffness.0, "primitive cell");
+    let four = analyze(&fcc(), &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    let one = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    assert_equal(&one.tensor.0, &four.tensor.0, "primitive cell");
 }
 
 /// Eight contacts a grain along ⟨111⟩ and two grains a cell, V = 4D³/(3√3) each: Σ n_x² = 4/3, Σ n_x⁴ = Σ n_x²n_y² = 4/9.
@@ -96,8 +104,8 @@ fn bcc_is_exact_with_two_grains() {
         f * 4.0 / 9.0 * (k_n - k_t),
         f * (4.0 / 9.0 * (k_n - k_t) + 2.0 / 3.0 * k_t),
     );
-    let m = analyse(&p, &Settings::default()).unwrap().moduli.unwrap();
-    assert_equal(&m.stiffness.0, &expected, "relaxed");
+    let m = analyze(&p, &Settings::default()).unwrap().report.stiffness().copied().unwrap();
+    assert_equal(&m.tensor.0, &expected, "relaxed");
 }
 
 /// A lattice of cubic symmetry is cubic, seen from any side; a stiffness along ⟨110⟩ and one along the edges alike.
@@ -105,7 +113,13 @@ fn bcc_is_exact_with_two_grains() {
 fn cubic_lattices_are_found_cubic_and_their_edges_found() {
     let r = Rotation3::from_euler_angles(0.4, 1.0, -0.6);
     for p in [simple_cubic(), fcc()] {
-        let c = analyse(&turned(&p, r.matrix()), &Settings::default()).unwrap().moduli.unwrap().stiffness;
+        let c = analyze(&turned(&p, r.matrix()), &Settings::default())
+            .unwrap()
+            .report
+            .stiffness()
+            .copied()
+            .unwrap()
+            .tensor;
         let s = symmetry(&c, 1e-6).unwrap();
         assert_eq!(s.class, SymmetryClass::Cubic, "{s:?}");
         let overlap = r.matrix().transpose() * s.cubic_axes;
@@ -116,7 +130,7 @@ fn cubic_lattices_are_found_cubic_and_their_edges_found() {
 #[test]
 fn frictionless_simple_cubic_has_no_shear_stiffness_and_no_nan() {
     let p = simple_cubic();
-    let settings = Settings { tangential: false, ..Settings::default() };
-    let m = analyse(&p, &settings).unwrap().moduli.unwrap();
-    assert_equal(&m.stiffness.0, &cubic(springs(&p).0 / D, 0.0, 0.0), "frictionless");
+    let settings = Settings { springs: Springs::Normal, ..Settings::default() };
+    let m = analyze(&p, &settings).unwrap().report.stiffness().copied().unwrap();
+    assert_equal(&m.tensor.0, &cubic(springs(&p).0 / D, 0.0, 0.0), "frictionless");
 }

@@ -3,10 +3,13 @@
 use crate::golden::{lammps, reference};
 use crate::samples::packing;
 use grainlab_core::contact::TangentialLaw;
+use grainlab_core::results::NotJammed;
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
-use grainlab_micromechanics::relax::Relaxation;
-use grainlab_micromechanics::{NoNetwork, Probe, ProbeError, Settings, Sides, analyse, probe};
+use grainlab_micromechanics::probe::{
+    DifferenceScheme, Relaxation, StrainProbe, StrainProbeResult, amplitude_sweep, strain_probe,
+};
+use grainlab_micromechanics::{ProbeError, Settings, analyze};
 use nalgebra::Matrix6;
 
 fn share(difference: Matrix6<f64>, c: &Matrix6<f64>) -> f64 {
@@ -18,7 +21,7 @@ fn share(difference: Matrix6<f64>, c: &Matrix6<f64>) -> f64 {
 /// of the two agree to 1e-5.
 #[test]
 fn six_columns_are_those_of_lammps_within_a_permille_of_c11() {
-    let found = probe(&reference(), &Probe::default()).unwrap();
+    let found = strain_probe(&reference(), &StrainProbe::default()).unwrap();
     let raw = lammps("1e-7");
     let error = share(found.stiffness.0 - raw, &raw);
     assert!(error < 1e-3, "{error:e}\n{}\n{raw}", found.stiffness.0);
@@ -35,9 +38,9 @@ fn six_columns_are_those_of_lammps_within_a_permille_of_c11() {
 #[test]
 fn frozen_network_is_the_probe_up_to_terms_of_the_pressure() {
     let packing = reference();
-    let found = probe(&packing, &Probe::default()).unwrap().stiffness.0;
-    let a = analyse(&packing, &Settings::default()).unwrap();
-    let difference = (found - a.moduli.unwrap().stiffness.0) / a.pressure;
+    let found = strain_probe(&packing, &StrainProbe::default()).unwrap().stiffness.0;
+    let a = analyze(&packing, &Settings::default()).unwrap();
+    let difference = (found - a.report.stiffness().copied().unwrap().tensor.0) / a.report.pressure();
     let affine = cubic(-0.4, 1.2, -0.8);
     assert!((difference - affine).amax() < 0.5, "in units of the pressure: {difference:.2}");
     assert!(difference.amax() > 1.0, "nothing of the order of the pressure: the test shows nothing");
@@ -46,7 +49,8 @@ fn frozen_network_is_the_probe_up_to_terms_of_the_pressure() {
 #[test]
 fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged() {
     let packing = reference();
-    let with = |amplitude| probe(&packing, &Probe { amplitude, ..Probe::default() }).unwrap();
+    let with =
+        |amplitude| strain_probe(&packing, &StrainProbe { amplitude, ..StrainProbe::default() }).unwrap();
     let (small, large) = (with(1e-7), with(1e-6));
     let c = &small.stiffness.0;
     let error = share(large.stiffness.0 - c, c);
@@ -54,7 +58,7 @@ fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged
     // Contacts open at 1e-5, and the two sides differ by more than Hertz's 1.1e-2.
     let far = with(1e-5);
     assert!(share(far.stiffness.0 - c, c) > 2e-3);
-    let opened = |r: &grainlab_micromechanics::ProbeResult| r.columns.iter().map(|c| c.opened).sum::<u32>();
+    let opened = |r: &StrainProbeResult| r.sum(|c| c.opened);
     assert!(opened(&far) > 2 * opened(&large), "{} {}", opened(&far), opened(&large));
     assert!(far.columns[1].forward_backward.unwrap() > 0.02);
     assert!(small.columns[1].forward_backward.unwrap() < 3e-4);
@@ -66,7 +70,7 @@ fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged
 fn a_scan_of_amplitudes_finds_the_linear_regime() {
     let packing = reference();
     let amplitudes = [1e-5, 1e-7, 1e-8, 1e-6, 1e-7];
-    let scan = grainlab_micromechanics::scan::scan(&packing, &Probe::default(), &amplitudes, 2e-3).unwrap();
+    let scan = amplitude_sweep(&packing, &StrainProbe::default(), &amplitudes, 2e-3).unwrap();
     let seen: Vec<f64> = scan.probes.iter().map(|(a, _)| *a).collect();
     assert_eq!(seen, [1e-8, 1e-7, 1e-6, 1e-5]);
     assert_eq!(scan.linear, Some(0..=2));
@@ -77,8 +81,7 @@ fn a_scan_of_amplitudes_finds_the_linear_regime() {
         let off = (found.stiffness.0 - plateau).amax();
         assert!(off <= 2.0 * found.stddev().0.amax() + 1e-5 * plateau.amax(), "{amplitude:e}: {off:e}");
     }
-    let refused =
-        grainlab_micromechanics::scan::scan(&packing, &Probe::default(), &[1e-7, 0.5], 2e-3).unwrap_err();
+    let refused = amplitude_sweep(&packing, &StrainProbe::default(), &[1e-7, 0.5], 2e-3).unwrap_err();
     assert!(matches!(refused, ProbeError::Setting { name: "amplitude", .. }), "{refused}");
 }
 
@@ -87,8 +90,8 @@ fn a_scan_of_amplitudes_finds_the_linear_regime() {
 fn contacts_that_slide_under_the_strain_are_counted() {
     let packing = reference();
     let sliding = |friction| {
-        let settings = Probe { friction, amplitude: 1e-6, tolerance: 1e-3, ..Probe::default() };
-        probe(&packing, &settings).unwrap().columns[1].sliding
+        let settings = StrainProbe { friction, amplitude: 1e-6, tolerance: 1e-3, ..StrainProbe::default() };
+        strain_probe(&packing, &settings).unwrap().columns[1].sliding
     };
     assert!(sliding(packing.friction) > 0);
     assert_eq!(sliding(f64::INFINITY), 0);
@@ -96,8 +99,9 @@ fn contacts_that_slide_under_the_strain_are_counted() {
 
 #[test]
 fn forward_probe_at_1e_6_is_that_of_lammps() {
-    let settings = Probe { amplitude: 1e-6, sides: Sides::Forward, ..Probe::default() };
-    let found = probe(&reference(), &settings).unwrap();
+    let settings =
+        StrainProbe { amplitude: 1e-6, sides: DifferenceScheme::Forward, ..StrainProbe::default() };
+    let found = strain_probe(&reference(), &settings).unwrap();
     let raw = lammps("1e-6");
     let error = share(found.stiffness.0 - raw, &raw);
     assert!(error < 1e-3, "{error:e}");
@@ -107,7 +111,7 @@ fn forward_probe_at_1e_6_is_that_of_lammps() {
 /// LAMMPS's `fix deform` with its default remapping of positions gives C66 = 78.5 MPa on this packing, for 137.9.
 #[test]
 fn homogeneous_strain_enters_the_tangential_springs() {
-    let found = probe(&reference(), &Probe::default()).unwrap().stiffness.0;
+    let found = strain_probe(&reference(), &StrainProbe::default()).unwrap().stiffness.0;
     assert!((found[(5, 5)] / 137.9e6 - 1.0).abs() < 1e-3, "{}", found[(5, 5)]);
     // The same strain as a jump of positions, which no spring can see.
     let blind = |strain: f64| {
@@ -140,12 +144,16 @@ fn near_isostaticity_the_probe_settles_on_the_frozen_network_too() {
         relaxation.step().unwrap();
     }
     let packing = relaxation.engines()[0].packing(Mat3::identity());
-    let a = analyse(&packing, &Settings::default()).unwrap();
-    assert!((4.4..4.6).contains(&a.fabric.z), "{}", a.fabric.z);
-    let found = probe(&packing, &Probe { amplitude: 1e-8, ..Probe::default() }).unwrap();
-    let frozen = a.moduli.unwrap().stiffness.0;
+    let a = analyze(&packing, &Settings::default()).unwrap();
+    assert!(
+        (4.4..4.6).contains(&a.report.contacts.mechanical_coordination),
+        "{}",
+        a.report.contacts.mechanical_coordination
+    );
+    let found = strain_probe(&packing, &StrainProbe { amplitude: 1e-8, ..StrainProbe::default() }).unwrap();
+    let frozen = a.report.stiffness().copied().unwrap().tensor.0;
     assert!(frozen[(5, 5)] < 0.3 * 138e6, "as stiff as before");
-    let error = (found.stiffness.0 - frozen).amax() / a.pressure;
+    let error = (found.stiffness.0 - frozen).amax() / a.report.pressure();
     assert!(error < 4.0, "in units of the pressure: {error}");
 }
 
@@ -193,7 +201,7 @@ fn face_centred_cubic_is_exact_with_its_terms_of_the_pressure() {
     let root = 2f64.sqrt();
     let expected = cubic(root * (k_n + k_t) / l, (k_n - k_t) / (root * l), (k_n + k_t) / (root * l))
         + cubic(-0.5, 1.25, -0.75) * pressure;
-    let found = probe(&p, &Probe::default()).unwrap();
+    let found = strain_probe(&p, &StrainProbe::default()).unwrap();
     let error = share(found.stiffness.0 - expected, &expected);
     assert!(error < 1e-7, "{error:e}, pressure {:e}", pressure / expected[(0, 0)]);
     // The terms that this resolves.
@@ -214,7 +222,7 @@ fn a_chain_has_its_closed_form_and_columns_of_nothing_settle() {
     expected[(2, 2)] = p.contact_stiffness(&p.contacts[0]).0 * l * l / p.cell.volume();
     (expected[(2, 0)], expected[(2, 1)]) = (stress, stress);
     (expected[(3, 3)], expected[(4, 4)]) = (-0.5 * stress, -0.5 * stress);
-    let found = probe(&p, &Probe::default()).unwrap().stiffness.0;
+    let found = strain_probe(&p, &StrainProbe::default()).unwrap().stiffness.0;
     let error = (found - expected).amax() / stress;
     assert!(error < 1e-2, "{error:e} of the stress\n{found:e}\n{expected:e}");
     assert!(expected[(2, 2)] > 100.0 * stress);
@@ -222,13 +230,13 @@ fn a_chain_has_its_closed_form_and_columns_of_nothing_settle() {
 
 #[test]
 fn a_packing_that_was_shaken_comes_to_rest_first() {
-    let still = probe(&reference(), &Probe::default()).unwrap();
+    let still = strain_probe(&reference(), &StrainProbe::default()).unwrap();
     let mut shaken = reference();
     for (i, x) in shaken.positions.iter_mut().enumerate() {
         *x += Vec3::new((i as f64).sin(), (2.0 * i as f64).sin(), (3.0 * i as f64).sin()) * 1e-11;
     }
     shaken.velocities.iter_mut().for_each(|v| *v = Vec3::repeat(1e-3));
-    let found = probe(&shaken, &Probe::default()).unwrap();
+    let found = strain_probe(&shaken, &StrainProbe::default()).unwrap();
     assert!(found.rest_steps > 100 && still.rest_steps == 0, "{} {}", found.rest_steps, still.rest_steps);
     let error = share(found.stiffness.0 - still.stiffness.0, &still.stiffness.0);
     // Overlaps have moved by 4e-4 of their mean.
@@ -238,16 +246,16 @@ fn a_packing_that_was_shaken_comes_to_rest_first() {
 #[test]
 fn an_analysis_by_probe_reports_its_stiffness_and_how_it_went() {
     let packing = reference();
-    let settings = Settings { probe: Some(Probe::default()), ..Settings::default() };
-    let (by_probe, frozen) = (analyse(&packing, &settings).unwrap(), analyse(&packing, &Settings::default()));
-    let (found, moduli) = (by_probe.probe.unwrap(), by_probe.moduli.unwrap());
-    assert_eq!(found, probe(&packing, &Probe::default()).unwrap());
-    assert_eq!(moduli.stiffness, found.stiffness);
+    let settings = Settings { probe: Some(StrainProbe::default()), ..Settings::default() };
+    let (by_probe, frozen) = (analyze(&packing, &settings).unwrap(), analyze(&packing, &Settings::default()));
+    let (found, moduli) = (by_probe.probe.unwrap(), by_probe.report.stiffness().copied().unwrap());
+    assert_eq!(found, strain_probe(&packing, &StrainProbe::default()).unwrap());
+    assert_eq!(moduli.tensor, found.stiffness);
     let frozen = frozen.unwrap();
-    assert_eq!(moduli.affine, frozen.moduli.unwrap().affine);
+    assert_eq!(moduli.bounds.affine, frozen.report.stiffness().copied().unwrap().bounds.affine);
     assert_eq!(frozen.probe, None);
-    let short = Probe { max_steps: 60, ..Probe::default() };
-    let refused = analyse(&packing, &Settings { probe: Some(short), ..Settings::default() });
+    let short = StrainProbe { max_steps: 60, ..StrainProbe::default() };
+    let refused = analyze(&packing, &Settings { probe: Some(short), ..Settings::default() });
     assert!(
         matches!(refused, Err(grainlab_micromechanics::MicroError::Probe(ProbeError::NotConverged { .. }))),
         "{refused:?}"
@@ -257,8 +265,8 @@ fn an_analysis_by_probe_reports_its_stiffness_and_how_it_went() {
 #[test]
 fn the_same_packing_gives_the_same_bits() {
     let packing = reference();
-    let settings = Probe { tolerance: 1e-3, ..Probe::default() };
-    let bits = || probe(&packing, &settings).unwrap().stiffness.row_major().map(f64::to_bits);
+    let settings = StrainProbe { tolerance: 1e-3, ..StrainProbe::default() };
+    let bits = || strain_probe(&packing, &settings).unwrap().stiffness.row_major().map(f64::to_bits);
     assert_eq!(bits(), bits());
 }
 
@@ -266,23 +274,23 @@ fn the_same_packing_gives_the_same_bits() {
 fn what_cannot_be_probed_says_why() {
     let cell = Cell::cube(1e-3).unwrap();
     let gas = packing(cell, vec![Vec3::zeros(), Vec3::repeat(5e-4)], 1e-4, 0.1, None);
-    let refused = probe(&gas, &Probe::default()).unwrap_err();
-    assert_eq!(refused, ProbeError::NoNetwork(NoNetwork::NoContacts { grains: 2 }));
+    let refused = strain_probe(&gas, &StrainProbe::default()).unwrap_err();
+    assert_eq!(refused, ProbeError::NotJammed(NotJammed::NoContacts { grains: 2 }));
     let pair = packing(cell, vec![Vec3::zeros(), Vec3::x() * 1.99e-4], 1e-4, 0.1, None);
-    let refused = probe(&pair, &Probe::default()).unwrap_err();
-    assert_eq!(refused, ProbeError::NoNetwork(NoNetwork::OnlyRattlers { grains: 2, needed: 2 }));
+    let refused = strain_probe(&pair, &StrainProbe::default()).unwrap_err();
+    assert_eq!(refused, ProbeError::NotJammed(NotJammed::OnlyRattlers { grains: 2, needed: 2 }));
     for (settings, name) in [
-        (Probe { amplitude: 0.0, ..Probe::default() }, "amplitude"),
-        (Probe { amplitude: f64::NAN, ..Probe::default() }, "amplitude"),
-        (Probe { tolerance: 1.0, ..Probe::default() }, "tolerance"),
-        (Probe { friction: -1.0, ..Probe::default() }, "friction"),
+        (StrainProbe { amplitude: 0.0, ..StrainProbe::default() }, "amplitude"),
+        (StrainProbe { amplitude: f64::NAN, ..StrainProbe::default() }, "amplitude"),
+        (StrainProbe { tolerance: 1.0, ..StrainProbe::default() }, "tolerance"),
+        (StrainProbe { friction: -1.0, ..StrainProbe::default() }, "friction"),
     ] {
-        match probe(&gas, &settings) {
+        match strain_probe(&gas, &settings) {
             Err(ProbeError::Setting { name: found, .. }) => assert_eq!(found, name),
             other => panic!("{name}: {other:?}"),
         }
     }
-    let short = Probe { max_steps: 60, ..Probe::default() };
-    let message = probe(&reference(), &short).unwrap_err().to_string();
+    let short = StrainProbe { max_steps: 60, ..StrainProbe::default() };
+    let message = strain_probe(&reference(), &short).unwrap_err().to_string();
     assert!(message.starts_with("column xx did not settle in 60 steps"), "{message}");
 }

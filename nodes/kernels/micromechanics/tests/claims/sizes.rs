@@ -4,8 +4,8 @@ use crate::samples::Dice;
 use grainlab_core::contact::TangentialLaw;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use grainlab_dem::{Engine, EngineSettings, Observables, TimeStep};
-use grainlab_micromechanics::relax::Relaxation;
-use grainlab_micromechanics::{Probe, Settings, analyse, probe};
+use grainlab_micromechanics::probe::{Relaxation, StrainProbe, strain_probe};
+use grainlab_micromechanics::{Settings, analyze};
 use nalgebra::Matrix6;
 
 const DIAMETER: f64 = 2e-4;
@@ -190,23 +190,29 @@ fn assert_moduli(c: &Matrix6<f64>, truth: &Matrix6<f64>, share: f64) {
 
 fn assert_stiffness(grains: usize, spread: f64, seed: u64) {
     let p = prepared(grains, spread, 5e4, seed);
-    let a = analyse(&p, &Settings::default()).unwrap();
-    let (moduli, unbalanced) = (a.moduli.unwrap(), a.unbalanced.unwrap());
+    let a = analyze(&p, &Settings::default()).unwrap();
+    let (moduli, unbalanced) =
+        (a.report.stiffness().copied().unwrap(), a.report.unbalanced_force_ratio.unwrap());
     println!(
         "N {grains}, radii ±{spread}: z {:.3}, p {:.3e} Pa, unbalanced {unbalanced:.1e}",
-        a.fabric.z, a.pressure
+        a.report.contacts.mechanical_coordination,
+        a.report.pressure()
     );
-    assert!((4.5..5.8).contains(&a.fabric.z) && unbalanced < 1e-5, "z {}, {unbalanced:e}", a.fabric.z);
+    assert!(
+        (4.5..5.8).contains(&a.report.contacts.mechanical_coordination) && unbalanced < 1e-5,
+        "z {}, {unbalanced:e}",
+        a.report.contacts.mechanical_coordination
+    );
     let truth = independent_stiffness(&p);
-    let error = (moduli.stiffness.0 - truth).amax() / truth[(0, 0)];
+    let error = (moduli.tensor.0 - truth).amax() / truth[(0, 0)];
     println!("    independent solve: {error:.1e} of C11");
     assert!(error < 1e-5, "{error:e} of C11");
-    let probed = probe(&p, &Probe::default()).unwrap();
+    let probed = strain_probe(&p, &StrainProbe::default()).unwrap();
     let changed: u32 = probed.columns.iter().map(|c| c.opened + c.closed).sum();
     println!("    probe: {changed} contacts opened or closed");
     let probed = probed.stiffness.0;
-    println!("    probe: {:.1e} of C11", (probed - moduli.stiffness.0).amax() / truth[(0, 0)]);
-    assert_moduli(&moduli.stiffness.0, &probed, 2e-3);
+    println!("    probe: {:.1e} of C11", (probed - moduli.tensor.0).amax() / truth[(0, 0)]);
+    assert_moduli(&moduli.tensor.0, &probed, 2e-3);
 }
 
 #[test]

@@ -4,8 +4,8 @@ use super::measure::Found;
 use crate::commands::packings;
 use crate::commands::packings::bar::Bar;
 use crate::commands::packings::printer::{Printed, Printer};
-use crate::results::state::{self, State};
-use crate::results::state_text;
+use crate::results::measured_packing::MeasuredPacking;
+use crate::results::{measured_packing, packing_text};
 use crate::tape::Tape;
 use grainlab_console::{Failure, Table, print};
 use grainlab_msgs::topics;
@@ -13,14 +13,14 @@ use grainlab_node_kit::Exit;
 
 /// Prints and records results.
 pub(super) struct Outlet {
-    printer: Printer<State>,
+    printer: Printer<MeasuredPacking>,
     tape: Option<Tape>,
     /// Packings without a stiffness.
     without: usize,
 }
 
 impl Outlet {
-    pub(super) fn new(printer: Printer<State>, tape: Option<Tape>) -> Self {
+    pub(super) fn new(printer: Printer<MeasuredPacking>, tape: Option<Tape>) -> Self {
         Self { printer, tape, without: 0 }
     }
 }
@@ -29,8 +29,8 @@ impl packings::Outlet for Outlet {
     type Found = Found;
 
     fn emit(&mut self, found: Found, bar: &Bar) -> Result<Exit, Failure> {
-        self.without += usize::from(found.state.stiffness_pa.is_none());
-        let text = self.printer.next(&found.state)?;
+        self.without += usize::from(found.packing.report.stiffness().is_none());
+        let text = self.printer.next(&found.packing)?;
         bar.around(|| print(&text))?;
         let Some(tape) = &mut self.tape else { return Ok(Exit::Done) };
         match &found.messages {
@@ -60,12 +60,12 @@ impl packings::Outlet for Outlet {
     }
 }
 
-impl Printed for State {
+impl Printed for MeasuredPacking {
     fn text(&self) -> String {
-        format!("{}, step {}\n{}", self.source, self.step, state_text::text(self))
+        format!("{}, step {}\n{}", self.source, self.step, packing_text::text(self))
     }
 
-    fn table(states: &[Self]) -> Table {
-        state::table(states)
+    fn table(packings: &[Self]) -> Table {
+        measured_packing::table(packings)
     }
 }

@@ -4,7 +4,7 @@ use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
 use crate::results::inference::{self, Inference};
-use grainlab_console::{Failure, Table, exact, json, push_csv};
+use grainlab_console::{CsvText, Failure, Table, exact, json};
 
 /// What turns answers into text.
 pub(super) struct Printer<'a> {
@@ -14,10 +14,11 @@ pub(super) struct Printer<'a> {
 impl Printer<'_> {
     /// Names of the cells of [`Printer::csv`].
     pub(super) fn csv_header() -> String {
-        let columns = ["sample", "pressure_pa"].into_iter().chain(Inference::EXACT_COLUMNS);
-        let mut text = String::new();
-        push_csv(&mut text, columns.chain(["gamma_over_delta", "gamma_over_delta_source", "line", "reason"]));
-        text
+        let name = |name: &str| name.to_owned();
+        let columns = ["sample", "pressure_pa"].map(name).into_iter().chain(Inference::exact_columns());
+        let mut text = CsvText::new();
+        text.row(columns.chain(["gamma_over_delta", "gamma_over_delta_source", "line", "reason"].map(name)));
+        text.finish()
     }
 
     /// One line for each way.
@@ -25,16 +26,16 @@ impl Printer<'_> {
         let state = answer.state.as_ref().ok();
         let label = [answer.sample().unwrap_or_default().to_owned(), exact(state.map(|s| s.pressure.value))];
         let line = answer.line.map_or_else(String::new, |l| l.to_string());
-        let mut text = String::new();
+        let mut text = CsvText::new();
         for (result, way) in answer.inferences(self.ways).iter().zip(self.ways) {
             let without = matches!(result.status, "failed" | "undetermined");
             let reason = if without { result.warnings.join("; ") } else { String::new() };
             let gamma =
                 [exact(result.gamma_over_delta), state.map_or("", |s| s.gamma_source(way)).to_owned()];
             let (cells, end) = (result.exact_cells(), [&line, &reason]);
-            push_csv(&mut text, label.iter().chain(&cells).chain(&gamma).chain(end));
+            text.row(label.iter().chain(&cells).chain(&gamma).chain(end));
         }
-        text
+        text.finish()
     }
 
     /// An object, for one state.

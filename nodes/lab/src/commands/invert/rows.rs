@@ -1,6 +1,6 @@
 //! The rows of a table, in pieces, each row looked at by one of several threads.
 
-use super::columns::{BadRow, Columns, Defaults, Row};
+use super::columns::{BadRow, Columns, Defaults, Row, Splitter};
 use super::lines::{Lines, Piece};
 use grainlab_console::Failure;
 use rayon::prelude::*;
@@ -50,9 +50,13 @@ impl Rows {
             },
         };
         let lines: Vec<(u64, &[u8])> = piece.lines().filter(|(number, _)| *number > self.header).collect();
-        let of_line = |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line)?));
-        let worked: Vec<Vec<T>> =
-            lines.par_chunks(SHARE).map(|share| share.iter().filter_map(of_line).collect()).collect();
+        let of_share = |share: &[(u64, &[u8])]| -> Vec<T> {
+            let mut splitter = Splitter::new();
+            let of_line =
+                |(number, line): &(u64, &[u8])| Some(work(*number, self.columns.row(line, &mut splitter)?));
+            share.iter().filter_map(of_line).collect()
+        };
+        let worked: Vec<Vec<T>> = lines.par_chunks(SHARE).map(of_share).collect();
         Ok(Some(worked.into_iter().flatten().collect()))
     }
 

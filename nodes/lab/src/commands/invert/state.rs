@@ -1,20 +1,12 @@
 //! What is known of one state.
 
 use super::way::Way;
-use grainlab_core::{Anisotropy, Material};
+use grainlab_core::Material;
+use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
     StrainRatio, StrainRatioSource, Structure,
 };
-use serde::ser::{Serialize, SerializeMap, Serializer};
-
-/// Keys of the moduli, in the order of [`Modulus::ALL`].
-pub(super) const MODULUS_KEYS: [&str; grainlab_emt::MODULI] =
-    ["g12_pa", "g13_pa", "theta_pa", "c11_pa", "c33_pa", "c13_pa"];
-
-/// Keys of their standard deviations.
-pub(super) const SIGMA_KEYS: [&str; grainlab_emt::MODULI] =
-    ["g12_sigma_pa", "g13_sigma_pa", "theta_sigma_pa", "c11_sigma_pa", "c33_sigma_pa", "c13_sigma_pa"];
 
 /// One state, as given.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +28,7 @@ pub(crate) struct State {
     /// γ/Δ from whoever asks.
     pub(crate) gamma: Option<Measured>,
     /// γ/Δ as `grainlab analyze` measures it.
-    pub(crate) measured_gamma: Anisotropy,
+    pub(crate) measured_gamma: StrainRatios,
     pub(crate) phi: Option<Measured>,
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
@@ -61,12 +53,27 @@ impl State {
             theta_printed: None,
             pressure,
             gamma: None,
-            measured_gamma: Anisotropy::default(),
+            measured_gamma: StrainRatios::default(),
             phi: None,
             grain_shear_modulus: None,
             poisson: None,
             truth: Structure::default(),
         }
+    }
+
+    pub(super) fn set_modulus(&mut self, modulus: Modulus, value: f64) {
+        self.moduli = self.moduli.with(modulus, value);
+    }
+
+    pub(super) fn set_sigma(&mut self, modulus: Modulus, value: f64) {
+        self.sigma[modulus as usize] = Some(value);
+    }
+
+    /// Standard deviation of one of the moduli, its own or the one for all, Pa.
+    pub(super) fn sigma_of(&self, modulus: Modulus) -> Option<f64> {
+        self.moduli.get(modulus)?;
+        let at = modulus as usize;
+        self.covariance(&self.moduli).map(|c| c[(at, at)].sqrt())
     }
 
     /// What a model says of it, in the way asked for.
@@ -160,35 +167,6 @@ impl State {
             Some(source @ StrainRatioSource::Contact) => of(source, measured.contact, "g_contact"),
             Some(StrainRatioSource::Zero) => Ok(StrainRatio::ZERO),
         }
-    }
-}
-
-impl Serialize for State {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("sample", &self.sample)?;
-        let covariance = self.covariance(&self.moduli);
-        for (i, value) in self.moduli.values().iter().enumerate() {
-            map.serialize_entry(MODULUS_KEYS[i], value)?;
-            let sigma = covariance.filter(|_| value.is_some()).map(|c| c[(i, i)].sqrt());
-            map.serialize_entry(SIGMA_KEYS[i], &sigma)?;
-        }
-        map.serialize_entry("theta_printed_pa", &self.theta_printed)?;
-        map.serialize_entry("asymmetry", &self.asymmetry)?;
-        map.serialize_entry("pressure_pa", &self.pressure.value)?;
-        map.serialize_entry("pressure_sigma_pa", &self.pressure.stddev)?;
-        map.serialize_entry("gamma_over_delta", &self.gamma.map(|g| g.value))?;
-        map.serialize_entry("gamma_over_delta_sigma", &self.gamma.map(|g| g.stddev))?;
-        let g = &self.measured_gamma;
-        for (key, value) in [("g_total", g.total), ("g_elastic", g.elastic), ("g_contact", g.contact)] {
-            map.serialize_entry(key, &value)?;
-        }
-        map.serialize_entry("grain_shear_modulus_pa", &self.grain_shear_modulus)?;
-        map.serialize_entry("poisson", &self.poisson)?;
-        map.serialize_entry("phi", &self.phi.map(|p| p.value))?;
-        map.serialize_entry("phi_sigma", &self.phi.map(|p| p.stddev))?;
-        map.serialize_entry("relative_error", &self.relative_error)?;
-        map.end()
     }
 }
 

@@ -4,8 +4,8 @@ use crate::launch::Run;
 use crate::launch::supervisor::{Heard, Supervised};
 use crate::nodes::NodeKind;
 use crate::results::continuity;
+use crate::results::measured_packing;
 use crate::results::read_back::{self, ReadBack};
-use crate::results::state;
 use crate::results::summary::{Launched, NodeEnd, Summary};
 use crate::results::summary_text;
 use grainlab_console::scenes::SceneText;
@@ -81,11 +81,11 @@ pub(super) fn finish(
     let text = json(&summary)?;
     summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
     summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
-    let states: Vec<_> = summary.states.iter().map(|s| s.state.clone()).collect();
+    let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
     // Printed before writing, so that a full disk does not lose the result.
     let printed = print(&match format {
         Format::Json => text.clone(),
-        Format::Csv => state::csv(&states),
+        Format::Csv => measured_packing::table(&packings).csv(),
         Format::Table => {
             let text = summary_text::text(&summary);
             format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())

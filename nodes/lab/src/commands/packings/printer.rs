@@ -91,42 +91,24 @@ impl<R: Printed> Printer<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::state::{self, State};
-    use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
+    use crate::results::measured_packing::{MeasuredPacking, table, tests};
 
-    fn state(step: u64) -> State {
-        let packing = Packing {
-            step,
-            time: 0.0,
-            cell: Cell::cube(1.0).unwrap(),
-            deformation: Mat3::identity(),
-            ids: vec![0],
-            radii: vec![0.1],
-            positions: vec![Vec3::zeros()],
-            velocities: vec![Vec3::zeros()],
-            spins: vec![Vec3::zeros()],
-            contacts: Vec::new(),
-            material: Material::GLASS,
-            law: Default::default(),
-            friction: 0.1,
-            time_step: 0.0,
-        };
-        let found = grainlab_micromechanics::analyse(&packing, &grainlab_micromechanics::Settings::default())
-            .unwrap();
-        State::new("a, \"b\"".into(), &packing, &found.fabric, None)
+    fn measured(step: u64) -> MeasuredPacking {
+        let packing = grainlab_core::Packing { step, ..tests::lattice(false) };
+        MeasuredPacking { source: "a, \"b\"".into(), ..tests::measured(&packing) }
     }
 
     #[test]
     fn results_printed_one_by_one_are_the_text_of_all() {
         for count in 0..4 {
-            let states: Vec<State> = (0..count).map(state).collect();
+            let packings: Vec<MeasuredPacking> = (0..count).map(measured).collect();
             let text = |format| {
                 let mut printer = Printer::new(format, Vec::new()).unwrap();
-                let parts: String = states.iter().map(|s| printer.next(s).unwrap()).collect();
+                let parts: String = packings.iter().map(|p| printer.next(p).unwrap()).collect();
                 parts + &printer.end().unwrap()
             };
-            assert_eq!(text(Format::Json), grainlab_console::json(&states).unwrap());
-            assert_eq!(text(Format::Csv), state::csv(&states));
+            assert_eq!(text(Format::Json), grainlab_console::json(&packings).unwrap());
+            assert_eq!(text(Format::Csv), table(&packings).csv());
         }
     }
 }

@@ -1,11 +1,13 @@
 //! One packing: its structure and stiffness, its wave speeds, and the messages that the node would publish.
 
 use crate::commands::packings::Measure;
-use crate::results::acoustic::AcousticView;
+use crate::results::acoustic::AcousticReport;
+use crate::results::measured_packing::MeasuredPacking;
 use crate::results::probed::Probed;
-use crate::results::state::State;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
 use grainlab_acoustics::AcousticsError;
+use grainlab_micromechanics::analyze;
+use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
 
@@ -29,26 +31,22 @@ impl Measure for Probe {
     fn measure(&self, source: &str, imported: &Imported) -> Result<Found, String> {
         let packing = &imported.packing;
         let named = |e: &dyn std::fmt::Display| format!("{source}, step {}: {e}", packing.step);
-        let network = grainlab_micromechanics::analyse(
-            packing,
-            &grainlab_micromechanics::Settings { tangential: packing.friction > 0.0, ..Default::default() },
-        )
-        .map_err(|e| named(&e))?;
-        let moduli = network.moduli.as_ref().ok();
-        let mut state = State::new(source.to_owned(), packing, &network.fabric, moduli);
-        state.step = imported.step;
-        state.warnings.clone_from(&imported.notes);
+        let springs = Springs::with_friction(packing.friction);
+        let network = analyze(packing, &grainlab_micromechanics::Settings { springs, ..Default::default() });
+        let mut measured = MeasuredPacking::new(source.to_owned(), network.map_err(|e| named(&e))?.report);
+        measured.step = imported.step;
+        measured.warnings.clone_from(&imported.notes);
         let found = match grainlab_acoustics::measure(packing, &self.settings.0) {
             Ok(found) => found,
-            Err(AcousticsError::NoNetwork(none)) => {
-                state.warnings.push(none.to_string());
-                return Ok(Found { probed: Probed { state, acoustic: None }, messages: None });
+            Err(AcousticsError::NotJammed(why)) => {
+                measured.warnings.push(why.to_string());
+                return Ok(Found { probed: Probed { packing: measured, acoustic: None }, messages: None });
             }
             Err(error) => return Err(named(&error)),
         };
         let messages = messages(&imported.header, packing, &found).map_err(|e| named(&e))?;
         let reading = WaveSpeedsReading::try_from(&messages.wave_speeds).map_err(|e| named(&e))?;
-        let acoustic = Some(AcousticView::new(packing, &reading));
-        Ok(Found { probed: Probed { state, acoustic }, messages: Some(messages) })
+        let acoustic = Some(AcousticReport::new(packing, reading));
+        Ok(Found { probed: Probed { packing: measured, acoustic }, messages: Some(messages) })
     }
 }

@@ -1,0 +1,87 @@
+//! `ContactStatistics`: how many contacts there are, and what they carry.
+
+use super::BoundaryError;
+use super::check::{Check, one_or_none};
+use crate::msg;
+use grainlab_core::results::{ContactStatistics, ForceStatistics, MobilisedFriction};
+
+pub(super) fn contact_statistics_message(c: &ContactStatistics) -> msg::ContactStatistics {
+    let forces = c.forces.map(|f| msg::ForceStatistics {
+        mean_normal: f.mean_normal,
+        mean_tangential: f.mean_tangential,
+        moments: f.moments,
+        largest: f.largest,
+        histogram: f.histogram,
+    });
+    let friction = c.friction.map(|f| msg::MobilisedFriction { mean: f.mean, histogram: f.histogram });
+    msg::ContactStatistics {
+        grains: c.grains,
+        contacts: c.contacts,
+        rattlers: c.rattlers,
+        coordination: c.coordination,
+        mechanical_coordination: c.mechanical_coordination,
+        sliding_fraction: c.sliding_fraction,
+        forces: one_or_none(forces),
+        friction: one_or_none(friction),
+    }
+}
+
+/// Those of the field `contacts` of a message.
+pub(super) fn contact_statistics(
+    check: Check,
+    m: &msg::ContactStatistics,
+) -> Result<ContactStatistics, BoundaryError> {
+    let few = "at most the number of grains";
+    check.that(m.rattlers <= m.grains, "contacts.rattlers", f64::from(m.rattlers), few)?;
+    Ok(ContactStatistics {
+        grains: m.grains,
+        contacts: m.contacts,
+        rattlers: m.rattlers,
+        coordination: check.not_negative("contacts.coordination", m.coordination)?,
+        mechanical_coordination: check
+            .not_negative("contacts.mechanical_coordination", m.mechanical_coordination)?,
+        sliding_fraction: check.share("contacts.sliding_fraction", m.sliding_fraction)?,
+        forces: check
+            .optional("contacts.forces", &m.forces, |_, f| force_statistics(check, f, m.contacts))?,
+        friction: check
+            .optional("contacts.friction", &m.friction, |_, f| mobilised_friction(check, f, m.contacts))?,
+    })
+}
+
+fn force_statistics(
+    check: Check,
+    m: &msg::ForceStatistics,
+    contacts: u32,
+) -> Result<ForceStatistics, BoundaryError> {
+    every_contact(check, "contacts.forces.histogram", &m.histogram, contacts)?;
+    check.all_finite("contacts.forces.moments", &m.moments)?;
+    check.positive("contacts.forces.moments[0]", m.moments[0])?;
+    Ok(ForceStatistics {
+        mean_normal: check.positive("contacts.forces.mean_normal", m.mean_normal)?,
+        mean_tangential: check.not_negative("contacts.forces.mean_tangential", m.mean_tangential)?,
+        moments: m.moments,
+        largest: check.positive("contacts.forces.largest", m.largest)?,
+        histogram: m.histogram,
+    })
+}
+
+fn mobilised_friction(
+    check: Check,
+    m: &msg::MobilisedFriction,
+    contacts: u32,
+) -> Result<MobilisedFriction, BoundaryError> {
+    every_contact(check, "contacts.friction.histogram", &m.histogram, contacts)?;
+    Ok(MobilisedFriction { mean: check.share("contacts.friction.mean", m.mean)?, histogram: m.histogram })
+}
+
+/// A histogram holds every contact once.
+pub(super) fn every_contact(
+    check: Check,
+    field: &str,
+    counts: &[u32],
+    contacts: u32,
+) -> Result<(), BoundaryError> {
+    let sum: u64 = counts.iter().map(|c| u64::from(*c)).sum();
+    let requirement = "the number of contacts";
+    check.that(sum == u64::from(contacts), &format!("sum of {field}"), sum as f64, requirement).map(drop)
+}

@@ -1,0 +1,59 @@
+//! `ElasticStiffness`: the stiffness of a packing, its bounds, and how it was found.
+
+use super::BoundaryError;
+use super::check::{Check, one_or_none};
+use crate::msg;
+use grainlab_core::Stiffness;
+use grainlab_core::results::{ElasticStiffness, StiffnessBounds, StiffnessMethod};
+
+const fn code(method: StiffnessMethod) -> u8 {
+    match method {
+        StiffnessMethod::FrozenNetwork => msg::ElasticStiffness::METHOD_FROZEN_NETWORK,
+        StiffnessMethod::PrestressedNetwork => msg::ElasticStiffness::METHOD_PRESTRESSED_NETWORK,
+        StiffnessMethod::StrainProbe => msg::ElasticStiffness::METHOD_PROBE,
+    }
+}
+
+pub(super) fn elastic_stiffness_message(s: &ElasticStiffness) -> msg::ElasticStiffness {
+    msg::ElasticStiffness {
+        method: code(s.method),
+        stiffness: s.tensor.row_major(),
+        stddev: s.stddev.row_major(),
+        residual: s.residual,
+        iterations: s.iterations,
+        affine: s.bounds.affine.row_major(),
+        uniform_rotation: s.bounds.uniform_rotation.row_major(),
+        bulk_reuss_bound: one_or_none(s.bounds.bulk_reuss),
+    }
+}
+
+/// That of the field `stiffness` of a message.
+pub(super) fn elastic_stiffness(
+    check: Check,
+    m: &msg::ElasticStiffness,
+) -> Result<ElasticStiffness, BoundaryError> {
+    let name = |field: &str| format!("stiffness.{field}");
+    let matrix = |field: &str, values: &[f64; 36]| {
+        check.all_finite(&name(field), values)?;
+        Ok::<_, BoundaryError>(Stiffness::from_row_major(values))
+    };
+    for (i, stddev) in m.stddev.iter().enumerate() {
+        check.not_negative(&name(&format!("stddev[{i}]")), *stddev)?;
+    }
+    let method = StiffnessMethod::ALL.into_iter().find(|method| code(*method) == m.method);
+    Ok(ElasticStiffness {
+        method: method.ok_or_else(|| {
+            let known = "0 (frozen network), 2 (probe), 4 (prestressed network)";
+            check.code(&name("method"), m.method, known)
+        })?,
+        tensor: matrix("stiffness", &m.stiffness)?,
+        stddev: matrix("stddev", &m.stddev)?,
+        residual: check.not_negative(&name("residual"), m.residual)?,
+        iterations: m.iterations,
+        bounds: StiffnessBounds {
+            affine: matrix("affine", &m.affine)?,
+            uniform_rotation: matrix("uniform_rotation", &m.uniform_rotation)?,
+            bulk_reuss: check.optional_not_negative(&name("bulk_reuss_bound"), &m.bulk_reuss_bound)?,
+        },
+    })
+}

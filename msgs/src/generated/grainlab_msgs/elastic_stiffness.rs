@@ -1,0 +1,63 @@
+// Generated from msg/ElasticStiffness.msg by examples/generate; not edited by hand.
+
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// Stiffness of a packing, in the frame of the cell. Voigt order xx yy zz yz xz xy, engineering shear, row-major.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElasticStiffness {
+    /// one of METHOD_\*
+    pub method: u8,
+    /// Pa
+    #[serde(with = "crate::fixed_array")]
+    pub stiffness: [f64; 36],
+    /// Pa, standard error of each entry as a measurement of this packing
+    #[serde(with = "crate::fixed_array")]
+    pub stddev: [f64; 36],
+    /// relative residual of the solve, worst of the six columns
+    pub residual: f64,
+    /// of the solve, 0 = direct
+    pub iterations: u32,
+    /// Pa, every grain moves with the mean deformation
+    #[serde(with = "crate::fixed_array")]
+    pub affine: [f64; 36],
+    /// Pa, the same with one rotation of all grains
+    #[serde(with = "crate::fixed_array")]
+    pub uniform_rotation: [f64; 36],
+    /// Pa, lower bound of the bulk modulus under isotropic stress, none without forces
+    pub bulk_reuss_bound: Vec<f64>,
+}
+
+impl ElasticStiffness {
+    /// relaxed frozen network, solved
+    pub const METHOD_FROZEN_NETWORK: u8 = 0;
+
+    /// small strains imposed on a simulation
+    pub const METHOD_PROBE: u8 = 2;
+
+    /// relaxed frozen network with the prestress term
+    pub const METHOD_PRESTRESSED_NETWORK: u8 = 4;
+}
+
+impl Default for ElasticStiffness {
+    fn default() -> Self {
+        Self {
+            method: Default::default(),
+            stiffness: [f64::default(); 36],
+            stddev: [f64::default(); 36],
+            residual: Default::default(),
+            iterations: Default::default(),
+            affine: [f64::default(); 36],
+            uniform_rotation: [f64::default(); 36],
+            bulk_reuss_bound: Default::default(),
+        }
+    }
+}
+
+impl Message for ElasticStiffness {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "ElasticStiffness";
+    const TYPE: &'static str = "grainlab_msgs/msg/ElasticStiffness";
+    const HASH: &'static str = "RIHS01_9204beee23cc53ecfe3778b2da10e7b45377c314e6b93fd34f828142fbcf21dc";
+    const DEFINITION: &'static str = definition!("msg/ElasticStiffness.msg");
+}

@@ -1,0 +1,31 @@
+// Generated from msg/PrincipalAxis.msg by examples/generate; not edited by hand.
+
+use crate::generated::geometry_msgs::Vector3;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// The principal axis of the contact fabric that stands out most, and its noise among packings prepared alike.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PrincipalAxis {
+    /// unit eigenvector furthest from isotropy, z \>= 0
+    pub direction: Vector3,
+    /// eps about it
+    pub contact_anisotropy: f64,
+    /// standard deviation of eps about any axis, none with fewer than 30 contacts
+    pub contact_anisotropy_stddev: Vec<f64>,
+    /// rad, of the direction, none where it would exceed 1 rad
+    pub angle_stddev: Vec<f64>,
+    /// whether the anisotropy exceeds its noise and one axis stands out; else any axis is as good
+    pub determined: bool,
+}
+
+impl Message for PrincipalAxis {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "PrincipalAxis";
+    const TYPE: &'static str = "grainlab_msgs/msg/PrincipalAxis";
+    const HASH: &'static str = "RIHS01_b9bd81493b313eca1ff19f20ab62485aa1b52927dcd95ecacdbb8bc5db5654c9";
+    const DEFINITION: &'static str = definition!(
+        "msg/PrincipalAxis.msg",
+        "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",
+    );
+}

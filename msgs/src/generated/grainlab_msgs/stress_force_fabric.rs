@@ -1,0 +1,29 @@
+// Generated from msg/StressForceFabric.msg by examples/generate; not edited by hand.
+
+use crate::generated::grainlab_msgs::SymmetricTensor;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// Second-order anisotropies of contacts and forces; traceless tensors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StressForceFabric {
+    /// contacts are distributed as 1 + a.nn
+    pub contacts: SymmetricTensor,
+    /// normal forces as 1 + a.nn
+    pub normal_forces: SymmetricTensor,
+    /// branch lengths as 1 + a.nn
+    pub branches: SymmetricTensor,
+    /// tangential forces as a.n - (n.a.n) n, in mean normal forces
+    pub tangential_forces: SymmetricTensor,
+}
+
+impl Message for StressForceFabric {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "StressForceFabric";
+    const TYPE: &'static str = "grainlab_msgs/msg/StressForceFabric";
+    const HASH: &'static str = "RIHS01_cba70b5c787dd210ceb331f0389db2e388a8b57b1fb59b26e3fcd1e0c474fd92";
+    const DEFINITION: &'static str = definition!(
+        "msg/StressForceFabric.msg",
+        "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",
+    );
+}

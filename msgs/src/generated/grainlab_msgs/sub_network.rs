@@ -1,0 +1,29 @@
+// Generated from msg/SubNetwork.msg by examples/generate; not edited by hand.
+
+use crate::generated::grainlab_msgs::SymmetricTensor;
+use crate::message::{Message, definition};
+use serde::{Deserialize, Serialize};
+
+/// The strong or the weak contacts of a packing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SubNetwork {
+    /// Dimensionless.
+    pub contacts: u32,
+    /// mean of n n, trace 1, all 0 = no contacts
+    pub fabric: SymmetricTensor,
+    /// eps about the reference axis
+    pub contact_anisotropy: f64,
+    /// Pa, stress that they carry
+    pub stress: SymmetricTensor,
+}
+
+impl Message for SubNetwork {
+    const PACKAGE: &'static str = "grainlab_msgs";
+    const NAME: &'static str = "SubNetwork";
+    const TYPE: &'static str = "grainlab_msgs/msg/SubNetwork";
+    const HASH: &'static str = "RIHS01_3369b9d0e0a05fe59ce0309c2e81d80c8f7672a25205746b5ac076038e88aeff";
+    const DEFINITION: &'static str = definition!(
+        "msg/SubNetwork.msg",
+        "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",
+    );
+}

@@ -1,0 +1,126 @@
+//! The stiffness of a packing, its bounds, and how it was found.
+
+use crate::stiffness::Stiffness;
+
+/// How a stiffness was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StiffnessMethod {
+    /// Linear response of the frozen contact network.
+    FrozenNetwork,
+    /// The same with the prestress term.
+    PrestressedNetwork,
+    /// Small strains imposed on the packing with its whole contact law.
+    StrainProbe,
+}
+
+impl StiffnessMethod {
+    /// All of them.
+    pub const ALL: [StiffnessMethod; 3] = [Self::FrozenNetwork, Self::PrestressedNetwork, Self::StrainProbe];
+
+    /// As tables and files name it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FrozenNetwork => "frozen_network",
+            Self::PrestressedNetwork => "prestressed_network",
+            Self::StrainProbe => "probe",
+        }
+    }
+}
+
+/// The elastic stiffness of a packing, in the frame of the cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticStiffness {
+    /// How [`ElasticStiffness::tensor`] was found.
+    pub method: StiffnessMethod,
+    /// The stiffness: grains relax under the strain.
+    pub tensor: Stiffness,
+    /// Standard error of each entry, Pa, as a measurement of this packing: what the solve or the probe left open. How much
+    /// packings of one kind differ is not in it.
+    pub stddev: Stiffness,
+    /// Relative residual of the solve, or of the probe's relaxation; the worst of the six columns.
+    pub residual: f64,
+    /// Iterations of the solve, or steps of the probe; 0 for a direct solve.
+    pub iterations: u32,
+    /// What the contact network says in closed form, whatever the method.
+    pub bounds: StiffnessBounds,
+}
+
+/// Closed-form bounds of the stiffness by the contact network.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StiffnessBounds {
+    /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
+    pub affine: Stiffness,
+    /// The same where all grains also rotate alike: between relaxed and affine.
+    pub uniform_rotation: Stiffness,
+    /// Lower bound of the bulk modulus under isotropic stress, Pa; `None` without forces.
+    pub bulk_reuss: Option<f64>,
+}
+
+/// The stiffness of a packing, or why it has none.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Elasticity {
+    /// The contact network resists strain.
+    Jammed(Box<ElasticStiffness>),
+    /// It does not.
+    NotJammed(NotJammed),
+}
+
+impl Elasticity {
+    /// The stiffness, if there is one.
+    pub fn stiffness(&self) -> Option<&ElasticStiffness> {
+        match self {
+            Self::Jammed(stiffness) => Some(stiffness),
+            Self::NotJammed(_) => None,
+        }
+    }
+
+    /// Why there is no stiffness, if there is none.
+    pub fn not_jammed(&self) -> Option<&NotJammed> {
+        match self {
+            Self::Jammed(_) => None,
+            Self::NotJammed(why) => Some(why),
+        }
+    }
+
+    /// The stiffness, or why there is none, as a result.
+    pub fn into_stiffness(self) -> Result<ElasticStiffness, NotJammed> {
+        match self {
+            Self::Jammed(stiffness) => Ok(*stiffness),
+            Self::NotJammed(why) => Err(why),
+        }
+    }
+}
+
+/// Why a packing has no stiffness. Not a fault: a gas has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotJammed {
+    /// No two grains touch.
+    #[error("no contact network: none of the {grains} grains touches another; compress the packing first")]
+    NoContacts {
+        /// Number of grains.
+        grains: usize,
+    },
+    /// Every grain was removed as a rattler.
+    #[error(
+        "no contact network: all {grains} grains are rattlers (fewer than {needed} contacts each, found recursively); \
+         compress the packing first"
+    )]
+    OnlyRattlers {
+        /// Number of grains.
+        grains: usize,
+        /// Contacts that a grain needs in order to carry force.
+        needed: u32,
+    },
+    /// Contacts exist but resist no deformation of the cell.
+    #[error(
+        "no contact network: the {contacts} contacts do not span the cell, every strain relaxes to zero stress; \
+         compress the packing first"
+    )]
+    Floppy {
+        /// Number of contacts.
+        contacts: usize,
+    },
+    /// The report was put together from messages, and none of them had a stiffness.
+    #[error("no moduli were published for this packing")]
+    NotReported,
+}

@@ -1,0 +1,33 @@
+//! What is measured on a packing, and what is inferred from it: one type for each, which kernels, messages and printers share.
+//!
+//! - [`ContactStatistics`]: coordination, rattlers, forces, mobilised friction
+//! - [`Fabric`]: how contacts are oriented
+//! - [`StressDecomposition`]: which forces and which contacts carry the stress
+//! - [`StrainRatios`]: deviatoric over volumetric strain
+//! - [`ElasticStiffness`]: the stiffness, its bounds, and how it was found
+//! - [`PackingReport`]: all of it for one packing
+//!
+//! Tensors are in the frame of the cell. h is the reference axis ([`Fabric::reference_axis`]), n a contact normal and
+//! x = |n·h|. What is undefined (no contacts, no forces, no Coulomb limit) is `None`; tensors whose weights sum to nothing
+//! are zero.
+
+mod contact_statistics;
+mod elastic_stiffness;
+mod fabric;
+mod packing_report;
+mod quantities;
+mod strain_ratios;
+mod stress_decomposition;
+
+pub use contact_statistics::{
+    ContactStatistics, FORCE_BIN_WIDTH, FORCE_BINS, ForceStatistics, MOBILISATION_BINS, MobilisedFriction,
+};
+pub use elastic_stiffness::{ElasticStiffness, Elasticity, NotJammed, StiffnessBounds, StiffnessMethod};
+pub use fabric::{
+    Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
+    PrincipalAxis, contact_anisotropy,
+};
+pub use packing_report::PackingReport;
+pub use quantities::QUANTITIES;
+pub use strain_ratios::StrainRatios;
+pub use stress_decomposition::{StressDecomposition, StressForceFabric, SubNetwork};

@@ -1,0 +1,76 @@
+//! Everything that is measured on one packing.
+
+use super::contact_statistics::ContactStatistics;
+use super::elastic_stiffness::{ElasticStiffness, Elasticity};
+use super::fabric::Fabric;
+use super::strain_ratios::StrainRatios;
+use super::stress_decomposition::StressDecomposition;
+use crate::material::Material;
+use crate::stiffness::TransverseIsotropy;
+use crate::stress::Stress;
+use crate::symmetry::{Symmetry, SymmetryClass};
+
+/// Everything that is measured on one packing. [`super::QUANTITIES`] lists it by number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PackingReport {
+    /// Solver steps done.
+    pub step: u64,
+    /// Material of the grains.
+    pub material: Material,
+    /// Solid fraction φ.
+    pub solid_fraction: f64,
+    /// Stress of the elastic contact forces.
+    pub stress: Stress,
+    /// Mean net force of non-rattlers over mean contact force; `None` without forces.
+    pub unbalanced_force_ratio: Option<f64>,
+    /// Contacts and the forces they carry.
+    pub contacts: ContactStatistics,
+    /// Orientation of the contacts.
+    pub fabric: Fabric,
+    /// Which forces and which contacts carry the stress.
+    pub stress_decomposition: StressDecomposition,
+    /// The three ratios γ/Δ.
+    pub strain_ratios: StrainRatios,
+    /// The stiffness, or why there is none.
+    pub elasticity: Elasticity,
+    /// Symmetry of the stiffness; `None` without one.
+    pub symmetry: Option<Symmetry>,
+}
+
+impl PackingReport {
+    /// Pressure, Pa.
+    pub fn pressure(&self) -> f64 {
+        self.stress.tensor.mean()
+    }
+
+    /// q/p; `None` without pressure.
+    pub fn stress_ratio(&self) -> Option<f64> {
+        let (p, q) = (self.pressure(), self.stress.tensor.deviatoric_invariant());
+        (p > 0.0).then(|| q / p)
+    }
+
+    /// ε of the contacts weighted by their normal stiffness; `None` without contacts.
+    pub fn stiffness_anisotropy(&self) -> Option<f64> {
+        (self.contacts.contacts > 0).then(|| self.fabric.stiffness_anisotropy())
+    }
+
+    /// The stiffness, if there is one.
+    pub fn stiffness(&self) -> Option<&ElasticStiffness> {
+        self.elasticity.stiffness()
+    }
+
+    /// The stiffness projected on media isotropic about the reference axis.
+    pub fn projected(&self) -> Option<TransverseIsotropy> {
+        Some(self.stiffness()?.tensor.transverse_isotropy_about(&self.fabric.reference_axis))
+    }
+
+    /// Angle between the axis of the stiffness and that of the fabric, rad; `None` where either is not determined.
+    pub fn symmetry_angle_to_fabric(&self) -> Option<f64> {
+        let symmetry = self.symmetry.as_ref()?;
+        let with_axis = !matches!(symmetry.class, SymmetryClass::Isotropic | SymmetryClass::Cubic);
+        let axis = &self.fabric.principal_axis;
+        let angle =
+            || symmetry.axis.cross(&axis.direction).norm().atan2(symmetry.axis.dot(&axis.direction).abs());
+        (with_axis && axis.determined).then(angle)
+    }
+}

@@ -1,0 +1,41 @@
+//! The medium that wave speeds tell, where the axis may not be named.
+
+use crate::christoffel::{self, ChristoffelError, SpeedFit};
+use crate::conditions::{Conditions, Measured};
+use crate::moduli::Modulus;
+use grainlab_core::{Vec3, WaveSpeed};
+
+/// The moduli of wave speeds, and the axis they are about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WaveModuli {
+    /// The axis named, else the one that the speeds tell, else e3; unit.
+    pub axis: Vec3,
+    /// The moduli about it, or why the speeds are those of no medium.
+    pub fitted: Result<SpeedFit, ChristoffelError>,
+}
+
+impl WaveModuli {
+    /// Of the waves in a sample of this density, kg/m³, in the state `conditions`; `named` is the axis of symmetry, if known.
+    pub fn of_speeds(
+        speeds: &[WaveSpeed],
+        density: Measured,
+        named: Option<Vec3>,
+        conditions: Conditions,
+    ) -> Self {
+        let told = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
+        let axis = named.or_else(told).unwrap_or_else(Vec3::z);
+        Self { axis, fitted: christoffel::moduli_from_speeds(speeds, density, Some(axis), conditions) }
+    }
+
+    /// One of the moduli, Pa; `None` where the speeds do not determine it.
+    pub fn modulus(&self, modulus: Modulus) -> Option<f64> {
+        self.fitted.as_ref().ok()?.observation.moduli.get(modulus)
+    }
+
+    /// Its standard deviation, Pa; `None` also where the errors of the speeds are not known.
+    pub fn stddev(&self, modulus: Modulus) -> Option<f64> {
+        let observation = &self.fitted.as_ref().ok()?.observation;
+        let (covariance, at) = (observation.covariance?, modulus as usize);
+        observation.moduli.get(modulus).map(|_| covariance[(at, at)].max(0.0).sqrt())
+    }
+}

@@ -1,0 +1,184 @@
+//! Everything that is measured on one packing.
+
+use crate::equilibrium::unbalanced_force_ratio;
+use crate::error::MicroError;
+use crate::network::{Solver, SpringNetwork, Springs, bulk_reuss_bound, relaxed_stiffness};
+use crate::probe::{StrainProbe, StrainProbeResult, strain_probe};
+use crate::rattlers::min_contacts;
+use crate::sampling_tolerance::sampling_tolerance;
+use crate::structure::{contact_statistics, fabric, strain_ratio, stress_decomposition, total_strain_ratio};
+use crate::view::PackingView;
+use grainlab_core::results::{
+    ContactStatistics, ElasticStiffness, Elasticity, Fabric, NotJammed, PackingReport, StiffnessBounds,
+    StiffnessMethod, StrainRatios, StressDecomposition,
+};
+use grainlab_core::{Packing, Vec3, symmetry};
+
+/// How a packing is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of about 1e-14
+    /// in C at z = 5.3; a loose one overestimates C, the more so the closer the network is to isostaticity (z = 4).
+    pub tolerance: f64,
+    /// How the stiffness solve is done; the result is the same.
+    pub solver: Solver,
+    /// Iterations after which the solve gives up.
+    pub max_iterations: u32,
+    /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken, and what is read off the stiffness as moduli
+    /// ([`Fabric::reference_axis`] keeps it). Any length but zero. The stiffnesses themselves stay in the frame of the cell.
+    pub axis: Vec3,
+    /// Which springs the frozen network has.
+    pub springs: Springs,
+    /// With a probe the stiffness is measured by straining the packing, instead of that of the frozen network.
+    pub probe: Option<StrainProbe>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-9,
+            solver: Solver::Iterative,
+            max_iterations: 20_000,
+            axis: Vec3::z(),
+            springs: Springs::NormalAndTangential,
+            probe: None,
+        }
+    }
+}
+
+/// What [`analyze`] finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// Everything measured.
+    pub report: PackingReport,
+    /// How the probe went, where there was one.
+    pub probe: Option<StrainProbeResult>,
+}
+
+/// Measures structure, stress and stiffness of `packing`.
+///
+/// A packing that is not jammed is measured as far as it goes and says why in [`PackingReport::elasticity`].
+///
+/// # Errors
+/// A setting out of range, a contact whose normal is not along its branch, and a stiffness that fails its checks.
+pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, MicroError> {
+    let axis = settings.check()?;
+    let view = PackingView::new(packing);
+    let (elasticity, probe) = elasticity(&view, settings)?;
+    let fabric = fabric(&view, &axis);
+    let parts = ReportParts {
+        contacts: contact_statistics(&view),
+        stress_decomposition: stress_decomposition(&view, &fabric),
+        strain_ratios: StrainRatios {
+            total: total_strain_ratio(packing, &axis),
+            elastic: elasticity
+                .stiffness()
+                .and_then(|s| strain_ratio(&s.tensor.isotropic_compression()?, &axis)),
+            contact: fabric.orientation.overlap_fit.map(|fit| fit.g),
+        },
+        fabric,
+        elasticity,
+    };
+    Ok(Analysis { report: report(&view, parts), probe })
+}
+
+/// What a report holds beside the state of the packing.
+#[derive(Clone, Debug)]
+pub struct ReportParts {
+    /// Contacts and the forces they carry.
+    pub contacts: ContactStatistics,
+    /// Orientation of the contacts.
+    pub fabric: Fabric,
+    /// Which forces and which contacts carry the stress.
+    pub stress_decomposition: StressDecomposition,
+    /// The three ratios γ/Δ.
+    pub strain_ratios: StrainRatios,
+    /// The stiffness, or why there is none.
+    pub elasticity: Elasticity,
+}
+
+/// The report of a packing whose parts were measured, here or by whoever recorded them.
+pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
+    let packing = view.packing;
+    let ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity } = parts;
+    let tolerance = sampling_tolerance(contacts.grains);
+    PackingReport {
+        step: packing.step,
+        material: packing.material,
+        solid_fraction: packing.solid_fraction(),
+        stress: view.stress,
+        unbalanced_force_ratio: unbalanced_force_ratio(packing, &view.non_rattlers),
+        symmetry: elasticity.stiffness().and_then(|s| symmetry(&s.tensor, tolerance)),
+        contacts,
+        fabric,
+        stress_decomposition,
+        strain_ratios,
+        elasticity,
+    }
+}
+
+/// The stiffness by the method of the settings, and how the probe went.
+fn elasticity(
+    view: &PackingView<'_>,
+    settings: &Settings,
+) -> Result<(Elasticity, Option<StrainProbeResult>), MicroError> {
+    let packing = view.packing;
+    let grains = packing.grains();
+    let not_jammed = |why| Ok((Elasticity::NotJammed(why), None));
+    if packing.contacts.is_empty() {
+        return not_jammed(NotJammed::NoContacts { grains });
+    }
+    if view.carrying() == 0 {
+        return not_jammed(NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) });
+    }
+    let network = SpringNetwork::new(view, settings.springs)?;
+    let found = relaxed_stiffness(&network, settings.solver, settings.tolerance, settings.max_iterations)?;
+    let Some(found) = found else {
+        return not_jammed(NotJammed::Floppy { contacts: network.contacts() });
+    };
+    let bounds = StiffnessBounds {
+        affine: found.affine,
+        uniform_rotation: found.uniform_rotation,
+        bulk_reuss: bulk_reuss_bound(view, settings.springs),
+    };
+    let probe = settings.probe.as_ref().map(|probe| strain_probe(packing, probe)).transpose()?;
+    let stiffness = match &probe {
+        Some(probe) => ElasticStiffness {
+            method: StiffnessMethod::StrainProbe,
+            tensor: probe.stiffness,
+            stddev: probe.stddev(),
+            residual: probe.residual(),
+            iterations: probe.steps(),
+            bounds,
+        },
+        None => ElasticStiffness {
+            method: if network.prestressed() {
+                StiffnessMethod::PrestressedNetwork
+            } else {
+                StiffnessMethod::FrozenNetwork
+            },
+            tensor: found.relaxed,
+            stddev: found.stddev,
+            residual: found.residual,
+            iterations: found.iterations,
+            bounds,
+        },
+    };
+    Ok((Elasticity::Jammed(Box::new(stiffness)), probe))
+}
+
+impl Settings {
+    /// The axis as a unit vector, if every setting is in range.
+    fn check(&self) -> Result<Vec3, MicroError> {
+        if !(1e-13..=1e-2).contains(&self.tolerance) {
+            let requirement = "between 1e-13 and 1e-2";
+            return Err(MicroError::Setting { name: "tolerance", value: self.tolerance, requirement });
+        }
+        let length = self.axis.norm();
+        if !(length > 0.0 && length.is_finite()) {
+            let requirement = "a finite vector longer than zero";
+            return Err(MicroError::Setting { name: "axis", value: length, requirement });
+        }
+        Ok(self.axis / length)
+    }
+}

@@ -1,0 +1,73 @@
+//! Closed-form neighbours of the relaxed stiffness: above it, affine motion with one spin of all grains; below its bulk
+//! modulus, the forces that the packing already carries.
+
+use super::spring_network::{SpringNetwork, Springs};
+use crate::view::PackingView;
+use grainlab_core::Stiffness;
+use nalgebra::{Matrix3, Matrix6x3};
+
+/// Share of the largest entry of the affine stiffness below which a spin costs nothing.
+const FREE_SPIN: f64 = 1e-12;
+
+/// Stiffness, Pa, of the network whose grains move with the mean deformation and all spin alike, as the paper's theory has
+/// it (the spin that makes the stress symmetric, its Eq. 12): A less what three uniform spins relax. Between the
+/// relaxed stiffness and the affine one; they are equal without anisotropy and without tangential springs.
+pub fn uniform_rotation_stiffness(network: &SpringNetwork, affine: &Stiffness) -> Stiffness {
+    let (spin, coupling) = network.spin_energy();
+    let eigen = spin.symmetric_eigen();
+    let mut relaxed = affine.0;
+    for (k, value) in eigen.eigenvalues.iter().enumerate() {
+        if *value > FREE_SPIN * affine.0.amax() {
+            let along: nalgebra::Vector6<f64> = coupling * eigen.eigenvectors.column(k);
+            relaxed -= along * along.transpose() / *value;
+        }
+    }
+    Stiffness(relaxed)
+}
+
+/// Lower bound of the bulk modulus under isotropic stress (Reuss), Pa: V p²/Σ(F_n²/k_n + F_t²/k_t).
+///
+/// The forces of the packing, each more by the same share, balance every grain and carry the same share more of the
+/// pressure; the complementary energy of any forces that do is at least that of the true ones. As good a bound as the
+/// packing is at rest under isotropic stress. Without tangential springs tangential forces cannot follow, and
+/// are left out. `None` without forces.
+pub fn bulk_reuss_bound(view: &PackingView<'_>, springs: Springs) -> Option<f64> {
+    let (packing, pressure) = (view.packing, view.stress.tensor.mean());
+    let mut compliance = 0.0;
+    for (c, (k_n, k_t)) in packing.contacts.iter().zip(&view.contact_stiffnesses) {
+        compliance += c.normal_force * c.normal_force / k_n;
+        if springs.has_tangential() {
+            compliance += c.tangential_force.norm_squared() / k_t;
+        }
+    }
+    let bound = packing.cell.volume() * pressure * pressure / compliance;
+    (compliance > 0.0 && bound.is_finite()).then_some(bound)
+}
+
+/// Energy of three uniform spins alone, and of each with the six unit strains, Pa.
+pub(crate) type SpinEnergy = (Matrix3<f64>, Matrix6x3<f64>);
+
+impl SpringNetwork {
+    /// With the spin θ of all grains a contact feels −(λ_i + λ_j) θ×n = −θ×l.
+    pub(crate) fn spin_energy(&self) -> SpinEnergy {
+        let (mut spin, mut coupling) = (Matrix3::zeros(), Matrix6x3::zeros());
+        for s in self.springs() {
+            let affine = s.affine();
+            let [x, y, z] = s.branch();
+            // Columns: θ along x, y, z.
+            let w = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+            let f = s.force(&w);
+            for k in 0..3 {
+                for b in 0..3 {
+                    for a in 0..3 {
+                        spin[(a, b)] += w[k][a] * f[k][b];
+                    }
+                    for a in 0..6 {
+                        coupling[(a, b)] += affine[k][a] * f[k][b];
+                    }
+                }
+            }
+        }
+        (spin / self.volume(), coupling / self.volume())
+    }
+}

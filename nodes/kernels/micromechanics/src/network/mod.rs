@@ -1,0 +1,24 @@
+//! The frozen contact network as a linear operator, its solution, and the stiffness that follows.
+//!
+//! - [`SpringNetwork`]: grains and springs as an operator for any number of right-hand sides at once
+//! - [`solve()`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
+//!   own blocks ([`generalised_inverse`]); [`solve_directly`]: the same by a sparse Cholesky factorisation
+//! - [`relaxed_stiffness()`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
+//! - [`uniform_rotation_stiffness`], [`bulk_reuss_bound`]: closed forms above and below it
+
+mod bounds;
+mod conjugate_gradient;
+mod direct;
+mod gauss_seidel;
+mod lanes;
+mod preconditioner;
+mod relaxed_stiffness;
+mod solve;
+mod spring_network;
+
+pub use bounds::{bulk_reuss_bound, uniform_rotation_stiffness};
+pub use direct::solve as solve_directly;
+pub use preconditioner::{Block, generalised_inverse};
+pub use relaxed_stiffness::{NetworkStiffness, relaxed_stiffness};
+pub use solve::{Solution, Solver, solve};
+pub use spring_network::{ContactSpring, GrainDofs, SpringNetwork, Springs};

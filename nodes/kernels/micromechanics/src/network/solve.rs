@@ -1,0 +1,264 @@
+//! Several right-hand sides of one network at once: conjugate gradients in single precision, refined in double.
+//!
+//! The operator is singular (uniform translation, rattlers, floppy grains), but loads made by contact forces lie in
+//! its range, and there conjugate gradients converge to a solution; which one of them does not matter to any force.
+//!
+//! Each round solves for what the last one left of the loads, computed in double precision with the operator itself, so
+//! that neither the precision of a round nor its recurrences limit the result. Single precision halves what must be moved
+//! through memory and doubles what one instruction does; where it stops helping, double takes over. Everything runs
+//! in one fixed order on one thread: the same input gives the same bits.
+
+use super::conjugate_gradient::{Descent, Goal, Precision};
+use super::gauss_seidel::Sweeps;
+use super::lanes::WIDTH;
+use super::preconditioner::Block;
+use super::spring_network::{GrainDofs, SpringNetwork};
+use crate::error::MicroError;
+use nalgebra::Matrix6;
+
+/// A round reduces the residual by this much at most in single precision (10⁻⁷ relative rounding)…
+const SINGLE: f64 = 3e-6;
+
+/// …and in double.
+const DOUBLE: f64 = 1e-13;
+
+/// A round that leaves more than this share of a residual did not help.
+const HELPED: f64 = 0.1;
+
+/// Iterations of one round in single precision. A network that needs more is so close to a mechanism that rounding would
+/// decide.
+const SINGLE_ROUND: u32 = 500;
+
+/// Negative eigenvalues of a block up to this share of its largest are rounding.
+const ROUNDING: f64 = 1e-12;
+/// How the loads are balanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Solver {
+    /// By [`solve()`].
+    #[default]
+    Iterative,
+    /// By [`super::solve_directly()`].
+    Direct,
+}
+
+/// Motions that balance the loads.
+#[derive(Clone, Debug)]
+pub struct Solution<const L: usize> {
+    /// One motion per grain.
+    pub motion: Vec<GrainDofs<L>>,
+    /// Norm of what is left of each load, recomputed from the motion, over its scale; the worst of the columns.
+    pub residual: f64,
+    /// Iterations done.
+    pub iterations: u32,
+}
+
+/// Solves K x = `load` (one entry per grain, N) for `L` columns at once, at most eight, until the norm of each residual
+/// is at most `tolerance` times its entry in `scale` (N). Columns with a scale of zero are left at zero.
+pub fn solve<const L: usize>(
+    network: &SpringNetwork,
+    load: &[GrainDofs<L>],
+    scale: &[f64; L],
+    tolerance: f64,
+    max_iterations: u32,
+) -> Result<Solution<L>, MicroError> {
+    const { assert!(L <= WIDTH) }
+    let mut refinement = Refinement::new(load, scale, tolerance, max_iterations);
+    if network.prestressed() {
+        refinement.solve::<true>(network)?;
+    } else {
+        refinement.solve::<false>(network)?;
+    }
+    refinement.solution()
+}
+
+/// Adds `share` of `x`, column by column, to `sum`.
+pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mut [GrainDofs<L>]) {
+    for (x, sum) in x.iter().zip(sum) {
+        for k in 0..6 {
+            for l in 0..L {
+                sum[k][l] += share[l] * x[k][l];
+            }
+        }
+    }
+}
+
+/// What is found so far and what is left, in double precision.
+pub(crate) struct Refinement<'a, const L: usize> {
+    load: &'a [GrainDofs<L>],
+    scale: &'a [f64; L],
+    tolerance: f64,
+    max_iterations: u32,
+    motion: Vec<GrainDofs<L>>,
+    /// K x.
+    image: Vec<GrainDofs<L>>,
+    /// Squared norms of load − K x.
+    squares: [f64; L],
+    /// The worst of the columns.
+    residual: f64,
+    iterations: u32,
+}
+
+impl<'a, const L: usize> Refinement<'a, L> {
+    pub(crate) fn new(
+        load: &'a [GrainDofs<L>],
+        scale: &'a [f64; L],
+        tolerance: f64,
+        max_iterations: u32,
+    ) -> Self {
+        let zero = vec![[[0.0; L]; 6]; load.len()];
+        let (squares, residual) = ([0.0; L], f64::INFINITY);
+        let mut new = Self {
+            load,
+            scale,
+            tolerance,
+            max_iterations,
+            motion: zero.clone(),
+            image: zero,
+            squares,
+            residual,
+            iterations: 0,
+        };
+        new.look();
+        new
+    }
+
+    /// What is left of the loads.
+    fn look(&mut self) {
+        self.squares = [0.0; L];
+        for (load, image) in self.load.iter().zip(&self.image) {
+            for k in 0..6 {
+                for l in 0..L {
+                    self.squares[l] += (load[k][l] - image[k][l]).powi(2);
+                }
+            }
+        }
+        let ratio = |l: usize| if self.scale[l] > 0.0 { self.squares[l].sqrt() / self.scale[l] } else { 0.0 };
+        // Not f64::max, which would hide a NaN.
+        self.residual =
+            (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
+    }
+
+    /// In single precision, and in double if that is not enough. `G`: with the prestress term.
+    fn solve<const G: bool>(&mut self, network: &SpringNetwork) -> Result<(), MicroError> {
+        if G && network.diagonal_blocks().iter().any(gives_way) {
+            return Err(MicroError::Unstable { residual: self.residual });
+        }
+        let single = Sweeps::<f32, G>::new(network);
+        if !self.rounds(network, &mut Descent::new(&single), SINGLE, SINGLE_ROUND) {
+            let double = Sweeps::<f64, G>::new(network);
+            let mut descent = Descent::new(&double);
+            self.rounds(network, &mut descent, DOUBLE, u32::MAX);
+            let solved = self.residual <= self.tolerance;
+            if descent.unstable && !solved {
+                return Err(MicroError::Unstable { residual: self.residual });
+            }
+        }
+        Ok(())
+    }
+
+    /// What is left of the loads; nothing in columns that stay at zero.
+    pub(crate) fn left(&self) -> Vec<GrainDofs<L>> {
+        let left = |load: &f64, image: &f64, l: usize| if self.scale[l] > 0.0 { load - image } else { 0.0 };
+        let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(&load[l], &image[l], l));
+        let grain =
+            |(load, image): (&GrainDofs<L>, &GrainDofs<L>)| std::array::from_fn(|k| row(&load[k], &image[k]));
+        self.load.iter().zip(&self.image).map(grain).collect()
+    }
+
+    /// One iteration: moves by `length` times `step`, column by column, and looks at what is left.
+    pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {
+        add(length, step, &mut self.motion);
+        self.iterations += 1;
+        self.renew(network);
+    }
+
+    /// Recomputes what is left from the motion.
+    fn renew(&mut self, network: &SpringNetwork) {
+        network.apply(&self.motion, &mut self.image);
+        self.look();
+    }
+
+    /// Whether more is to be done, and may be.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.residual > self.tolerance && self.iterations < self.max_iterations
+    }
+
+    /// What was found, if it is good enough.
+    pub(crate) fn solution(self) -> Result<Solution<L>, MicroError> {
+        let Self { motion, residual, tolerance, iterations, .. } = self;
+        if residual <= tolerance {
+            Ok(Solution { motion, residual, iterations })
+        } else {
+            Err(MicroError::NotConverged { residual, tolerance, iterations })
+        }
+    }
+
+    /// Rounds of conjugate gradients, each reducing the residual by `reach` at most in at most `most` iterations, as long
+    /// as they help. True if nothing more is to be done.
+    fn rounds<T: Precision, const G: bool>(
+        &mut self,
+        network: &SpringNetwork,
+        descent: &mut Descent<T, G>,
+        reach: f64,
+        most: u32,
+    ) -> bool {
+        while self.goes_on() {
+            let (before, kept) = (self.residual, self.motion.clone());
+            self.round(descent, reach, most);
+            self.renew(network);
+            // A NaN does not help either.
+            let worse = self.residual.is_nan() || self.residual > before;
+            if worse {
+                self.motion = kept;
+                self.renew(network);
+            }
+            if worse || (self.residual > HELPED * before && self.residual > self.tolerance) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn round<T: Precision, const G: bool>(&mut self, descent: &mut Descent<T, G>, reach: f64, most: u32) {
+        let sweeps = descent.sweeps;
+        // Rounding leaves more than the recurrence says: half the tolerance leaves it room. The rounds that are still to be
+        // done share what is left evenly.
+        let whole = 0.5 * self.tolerance / self.residual;
+        let rounds = (whole.ln() / reach.ln()).ceil().max(1.0);
+        let reduction = whole.powf(1.0 / rounds);
+        // Loads of length one: single precision has a narrow range.
+        let (mut squares, mut targets, mut norms) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+        for l in 0..L {
+            norms[l] = self.squares[l].sqrt();
+            if self.scale[l] > 0.0 && norms[l] > 0.0 {
+                squares[l] = 1.0;
+                targets[l] = (reduction * self.residual * self.scale[l] / norms[l]).powi(2);
+            }
+        }
+        for (at, grain) in sweeps.order.iter().enumerate() {
+            let (load, image) = (&self.load[*grain as usize], &self.image[*grain as usize]);
+            for k in 0..6 {
+                for l in 0..L {
+                    let left = (load[k][l] - image[k][l]) / norms[l];
+                    descent.rest[at][k][l] = if squares[l] > 0.0 { T::of(left) } else { T::ZERO };
+                }
+            }
+        }
+        let limit = most.min(self.max_iterations - self.iterations);
+        self.iterations += T::run(descent, &Goal { squares, targets, limit });
+        for (at, grain) in sweeps.order.iter().enumerate() {
+            let found = &descent.motion[at];
+            for (row, found) in self.motion[*grain as usize].iter_mut().zip(found) {
+                for l in 0..L {
+                    row[l] += found[l].wide() * (norms[l] / sweeps.unit);
+                }
+            }
+        }
+    }
+}
+
+/// Whether a grain that moves alone, with this block, meets less than no resistance.
+fn gives_way(block: &Block) -> bool {
+    let eigenvalues = Matrix6::from_fn(|i, j| block[i][j]).symmetric_eigenvalues();
+    eigenvalues.min() < -ROUNDING * eigenvalues.max()
+}

@@ -1,0 +1,185 @@
+//! One column of the probed stiffness: strain forward and backward, relax side by side, take the difference.
+
+use super::relaxation::Relaxation;
+use super::settings::{DifferenceScheme, StrainProbe};
+use crate::error::ProbeError;
+use grainlab_core::packing::Contact;
+use grainlab_dem::{DemError, Engine, Observables};
+use std::cmp::Ordering;
+
+/// Strain components, Voigt order.
+const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// Steps between two looks at the stress.
+pub(crate) const LOOK: u32 = 20;
+
+/// Fewest looks, of which the last third are compared.
+const LEAST_LOOKS: usize = 6;
+
+/// Fewest steps over which a strain is imposed, and largest strain of one of them: far below any overlap that counts.
+const STRAIN_STEPS: f64 = 20.0;
+const STRAIN_PER_STEP: f64 = 1e-7;
+
+/// Entries of a column are compared with the largest of them, or with this share of the affine stiffness where a column
+/// is feebler than that, or nothing at all.
+const FEEBLE: f64 = 1e-3;
+
+/// How one column came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProbeColumn {
+    /// Steps of each relaxation, straining included.
+    pub steps: u32,
+    /// Mean net force left on the non-rattlers, over the mean change of contact force that the strain alone would make.
+    pub residual: f64,
+    /// Largest change of an entry over the last third of the steps, relative to the largest entry.
+    pub drift: f64,
+    /// Largest difference between the forward and the backward column, relative to the largest entry; `None` for
+    /// [`DifferenceScheme::Forward`]. Hertz's law alone makes about (2/3) amplitude × Θ/p of it.
+    pub forward_backward: Option<f64>,
+    /// Contacts of the packing at rest that either strain opened.
+    pub opened: u32,
+    /// Contacts that either strain made.
+    pub closed: u32,
+    /// Contacts at the Coulomb limit under either strain.
+    pub sliding: u32,
+}
+
+impl ProbeColumn {
+    /// Whether the network is another one under strain: C is then not that of the packing at rest alone. One feeble
+    /// contact is enough; how much it matters shows in [`ProbeColumn::forward_backward`].
+    pub fn network_changed(&self) -> bool {
+        self.opened + self.closed > 0
+    }
+}
+
+/// The packing at rest, which every column starts from.
+pub(crate) struct RestState {
+    engine: Engine,
+    stress: [f64; 6],
+    contacts: Vec<Contact>,
+    /// Largest affine stiffness, Pa.
+    affine: f64,
+}
+
+impl RestState {
+    pub(crate) fn new(engine: Engine) -> Result<Self, DemError> {
+        let seen = engine.observables()?;
+        let (stress, affine) = (stress(&seen), amax(&seen.tangent));
+        Ok(Self { stress, contacts: contacts(&engine), affine, engine })
+    }
+}
+
+/// Column `component` of the stiffness, Pa. `load` is the change of contact forces that residuals are measured by.
+pub(crate) fn strained(
+    at_rest: &RestState,
+    settings: &StrainProbe,
+    load: f64,
+    component: usize,
+) -> Result<([f64; 6], ProbeColumn), ProbeError> {
+    let sides: [f64; 2] = match settings.sides {
+        DifferenceScheme::Central => [1.0, -1.0],
+        DifferenceScheme::Forward => [1.0, 0.0],
+    };
+    let strain_steps = (settings.amplitude / STRAIN_PER_STEP).ceil().max(STRAIN_STEPS) as u32;
+    let mut rate = [0.0; 6];
+    // Tensor components: half the engineering shear.
+    let share = if component < 3 { 1.0 } else { 0.5 };
+    rate[component] = share * settings.amplitude / (f64::from(strain_steps) * at_rest.engine.time_step());
+    let mut relaxation = Relaxation::new(vec![at_rest.engine.clone(); 2]);
+    for (engine, side) in relaxation.engines_mut().iter_mut().zip(sides) {
+        engine.set_rate(&rate.map(|r| side * r))?;
+    }
+    for _ in 0..strain_steps {
+        relaxation.step()?;
+    }
+    for engine in relaxation.engines_mut() {
+        engine.set_rate(&[0.0; 6])?;
+    }
+    let between = (sides[0] - sides[1]) * settings.amplitude;
+    let mut seen: Vec<[f64; 6]> = Vec::new();
+    let mut column = ProbeColumn { steps: strain_steps, ..ProbeColumn::default() };
+    loop {
+        for _ in 0..LOOK {
+            relaxation.step()?;
+        }
+        column.steps += LOOK;
+        let snapshots = looks(&relaxation)?;
+        let [one, other] = [stress(&snapshots[0]), stress(&snapshots[1])];
+        let entries: [f64; 6] = std::array::from_fn(|k| -(one[k] - other[k]) / between);
+        let largest = amax(&entries).max(FEEBLE * at_rest.affine);
+        seen.push(entries);
+        column.residual = snapshots[0].unbalanced.max(snapshots[1].unbalanced) / load;
+        // Of a slow approach the share still to come shows best over a time in proportion to that spent.
+        column.drift = seen[2 * (seen.len() - 1) / 3..]
+            .iter()
+            .map(|past| difference(past, &entries))
+            .fold(0.0, f64::max)
+            / largest;
+        if seen.len() >= LEAST_LOOKS
+            && column.residual <= settings.tolerance
+            && column.drift <= settings.tolerance
+        {
+            let side = |s: &[f64; 6], sign: f64| -> [f64; 6] {
+                std::array::from_fn(|k| -sign * (s[k] - at_rest.stress[k]) / settings.amplitude)
+            };
+            column.forward_backward = (settings.sides == DifferenceScheme::Central)
+                .then(|| difference(&side(&one, 1.0), &side(&other, -1.0)) / largest);
+            for engine in relaxation.engines() {
+                let strained = contacts(engine);
+                let (opened, closed) = changes(&at_rest.contacts, &strained);
+                column.opened += opened;
+                column.closed += closed;
+                column.sliding += strained.iter().filter(|c| c.slides(settings.friction)).count() as u32;
+            }
+            return Ok((entries, column));
+        }
+        if column.steps >= settings.max_steps {
+            return Err(ProbeError::NotConverged {
+                component: NAMES[component],
+                residual: column.residual,
+                drift: column.drift,
+                tolerance: settings.tolerance,
+                steps: column.steps,
+            });
+        }
+    }
+}
+
+fn looks(relaxation: &Relaxation) -> Result<Vec<Observables>, DemError> {
+    relaxation.engines().iter().map(Engine::observables).collect()
+}
+
+fn stress(snapshot: &Observables) -> [f64; 6] {
+    snapshot.stress.tensor.voigt()
+}
+
+fn contacts(engine: &Engine) -> Vec<Contact> {
+    engine.packing(grainlab_core::Mat3::identity()).contacts
+}
+
+fn amax(a: &[f64; 6]) -> f64 {
+    a.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+fn difference(a: &[f64; 6], b: &[f64; 6]) -> f64 {
+    amax(&std::array::from_fn(|k| a[k] - b[k]))
+}
+
+/// How many contacts of `before` are gone in `after`, and how many are new; both are sorted.
+fn changes(before: &[Contact], after: &[Contact]) -> (u32, u32) {
+    let key = |c: &Contact| (c.i, c.j, c.image);
+    let (mut b, mut a) = (0, 0);
+    let (mut opened, mut closed) = (0, 0);
+    while b < before.len() || a < after.len() {
+        let order = match (before.get(b), after.get(a)) {
+            (Some(x), Some(y)) => key(x).cmp(&key(y)),
+            (Some(_), None) => Ordering::Less,
+            _ => Ordering::Greater,
+        };
+        b += usize::from(order != Ordering::Greater);
+        a += usize::from(order != Ordering::Less);
+        opened += u32::from(order == Ordering::Less);
+        closed += u32::from(order == Ordering::Greater);
+    }
+    (opened, closed)
+}

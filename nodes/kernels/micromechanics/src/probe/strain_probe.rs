@@ -1,0 +1,161 @@
+//! Explicit probe: stiffness by straining the packing a little with the whole contact law and reading the stress.
+//!
+//! Each of the six strains is imposed homogeneously, forward and backward, its affine velocity entering the tangential
+//! springs (across periodic images too); the grains relax in the strained cell; a column of C is the stress difference
+//! over the strain difference, dσ = −C : dE. Nothing is linearised, so the probe sees what
+//! [`crate::network::relaxed_stiffness()`] leaves out: contacts that open or close, and terms of the order of the pressure. The stress is
+//! Cauchy's, in the present volume, and the strain is logarithmic and without rotation, so that for an isotropic stress
+//! the affine part of C11, C12 and C44 differs from that of the frozen network by −0.4 p, +1.2 p and −0.8 p (Barron &
+//! Klein, Proc. Phys. Soc. 85, 523 (1965), with the geometric part of isotropic contacts), and C is symmetric only
+//! to the order of the deviatoric stress. LAMMPS's strained boxes measure the same quantity, but for the rotation in
+//! simple shear (of the order of the deviatoric stress again).
+
+use super::column::{LOOK, ProbeColumn, RestState, strained};
+use super::relaxation::Relaxation;
+use super::settings::StrainProbe;
+use crate::error::ProbeError;
+use crate::rattlers::{min_contacts, non_rattlers};
+use grainlab_core::results::NotJammed;
+use grainlab_core::{Packing, Stiffness, Vec3};
+use grainlab_dem::{Engine, EngineSettings, TimeStep};
+
+/// The packing relaxes, before it is strained, to this share of the unbalanced force that ends a relaxation afterwards.
+const REST: f64 = 0.25;
+
+/// Verlet skin, share of the smallest diameter: the grains hardly move.
+const SKIN: f64 = 0.01;
+
+/// What [`strain_probe`] finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainProbeResult {
+    /// The stiffness as measured, not made symmetric.
+    pub stiffness: Stiffness,
+    /// Largest |C_ab − C_ba| over the largest entry of C.
+    pub asymmetry: f64,
+    /// Steps that brought the packing to rest before it was strained.
+    pub rest_steps: u32,
+    /// How each column came about, Voigt order.
+    pub columns: [ProbeColumn; 6],
+}
+
+impl StrainProbeResult {
+    /// Standard error of each entry, Pa: what the relaxation left open, what forward and backward strain say apart, and what
+    /// the two places of an entry do; the worst of the three.
+    pub fn stddev(&self) -> Stiffness {
+        let c = &self.stiffness.0;
+        let mut stddev = nalgebra::Matrix6::zeros();
+        for (b, column) in self.columns.iter().enumerate() {
+            let left = column.residual.max(column.drift).max(0.5 * column.forward_backward.unwrap_or(0.0));
+            for a in 0..6 {
+                stddev[(a, b)] = (left * c.column(b).amax()).max(0.5 * (c[(a, b)] - c[(b, a)]).abs());
+            }
+        }
+        Stiffness(stddev)
+    }
+
+    /// Largest standard error over the largest entry of the stiffness.
+    pub fn relative_error(&self) -> f64 {
+        self.stddev().0.amax() / self.stiffness.0.amax()
+    }
+
+    /// Largest residual of the columns.
+    pub fn residual(&self) -> f64 {
+        self.columns.iter().map(|c| c.residual).fold(0.0, f64::max)
+    }
+
+    /// Solver steps, those that brought the packing to rest included.
+    pub fn steps(&self) -> u32 {
+        self.rest_steps + self.sum(|c| c.steps)
+    }
+
+    /// Sum of `part` over the columns.
+    pub fn sum(&self, part: fn(&ProbeColumn) -> u32) -> u32 {
+        self.columns.iter().map(part).sum()
+    }
+
+    /// Largest difference between the forward and the backward column, relative to the largest entry; `None` for
+    /// [`super::DifferenceScheme::Forward`].
+    pub fn forward_backward(&self) -> Option<f64> {
+        self.columns.iter().filter_map(|c| c.forward_backward).reduce(f64::max)
+    }
+}
+
+/// Measures the stiffness of `packing` by straining it, all six columns.
+///
+/// The packing is first relaxed under the friction of the probe, from rest; the strained copies relax side by side, so
+/// that what was left of that cancels. All contacts keep their forces.
+pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainProbeResult, ProbeError> {
+    settings.check()?;
+    let load = strain_load(packing, settings)?;
+    let (rest, rest_steps) = relaxed(packing, settings, load)?;
+    let at_rest = RestState::new(rest)?;
+    let mut stiffness = nalgebra::Matrix6::zeros();
+    let mut columns = [ProbeColumn::default(); 6];
+    for (c, column) in columns.iter_mut().enumerate() {
+        let entries;
+        (entries, *column) = strained(&at_rest, settings, load, c)?;
+        stiffness.set_column(c, &entries.into());
+    }
+    let asymmetry = (stiffness - stiffness.transpose()).amax() / stiffness.amax();
+    Ok(StrainProbeResult { stiffness: Stiffness(stiffness), asymmetry, rest_steps, columns })
+}
+
+/// Mean change of a contact force by the strain alone over the mean contact force: what unbalanced forces are to be
+/// small against.
+fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeError> {
+    let grains = packing.grains();
+    if packing.contacts.is_empty() {
+        return Err(NotJammed::NoContacts { grains }.into());
+    }
+    let needed = min_contacts(settings.friction);
+    if non_rattlers(&Packing { friction: settings.friction, ..packing.clone() }).iter().all(|p| !p) {
+        return Err(NotJammed::OnlyRattlers { grains, needed }.into());
+    }
+    let (mut change, mut force) = (0.0, 0.0);
+    for c in &packing.contacts {
+        change += settings.amplitude * packing.contact_stiffness(c).0 * packing.branch(c).norm();
+        force += packing.material.normal_force(packing.effective_radius(c), c.overlap);
+    }
+    Ok(change / force)
+}
+
+/// An engine with the packing relaxed, and the steps that took.
+fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engine, u32), ProbeError> {
+    let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let setting = EngineSettings {
+        friction: settings.friction,
+        damping: 0.0,
+        drag: 0.0,
+        spin_drag: 0.0,
+        tangential: settings.tangential,
+        time_step: TimeStep::FractionOfStable(1.0),
+        skin: SKIN * 2.0 * smallest,
+        thermostat_speed: None,
+    };
+    let still = vec![Vec3::zeros(); packing.grains()];
+    // Without a time step of its own the engine takes the longest stable one.
+    let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting);
+    engine.set_settings(setting);
+    engine.set_velocities(&still);
+    engine.set_spins(&still);
+    engine.initialise()?;
+    engine.set_settings(EngineSettings { time_step: TimeStep::Fixed(engine.time_step()), ..setting });
+    let target = REST * settings.tolerance * load;
+    let mut unbalanced = engine.observables()?.unbalanced;
+    let mut relaxation = Relaxation::new(vec![engine]);
+    let mut steps = 0;
+    while unbalanced > target {
+        if steps >= settings.max_steps {
+            return Err(ProbeError::NoRest { unbalanced, target, steps });
+        }
+        for _ in 0..LOOK {
+            relaxation.step()?;
+        }
+        steps += LOOK;
+        unbalanced = relaxation.engines()[0].observables()?.unbalanced;
+    }
+    let mut engine = relaxation.engines()[0].clone();
+    engine.set_velocities(&still);
+    engine.set_spins(&still);
+    Ok((engine, steps))
+}

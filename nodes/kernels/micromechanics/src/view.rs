@@ -1,0 +1,48 @@
+//! What every measurement on a packing needs, found once.
+
+use crate::rattlers::non_rattlers;
+use grainlab_core::stress::{Stress, stress};
+use grainlab_core::{Packing, Vec3};
+
+/// A packing with what every measurement needs of it.
+#[derive(Clone, Debug)]
+pub struct PackingView<'a> {
+    /// The packing.
+    pub packing: &'a Packing,
+    /// Whether each grain takes part in the contact network ([`non_rattlers`]).
+    pub non_rattlers: Vec<bool>,
+    /// Branch vector of each contact, m.
+    pub branches: Vec<Vec3>,
+    /// Stiffnesses (k_n, k_t) of each contact, N/m.
+    pub contact_stiffnesses: Vec<(f64, f64)>,
+    /// Stress of the elastic contact forces.
+    pub stress: Stress,
+    /// ⟨F_n⟩ over contacts, N; 0 without contacts.
+    pub mean_normal_force: f64,
+}
+
+impl<'a> PackingView<'a> {
+    /// Looks at `packing`.
+    pub fn new(packing: &'a Packing) -> Self {
+        let contacts = &packing.contacts;
+        let forces: f64 = contacts.iter().map(|c| c.normal_force).sum();
+        Self {
+            packing,
+            non_rattlers: non_rattlers(packing),
+            branches: contacts.iter().map(|c| packing.branch(c)).collect(),
+            contact_stiffnesses: contacts.iter().map(|c| packing.contact_stiffness(c)).collect(),
+            stress: stress(packing),
+            mean_normal_force: forces / contacts.len().max(1) as f64,
+        }
+    }
+
+    /// Number of non-rattlers.
+    pub fn carrying(&self) -> usize {
+        self.non_rattlers.iter().filter(|carries| **carries).count()
+    }
+
+    /// Whether neither of two grains is a rattler.
+    pub fn carries_force(&self, i: u32, j: u32) -> bool {
+        self.non_rattlers[i as usize] && self.non_rattlers[j as usize]
+    }
+}

@@ -1,0 +1,126 @@
+//! The table of what a state may hold: keys of a table's columns and of JSON, and where each number belongs.
+
+use super::state::State;
+use grainlab_core::quantity::{Alias, by_key};
+use grainlab_core::results::QUANTITIES;
+use grainlab_emt::{Measured, Modulus};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// One number of a state.
+pub(super) struct Input {
+    /// Its name in JSON.
+    pub(super) key: &'static str,
+    /// What it is; empty where the table of quantities says so.
+    meaning: &'static str,
+    pub(super) role: Role,
+    pub(super) get: fn(&State) -> Option<f64>,
+    pub(super) set: fn(&mut State, f64),
+}
+
+/// What an input is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    /// The one that is needed.
+    Pressure,
+    /// One of the moduli: with all 36 entries of a stiffness it follows from these.
+    Modulus,
+    /// Standard deviation: 0 or more.
+    Stddev,
+    /// Anything else that a model takes.
+    Datum,
+    /// What estimates are compared with.
+    Truth,
+}
+
+/// The inputs, a row each: key, role, meaning, how to get and how to set it.
+macro_rules! inputs {
+    ($($key:literal $role:ident $meaning:literal |$from:ident| $get:expr, |$state:ident, $value:ident| $set:expr;)*) => {
+        &[$(Input {
+            key: $key,
+            meaning: $meaning,
+            role: Role::$role,
+            get: |$from| $get,
+            set: |$state, $value| $set,
+        }),*]
+    };
+}
+
+/// Every number that a table may have of a state, in the order of JSON.
+pub(super) static INPUTS: &[Input] = inputs! {
+    "g12_pa" Modulus "" |s| s.moduli.get(Modulus::G12), |s, v| s.set_modulus(Modulus::G12, v);
+    "g12_sigma_pa" Stddev "standard deviation of g12_pa" |s| s.sigma_of(Modulus::G12), |s, v| s.set_sigma(Modulus::G12, v);
+    "g13_pa" Modulus "" |s| s.moduli.get(Modulus::G13), |s, v| s.set_modulus(Modulus::G13, v);
+    "g13_sigma_pa" Stddev "of g13_pa" |s| s.sigma_of(Modulus::G13), |s, v| s.set_sigma(Modulus::G13, v);
+    "theta_pa" Modulus "" |s| s.moduli.get(Modulus::Theta), |s, v| s.set_modulus(Modulus::Theta, v);
+    "theta_sigma_pa" Stddev "of theta_pa" |s| s.sigma_of(Modulus::Theta), |s, v| s.set_sigma(Modulus::Theta, v);
+    "c11_pa" Modulus "" |s| s.moduli.get(Modulus::C11), |s, v| s.set_modulus(Modulus::C11, v);
+    "c11_sigma_pa" Stddev "of c11_pa" |s| s.sigma_of(Modulus::C11), |s, v| s.set_sigma(Modulus::C11, v);
+    "c33_pa" Modulus "" |s| s.moduli.get(Modulus::C33), |s, v| s.set_modulus(Modulus::C33, v);
+    "c33_sigma_pa" Stddev "of c33_pa" |s| s.sigma_of(Modulus::C33), |s, v| s.set_sigma(Modulus::C33, v);
+    "c13_pa" Modulus "" |s| s.moduli.get(Modulus::C13), |s, v| s.set_modulus(Modulus::C13, v);
+    "c13_sigma_pa" Stddev "of c13_pa" |s| s.sigma_of(Modulus::C13), |s, v| s.set_sigma(Modulus::C13, v);
+    "theta_printed_pa" Datum "what the model ratio-as-printed takes for theta_pa"
+        |s| s.theta_printed, |s, v| s.theta_printed = Some(v);
+    "pressure_pa" Pressure "" |s| Some(s.pressure.value), |s, v| s.pressure.value = v;
+    "pressure_sigma_pa" Stddev "standard deviation of the pressure"
+        |s| Some(s.pressure.stddev), |s, v| s.pressure.stddev = v;
+    "gamma_over_delta" Datum "ratio of deviatoric to volumetric strain; as grainlab analyze measures it: the next three (see --gamma)"
+        |s| s.gamma.map(|g| g.value), |s, v| s.gamma = Some(Measured::exact(v));
+    "gamma_over_delta_sigma" Stddev "standard deviation of gamma_over_delta"
+        |s| s.gamma.map(|g| g.stddev), |s, v| if let Some(gamma) = &mut s.gamma { gamma.stddev = v };
+    "g_total" Datum "" |s| s.measured_gamma.total, |s, v| s.measured_gamma.total = Some(v);
+    "g_elastic" Datum "" |s| s.measured_gamma.elastic, |s, v| s.measured_gamma.elastic = Some(v);
+    "g_contact" Datum "" |s| s.measured_gamma.contact, |s, v| s.measured_gamma.contact = Some(v);
+    "grain_shear_modulus_pa" Datum "" |s| s.grain_shear_modulus, |s, v| s.grain_shear_modulus = Some(v);
+    "poisson" Datum "" |s| s.poisson, |s, v| s.poisson = Some(v);
+    "phi" Datum "" |s| s.phi.map(|p| p.value), |s, v| s.phi = Some(Measured::exact(v));
+    "phi_sigma" Stddev "standard deviation of phi"
+        |s| s.phi.map(|p| p.stddev), |s, v| if let Some(phi) = &mut s.phi { phi.stddev = v };
+    "grains" Datum "" |s| s.grains, |s, v| s.grains = Some(v);
+    "k" Truth "" |s| s.truth.k, |s, v| s.truth.k = Some(v);
+    "k_hat" Truth "k of the equivalent isotropic packing, in the calibration's sense" |s| s.truth.k_hat, |s, v| s.truth.k_hat = Some(v);
+    "z" Truth "" |s| s.truth.z, |s, v| s.truth.z = Some(v);
+    "eps" Truth "" |s| s.truth.eps, |s, v| s.truth.eps = Some(v);
+    "eps_stiffness" Truth "" |s| s.truth.eps_stiffness, |s, v| s.truth.eps_stiffness = Some(v);
+};
+
+impl Input {
+    /// Names of a column that has it, the preferred one first, and what one unit there is in SI: the quantity of a packing of
+    /// this key, or whose alias it is, and the aliases of that one.
+    pub(super) fn names(&self) -> Vec<Alias> {
+        let called = |name| Alias { name, factor: 1.0 };
+        let is_it = |aliases: &[Alias]| aliases.iter().any(|a| a.name == self.key);
+        match by_key(QUANTITIES, self.key).or_else(|| QUANTITIES.iter().find(|q| is_it(q.aliases))) {
+            Some(q) => [called(q.key)].iter().chain(q.aliases).copied().collect(),
+            None => vec![called(self.key)],
+        }
+    }
+
+    fn meaning(&self) -> &'static str {
+        let quantity = self.names().first().and_then(|name| by_key(QUANTITIES, name.name));
+        quantity.filter(|_| self.meaning.is_empty()).map_or(self.meaning, |q| q.meaning)
+    }
+}
+
+/// The columns in words, for the help of a command: a line each.
+pub(super) fn reference() -> String {
+    let line = |input: &Input| {
+        let names: Vec<&str> = input.names().iter().map(|alias| alias.name).collect();
+        format!("  {:<34} {}\n", names.join(", "), input.meaning())
+    };
+    INPUTS.iter().map(line).collect()
+}
+
+/// The numbers as given, with the standard deviations that hold.
+impl Serialize for State {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("sample", &self.sample)?;
+        for input in INPUTS.iter().filter(|input| input.role != Role::Truth) {
+            map.serialize_entry(input.key, &(input.get)(self))?;
+        }
+        map.serialize_entry("asymmetry", &self.asymmetry)?;
+        map.serialize_entry("relative_error", &self.relative_error)?;
+        map.end()
+    }
+}

@@ -1,0 +1,148 @@
+//! One measured packing: what `grainlab analyze` prints of it, and `summary.json` holds.
+
+use super::probe::{ProbeView, ScanView};
+use super::quantities::{cells, columns, entries};
+use grainlab_console::Table;
+use grainlab_core::quantities;
+use grainlab_core::quantity::{Quantity, Shape::Scalar};
+use grainlab_core::results::{PackingReport, QUANTITIES};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// A report, and where it is from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MeasuredPacking {
+    /// File, recording or topic.
+    pub(crate) source: String,
+    /// Step of the packing in its source.
+    pub(crate) step: u64,
+    pub(crate) report: PackingReport,
+    /// Wall time of the measurement, s; `None` where it was read from a recording.
+    pub(crate) seconds: Option<f64>,
+    pub(crate) warnings: Vec<String>,
+    /// How the probe went, where the stiffness is a probe's.
+    pub(crate) probe: Option<ProbeView>,
+    /// Probes of several amplitudes, where these were asked for.
+    pub(crate) scan: Option<ScanView>,
+}
+
+/// What is told of a packing before its quantities.
+pub(crate) static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
+    "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
+    "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
+    "seconds" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
+};
+
+impl MeasuredPacking {
+    pub(crate) fn new(source: String, report: PackingReport) -> Self {
+        let step = report.step;
+        Self { source, step, report, seconds: None, warnings: Vec::new(), probe: None, scan: None }
+    }
+}
+
+impl Serialize for MeasuredPacking {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        entries(&mut map, ORIGIN, self)?;
+        entries(&mut map, QUANTITIES, &self.report)?;
+        map.serialize_entry("warnings", &self.warnings)?;
+        map.serialize_entry("probe", &self.probe)?;
+        map.serialize_entry("scan", &self.scan)?;
+        map.end()
+    }
+}
+
+/// Packings as a table, one a row, at full precision.
+pub(crate) fn table(packings: &[MeasuredPacking]) -> Table {
+    let mut t = Table::new(columns(ORIGIN).chain(columns(QUANTITIES)));
+    for p in packings {
+        t.row(cells(ORIGIN, p).chain(cells(QUANTITIES, &p.report)));
+    }
+    t
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+    use grainlab_micromechanics::{Settings, analyze};
+
+    /// One grain touching its own images along the three edges, or none.
+    pub(crate) fn lattice(touching: bool) -> Packing {
+        let contact = |axis: usize| {
+            let (mut image, mut normal) = ([0; 3], Vec3::zeros());
+            (image[axis], normal[axis]) = (1, 1.0);
+            let tangential_force = Vec3::zeros();
+            Contact { i: 0, j: 0, image, overlap: 1e-8, normal, normal_force: 1e-3, tangential_force }
+        };
+        Packing {
+            step: 12,
+            time: 0.5,
+            cell: Cell::cube(2e-4 - 1e-8).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![0],
+            radii: vec![1e-4],
+            positions: vec![Vec3::zeros()],
+            velocities: vec![Vec3::zeros()],
+            spins: vec![Vec3::zeros()],
+            contacts: if touching { [2, 1, 0].map(contact).to_vec() } else { Vec::new() },
+            material: Material::GLASS,
+            law: Default::default(),
+            friction: 0.3,
+            time_step: 0.0,
+        }
+    }
+
+    pub(crate) fn measured(packing: &Packing) -> MeasuredPacking {
+        MeasuredPacking::new("lattice".into(), analyze(packing, &Settings::default()).unwrap().report)
+    }
+
+    #[test]
+    fn a_lattice_says_its_structure_and_its_symmetry() {
+        let s = serde_json::to_value(measured(&lattice(true))).unwrap();
+        assert_eq!(s["symmetry"], "cubic");
+        assert_eq!(s["orientation_contacts"], serde_json::json!([2, 0, 0, 0, 0, 0, 0, 0, 0, 1]));
+        assert_eq!(s["orientation_overlap_m"][9], 1e-8);
+        assert!(s["orientation_overlap_m"][4].is_null());
+        assert_eq!(s["weak_share_of_pressure"], 1.0);
+        assert!(s["weak_share_of_deviator"].is_null());
+        assert_eq!(s["mobilised_contacts"][0], 3);
+        assert!(s["axis_eps_stddev"].is_null() && s["stiffness_pa"][5][5].is_f64());
+    }
+
+    #[test]
+    fn what_a_gas_has_not_is_null() {
+        let s = serde_json::to_value(measured(&lattice(false))).unwrap();
+        for key in [
+            "symmetry",
+            "stiffness_pa",
+            "anisotropy_contacts",
+            "force_contacts",
+            "mobilised_mean",
+            "orientation_eps",
+        ] {
+            assert!(s[key].is_null(), "{key}");
+        }
+    }
+
+    /// Equal springs along the edges of a cube are isotropic in their second moments.
+    #[test]
+    fn contacts_of_equal_stiffness_weigh_alike() {
+        let r = measured(&lattice(true)).report;
+        assert!(r.fabric.contact_anisotropy.abs() < 1e-12 && r.stiffness_anisotropy().unwrap().abs() < 1e-12);
+        assert!(measured(&lattice(false)).report.stiffness_anisotropy().is_none());
+        let t = r.projected().unwrap();
+        assert!((t.c11 / t.c33 - 1.0).abs() < 0.5 && t.c13.abs() < t.c11);
+    }
+
+    #[test]
+    fn every_row_is_as_long_as_the_header() {
+        let table = table(&[measured(&lattice(true)), measured(&lattice(false))]).csv();
+        let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+        assert_eq!(rows[0][..5], ["source", "step", "seconds", "grains", "phi"]);
+        assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");
+        let at = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
+        assert_eq!((rows[1][at("symmetry")], rows[2][at("symmetry")]), ("cubic", ""));
+        assert_eq!((rows[1][at("k")], rows[2][at("affine_c66_pa")]), ("6", ""));
+        assert!(!table.contains("NaN"));
+    }
+}

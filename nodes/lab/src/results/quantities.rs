@@ -1,0 +1,123 @@
+//! Results as JSON and CSV, from their table of quantities.
+
+use grainlab_console::exact;
+use grainlab_core::quantity::{Quantity, Shape, Value};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// Adds every quantity of `result` to a JSON object.
+pub(crate) fn entries<R, M: SerializeMap>(
+    map: &mut M,
+    table: &[Quantity<R>],
+    result: &R,
+) -> Result<(), M::Error> {
+    table
+        .iter()
+        .try_for_each(|q| map.serialize_entry(q.key, &Json { shape: q.shape, value: (q.value)(result) }))
+}
+
+/// Names of the columns of these quantities.
+pub(crate) fn columns<'a, R: 'static>(
+    quantities: impl IntoIterator<Item = &'a Quantity<R>>,
+) -> impl Iterator<Item = String> {
+    quantities.into_iter().flat_map(Quantity::columns)
+}
+
+/// What stands in those columns, at full precision; cells of what is not known are empty.
+pub(crate) fn cells<'a, R: 'static>(
+    quantities: impl IntoIterator<Item = &'a Quantity<R>>,
+    result: &R,
+) -> impl Iterator<Item = String> {
+    quantities.into_iter().flat_map(|q| {
+        let columns = q.columns().len();
+        match (q.value)(result) {
+            _ if columns == 0 => Vec::new(),
+            Value::Unknown => vec![String::new(); columns],
+            Value::Number(v) => vec![exact(Some(v))],
+            Value::Count(n) => vec![n.to_string()],
+            Value::Flag(flag) => vec![flag.to_string()],
+            Value::Word(word) => vec![word.to_owned()],
+            Value::Text(text) => vec![text],
+            Value::Numbers(numbers) => numbers.into_iter().map(exact).collect(),
+            Value::Counts(counts) => counts.into_iter().map(|n| n.to_string()).collect(),
+        }
+    })
+}
+
+/// A value in JSON: null if it is not known, rows of a stiffness as arrays.
+struct Json {
+    shape: Shape,
+    value: Value,
+}
+
+impl Serialize for Json {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.value {
+            Value::Unknown => serializer.serialize_none(),
+            Value::Number(v) => v.serialize(serializer),
+            Value::Count(n) => n.serialize(serializer),
+            Value::Flag(flag) => flag.serialize(serializer),
+            Value::Word(word) => word.serialize(serializer),
+            Value::Text(text) => text.serialize(serializer),
+            Value::Numbers(rows) if matches!(self.shape, Shape::Stiffness(_)) => {
+                serializer.collect_seq(rows.chunks(6))
+            }
+            Value::Numbers(numbers) => numbers.serialize(serializer),
+            Value::Counts(counts) => counts.serialize(serializer),
+        }
+    }
+}
+
+/// A table in words, for the help of a command: key, symbol, unit and meaning, a line each.
+pub(crate) fn help<R: 'static>(table: &[Quantity<R>]) -> String {
+    let line = |q: &Quantity<R>| {
+        let unit = if matches!(q.unit, "" | "1") { String::new() } else { format!(", {}", q.unit) };
+        format!("  {:<32} {}{unit}\n", q.key, q.meaning)
+    };
+    table.iter().map(line).collect()
+}
+
+/// A table in Markdown.
+#[cfg(test)]
+fn markdown<R: 'static>(table: &[Quantity<R>]) -> String {
+    let line = |q: &Quantity<R>| {
+        let columns = q.columns();
+        let columns = match (columns.first(), columns.last()) {
+            (Some(one), Some(last)) if one == last => format!("`{one}`"),
+            (Some(first), Some(last)) => format!("`{first}` … `{last}`"),
+            _ => "–".to_owned(),
+        };
+        // A bar would end the cell.
+        let meaning = q.meaning.replace('|', "\\|");
+        format!("| `{}` | {} | {columns} | {} | {meaning} |\n", q.key, q.symbol, q.unit)
+    };
+    let head = "| key | symbol | columns of CSV | unit | meaning |\n|---|---|---|---|---|\n";
+    head.to_owned() + &table.iter().map(line).collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::acoustic::ACOUSTIC;
+    use crate::results::measured_packing::ORIGIN;
+    use grainlab_core::results::QUANTITIES;
+
+    /// The reference in the repository is that of the tables. Where it is not, it is written anew, and the test fails once.
+    #[test]
+    fn the_written_reference_is_that_of_the_tables() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../quantities.md");
+        let text = format!(
+            "# Quantities\n\nWhat `grainlab analyze`, `grainlab probe` and `grainlab launch` report: keys of JSON and columns\n\
+             of CSV, as `grainlab invert --table` and `grainlab calibrate` read them. Values that are undefined or not known are\n\
+             null in JSON and empty in CSV. The tests of the crate `grainlab` write this page from the tables in\n\
+             `nodes/kernels/core/src/results/quantities.rs` and `nodes/lab/src/results/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
+             ## Waves, by `grainlab probe`\n\nIn JSON under `acoustic`.\n\n{}",
+            markdown(ORIGIN),
+            markdown(QUANTITIES),
+            markdown(ACOUSTIC),
+        );
+        if std::fs::read_to_string(path).ok().as_deref() != Some(&text) {
+            std::fs::write(path, text).unwrap();
+            panic!("{path} was out of date, and is written anew");
+        }
+    }
+}
