@@ -81,7 +81,7 @@ impl Ledger {
         self.topics.get(topic).and_then(|t| t.get(guid)).is_some_and(|w| w.sequence.holds(sequence))
     }
 
-    /// Counts message `sequence` of this writer; `false` if it is a repeat, which is counted as such.
+    /// Counts message `sequence` of this writer; `false` if it was received before, which is counted as such.
     pub fn enter(&mut self, topic: &str, guid: Guid, sequence: i64) -> bool {
         self.expect(topic);
         match self.topics.get_mut(topic) {
@@ -130,6 +130,7 @@ impl Ledger {
             recorded: 0,
             lost: 0,
             repeated: 0,
+            redelivered: 0,
             writers: Vec::new(),
         };
         for (guid, writer) in writers {
@@ -148,7 +149,8 @@ impl Ledger {
             topic.published += published;
             topic.recorded += recorded;
             topic.lost += lost;
-            topic.repeated += s.repeated() + writer.same;
+            topic.repeated += writer.same;
+            topic.redelivered += s.redelivered();
             topic.writers.push(WriterTally {
                 guid: guid.to_string(),
                 node: self.nodes.get(guid).cloned(),
@@ -162,7 +164,8 @@ impl Ledger {
                     .filter(|(_, last)| *last >= 0 && *last as u64 > before)
                     .take(LISTED_GAPS)
                     .collect(),
-                repeated: s.repeated() + writer.same,
+                repeated: writer.same,
+                redelivered: s.redelivered(),
             });
         }
         topic

@@ -23,17 +23,32 @@ pub fn merge(accounts: Vec<Vec<TopicTally>>) -> Vec<TopicTally> {
 
 fn topic(name: String, writers: Vec<WriterTally>) -> TopicTally {
     let sum = |of: fn(&WriterTally) -> u64| writers.iter().map(of).fold(0u64, u64::saturating_add);
-    let (recorded, lost, repeated) = (sum(|w| w.recorded), sum(|w| w.lost), sum(|w| w.repeated));
-    TopicTally { name, published: recorded.saturating_add(lost), recorded, lost, repeated, writers }
+    TopicTally {
+        name,
+        published: sum(published),
+        recorded: sum(|w| w.recorded),
+        lost: sum(|w| w.lost),
+        repeated: sum(|w| w.repeated),
+        redelivered: sum(|w| w.redelivered),
+        writers,
+    }
+}
+
+fn received(w: &WriterTally) -> u64 {
+    w.recorded.saturating_add(w.repeated)
+}
+
+fn published(w: &WriterTally) -> u64 {
+    received(w).saturating_add(w.lost)
 }
 
 /// Merges the counts of one writer by two recorders, one after the other or at the same time.
 fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
-    let published = |w: &WriterTally| w.recorded.saturating_add(w.lost);
     let published = published(a).max(published(b));
     let gaps = common(&missing(a), &missing(b));
     let last = a.last.max(b.last);
-    // Both may have recorded a message; if all gaps are listed, they give the number missing in both.
+    let each = received(a).saturating_add(received(b));
+    // Both may have received a message; if all gaps are listed, they give the number missing in both.
     let listed = a.gaps.len() < LISTED_GAPS && b.gaps.len() < LISTED_GAPS;
     let below: u64 =
         gaps.iter().map(|(from, to)| to.abs_diff(*from).saturating_add(1)).fold(0, u64::saturating_add);
@@ -41,21 +56,25 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     let lost = if listed {
         below.saturating_add(behind).min(published)
     } else {
-        published.saturating_sub(a.recorded.saturating_add(b.recorded))
+        published.saturating_sub(each)
     };
     let first = [a.first, b.first].into_iter().flatten().min();
-    let recorded = published - lost;
-    let twice = a.recorded.saturating_add(b.recorded).saturating_sub(recorded);
+    let received = published - lost;
+    let repeated = a.repeated.saturating_add(b.repeated).min(received);
     WriterTally {
         guid: a.guid.clone(),
         node: b.node.clone().or_else(|| a.node.clone()),
-        recorded,
+        recorded: received - repeated,
         reported: a.reported.max(b.reported),
         first,
         last,
         lost,
         gaps: gaps.into_iter().take(LISTED_GAPS).collect(),
-        repeated: a.repeated.saturating_add(b.repeated).saturating_add(twice),
+        repeated,
+        redelivered: a
+            .redelivered
+            .saturating_add(b.redelivered)
+            .saturating_add(each.saturating_sub(received)),
     }
 }
 
@@ -116,15 +135,27 @@ mod tests {
     }
 
     #[test]
-    fn what_both_recorded_is_one_message_and_a_repeat() {
+    fn what_both_recorded_is_one_message_that_was_delivered_twice() {
         let both = merge(vec![account(&[(A, &[1, 2, 3])], None), account(&[(A, &[2, 3, 4])], None)]);
         let t = &both[0];
-        assert_eq!((t.published, t.recorded, t.lost, t.repeated), (4, 4, 0, 2));
+        assert_eq!((t.published, t.recorded, t.lost, t.repeated, t.redelivered), (4, 4, 0, 0, 2));
     }
 
     #[test]
     fn one_account_stays_as_it_is() {
         let one = account(&[(A, &[1, 4]), (B, &[2])], Some(6));
         assert_eq!(merge(vec![one.clone()]), one);
+    }
+
+    #[test]
+    fn published_is_what_was_recorded_repeated_and_lost() {
+        let mut ledger = Ledger::default();
+        [1, 2, 2, 5].iter().for_each(|n| _ = ledger.enter("/stress", A, *n));
+        ledger.repeat("/stress", A, 6);
+        let one = ledger.tallies();
+        assert_eq!(merge(vec![one.clone()]), one);
+        let both = merge(vec![one, account(&[(A, &[5, 7])], Some(9))]);
+        let t = &both[0];
+        assert_eq!((t.published, t.recorded, t.repeated, t.lost, t.redelivered), (9, 4, 1, 4, 2));
     }
 }

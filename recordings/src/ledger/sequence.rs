@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 const MOST_GAPS: usize = 4096;
 
 /// The received numbers of 1, 2, 3 …, kept as the missing ranges. If there are too many of these, the
-/// lowest is forgotten: its numbers stay missing, and count as repeats if they arrive later.
+/// lowest is forgotten: its numbers stay missing, and count as redelivered if they arrive later.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Highest received number; 0 before the first.
@@ -16,7 +16,7 @@ pub(super) struct Sequence {
     /// Missing ranges below `highest`: first number → last number, both included.
     gaps: BTreeMap<i64, i64>,
     held: u64,
-    repeated: u64,
+    redelivered: u64,
 }
 
 impl Sequence {
@@ -25,10 +25,10 @@ impl Sequence {
         self.first.is_some() && number <= self.highest && self.gap_of(number).is_none()
     }
 
-    /// Adds `number`; `false`, and counted as a repeat, if it was received before.
+    /// Adds `number`; `false`, and counted as redelivered, if it was received before.
     pub(super) fn enter(&mut self, number: i64) -> bool {
         if self.holds(number) {
-            self.repeated += 1;
+            self.redelivered += 1;
             return false;
         }
         if number > self.highest {
@@ -75,8 +75,8 @@ impl Sequence {
         self.held
     }
 
-    pub(super) fn repeated(&self) -> u64 {
-        self.repeated
+    pub(super) fn redelivered(&self) -> u64 {
+        self.redelivered
     }
 
     pub(super) fn gaps(&self) -> impl Iterator<Item = (i64, i64)> + '_ {

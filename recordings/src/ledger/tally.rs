@@ -7,14 +7,18 @@ use serde::{Deserialize, Serialize};
 pub struct TopicTally {
     /// Name of the topic, absolute.
     pub name: String,
-    /// Messages published: a writer's own count if reported, else its highest received sequence number.
+    /// Messages published: a writer's own count if reported, else its highest received sequence number. The sum of
+    /// `recorded`, `repeated` and `lost`.
     pub published: u64,
     /// Messages in the recording.
     pub recorded: u64,
     /// Published but not recorded.
     pub lost: u64,
-    /// Repetitions of recorded messages, delivered or published once more; not recorded again.
+    /// Published again with the bytes of a recorded message, as a request without an answer is; not recorded again.
     pub repeated: u64,
+    /// Deliveries of a message that was received before; not counted as published.
+    #[serde(default)]
+    pub redelivered: u64,
     /// The writers, in order of GUID.
     pub writers: Vec<WriterTally>,
 }
@@ -40,8 +44,11 @@ pub struct WriterTally {
     /// Ranges of sequence numbers, both ends included, that are missing below the highest received one. At most
     /// 32 are kept here; `lost` counts all.
     pub gaps: Vec<(i64, i64)>,
-    /// Deliveries of a message that was already recorded.
+    /// Published again with the bytes of a recorded message.
     pub repeated: u64,
+    /// Deliveries of a message that was received before.
+    #[serde(default)]
+    pub redelivered: u64,
 }
 
 /// Maximum number of ranges in a [`WriterTally`].

@@ -105,7 +105,8 @@ fn repeats_are_counted_and_not_written_and_two_writers_are_told_apart() {
     assert_eq!(recording.messages(&Selection::default()).unwrap().count(), 3);
     let ledger = recording.ledger().unwrap();
     let stress = ledger.iter().find(|t| t.name == "/stress").unwrap();
-    assert_eq!((stress.published, stress.recorded, stress.lost, stress.repeated), (4, 3, 1, 1));
+    assert_eq!((stress.published, stress.recorded, stress.lost, stress.repeated), (4, 3, 1, 0));
+    assert_eq!(stress.redelivered, 1);
     assert_eq!(stress.writers.iter().find(|w| w.guid == SIMULATOR.to_string()).unwrap().gaps, [(2, 2)]);
 }
 
