@@ -11,18 +11,20 @@
 //! - [`boundary`]: messages to and from the kernels' types; everything received is checked here, once
 
 pub mod boundary;
-pub mod cdr;
-pub mod clock;
+mod cdr;
+mod clock;
 mod fixed_array;
 mod generated;
-pub mod message;
+mod message;
+mod topic;
 pub mod topics;
+mod types;
 
 pub use cdr::{DecodeError, from_cdr, to_cdr};
-pub use clock::{simulated_seconds, stamp};
+pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp};
 pub use generated::grainlab_msgs as msg;
 pub use generated::{
     builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, std_msgs, tf2_msgs,
 };
 pub use message::{Message, TypeInfo};
-pub use topics::{Qos, TOPICS, Topic};
+pub use topic::{Qos, Topic};

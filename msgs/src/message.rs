@@ -42,21 +42,6 @@ impl TypeInfo {
             definition: T::DEFINITION,
         }
     }
-
-    /// The type with this full ROS name, if it is one of ours or of the standard ones that we use.
-    ///
-    /// ```
-    /// let clock = grainlab_msgs::TypeInfo::by_name("rosgraph_msgs/msg/Clock").unwrap();
-    /// assert!(clock.hash.starts_with("RIHS01_692f7a66"));
-    /// ```
-    pub fn by_name(type_name: &str) -> Option<&'static Self> {
-        Self::all().iter().find(|t| t.type_name == type_name)
-    }
-
-    /// Every type known here, sorted by name.
-    pub const fn all() -> &'static [Self] {
-        crate::generated::TYPES
-    }
 }
 
 /// Puts a schema text together from message files: rosbag2 separates them by 80 equals signs.

@@ -35,7 +35,7 @@ fn summary(run: &std::path::Path) -> Value {
 fn a_launch_runs_one_process_a_node_and_records_every_message() {
     let lab = Lab::new();
     let scene = golden("scenes/tiny.toml");
-    let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
+    let launcher = lab.start(&["launch", "--verbose", "--scene", &scene.to_string_lossy()]);
     let mut most: BTreeMap<&str, usize> = BTreeMap::new();
     let pid = launcher.pid();
     let watch = std::thread::spawn(move || {
@@ -108,7 +108,7 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
 }
 
 #[test]
-fn launches_without_a_domain_take_one_each_and_lose_nothing() {
+fn launches_without_a_domain_take_one_each_lose_nothing_and_end_with_a_screenful() {
     let labs = [Lab::new(), Lab::new()];
     let scene = golden("scenes/tiny.toml");
     let start = |lab: &Lab| {
@@ -119,6 +119,10 @@ fn launches_without_a_domain_take_one_each_and_lose_nothing() {
     for launcher in launchers {
         let ended = launcher.ended(LIMIT);
         assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+        assert!((5..=20).contains(&ended.stdout.lines().count()), "{}", ended.stdout);
+        for word in ["G12", "inferred k", "relaxed", "0 lost", "summary.json", "analyze"] {
+            assert!(ended.stdout.contains(word), "{word} is missing from:\n{}", ended.stdout);
+        }
     }
     let [a, b] = labs.each_ref().map(Lab::last_run);
     assert_ne!(summary(&a)["domain"], summary(&b)["domain"]);

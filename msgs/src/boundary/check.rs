@@ -1,6 +1,6 @@
 //! The checks themselves.
 
-use super::BoundaryError;
+use super::error::BoundaryError;
 use crate::geometry_msgs::Vector3;
 use crate::msg::{self, SymmetricTensor};
 use crate::std_msgs::Header;

@@ -1,7 +1,7 @@
 //! `ContactStatistics`: how many contacts there are, and what they carry.
 
-use super::BoundaryError;
 use super::check::{Check, one_or_none};
+use super::error::BoundaryError;
 use crate::msg;
 use grainlab_core::results::{ContactStatistics, ForceStatistics, MobilisedFriction};
 

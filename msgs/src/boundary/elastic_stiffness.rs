@@ -1,7 +1,7 @@
 //! `ElasticStiffness`: the stiffness of a packing, its bounds, and how it was found.
 
-use super::BoundaryError;
 use super::check::{Check, one_or_none};
+use super::error::BoundaryError;
 use crate::msg;
 use grainlab_core::Stiffness;
 use grainlab_core::results::{ElasticStiffness, StiffnessBounds, StiffnessMethod};

@@ -1,7 +1,7 @@
 //! `Estimate`: what one model infers.
 
-use super::BoundaryError;
 use super::check::Check;
+use super::error::BoundaryError;
 use crate::msg::Estimate;
 
 /// The quantities of the microstructure, in the order of every array.

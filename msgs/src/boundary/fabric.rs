@@ -1,8 +1,8 @@
 //! `Fabric`: structure of a packing.
 
-use super::BoundaryError;
 use super::check::{Check, one_or_none, strain_ratios_message, tensor_message, vector_message};
 use super::contact_statistics::{contact_statistics, contact_statistics_message, every_contact};
+use super::error::BoundaryError;
 use super::stress_decomposition::{stress_decomposition, stress_decomposition_message};
 use crate::msg;
 use crate::std_msgs::Header;

@@ -1,7 +1,7 @@
 //! `Microstructure`: what was inferred.
 
-use super::BoundaryError;
 use super::check::Check;
+use super::error::BoundaryError;
 use super::estimate::EstimateReading;
 use crate::builtin_interfaces::Time;
 use crate::msg::Microstructure;

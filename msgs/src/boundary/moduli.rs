@@ -1,8 +1,8 @@
 //! `Moduli`: elastic moduli, and what an inversion needs beside them.
 
-use super::BoundaryError;
 use super::check::{Check, strain_ratios_message, vector_message};
 use super::elastic_stiffness::{elastic_stiffness, elastic_stiffness_message};
+use super::error::BoundaryError;
 use crate::msg;
 use crate::std_msgs::Header;
 use grainlab_core::results::{ElasticStiffness, PackingReport, StrainRatios};

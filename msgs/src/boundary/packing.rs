@@ -1,7 +1,7 @@
 //! `Packing`: the complete mechanical state.
 
-use super::BoundaryError;
 use super::check::{Check, header};
+use super::error::BoundaryError;
 use crate::std_msgs::Header;
 use crate::{msg, stamp};
 use grainlab_core::contact::ContactLaw;

@@ -1,7 +1,7 @@
 //! `RunState`: where the run stands.
 
-use super::BoundaryError;
 use super::check::Check;
+use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
 use crate::msg::RunState;
 

@@ -1,7 +1,7 @@
 //! `StrainRate`: the answer to one request.
 
-use super::BoundaryError;
 use super::check::{Check, header};
+use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
 use crate::msg::StrainRate;
 

@@ -1,7 +1,7 @@
 //! `Stress`: one request of the lockstep.
 
-use super::BoundaryError;
 use super::check::{Check, component, header, tensor_message};
+use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
 use crate::msg::Stress;
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};

@@ -1,7 +1,7 @@
 //! `StressDecomposition`: which forces and which contacts carry the stress.
 
-use super::BoundaryError;
 use super::check::{Check, one_or_none, tensor_message};
+use super::error::BoundaryError;
 use crate::msg;
 use grainlab_core::results::{StressDecomposition, StressForceFabric, SubNetwork};
 

@@ -1,7 +1,7 @@
 //! `WaveSpeeds`: what an acoustic instrument, real or virtual, hands to an inversion.
 
-use super::BoundaryError;
 use super::check::{Check, vector_message};
+use super::error::BoundaryError;
 use crate::builtin_interfaces::Time;
 use crate::geometry_msgs::Vector3;
 use crate::msg;

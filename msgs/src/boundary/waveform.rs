@@ -1,7 +1,7 @@
 //! `Waveform`: the traces of one wave.
 
-use super::BoundaryError;
 use super::check::{Check, vector_message};
+use super::error::BoundaryError;
 use super::wave_speeds::{code, method, unit};
 use crate::builtin_interfaces::Time;
 use crate::msg;

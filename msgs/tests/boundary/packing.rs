@@ -44,7 +44,7 @@ fn contacts(
             let branch = grains[j].1 - grains[i].1 + cell.shift(image);
             let overlap = grains[i].0 + grains[j].0 - branch.norm();
             if overlap > 1e-9 && branch.norm() > 1e-6 && (i < j || image > [0; 3]) {
-                let radius = grainlab_core::material::effective_radius(grains[i].0, grains[j].0);
+                let radius = grainlab_core::effective_radius(grains[i].0, grains[j].0);
                 let normal_force = share * material.normal_force(radius, overlap);
                 let (normal, (i, j)) = (branch.normalize(), (i as u32, j as u32));
                 found.push(Contact { i, j, image, overlap, normal, normal_force, tangential_force });

@@ -1,6 +1,6 @@
 //! Which constants a model gets.
 
-use crate::settings::SettingsError;
+use crate::settings_error::SettingsError;
 use grainlab_emt::{Calibration, Model};
 
 /// Where the constants of the models come from.

@@ -12,10 +12,12 @@ mod moduli;
 mod node;
 mod observed;
 mod settings;
+mod settings_error;
 mod speeds;
 
 pub use calibration::CalibrationChoice;
 pub use message::{microstructure_message, microstructure_of_speeds};
 pub use models::Models;
 pub use node::EmtInversion;
-pub use settings::{Axis, Settings, SettingsError, parameters};
+pub use settings::{Axis, Settings, parameters};
+pub use settings_error::SettingsError;

@@ -1,6 +1,6 @@
 //! Which models are asked.
 
-use crate::settings::SettingsError;
+use crate::settings_error::SettingsError;
 use grainlab_emt::Model;
 
 /// Models, each once, in the order of [`grainlab_emt::models`].

@@ -2,7 +2,8 @@
 
 use grainlab_console::Failure;
 use grainlab_console::scenes::{self, SceneText};
-use grainlab_msgs::{TOPICS, Topic};
+use grainlab_msgs::Topic;
+use grainlab_msgs::topics::TOPICS;
 use grainlab_node_kit::{ParameterSpec, Parameters};
 use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::io;

@@ -1,7 +1,7 @@
 //! Finds contacts from positions, in time and memory proportional to the number of grains, whatever the
 //! shape of the cell.
 
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Contact, Vec3};
 
 mod error;

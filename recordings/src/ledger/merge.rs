@@ -53,11 +53,8 @@ fn of_one_writer(a: &WriterTally, b: &WriterTally) -> WriterTally {
     let below: u64 =
         gaps.iter().map(|(from, to)| to.abs_diff(*from).saturating_add(1)).fold(0, u64::saturating_add);
     let behind = published.saturating_sub(last.unwrap_or(0).max(0) as u64);
-    let lost = if listed {
-        below.saturating_add(behind).min(published)
-    } else {
-        published.saturating_sub(each)
-    };
+    let lost =
+        if listed { below.saturating_add(behind).min(published) } else { published.saturating_sub(each) };
     let first = [a.first, b.first].into_iter().flatten().min();
     let received = published - lost;
     let repeated = a.repeated.saturating_add(b.repeated).min(received);

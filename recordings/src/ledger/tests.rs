@@ -98,7 +98,7 @@ fn extreme_numbers_and_a_million_gaps_neither_overflow_nor_fill_the_memory() {
     }
     let t = only(&ledger);
     assert_eq!(t.published, i64::MAX as u64);
-    assert!(t.lost > 0 && t.repeated >= 3, "{t:?}");
+    assert!(t.lost > 0 && t.redelivered >= 3, "{t:?}");
     let mut ledger = Ledger::default();
     for n in 1..1_000_000 {
         assert!(ledger.enter("/stress", A, 2 * n));
@@ -106,6 +106,6 @@ fn extreme_numbers_and_a_million_gaps_neither_overflow_nor_fill_the_memory() {
     let t = only(&ledger);
     assert_eq!((t.recorded, t.lost), (999_999, 999_999));
     assert!(ledger.topics["/stress"][&A].sequence.gaps().count() <= 4096);
-    // The lowest gaps are forgotten: what comes late to them counts as a repeat, not as a message.
+    // The lowest gaps are forgotten: what comes late to them counts as delivered again, not as a message.
     assert!(!ledger.enter("/stress", A, 1) && ledger.enter("/stress", A, 2 * 999_999 - 1));
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use grainlab_msgs::builtin_interfaces::Time;
-use grainlab_msgs::{TOPICS, Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
+use grainlab_msgs::topics::TOPICS;
+use grainlab_msgs::{Topic, msg, rosgraph_msgs, stamp, std_msgs, to_cdr};
 use grainlab_recordings::Finished;
 use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 

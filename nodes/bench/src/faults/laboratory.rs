@@ -65,7 +65,7 @@ struct Laboratory<'a> {
 /// Runs the scene under a plan.
 pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
     let hub = Hub::new(plan.bus);
-    for topic in grainlab_msgs::TOPICS {
+    for topic in grainlab_msgs::topics::TOPICS {
         hub.set_faults(&topic.absolute_name(), plan.faults);
     }
     let mut events = plan.events.clone().into_iter();

@@ -18,24 +18,24 @@
 //! - [`results`]: what is measured on a packing
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
-pub mod cell;
+mod cell;
 mod consistency;
 pub mod contact;
-pub mod control;
+mod control;
 pub mod lanes;
-pub mod material;
-pub mod packing;
+mod material;
+mod packing;
 pub mod quantity;
 pub mod results;
-pub mod stiffness;
+mod stiffness;
 pub mod stress;
-pub mod symmetry;
-pub mod tensor;
-pub mod waves;
+mod symmetry;
+mod tensor;
+mod waves;
 
 pub use cell::Cell;
 pub use control::{ComponentControl, ServoLaw};
-pub use material::Material;
+pub use material::{Material, effective_radius};
 pub use packing::{Contact, Packing, PackingError};
 pub use stiffness::{Stiffness, TransverseIsotropy};
 pub use symmetry::{Symmetry, SymmetryClass, symmetry};

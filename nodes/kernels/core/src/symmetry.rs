@@ -70,7 +70,7 @@ impl SymmetryClass {
 /// Only the symmetric part of the 6×6 matrix is looked at. `None` if it is zero or not finite.
 ///
 /// ```
-/// use grainlab_core::symmetry::{SymmetryClass, symmetry};
+/// use grainlab_core::{SymmetryClass, symmetry};
 /// use grainlab_core::{Stiffness, TransverseIsotropy};
 /// let moduli = TransverseIsotropy { c11: 360.0, c12: 80.0, c13: 70.0, c33: 400.0, g13: 150.0, g12: 140.0, residual: 0.0 };
 /// let turned = nalgebra::Rotation3::from_euler_angles(0.3, -0.8, 1.9);

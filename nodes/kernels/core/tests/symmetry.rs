@@ -1,7 +1,7 @@
 //! Which symmetry a stiffness has, found without being told the axes.
 
-use grainlab_core::symmetry::{Symmetry, SymmetryClass, symmetry};
 use grainlab_core::{Mat3, Stiffness, TransverseIsotropy, Vec3};
+use grainlab_core::{Symmetry, SymmetryClass, symmetry};
 use nalgebra::{Matrix6, Rotation3};
 
 /// Numbers in [0, 1) from a 64-bit linear congruential generator.

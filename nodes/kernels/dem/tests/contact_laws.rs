@@ -3,8 +3,8 @@
 use grainlab_core::contact::{
     ContactKinematics, ContactLaw, ContactSprings, LawVisitor, SpringDashpotSlider,
 };
+use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
-use grainlab_core::material::effective_radius;
 use grainlab_core::{Cell, Material, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 use nalgebra::{Rotation3, Unit};

@@ -76,7 +76,7 @@ pub use moduli::{MODULI, Moduli, ModuliCovariance, Modulus};
 pub use moments::Moments;
 pub use observation::{INPUT_NAMES, INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
-pub use registry::{model, models};
+pub use registry::{model, models, recommended};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
 pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;

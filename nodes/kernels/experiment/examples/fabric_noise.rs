@@ -6,7 +6,7 @@
 //! ones.
 
 use grainlab_core::results::PackingReport;
-use grainlab_core::symmetry::symmetry;
+use grainlab_core::symmetry;
 use grainlab_core::{Packing, Vec3};
 use grainlab_micromechanics::structure::{contact_statistics, deviator, fabric, stress_decomposition};
 use grainlab_micromechanics::{PackingView, Settings, analyze};

@@ -150,7 +150,8 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
         _ if args.smooth => Springs::Normal,
         _ => Springs::NormalAndTangential,
     };
-    let probe = (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..explicit(springs) });
+    let probe =
+        (args.method == Method::Probe).then(|| StrainProbe { amplitude, ..measure::explicit(springs) });
     let solver = match args.solver {
         Solver::Iterative => network::Solver::Iterative,
         Solver::Direct => network::Solver::Direct,
@@ -164,12 +165,6 @@ fn settings(args: &Args) -> Result<grainlab_micromechanics::Settings, Failure> {
         probe,
         ..settings
     })
-}
-
-/// A probe in which contacts stick, or slide freely.
-fn explicit(springs: Springs) -> StrainProbe {
-    let probe = StrainProbe::default();
-    StrainProbe { friction: if springs.has_tangential() { probe.friction } else { 0.0 }, ..probe }
 }
 
 fn scan(args: &Args) -> Result<Vec<f64>, Failure> {

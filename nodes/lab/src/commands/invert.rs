@@ -110,6 +110,9 @@ pub(crate) struct Args {
     /// Judge the rows with the same cells in these columns together; numbers that are not whole are the same to three digits
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
     by: Vec<String>,
+    /// Draw the contact anisotropy inferred by each model against that of the table, into this file (SVG)
+    #[arg(long, value_name = "FILE.svg", requires = "judge")]
+    plot: Option<PathBuf>,
     /// Also sample the distribution of the estimates by this many draws of the data: for errors that are large, where those
     /// of the other columns, linear in the errors, are not to be trusted; 20000 is plenty
     #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
@@ -134,7 +137,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(path) = &args.table {
         let rows = Rows::open(path, &args.by, defaults)?;
         if args.judge {
-            return judge::run(rows, &args.by, &ways, args.format);
+            return judge::run(rows, &args.by, &ways, args.plot.as_deref(), args.format);
         }
         return table::run(rows, &printer, args.format);
     }
@@ -151,8 +154,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         say!("grainlab: {fault}");
     }
     let more = More {
-        explained: args.explain.then(|| explain::explained(&answer, &ways)),
-        sampled: args.samples.map(|draws| sampled::sampled(&answer, &ways, draws as usize, args.seed)),
+        explained: args.explain.then(|| explain::explained(&answer.outcomes, &ways)),
+        sampled: answer.state.as_ref().ok().zip(args.samples).map(|(state, draws)| {
+            sampled::sampled(state, &answer.outcomes, &ways, draws as usize, args.seed)
+        }),
     };
     print(&match args.format {
         Format::Json => printer.json(&answer, more)?,

@@ -12,10 +12,12 @@ use std::path::{Path, PathBuf};
 mod conduct;
 mod finish;
 mod order;
+mod output;
 mod resume;
 
 use conduct::{conduct, domain};
 use order::Order;
+use output::Output;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -59,6 +61,9 @@ pub(crate) struct Args {
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    /// Print all that was measured of each packing, what each model infers, and the messages of each topic
+    #[arg(long)]
+    verbose: bool,
 }
 
 impl Default for Args {
@@ -71,14 +76,16 @@ impl Default for Args {
             out: RUNS.into(),
             resume: None,
             format: Format::Table,
+            verbose: false,
         }
     }
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    let output = Output { format: args.format, verbose: args.verbose };
     if let Some(run) = &args.resume {
-        return resume::run(run, args.format);
+        return resume::run(run, output);
     }
     let (path, given) = split(&args.words)?;
     let file = read_file(path)?;
@@ -97,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let order = order(given);
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
-    conduct(plans, domain, lock, &directory, &scene, args.format)
+    conduct(plans, domain, lock, &directory, &scene, output)
 }
 
 /// Refuses a launch file that names an unknown program, before anything is started.

@@ -1,10 +1,9 @@
 //! What the models infer, with the stable keys of `results[]`.
 
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use serde::Serialize;
-
-pub(crate) use super::inference_text::{table, warning_lines};
+use std::collections::BTreeMap;
 
 /// One model's result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,7 +80,36 @@ pub(crate) struct Interval {
     pub(crate) bounds: Quantities<Option<[f64; 2]>>,
 }
 
+/// Where results come from.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Origin {
+    /// Topic of the data.
+    pub(crate) source: Option<String>,
+    /// Node that inferred.
+    pub(crate) by: Option<String>,
+}
+
+/// Results by their origin, in its order.
+pub(crate) fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
+    let mut groups = BTreeMap::<Origin, Vec<&Inference>>::new();
+    for r in results {
+        groups.entry(Origin { source: r.source.clone(), by: r.by.clone() }).or_default().push(r);
+    }
+    groups.into_iter().collect()
+}
+
 impl Inference {
+    /// The recommended one of the results of all models from the same data.
+    pub(crate) fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
+        let status = |r: &Self| match r.status {
+            "ok" => Some(Status::Ok),
+            "extrapolated" => Some(Status::Extrapolated),
+            _ => None,
+        };
+        let name = recommended(results.iter().filter_map(|r| Some((r.model.as_str(), status(r)?))))?;
+        results.iter().find(|r| r.model == name).copied()
+    }
+
     /// A model that has no estimate, and why.
     pub(crate) fn failed(
         model: &str,
@@ -169,8 +197,8 @@ impl Inference {
             degrees_of_freedom: Some(estimate.misfit.map_or(0, |m| m.degrees_of_freedom)),
             condition_number: estimate.condition_number(),
             status: match estimate.status {
-                grainlab_emt::Status::Ok => "ok",
-                grainlab_emt::Status::Extrapolated => "extrapolated",
+                Status::Ok => "ok",
+                Status::Extrapolated => "extrapolated",
             },
             gamma_over_delta: estimate.gamma.map(|g| g.value),
             gamma_over_delta_source: estimate.gamma.map(|g| g.source.name().to_owned()),

@@ -49,7 +49,7 @@ impl Inference {
 }
 
 /// The warnings of several results as lines, each with the models it comes from.
-pub(crate) fn warning_lines(results: &[Inference]) -> String {
+pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for r in results {
         for w in &r.warnings {
@@ -66,7 +66,10 @@ pub(crate) fn warning_lines(results: &[Inference]) -> String {
 pub(crate) fn table(results: &[Inference]) -> String {
     let mut t = Table::new(Inference::COLUMNS);
     results.iter().for_each(|r| t.row(r.cells()));
-    t.without_empty_columns().text() + &warning_lines(results)
+    let best = Inference::recommended(&results.iter().collect::<Vec<_>>());
+    let best = best.filter(|_| results.len() > 1);
+    let advice = best.map_or_else(String::new, |b| format!("  recommended: {}, {}\n", b.model, b.status));
+    t.without_empty_columns().text() + &advice + &warning_lines(results)
 }
 
 #[cfg(test)]

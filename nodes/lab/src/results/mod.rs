@@ -2,10 +2,11 @@
 
 pub(crate) mod acoustic;
 mod acoustic_text;
+pub(crate) mod brief;
 pub(crate) mod continuity;
 pub(crate) mod doubts;
 pub(crate) mod inference;
-mod inference_text;
+pub(crate) mod inference_text;
 pub(crate) mod last_packing;
 pub(crate) mod measured_packing;
 pub(crate) mod packing_text;

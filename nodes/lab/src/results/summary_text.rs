@@ -1,7 +1,8 @@
 //! A launched run for people.
 
 use super::acoustic_text;
-use super::inference::{Inference, warning_lines};
+use super::inference::{Inference, Origin, by_origin};
+use super::inference_text::warning_lines;
 use super::packing_text;
 use super::packing_text::indented;
 use super::read_back::{Film, InvertedPacking};
@@ -55,14 +56,11 @@ pub(crate) fn text(s: &Summary) -> String {
 
 /// What each model infers, a block for each kind of data.
 fn inferred(s: &InvertedPacking) -> String {
-    let origin = |r: &Inference| (r.source.clone(), r.by.clone());
-    let origins: BTreeSet<_> = s.results.iter().map(origin).collect();
-    let sources: BTreeSet<_> = origins.iter().map(|(source, _)| source).collect();
-    let inversions: BTreeSet<_> = origins.iter().map(|(_, by)| by).collect();
+    let groups = by_origin(&s.results);
+    let inversions: BTreeSet<_> = groups.iter().map(|(o, _)| &o.by).collect();
+    let sources: BTreeSet<_> = groups.iter().map(|(o, _)| &o.source).collect();
     let mut text = String::new();
-    for (source, by) in &origins {
-        let results: Vec<Inference> =
-            s.results.iter().filter(|r| r.source == *source && r.by == *by).cloned().collect();
+    for (Origin { source, by }, results) in &groups {
         if inversions.len() > 1 {
             text += &format!("  by {}\n", by.as_deref().unwrap_or("a node that the recording does not name"));
         }
@@ -77,13 +75,13 @@ fn inferred(s: &InvertedPacking) -> String {
             };
             text += &format!("  from {data}\n");
         }
-        text += &block(&results, s);
+        text += &block(results, s);
     }
     text
 }
 
 /// What each model infers from one kind of data, with its error against what was measured.
-fn block(results: &[Inference], s: &InvertedPacking) -> String {
+fn block(results: &[&Inference], s: &InvertedPacking) -> String {
     let mut t = Table::new([
         "inferred by",
         "k",
@@ -127,5 +125,5 @@ fn block(results: &[Inference], s: &InvertedPacking) -> String {
     if let Some((g, source)) = taken {
         text += &format!("; gamma/Delta taken, by the models that need it: {g:.4} ({source})");
     }
-    text + "\n" + &warning_lines(results)
+    text + "\n" + &warning_lines(results.iter().copied())
 }

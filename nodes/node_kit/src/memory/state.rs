@@ -4,7 +4,7 @@ use super::faults::{Dice, Faults};
 use crate::admission::Participant;
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use grainlab_msgs::topics::Qos;
+use grainlab_msgs::Qos;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 

@@ -5,7 +5,7 @@
 
 use grainlab_acoustics::dispersion::{Settings, curves};
 use grainlab_acoustics::{DispersionCurve, Ray};
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
 const RADIUS: f64 = 1e-4;

@@ -1,7 +1,7 @@
 //! Packings to send waves through.
 
 use flate2::read::GzDecoder;
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use serde_json::Value;
 use std::io::Read;

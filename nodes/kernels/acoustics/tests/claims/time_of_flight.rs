@@ -6,7 +6,7 @@ use grainlab_acoustics::Warning;
 use grainlab_acoustics::time_of_flight::Arrivals;
 use grainlab_acoustics::time_of_flight::{ArrivalPick, Settings, curve, curves};
 use grainlab_acoustics::{Instrument, Ray};
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_core::results::NotJammed;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use std::f64::consts::{PI, TAU};

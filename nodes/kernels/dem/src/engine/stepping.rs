@@ -10,7 +10,7 @@ use crate::settings::TimeStep;
 use crate::step::integrate::{self, SpeedStats};
 use crate::step::pass::{Pass, PassKind};
 use crate::step::time_step;
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 use grainlab_core::{Mat3, SymTensor, Vec3};
 
 /// Steps between two updates of the time step from the stiffness of the contacts.

@@ -13,8 +13,8 @@ use grainlab_core::Vec3;
 use grainlab_core::contact::{
     ContactKinematics, ContactSprings, LawVisitor, SpringDashpotSlider, TangentialLaw,
 };
+use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
-use grainlab_core::material::effective_radius;
 
 /// Energies and works since the balance was switched on, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -13,7 +13,7 @@ use crate::settings::EngineSettings;
 use crate::simd::simd_f64::BLOCK_SIZE;
 use grainlab_core::Mat3;
 use grainlab_core::contact::{ContactSprings, LawVisitor};
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 use grainlab_core::stress::Stress;
 
 /// What the present contacts show.

@@ -6,8 +6,8 @@ use super::types::{Pair, PairBlock, SavedContact};
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::{State, vector};
 use crate::simd::simd_f64::BLOCK_SIZE;
+use grainlab_core::effective_radius;
 use grainlab_core::lanes::LaneVec3;
-use grainlab_core::material::effective_radius;
 use grainlab_core::{Contact, Packing, Vec3};
 
 /// All pairs, divided among subdomains.

@@ -6,7 +6,7 @@ use crate::domain::accumulator::{AccumulatorBuilder, ForceAccumulator, PartAccum
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::State;
 use crate::simd::simd_f64::{BLOCK_SIZE, CHUNK_SIZE};
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 
 /// Pairs sorted by (i, j, image), in blocks; each chunk of grains begins a new block.
 ///

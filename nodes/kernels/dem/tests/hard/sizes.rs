@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use grainlab_core::contact::TangentialLaw;
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Vec3};
 use grainlab_dem::Engine;
 

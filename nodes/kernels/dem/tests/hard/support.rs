@@ -1,7 +1,7 @@
 //! Packings, measures and the brute-force search that the hard cases share.
 
 use grainlab_core::contact::TangentialLaw;
-use grainlab_core::material::effective_radius;
+use grainlab_core::effective_radius;
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 

@@ -3,7 +3,7 @@
 use super::relaxation::Relaxation;
 use super::settings::{DifferenceScheme, StrainProbe};
 use crate::error::ProbeError;
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_dem::{DemError, Engine, Observables};
 use std::cmp::Ordering;
 

@@ -2,7 +2,7 @@
 
 use crate::golden::reference;
 use crate::samples::{packing, random};
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_core::results::{ElasticStiffness, StiffnessMethod};
 use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_micromechanics::network::{

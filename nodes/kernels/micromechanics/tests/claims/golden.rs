@@ -2,7 +2,7 @@
 
 use crate::samples::ordered;
 use flate2::read::GzDecoder;
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 use nalgebra::Matrix6;
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! Packings to measure.
 
-use grainlab_core::material::effective_radius;
-use grainlab_core::packing::Contact;
+use grainlab_core::Contact;
+use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
 /// A packing of spheres of one radius at `positions`, with every contact that `radius` makes in `cell` (images up to

@@ -6,8 +6,8 @@ use crate::results::measured_packing::MeasuredPacking;
 use crate::results::probe::{ProbeView, ScanView};
 use grainlab_core::Packing;
 use grainlab_fabric_analyzer::{Measured, messages};
-use grainlab_micromechanics::network::{SpringNetwork, relaxed_stiffness};
-use grainlab_micromechanics::probe::{StrainProbeResult, amplitude_sweep};
+use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
+use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult, amplitude_sweep};
 use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 use grainlab_recordings::import::Imported;
 use std::time::Instant;
@@ -66,7 +66,7 @@ impl Analysis {
     /// Probes of all amplitudes beside the frozen network.
     fn scanned(&self, packing: &Packing) -> Result<ScanView, MicroError> {
         let set = &self.settings;
-        let sweep = amplitude_sweep(packing, &super::explicit(set.springs), &self.scan, AGREEMENT)?;
+        let sweep = amplitude_sweep(packing, &explicit(set.springs), &self.scan, AGREEMENT)?;
         let network = SpringNetwork::new(&PackingView::new(packing), set.springs)?;
         let found = relaxed_stiffness(&network, set.solver, set.tolerance, set.max_iterations)?;
         Ok(ScanView::new(&sweep, found.map(|s| s.relaxed).as_ref()))
@@ -84,4 +84,10 @@ fn one_sided(probe: &StrainProbeResult) -> Option<String> {
             100.0 * worst
         )
     })
+}
+
+/// A probe in which contacts stick, or slide freely.
+pub(super) fn explicit(springs: Springs) -> StrainProbe {
+    let probe = StrainProbe::default();
+    StrainProbe { friction: if springs.has_tangential() { probe.friction } else { 0.0 }, ..probe }
 }

@@ -1,9 +1,8 @@
 //! Which datum decides which unknown, and what the uncertainty is made of.
 
-use super::answer::Answer;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{Estimate, INPUT_NAMES, Quantity, StructureCovariance};
+use grainlab_emt::{EmtError, Estimate, INPUT_NAMES, Quantity, StructureCovariance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -25,8 +24,8 @@ pub(super) struct Explained {
 }
 
 /// All that the models found.
-pub(super) fn explained(answer: &Answer, ways: &[Way]) -> Vec<Explained> {
-    let found = answer.outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
+pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -> Vec<Explained> {
+    let found = outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
     found.flat_map(|(estimate, way)| of_estimate(estimate, way)).collect()
 }
 

@@ -1,7 +1,8 @@
 //! Estimates against the truth of a table, model by model.
 //!
-//! - [`score`]: errors of one quantity, summed up
+//! - [`score`]: errors of one quantity, summed up; [`plot`]: estimates against the truth, drawn
 
+mod plot;
 mod score;
 
 use super::answer::Answer;
@@ -16,6 +17,7 @@ use grainlab_node_kit::Exit;
 use score::Score;
 use serde::Serialize;
 use std::collections::HashMap;
+use std::path::Path;
 
 /// What one way makes of one quantity of one group of rows.
 #[derive(Debug, Serialize)]
@@ -37,16 +39,25 @@ struct Judged {
 struct Verdict {
     gamma: &'static str,
     errors: [Option<score::Error>; grainlab_emt::QUANTITIES],
+    /// True and inferred contact anisotropy.
+    anisotropy: Option<[f64; 2]>,
 }
 
-/// Inverts every row, and prints how far from the truth it is.
-pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -> Result<Exit, Failure> {
+/// Inverts every row, and prints how far from the truth it is; `plot` is the file of the figure, if one is drawn.
+pub(super) fn run(
+    mut rows: Rows,
+    by: &[String],
+    ways: &[Way],
+    plot: Option<&Path>,
+    format: Format,
+) -> Result<Exit, Failure> {
     if !rows.columns.has_truth() {
         let needed = Quantity::ALL.map(Quantity::name).join(", ");
         return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));
     }
     let mut tally = Tally::new();
     let mut board = Board::default();
+    let mut points = vec![Vec::new(); ways.len()];
     loop {
         let piece = rows.next(|number, row| {
             let row = row.map_err(|bad| (number, bad))?;
@@ -58,6 +69,9 @@ pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -
             match row {
                 Ok((group, verdicts)) => {
                     tally.add(Exit::Done, "");
+                    for (points, verdict) in points.iter_mut().zip(&verdicts) {
+                        points.extend(verdict.anisotropy);
+                    }
                     board.enter(group, &verdicts);
                 }
                 // That a model has no estimate is what is judged. That a row is none is not.
@@ -74,6 +88,10 @@ pub(super) fn run(mut rows: Rows, by: &[String], ways: &[Way], format: Format) -
         Format::Csv => csv(&judged, by),
         Format::Table => people(&judged, by),
     })?;
+    if let Some(path) = plot {
+        std::fs::write(path, plot::svg(ways, points))
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+    }
     tally.end(rows.name())
 }
 
@@ -84,7 +102,9 @@ impl Verdict {
             let truth = state.truth.get(against(quantity, way))?;
             Some(score::Error::of(estimate.as_ref(), quantity, truth))
         });
-        Self { gamma: state.gamma_source(way), errors }
+        let found = estimate.as_ref().and_then(|e| e.structure.eps);
+        let anisotropy = state.truth.eps.zip(found).map(<[f64; 2]>::from);
+        Self { gamma: state.gamma_source(way), errors, anisotropy }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
-use crate::results::inference::{self, Inference};
+use crate::results::inference::Inference;
+use crate::results::inference_text;
 use grainlab_console::{CsvText, Failure, Table, exact, json};
 
 /// What turns answers into text.
@@ -51,7 +52,7 @@ impl Printer<'_> {
 
     /// One state, warnings below.
     pub(super) fn state(&self, answer: &Answer, more: &More) -> String {
-        let mut text = inference::table(&answer.inferences(self.ways));
+        let mut text = inference_text::table(&answer.inferences(self.ways));
         text += &more.explained.as_deref().map_or_else(String::new, explain::people);
         text + &more.sampled.as_deref().map_or_else(String::new, sampled::people)
     }
@@ -70,7 +71,7 @@ impl Printer<'_> {
                 let label = [sample.clone(), pressure.clone().unwrap_or_else(|| "-".to_owned()), asked];
                 t.row(label.into_iter().chain(result.cells()));
             }
-            let lines = inference::warning_lines(&results);
+            let lines = inference_text::warning_lines(&results);
             if !lines.is_empty() {
                 let at = pressure.map_or_else(String::new, |p| format!(" at {p} kPa"));
                 warnings += &format!("{sample}{at}:\n{lines}");

@@ -1,11 +1,9 @@
 //! Estimates as samples of their distribution.
 
-use super::answer::Answer;
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::SamplingSettings;
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, MonteCarlo, Quantity, monte_carlo};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, Quantity, SamplingSettings, monte_carlo};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -29,11 +27,15 @@ pub(super) struct Sampled {
 }
 
 /// All that has an estimate, sampled.
-pub(super) fn sampled(answer: &Answer, ways: &[Way], draws: usize, seed: u64) -> Vec<Sampled> {
-    let Ok(state) = &answer.state else { return Vec::new() };
+pub(super) fn sampled(
+    state: &State,
+    outcomes: &[Result<Estimate, EmtError>],
+    ways: &[Way],
+    draws: usize,
+    seed: u64,
+) -> Vec<Sampled> {
     let settings = SamplingSettings { draws, seed };
-    let found: Vec<_> =
-        ways.iter().zip(&answer.outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
+    let found: Vec<_> = ways.iter().zip(outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
     // What has an estimate has samples, too: its errors are known, or the flag is refused.
     let samples: Vec<_> = found.par_iter().filter_map(|way| of_way(state, way, settings).ok()).collect();
     samples.iter().flat_map(of_samples).collect()

@@ -2,11 +2,11 @@
 
 use super::finish::finish;
 use super::order;
+use super::output::Output;
 use crate::launch::Run;
 use crate::launch::plan::NodePlan;
 use crate::launch::supervisor::{Supervised, Supervisor};
 use grainlab_console::Failure;
-use grainlab_console::Format;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
 use grainlab_node_kit::{Exit, Network, RunId};
@@ -20,7 +20,7 @@ pub(super) fn conduct(
     lock: Option<FreeDomain>,
     directory: &Path,
     scene: &SceneText,
-    format: Format,
+    output: Output,
 ) -> Result<Exit, Failure> {
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     let run = Run { id: RunId::fresh(), domain };
@@ -39,7 +39,7 @@ pub(super) fn conduct(
     if failed && remove_if_unused(directory) {
         return Ok(supervised.exit);
     }
-    finish(format, directory, scene, run, supervised)
+    finish(output, directory, scene, run, supervised)
 }
 
 /// Removes the directory of a run that did not start, if it holds only the scene and empty logs. False if there is

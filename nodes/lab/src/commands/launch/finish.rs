@@ -1,8 +1,10 @@
 //! The result of a run, read back from its recording.
 
+use super::output::Output;
 use crate::launch::Run;
 use crate::launch::supervisor::{Heard, Supervised};
 use crate::nodes::NodeKind;
+use crate::results::brief;
 use crate::results::continuity;
 use crate::results::measured_packing;
 use crate::results::read_back::{self, ReadBack};
@@ -13,7 +15,7 @@ use grainlab_console::{Failure, worse};
 use grainlab_console::{Format, json, print};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Published results that the recording lacks.
 fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
@@ -32,7 +34,7 @@ fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
 
 /// Reads the recording back, prints the result and writes it beside the recording.
 pub(super) fn finish(
-    format: Format,
+    output: Output,
     directory: &Path,
     scene: &SceneText,
     run: Run,
@@ -83,12 +85,12 @@ pub(super) fn finish(
     summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
     // Printed before writing, so that a full disk does not lose the result.
-    let printed = print(&match format {
+    let printed = print(&match output.format {
         Format::Json => text.clone(),
         Format::Csv => measured_packing::table(&packings).csv(),
         Format::Table => {
-            let text = summary_text::text(&summary);
-            format!("{text}  recording {}\n  summary   {}\n", directory.display(), path.display())
+            let all = if output.verbose { summary_text::text(&summary) + "\n" } else { String::new() };
+            all + &brief::text(&summary, &from_here(directory), &program())
         }
     });
     for failure in [write_whole(&path, &text), printed].into_iter().filter_map(Result::err) {
@@ -97,6 +99,17 @@ pub(super) fn finish(
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }
     Ok(exit)
+}
+
+/// The path from the present folder, if it is below it.
+fn from_here(path: &Path) -> PathBuf {
+    let here = std::env::current_dir().and_then(|d| d.canonicalize());
+    here.ok().and_then(|d| path.strip_prefix(d).ok()).unwrap_or(path).to_owned()
+}
+
+/// This program as it was called.
+fn program() -> String {
+    std::env::args().next().unwrap_or_else(|| "grainlab".to_owned())
 }
 
 /// Writes a file atomically.

@@ -5,16 +5,17 @@
 
 use super::conduct::{conduct, domain};
 use super::order::Order;
+use super::output::Output;
 use crate::nodes::NodeKind;
 use crate::results::last_packing;
+use grainlab_console::Failure;
 use grainlab_console::scenes;
-use grainlab_console::{Failure, Format};
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
-pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
+pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let directory = directory.canonicalize().map_err(|e| failed(&e))?;
     let order = Order::read(&directory)?;
@@ -49,7 +50,7 @@ pub(super) fn run(directory: &Path, format: Format) -> Result<Exit, Failure> {
         }
     }
     let (domain, lock) = domain()?;
-    conduct(plans, domain, lock, &directory, &scene, format)
+    conduct(plans, domain, lock, &directory, &scene, output)
 }
 
 /// Whether the loading path was complete and its last packing was measured and inverted.

@@ -1,0 +1,69 @@
+//! What a topic is.
+
+use crate::message::TypeInfo;
+
+/// One row of the contract.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Topic {
+    /// Name: ours are relative, so that a namespace applies to them; the standard ones are absolute.
+    pub name: &'static str,
+    /// Type, schema text and hash.
+    pub info: TypeInfo,
+    /// What the writer offers.
+    pub qos: Qos,
+    /// Node that writes it.
+    pub writer: &'static str,
+    /// Whether every recorded byte is a function of scene and seed: no wall clock, no counter of a process.
+    pub reproducible: bool,
+    /// What it carries, in a line.
+    pub summary: &'static str,
+}
+
+/// Quality of service that a writer offers. History is always keep last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Qos {
+    /// Reliable, else best effort.
+    pub reliable: bool,
+    /// Samples kept for a reader.
+    pub depth: u32,
+    /// Transient local (a late reader gets the last samples), else volatile.
+    pub transient_local: bool,
+}
+
+impl Qos {
+    /// Streams of which nothing may be lost.
+    pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };
+    /// States of which the latest is what counts.
+    pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
+    /// States of which the latest is several messages: a late reader gets as many as make a whole one.
+    pub const LATCHED_SET: Self = Self { reliable: true, depth: 128, transient_local: true };
+    /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it all the same.
+    pub const CLOCK: Self = Self { reliable: true, depth: 10, transient_local: false };
+    /// For parts of what is too large for one sample: nothing is repeated by the bus, because the readers ask for what is
+    /// missing, and a dead reader then holds nothing up. The depth is what a writer may be asked for at once.
+    pub const PARTS: Self = Self { reliable: false, depth: 32, transient_local: false };
+    /// ROS 2's for `/rosout`.
+    pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
+
+    /// The profile as rosbag2 writes it into a channel's `offered_qos_profiles` and, as a string, into metadata.yaml: a
+    /// list with one map, numbers for words, so that every distribution reads it. No newline at the end.
+    pub fn offered_qos_profiles(&self) -> String {
+        let reliability = if self.reliable { 1 } else { 2 };
+        let durability = if self.transient_local { 1 } else { 2 };
+        // Seconds and nanoseconds of what ROS 2 means by infinite: 2^63 - 1 ns.
+        let infinite = "\n    sec: 9223372036\n    nsec: 854775807";
+        format!(
+            "- history: 1\n  depth: {depth}\n  reliability: {reliability}\n  durability: {durability}\n  \
+             deadline:{infinite}\n  lifespan:{infinite}\n  liveliness: 1\n  liveliness_lease_duration:{infinite}\n  \
+             avoid_ros_namespace_conventions: false",
+            depth = self.depth
+        )
+    }
+}
+
+impl Topic {
+    /// The name a recording shows without namespace: `/stress`.
+    pub fn absolute_name(&self) -> String {
+        format!("/{}", self.name.trim_start_matches('/'))
+    }
+}

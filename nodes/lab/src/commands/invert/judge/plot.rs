@@ -1,0 +1,41 @@
+//! Inferred against true contact anisotropy, a colour for each model.
+
+use crate::commands::invert::way::Way;
+use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
+
+/// The figure as SVG. `points` has, for each way, the true and the inferred anisotropy of each row.
+pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {
+    let truths = || points.iter().flatten().map(|[truth, _]| *truth);
+    let ends = [truths().fold(f64::INFINITY, f64::min), truths().fold(f64::NEG_INFINITY, f64::max)];
+    let rows = points.iter().map(Vec::len).max().unwrap_or(0);
+    let exact = Series {
+        line: Some(Line::Straight),
+        points: ends.map(|e| Point::at(e, e)).into(),
+        ..Series::default()
+    };
+    // The legend has little room: a calibration is named where a model has several.
+    let name = |way: &Way| match ways.iter().filter(|w| w.model.name() == way.model.name()).count() {
+        1 => way.model.name().to_owned(),
+        _ => format!("{} ({})", way.model.name(), way.calibration.name()),
+    };
+    let legend = ways.iter().zip(&points).enumerate().map(|(n, (way, points))| {
+        let rms = (points.iter().map(|[t, f]| (f - t).powi(2)).sum::<f64>() / points.len() as f64).sqrt();
+        Entry::Colour(n, format!("{}: rms {rms:.4}", name(way)))
+    });
+    let legend = legend.collect();
+    let drawn = points.into_iter().enumerate().map(|(n, points)| Series {
+        colour: Some(n),
+        marker: Some(Marker::of(n)),
+        points: points.into_iter().map(|[truth, found]| Point::at(truth, found)).collect(),
+        ..Series::default()
+    });
+    Figure {
+        title: "Contact anisotropy inferred from moduli, against what was counted".into(),
+        subtitle: format!("{rows} packings; rms error of each model; the line is an inference without error"),
+        x: Axis::linear("contact anisotropy counted"),
+        y: Axis::linear("contact anisotropy inferred"),
+        series: drawn.chain([exact]).collect(),
+        legend,
+    }
+    .svg(Theme::Light)
+}

@@ -1,0 +1,225 @@
+//! A launched run in at most 20 lines: what was prepared, measured and inferred, and where it is.
+
+use super::acoustic_text;
+use super::inference::{Inference, Origin, by_origin};
+use super::read_back::InvertedPacking;
+use super::summary::Summary;
+use grainlab_console::{Table, fixed};
+use grainlab_core::Vec3;
+use grainlab_core::results::PackingReport;
+use grainlab_msgs::topics;
+use std::path::Path;
+
+/// The model of the paper (its Eqs. 21 and 22, corrected).
+const PAPER: &str = "ratio";
+
+/// Rows of the table of states; with more states, the last ones have rows.
+const MOST_ROWS: usize = 10;
+
+/// The end of a run, for people. `program` is how the command was called.
+pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
+    let mut lines = match s.states.as_slice() {
+        [] => vec![row("Prepared", "no packing was published")],
+        [state] => one(state),
+        states => several(states),
+    };
+    lines.push(row("Run", &pace(s)));
+    let folder = directory.display();
+    lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
+    if !s.states.is_empty() {
+        lines.push(row(
+            "Next",
+            &format!("{program} analyze {folder}    # all that is measured of each packing"),
+        ));
+    }
+    lines.push(row("", &format!("{program} bag info {folder}    # what was recorded")));
+    lines.push(row(
+        "",
+        &format!("{program} launch --scene s2 --verbose    # another scene, and every model's estimate"),
+    ));
+    lines.join("\n") + "\n"
+}
+
+fn row(name: &str, text: &str) -> String {
+    format!("{name:<10}{text}")
+}
+
+fn one(state: &InvertedPacking) -> Vec<String> {
+    let r = &state.packing.report;
+    let mut lines = vec![row("Prepared", &prepared(r)), row("Counted", &counted(r))];
+    match r.elasticity.not_jammed() {
+        None => lines.push(row("Measured", &measured(r))),
+        Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
+    }
+    let groups = by_origin(&state.results);
+    for (origin, results) in &groups {
+        let source = source(origin, state, groups.len() > 1);
+        match Inference::recommended(results) {
+            Some(best) => {
+                lines
+                    .push(row("Inferred", &format!("from {source} alone, by the model {}:", standing(best))));
+                lines.push(row("", &estimate(best, r)));
+            }
+            None => lines.push(row("Inferred", &format!("nothing from {source}: --verbose has the reasons"))),
+        }
+        if let Some(paper) =
+            results.iter().find(|r| r.model == PAPER && r.values.k.or(r.values.eps).is_some())
+        {
+            let g = paper.gamma_over_delta.map_or_else(String::new, |g| {
+                format!(
+                    " with gamma/Delta {g:.3} ({})",
+                    paper.gamma_over_delta_source.as_deref().unwrap_or("given")
+                )
+            });
+            lines.push(row("Paper", &format!("by its model {}{g}:", standing(paper))));
+            lines.push(row("", &estimate(paper, r)));
+        }
+    }
+    if groups.is_empty() {
+        lines.push(row("Inferred", "nothing: no moduli were inverted"));
+    }
+    lines
+}
+
+fn prepared(r: &PackingReport) -> String {
+    let unbalanced =
+        r.unbalanced_force_ratio.map_or_else(String::new, |u| format!(", unbalanced force {u:.0e}"));
+    format!(
+        "{} grains at {:.4} kPa, solid fraction {:.4}, stress ratio q/p {}{unbalanced}",
+        r.contacts.grains,
+        r.pressure() / 1e3,
+        r.solid_fraction,
+        r.stress_ratio().map_or_else(|| "-".to_owned(), |q| format!("{q:.0e}")),
+    )
+}
+
+fn counted(r: &PackingReport) -> String {
+    let c = &r.contacts;
+    let axis = r.fabric.reference_axis;
+    let about = if axis == Vec3::z() {
+        String::new()
+    } else {
+        format!(" about ({:.2}, {:.2}, {:.2})", axis.x, axis.y, axis.z)
+    };
+    format!(
+        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {:.4}{about}",
+        c.contacts, c.rattlers, c.coordination, c.mechanical_coordination, r.fabric.contact_anisotropy
+    )
+}
+
+/// G12, G13 and Theta, MPa.
+fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
+    let Some(stiffness) = r.stiffness() else { return [None; 3] };
+    let t = stiffness.tensor.transverse_isotropy_about(&r.fabric.reference_axis);
+    [t.g12, t.g13, stiffness.tensor.bulk_voigt()].map(|m| Some(m / 1e6))
+}
+
+fn measured(r: &PackingReport) -> String {
+    let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
+    format!("shear moduli G12 {g12} and G13 {g13} MPa, bulk modulus Theta {theta} MPa")
+}
+
+/// What was inverted: `moduli`, or `wave speeds (…)`; and by which node, where several infer.
+fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
+    let data = match (origin.source.as_deref(), &state.acoustic) {
+        (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
+        (Some(name), _) if name != topics::MODULI.name => name.to_owned(),
+        _ => "moduli".to_owned(),
+    };
+    match &origin.by {
+        Some(node) if several => format!("{data} ({node})"),
+        _ => data,
+    }
+}
+
+fn standing(r: &Inference) -> String {
+    match r.status {
+        "ok" => format!("{}, inside its range", r.model),
+        status => format!("{}, {status}", r.model),
+    }
+}
+
+/// The values of an estimate, each with its standard deviation and its error against what was counted.
+fn estimate(e: &Inference, truth: &PackingReport) -> String {
+    let c = &truth.contacts;
+    let parts = [
+        ("k", e.values.k, e.sigma.k, c.coordination, 3),
+        ("z", e.values.z, e.sigma.z, c.mechanical_coordination, 3),
+        ("eps", e.values.eps, e.sigma.eps, truth.fabric.contact_anisotropy, 4),
+    ];
+    let told = parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
+        let (value, error) = (value?, value? - truth);
+        let sigma = sigma.map_or_else(String::new, |s| format!(" +- {s:.digits$}"));
+        Some(format!("{name} {value:.digits$}{sigma} (error {error:+.digits$})"))
+    });
+    told.collect::<Vec<_>>().join(", ")
+}
+
+fn several(states: &[InvertedPacking]) -> Vec<String> {
+    let mut t = Table::new([
+        "step",
+        "p/kPa",
+        "k",
+        "z",
+        "eps",
+        "G12/MPa",
+        "G13/MPa",
+        "Theta/MPa",
+        "inferred k",
+        "z",
+        "eps",
+        "by",
+        "from",
+    ]);
+    let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
+    let left_out = states.len().saturating_sub(MOST_ROWS / origins);
+    for state in &states[left_out..] {
+        let r = &state.packing.report;
+        let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 1));
+        let packing = [
+            state.packing.step.to_string(),
+            format!("{:.2}", r.pressure() / 1e3),
+            format!("{:.3}", r.contacts.coordination),
+            format!("{:.3}", r.contacts.mechanical_coordination),
+            format!("{:.4}", r.fabric.contact_anisotropy),
+            g12,
+            g13,
+            theta,
+        ];
+        let groups = by_origin(&state.results);
+        let mut found = groups.iter().filter_map(|(_, results)| Inference::recommended(results));
+        t.row(packing.into_iter().chain(inferred(found.next())));
+        found.for_each(|b| t.row((0..8).map(|_| String::new()).chain(inferred(Some(b)))));
+    }
+    let mut lines: Vec<String> = t.without_empty_columns().text().lines().map(str::to_owned).collect();
+    if left_out > 0 {
+        lines.push(format!("and {left_out} packings before these: summary.json has all"));
+    }
+    lines
+}
+
+/// The recommended estimate, and the topic of its data.
+fn inferred(best: Option<&Inference>) -> [String; 5] {
+    let Some(b) = best else { return [const { String::new() }; 5] };
+    let from = b.source.clone().unwrap_or_default();
+    [fixed(b.values.k, 3), fixed(b.values.z, 3), fixed(b.values.eps, 4), b.model.clone(), from]
+}
+
+fn pace(s: &Summary) -> String {
+    let mut text = format!("{:.1} s", s.wall_seconds);
+    if let Some(rate) = s.particle_steps_per_second {
+        text += &format!(", {:.1} million particle-steps/s", rate / 1e6);
+    }
+    if let Some(n) = s.exchanges {
+        text += &format!(", {n} exchanges of stress and strain rate");
+    }
+    let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
+    text += &format!("; {messages} messages recorded, {lost} lost");
+    if s.film.packings > 0 {
+        text += &format!(", {} packings within phases", s.film.packings);
+    }
+    for node in s.nodes.iter().filter(|n| n.restarts > 0) {
+        text += &format!("; {} was started again {} times", node.name, node.restarts);
+    }
+    text
+}
