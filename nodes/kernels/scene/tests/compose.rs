@@ -93,14 +93,14 @@ fn bases_form_a_chain_in_which_the_last_word_wins() {
     ];
     let (demo, b) = (scene(&[], "demo"), scene(&files, "b"));
     assert_eq!((b.name.as_str(), b.grains, b.phases[1].drag), ("b", 300, 5e2));
-    assert_eq!((demo.phases[7].until.hold, b.phases[7].until.hold), (1e-5, 0.0));
-    assert_eq!((b.phases[7].until.all.clone(), b.sizes), (demo.phases[7].until.all.clone(), demo.sizes));
+    assert_eq!((demo.phases[9].until.hold, b.phases[9].until.hold), (1e-5, 0.0));
+    assert_eq!((b.phases[9].until.all.clone(), b.sizes), (demo.phases[9].until.all.clone(), demo.sizes));
 }
 
 #[test]
 fn phases_are_changed_by_name_left_out_and_added() {
     let names = |s: &Scene| s.phases.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
-    let a = "base = 'demo'\nname = 'a'\nremove = ['uniaxial', '*load']\n\
+    let a = "base = 'demo'\nname = 'a'\nremove = ['ext*', '*-*', 'triax', 'load']\n\
              phase.'*s*t*'.control_period = 7\n\
              [[append]]\nafter = 'rest'\nkind = 'relax'\nname = 'one'\nuntil.elapsed = 1e-6\n\
              [[append]]\nafter = 'rest'\nkind = 'relax'\nname = 'two'\nuntil.elapsed = 1e-6\n\

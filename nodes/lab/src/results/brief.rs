@@ -13,6 +13,9 @@ use std::path::Path;
 /// The model of the paper (its Eqs. 21 and 22, corrected).
 const PAPER: &str = "ratio";
 
+/// Sets of data, or nodes that infer, that are shown of one packing.
+const MOST_GROUPS: usize = 3;
+
 /// Rows of the table of states; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
 
@@ -27,16 +30,10 @@ pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let folder = directory.display();
     lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
     if !s.states.is_empty() {
-        lines.push(row(
-            "Next",
-            &format!("{program} analyze {folder}    # all that is measured of each packing"),
-        ));
+        lines.push(row("Next", &format!("{program} analyze {folder}    # all that is measured")));
     }
     lines.push(row("", &format!("{program} bag info {folder}    # what was recorded")));
-    lines.push(row(
-        "",
-        &format!("{program} launch --scene s2 --verbose    # another scene, and every model's estimate"),
-    ));
+    lines.push(row("", &format!("{program} launch --scene s2 --verbose    # another scene, every model")));
     lines.join("\n") + "\n"
 }
 
@@ -52,28 +49,19 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
     let groups = by_origin(&state.results);
-    for (origin, results) in &groups {
+    let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
+    for (origin, results) in &groups[..shown] {
         let source = source(origin, state, groups.len() > 1);
         match Inference::recommended(results) {
-            Some(best) => {
-                lines
-                    .push(row("Inferred", &format!("from {source} alone, by the model {}:", standing(best))));
-                lines.push(row("", &estimate(best, r)));
-            }
+            Some(best) => lines.extend(recommended(best, &source, r)),
             None => lines.push(row("Inferred", &format!("nothing from {source}: --verbose has the reasons"))),
         }
-        if let Some(paper) =
-            results.iter().find(|r| r.model == PAPER && r.values.k.or(r.values.eps).is_some())
-        {
-            let g = paper.gamma_over_delta.map_or_else(String::new, |g| {
-                format!(
-                    " with gamma/Delta {g:.3} ({})",
-                    paper.gamma_over_delta_source.as_deref().unwrap_or("given")
-                )
-            });
-            lines.push(row("Paper", &format!("by its model {}{g}:", standing(paper))));
-            lines.push(row("", &estimate(paper, r)));
+        if groups.len() < MOST_GROUPS {
+            lines.extend(by_the_paper(results, r));
         }
+    }
+    if shown < groups.len() {
+        lines.push(row("", &format!("and {} more: --verbose has all", groups.len() - shown)));
     }
     if groups.is_empty() {
         lines.push(row("Inferred", "nothing: no moduli were inverted"));
@@ -81,11 +69,27 @@ fn one(state: &InvertedPacking) -> Vec<String> {
     lines
 }
 
+fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String> {
+    let title = format!("from {source} alone, by model {} ({}):", e.model, standing(e));
+    let values = estimate(e, truth).map(|(name, value, sigma, error)| {
+        let sigma = sigma.unwrap_or_else(|| "?".to_owned());
+        row("", &format!("{name:4}{value} +- {sigma:8}  error {error}"))
+    });
+    std::iter::once(row("Inferred", &title)).chain(values).collect()
+}
+
+fn by_the_paper(results: &[&Inference], truth: &PackingReport) -> Option<String> {
+    let e = results.iter().find(|r| r.model == PAPER && r.values.k.or(r.values.eps).is_some())?;
+    let values = estimate(e, truth).map(|(name, value, _, error)| format!("{name} {value} (error {error})"));
+    let values = values.collect::<Vec<_>>().join(", ");
+    Some(row("Paper", &format!("by its model {}: {values}, {}", e.model, standing(e))))
+}
+
 fn prepared(r: &PackingReport) -> String {
     let unbalanced =
         r.unbalanced_force_ratio.map_or_else(String::new, |u| format!(", unbalanced force {u:.0e}"));
     format!(
-        "{} grains at {:.4} kPa, solid fraction {:.4}, stress ratio q/p {}{unbalanced}",
+        "{} grains at {:.2} kPa, solid fraction {:.4}, q/p {}{unbalanced}",
         r.contacts.grains,
         r.pressure() / 1e3,
         r.solid_fraction,
@@ -116,7 +120,7 @@ fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
 
 fn measured(r: &PackingReport) -> String {
     let [g12, g13, theta] = moduli(r).map(|m| fixed(m, 2));
-    format!("shear moduli G12 {g12} and G13 {g13} MPa, bulk modulus Theta {theta} MPa")
+    format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
 /// What was inverted: `moduli`, or `wave speeds (…)`; and by which node, where several infer.
@@ -132,27 +136,26 @@ fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
     }
 }
 
-fn standing(r: &Inference) -> String {
-    match r.status {
-        "ok" => format!("{}, inside its range", r.model),
-        status => format!("{}, {status}", r.model),
-    }
+fn standing(r: &Inference) -> &'static str {
+    if r.status == "ok" { "inside its range" } else { r.status }
 }
 
-/// The values of an estimate, each with its standard deviation and its error against what was counted.
-fn estimate(e: &Inference, truth: &PackingReport) -> String {
+/// Name, value, standard deviation, and error against what was counted, of each quantity of an estimate.
+fn estimate(
+    e: &Inference,
+    truth: &PackingReport,
+) -> impl Iterator<Item = (&'static str, String, Option<String>, String)> {
     let c = &truth.contacts;
     let parts = [
         ("k", e.values.k, e.sigma.k, c.coordination, 3),
         ("z", e.values.z, e.sigma.z, c.mechanical_coordination, 3),
         ("eps", e.values.eps, e.sigma.eps, truth.fabric.contact_anisotropy, 4),
     ];
-    let told = parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
-        let (value, error) = (value?, value? - truth);
-        let sigma = sigma.map_or_else(String::new, |s| format!(" +- {s:.digits$}"));
-        Some(format!("{name} {value:.digits$}{sigma} (error {error:+.digits$})"))
-    });
-    told.collect::<Vec<_>>().join(", ")
+    parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
+        let value = value?;
+        let sigma = sigma.map(|s| format!("{s:.digits$}"));
+        Some((name, format!("{value:.digits$}"), sigma, format!("{:+.digits$}", value - truth)))
+    })
 }
 
 fn several(states: &[InvertedPacking]) -> Vec<String> {
@@ -208,10 +211,10 @@ fn inferred(best: Option<&Inference>) -> [String; 5] {
 fn pace(s: &Summary) -> String {
     let mut text = format!("{:.1} s", s.wall_seconds);
     if let Some(rate) = s.particle_steps_per_second {
-        text += &format!(", {:.1} million particle-steps/s", rate / 1e6);
+        text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
     }
     if let Some(n) = s.exchanges {
-        text += &format!(", {n} exchanges of stress and strain rate");
+        text += &format!(", {n} exchanges");
     }
     let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
     text += &format!("; {messages} messages recorded, {lost} lost");
