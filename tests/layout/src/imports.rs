@@ -9,7 +9,7 @@ use syn::{Item, UseTree};
 type Modules = BTreeMap<ModulePath, Module>;
 
 /// For each module those that it uses, without itself.
-pub fn imports(modules: &Modules) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+pub(crate) fn imports(modules: &Modules) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
     let aliases: BTreeMap<&ModulePath, Aliases> =
         modules.iter().map(|(path, module)| (path, Aliases::of(path, module, modules))).collect();
     let used_by = |path: &ModulePath, module: &Module| {

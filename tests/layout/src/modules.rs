@@ -5,23 +5,23 @@ use std::path::{Path, PathBuf};
 use syn::{Attribute, Item, ItemMod};
 
 /// A module's path from the crate root; empty for the root itself.
-pub type ModulePath = Vec<String>;
+pub(crate) type ModulePath = Vec<String>;
 
 /// One module: a file, or the root.
-pub struct Module {
+pub(crate) struct Module {
     /// Its source file.
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Lines of the file.
-    pub lines: usize,
+    pub(crate) lines: usize,
     /// Its items without those of tests.
-    pub items: Vec<Item>,
+    pub(crate) items: Vec<Item>,
 }
 
 /// Every module of the crate whose root is the file `root`. Modules written inline belong to the file around them.
 ///
 /// # Panics
 /// With the file's name if it cannot be read or parsed.
-pub fn modules(root: &Path) -> BTreeMap<ModulePath, Module> {
+pub(crate) fn modules(root: &Path) -> BTreeMap<ModulePath, Module> {
     let mut found = BTreeMap::new();
     read(root, root.parent().expect("a file in a folder"), Vec::new(), &mut found);
     found
@@ -42,7 +42,7 @@ fn read(file: &Path, children: &Path, path: ModulePath, found: &mut BTreeMap<Mod
 }
 
 /// The declaration of a module that is a file of its own.
-pub fn declaration(item: &Item) -> Option<&ItemMod> {
+pub(crate) fn declaration(item: &Item) -> Option<&ItemMod> {
     match item {
         Item::Mod(module) if module.content.is_none() => Some(module),
         _ => None,

@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use syn::{Item, UseTree, Visibility};
 
 /// Longest file, lines.
-pub const MAX_LINES: usize = 500;
+pub(crate) const MAX_LINES: usize = 500;
 
 /// Groups of modules each of which uses all others of its group, if by way of others.
-pub fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+pub(crate) fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let imports = imports(modules);
     let number: BTreeMap<&ModulePath, usize> =
         imports.keys().enumerate().map(|(i, path)| (path, i)).collect();
@@ -27,7 +27,7 @@ pub fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
 }
 
 /// Items that have two paths: re-exported by a module in which the module that defines them is public, too.
-pub fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+pub(crate) fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let mut found = Vec::new();
     for (path, module) in modules {
         let public: BTreeSet<String> = (module.items.iter().filter_map(declaration))
@@ -46,7 +46,7 @@ pub fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
 }
 
 /// Files longer than [`MAX_LINES`].
-pub fn long_files(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
+pub(crate) fn long_files(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let long = modules.values().filter(|m| m.lines > MAX_LINES);
     long.map(|m| format!("{}: {} lines", m.file.display(), m.lines)).collect()
 }

@@ -23,6 +23,11 @@ pub struct Domain {
 }
 
 impl Domain {
+    /// These structures, in every state that an elastic packing can have, whether or not its solid fraction is known.
+    pub(crate) fn new(model: &'static str, structure: [Option<Range>; QUANTITIES]) -> Self {
+        Self { model, structure, gamma: [-1.0, 1.0], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
+    }
+
     /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`] with zero for the others; an
     /// error if one of them is missing, or one of them or of `conditions` lies outside.
     pub fn validate(

@@ -1,8 +1,8 @@
 //! `grainlab launch`: the main job.
 
-use crate::launch::plan::{BUILT_IN, LaunchFile, NodePlan};
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, Format, scenes};
+use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::input;
 use grainlab_recordings::runs::{RUNS, create_run_directory};

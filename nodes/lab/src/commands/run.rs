@@ -1,8 +1,8 @@
 //! `grainlab run`: one node as this process.
 
-use crate::launcher_pipe;
-use crate::nodes::NodeKind;
 use grainlab_console::{Failure, print};
+use grainlab_launcher::NodeKind;
+use grainlab_launcher::pipe;
 use grainlab_node_kit::{Exit, RosArgs, run_node};
 use grainlab_recorder::{ResultSlot, tallies};
 
@@ -34,7 +34,7 @@ fn help() -> String {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
-    launcher_pipe::watch();
+    pipe::watch();
     let node: NodeKind = args.node.parse().map_err(Failure::usage)?;
     let (ros, plain) = RosArgs::parse(&args.rest).map_err(Failure::usage)?;
     if let Some(stranger) = plain.first() {

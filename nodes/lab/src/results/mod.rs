@@ -7,7 +7,6 @@ pub(crate) mod continuity;
 pub(crate) mod doubts;
 pub(crate) mod inference;
 pub(crate) mod inference_text;
-pub(crate) mod last_packing;
 pub(crate) mod measured_packing;
 pub(crate) mod packing_text;
 pub(crate) mod probe;

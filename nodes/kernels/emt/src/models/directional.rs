@@ -46,13 +46,7 @@ impl Model for Directional {
         structure[isotropic.coordination_kind as usize] =
             Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
         structure[Quantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
-        Domain {
-            model: NAME,
-            structure,
-            gamma: [-1.0, 1.0],
-            poisson_ratio: [0.0, 0.5],
-            needs_solid_fraction: false,
-        }
+        Domain::new(NAME, structure)
     }
 
     fn predict(

@@ -40,13 +40,7 @@ impl Model for EffectiveMedium {
         let mut structure = [None; QUANTITIES];
         structure[Quantity::K as usize] = Some([0.1, MAX_COORDINATION]);
         structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
-        Domain {
-            model: NAME,
-            structure,
-            gamma: [-0.5, 0.25],
-            poisson_ratio: [0.0, 0.5],
-            needs_solid_fraction: true,
-        }
+        Domain { gamma: [-0.5, 0.25], needs_solid_fraction: true, ..Domain::new(NAME, structure) }
     }
 
     fn predict(

@@ -50,13 +50,7 @@ impl Model for Relaxed {
             structure[Quantity::Z as usize] = Some(network.domain());
             structure[Quantity::Eps as usize] = Some(network.domain_of_eps());
         }
-        Domain {
-            model: NAME,
-            structure,
-            gamma: [-1.0, 1.0],
-            poisson_ratio: [0.0, 0.5],
-            needs_solid_fraction: false,
-        }
+        Domain::new(NAME, structure)
     }
 
     fn predict(

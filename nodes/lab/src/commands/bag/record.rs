@@ -1,8 +1,8 @@
 //! `grainlab bag record`.
 
 use crate::commands::run::print_recorded;
-use crate::nodes::NodeKind;
 use grainlab_console::Failure;
+use grainlab_launcher::NodeKind;
 use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
 use grainlab_recorder::{Recorder, ResultSlot, Settings, contract_topics};

@@ -3,12 +3,12 @@
 use super::finish::finish;
 use super::order;
 use super::output::Output;
-use crate::launch::Run;
-use crate::launch::plan::NodePlan;
-use crate::launch::supervisor::{Supervised, Supervisor};
 use grainlab_console::Failure;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
+use grainlab_launcher::NodePlan;
+use grainlab_launcher::Run;
+use grainlab_launcher::{Supervised, Supervisor};
 use grainlab_node_kit::{Exit, Network, RunId};
 use grainlab_scene::Scene;
 use std::path::Path;

@@ -1,9 +1,6 @@
 //! The result of a run, read back from its recording.
 
 use super::output::Output;
-use crate::launch::Run;
-use crate::launch::supervisor::{Heard, Supervised};
-use crate::nodes::NodeKind;
 use crate::results::brief;
 use crate::results::continuity;
 use crate::results::measured_packing;
@@ -13,6 +10,9 @@ use crate::results::summary_text;
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, worse};
 use grainlab_console::{Format, json, print};
+use grainlab_launcher::NodeKind;
+use grainlab_launcher::Run;
+use grainlab_launcher::{Heard, Supervised};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! The launch file and its arguments, kept beside the recording so that the run can be resumed.
 
-use crate::launch::plan::{LaunchFile, NodePlan};
 use grainlab_console::{Failure, json};
+use grainlab_launcher::{LaunchFile, NodePlan};
 use grainlab_recordings::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -58,8 +58,8 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::launch::plan::BUILT_IN;
-    use crate::nodes::NodeKind;
+    use grainlab_launcher::BUILT_IN;
+    use grainlab_launcher::NodeKind;
 
     #[test]
     fn what_was_launched_is_read_back_as_it_was() {

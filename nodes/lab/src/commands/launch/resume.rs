@@ -6,10 +6,10 @@
 use super::conduct::{conduct, domain};
 use super::order::Order;
 use super::output::Output;
-use crate::nodes::NodeKind;
-use crate::results::last_packing;
 use grainlab_console::Failure;
 use grainlab_console::scenes;
+use grainlab_launcher::NodeKind;
+use grainlab_launcher::last_packing;
 use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::{Recording, Selection};

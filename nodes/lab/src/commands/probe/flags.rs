@@ -1,9 +1,9 @@
 //! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
 
-use crate::nodes::NodeKind;
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use grainlab_acoustic_probe::{Settings, parameters};
 use grainlab_console::Failure;
+use grainlab_launcher::NodeKind;
 use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range, RosArgs};
 
 const NODE: NodeKind = NodeKind::AcousticProbe;

@@ -5,14 +5,14 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The launch files built in; the first is run without another.
-pub(crate) const BUILT_IN: [(&str, &str); 2] = [
-    ("demo", include_str!("../../../launch/demo.launch.yaml")),
-    ("acoustic", include_str!("../../../launch/acoustic.launch.yaml")),
+pub const BUILT_IN: [(&str, &str); 2] = [
+    ("demo", include_str!("../../launch/demo.launch.yaml")),
+    ("acoustic", include_str!("../../launch/acoustic.launch.yaml")),
 ];
 
 /// Errors of a launch file.
 #[derive(Debug, PartialEq, thiserror::Error)]
-pub(crate) enum PlanError {
+pub enum PlanError {
     /// Not YAML, or not this subset of ROS 2 launch.
     #[error("not a launch file that can be run here: {0}")]
     Format(String),
@@ -87,27 +87,27 @@ const PLACES: usize = 254;
 
 /// One process to start.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct NodePlan {
+pub struct NodePlan {
     /// Name of the process and of its log.
-    pub(crate) name: String,
+    pub name: String,
     /// Which of our nodes; `None` for a program that is not ours.
-    pub(crate) node: Option<NodeKind>,
+    pub node: Option<NodeKind>,
     /// The program; of a node of ours, whatever `grainlab` this is.
-    pub(crate) program: String,
+    pub program: String,
     /// Its arguments; for a node: `run`, the node, its ROS arguments.
-    pub(crate) arguments: Vec<String>,
+    pub arguments: Vec<String>,
     /// Whether it is restarted when it ends by itself.
-    pub(crate) respawn: bool,
+    pub respawn: bool,
 }
 
 impl NodePlan {
     /// Whether it is this node of ours.
-    pub(crate) fn is(&self, node: NodeKind) -> bool {
+    pub fn is(&self, node: NodeKind) -> bool {
         self.node == Some(node)
     }
 
     /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
-    pub(crate) fn do_not_look_around(&mut self) {
+    pub fn do_not_look_around(&mut self) {
         if self.is(NodeKind::DemSimulator) {
             // Behind `run NODE`: a value of the launch file comes later and wins.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
@@ -118,7 +118,7 @@ impl NodePlan {
 
 /// A parsed launch file, with the defaults of its arguments.
 #[derive(Debug)]
-pub(crate) struct LaunchFile {
+pub struct LaunchFile {
     text: String,
     arguments: Vec<(String, Option<String>)>,
     executables: Vec<Executable>,
@@ -126,7 +126,7 @@ pub(crate) struct LaunchFile {
 
 impl LaunchFile {
     /// Reads a launch file.
-    pub(crate) fn parse(text: &str) -> Result<Self, PlanError> {
+    pub fn parse(text: &str) -> Result<Self, PlanError> {
         let file: File = serde_saphyr::from_str(text).map_err(|e| PlanError::Format(e.to_string()))?;
         let (mut arguments, mut executables) = (Vec::new(), Vec::new());
         for entry in file.launch {
@@ -139,18 +139,18 @@ impl LaunchFile {
     }
 
     /// Its text.
-    pub(crate) fn text(&self) -> &str {
+    pub fn text(&self) -> &str {
         &self.text
     }
 
     /// The default of an argument, without the quotes of an empty string; `None` if it has no default.
-    pub(crate) fn default_of(&self, name: &str) -> Option<&str> {
+    pub fn default_of(&self, name: &str) -> Option<&str> {
         let (_, default) = self.arguments.iter().find(|(n, _)| n == name)?;
         default.as_deref().map(|d| d.trim_matches('\''))
     }
 
     /// The nodes to start, in order, with these values for arguments.
-    pub(crate) fn nodes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
+    pub fn nodes(&self, values: &BTreeMap<&str, String>) -> Result<Vec<NodePlan>, PlanError> {
         let known = || self.arguments.iter().map(|(n, _)| n.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = values.keys().find(|k| self.arguments.iter().all(|(n, _)| n != *k)) {
             return Err(PlanError::NoSuchArgument { name: (*name).to_owned(), known: known() });

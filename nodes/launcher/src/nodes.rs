@@ -2,7 +2,7 @@
 //!
 //! To add a node: its crate, a variant here with what the compiler then asks for, and the launch files that start it.
 
-use crate::results::last_packing;
+use crate::last_packing;
 use clap::ValueEnum;
 use grainlab_acoustic_probe::AcousticProbe;
 use grainlab_console::{Failure, scenes};
@@ -22,28 +22,34 @@ use std::str::FromStr;
 
 /// A node of the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum NodeKind {
+pub enum NodeKind {
+    /// Moves the grains along the loading path of a scene.
     DemSimulator,
+    /// Answers each stress with a strain rate.
     ServoController,
+    /// Measures structure and stiffness of packings.
     FabricAnalyzer,
+    /// Sends waves through packings.
     AcousticProbe,
+    /// Infers the microstructure from moduli and wave speeds.
     EmtInversion,
+    /// Records every message.
     Recorder,
 }
 
 /// A name that is none of a node's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no node {0:?}; there are: {known}", known = NodeKind::names())]
-pub(crate) struct UnknownNode(pub(crate) String);
+pub struct UnknownNode(pub String);
 
 impl NodeKind {
     /// Every node, in the order of the help.
-    pub(crate) fn all() -> impl Iterator<Item = Self> {
+    pub fn all() -> impl Iterator<Item = Self> {
         Self::value_variants().iter().copied()
     }
 
     /// Its name, unless `__node` gives another.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::DemSimulator => "dem_simulator",
             Self::ServoController => "servo_controller",
@@ -55,12 +61,12 @@ impl NodeKind {
     }
 
     /// The names of all, comma separated.
-    pub(crate) fn names() -> String {
+    pub fn names() -> String {
         Self::all().map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
     /// What it does, in a line.
-    pub(crate) fn summary(self) -> &'static str {
+    pub fn summary(self) -> &'static str {
         match self {
             Self::DemSimulator => "owns the run: publishes stress and packings, obeys strain rates",
             Self::ServoController => "answers every stress with a strain rate",
@@ -72,7 +78,7 @@ impl NodeKind {
     }
 
     /// What can be set.
-    pub(crate) fn parameters(self) -> Vec<ParameterSpec> {
+    pub fn parameters(self) -> Vec<ParameterSpec> {
         match self {
             Self::DemSimulator => simulator_parameters(),
             Self::ServoController => grainlab_servo_controller::parameters(),
@@ -93,7 +99,7 @@ impl NodeKind {
     }
 
     /// What it is run with.
-    pub(crate) fn spec(self) -> NodeSpec {
+    pub fn spec(self) -> NodeSpec {
         NodeSpec {
             name: self.name(),
             summary: self.summary(),
@@ -104,7 +110,7 @@ impl NodeKind {
 
     /// How many of it a run may have, as numbers and in words: two of those that one run has one of would contradict each
     /// other.
-    pub(crate) fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
+    pub fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
         match self {
             Self::Recorder | Self::DemSimulator => (1..=1, "one"),
             Self::ServoController | Self::FabricAnalyzer | Self::AcousticProbe => (0..=1, "at most one"),
@@ -113,7 +119,7 @@ impl NodeKind {
     }
 
     /// The topic of the data that it measures, from each of which a microstructure is inferred.
-    pub(crate) fn measures(self) -> Option<Topic> {
+    pub fn measures(self) -> Option<Topic> {
         match self {
             Self::FabricAnalyzer => Some(topics::MODULI),
             Self::AcousticProbe => Some(topics::WAVE_SPEEDS),
@@ -122,7 +128,7 @@ impl NodeKind {
     }
 
     /// Makes the node on its bus. A recorder leaves what it finished in `recorded`.
-    pub(crate) fn build(
+    pub fn build(
         self,
         bus: &mut dyn Bus,
         parameters: &Parameters,

@@ -7,13 +7,13 @@ use std::io::Read;
 use std::time::Duration;
 
 /// Environment variable that a launcher sets for processes whose standard input is its pipe.
-pub(crate) const VARIABLE: &str = "GRAINLAB_LAUNCHER_PIPE";
+pub const VARIABLE: &str = "GRAINLAB_LAUNCHER_PIPE";
 
 /// Time for an orderly end after the launcher is gone.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Ends this process when the launcher that started it is gone: by SIGTERM, and after some time by exit.
-pub(crate) fn watch() {
+pub fn watch() {
     if std::env::var_os(VARIABLE).is_none() {
         return;
     }

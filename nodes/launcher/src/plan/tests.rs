@@ -13,10 +13,10 @@ fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, P
 fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
     let ours = [
         ("demo", DEFAULT),
-        ("s1", include_str!("../../../../launch/s1.launch.yaml")),
-        ("s2", include_str!("../../../../launch/s2.launch.yaml")),
-        ("s3", include_str!("../../../../launch/s3.launch.yaml")),
-        ("s4", include_str!("../../../../launch/s4.launch.yaml")),
+        ("s1", include_str!("../../../launch/s1.launch.yaml")),
+        ("s2", include_str!("../../../launch/s2.launch.yaml")),
+        ("s3", include_str!("../../../launch/s3.launch.yaml")),
+        ("s4", include_str!("../../../launch/s4.launch.yaml")),
     ];
     for (scene, text) in ours {
         let file = LaunchFile::parse(text).unwrap();

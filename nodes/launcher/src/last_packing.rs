@@ -7,13 +7,13 @@ use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
 /// Packings that a recording holds, also while it is being written; 0 if it cannot be read.
-pub(crate) fn count(directory: &Path) -> u64 {
+pub fn count(directory: &Path) -> u64 {
     let Ok(recording) = Recording::open(directory) else { return 0 };
     packings(&recording).map_or(0, |bodies| bodies.len() as u64)
 }
 
 /// The last packing, and the state of the run in it.
-pub(crate) fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
+pub fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let recording = Recording::open(directory).map_err(|e| failed(&e))?;
     let body = packings(&recording)?.pop().ok_or_else(|| failed(&"there is no packing to go on from"))?;

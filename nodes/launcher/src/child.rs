@@ -2,7 +2,7 @@
 
 use super::Run;
 use super::plan::NodePlan;
-use crate::launcher_pipe::VARIABLE;
+use crate::pipe::VARIABLE;
 use grainlab_console::Failure;
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};
@@ -15,40 +15,40 @@ use tokio::sync::mpsc::UnboundedSender;
 
 /// A process that ended.
 #[derive(Debug)]
-pub(crate) struct Ended {
+pub struct Ended {
     /// Its index in the plan.
-    pub(crate) index: usize,
+    pub index: usize,
     /// Its exit status.
-    pub(crate) status: io::Result<ExitStatus>,
+    pub status: io::Result<ExitStatus>,
 }
 
 /// A node and the process that runs it.
 #[derive(Debug)]
-pub(crate) struct Child {
+pub struct Child {
     /// Its entry in the plan.
-    pub(crate) plan: NodePlan,
+    pub plan: NodePlan,
     /// Process id while it runs.
-    pub(crate) pid: Option<u32>,
+    pub pid: Option<u32>,
     /// Its member number in the run: the same after a restart.
-    pub(crate) member: u8,
+    pub member: u8,
     /// Process id of the latest process.
-    pub(crate) last_pid: u32,
+    pub last_pid: u32,
     /// Exit code of the last process that ended by itself; `None` if it runs or a signal ended it.
-    pub(crate) code: Option<i32>,
+    pub code: Option<i32>,
     /// The recording from which a restarted simulator resumes.
-    pub(crate) resume_from: Option<PathBuf>,
+    pub resume_from: Option<PathBuf>,
     /// Times of its restarts.
-    pub(crate) restarts: Vec<Instant>,
+    pub restarts: Vec<Instant>,
 }
 
 impl Child {
     /// A child that is not started yet.
-    pub(crate) fn new(plan: NodePlan, member: u8) -> Self {
+    pub fn new(plan: NodePlan, member: u8) -> Self {
         Self { plan, member, pid: None, last_pid: 0, code: None, resume_from: None, restarts: Vec::new() }
     }
 
     /// Starts the node with its output in `<logs>/<name>.log`. Its end is sent to `ended`.
-    pub(crate) fn start(
+    pub fn start(
         &mut self,
         index: usize,
         run: &Run,
@@ -98,14 +98,14 @@ impl Child {
     }
 
     /// The last line of its log from `words` on, if it contains them.
-    pub(crate) fn last_line_if(&self, logs: &Path, words: &str) -> Option<String> {
+    pub fn last_line_if(&self, logs: &Path, words: &str) -> Option<String> {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).ok()?;
         let line = text.lines().last()?;
         line.find(words).map(|at| line[at..].to_owned())
     }
 
     /// Repeats the last errors of its log on stderr.
-    pub(crate) fn quote_log(&self, logs: &Path) {
+    pub fn quote_log(&self, logs: &Path) {
         let text = std::fs::read_to_string(log_path(logs, &self.plan.name)).unwrap_or_default();
         let errors: Vec<&str> =
             text.lines().filter(|l| l.contains("ERROR") || l.contains("panicked")).collect();
@@ -113,7 +113,7 @@ impl Child {
     }
 
     /// Sends `signal` if it runs.
-    pub(crate) fn signal(&self, signal: i32) {
+    pub fn signal(&self, signal: i32) {
         if let Some(pid) = self.pid.and_then(|p| i32::try_from(p).ok()) {
             // SAFETY: kill takes two integers. The process is a child and was not waited for, so the id is still its
             // own.

@@ -49,7 +49,7 @@ const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// A run from its first process to its last.
-pub(crate) struct Supervisor {
+pub struct Supervisor {
     pub(super) children: Vec<Child>,
     run: Run,
     directory: PathBuf,
@@ -85,29 +85,29 @@ pub(crate) struct Supervisor {
 
 /// The result of a run.
 #[derive(Debug)]
-pub(crate) struct Supervised {
+pub struct Supervised {
     /// Its exit.
-    pub(crate) exit: Exit,
+    pub exit: Exit,
     /// Every process with its last process id.
-    pub(crate) children: Vec<Child>,
+    pub children: Vec<Child>,
     /// From the first start to the last end.
-    pub(crate) wall: Duration,
+    pub wall: Duration,
     /// The received messages of the run, which the recording must contain.
-    pub(crate) heard: Heard,
+    pub heard: Heard,
 }
 
 /// The messages of the run that the launcher received.
 #[derive(Debug, Default)]
-pub(crate) struct Heard {
+pub struct Heard {
     /// Packings, by the last run state; `None` if the path was not finished.
-    pub(crate) packings: Option<u32>,
+    pub packings: Option<u32>,
     /// Steps of the packings with a result, by topic.
-    pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
+    pub results: BTreeMap<&'static str, BTreeSet<u64>>,
 }
 
 impl Supervisor {
     /// Call this inside the runtime.
-    pub(crate) fn new(
+    pub fn new(
         plans: Vec<NodePlan>,
         run: Run,
         directory: &Path,
@@ -145,7 +145,7 @@ impl Supervisor {
     }
 
     /// Starts every process, waits for the end, ends every process.
-    pub(crate) async fn run(mut self) -> Result<Supervised, Failure> {
+    pub async fn run(mut self) -> Result<Supervised, Failure> {
         let begin = Instant::now();
         let (watch, mut events) = Watch::start(self.run)?;
         // The watch starts first, so that it receives all messages.
@@ -408,7 +408,7 @@ impl Supervisor {
 
     /// Restarts the simulator from the last recorded packing; see `--resume`.
     async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
-        let packings = crate::results::last_packing::count(&self.directory);
+        let packings = crate::last_packing::count(&self.directory);
         self.deaths.push(packings);
         // Three attempts ended at the same packing: the next one would, too.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {

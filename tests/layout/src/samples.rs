@@ -1,7 +1,7 @@
 //! The rules find what breaks them, in small crates made for it.
 
-use layout::modules::modules;
-use layout::rules::{circles, doubled, long_files};
+use crate::modules::modules;
+use crate::rules::{circles, doubled, long_files};
 use std::path::PathBuf;
 
 /// A crate of these files, removed when dropped.
