@@ -4,10 +4,10 @@
 //! - [`msg`] and the packages of standard messages beside it: types generated from the message files, ours in `msg/`,
 //!   those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message file:
 //!   `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
-//! - [`message`]: what every type knows about itself, and [`TypeInfo`], the same as a value
-//! - [`cdr`]: bytes on the wire
+//! - `message`: what every type knows about itself, and [`TypeInfo`], the same as a value
+//! - `cdr`: bytes on the wire
 //! - [`topics`]: the one table of topics, types and QoS
-//! - [`clock`]: simulated time as a ROS stamp
+//! - `clock`: simulated time as a ROS stamp
 //! - [`boundary`]: messages to and from the kernels' types; everything received is checked here, once
 
 pub mod boundary;

@@ -4,17 +4,17 @@
 //! positive in extension. Voigt order is xx, yy, zz, yz, xz, xy with engineering shear in stiffnesses.
 //! `e3 = z` is the axis of a scene.
 //!
-//! - [`tensor`]: small vectors and tensors
-//! - [`cell`]: the periodic cell
-//! - [`material`]: the grain's material
+//! - `tensor`: small vectors and tensors
+//! - `cell`: the periodic cell
+//! - `material`: the grain's material
 //! - [`contact`]: the contact laws; [`lanes`]: the arithmetic they are written in
-//! - [`packing`]: grains, cell and contact network at one instant
+//! - `packing`: grains, cell and contact network at one instant
 //!   ([`Packing::consistent`] holds its contacts against its positions)
 //! - [`stress`]: the one definition of stress
-//! - [`stiffness`]: the 6×6 elastic stiffness and its transversely isotropic projection
-//! - [`mod@symmetry`]: which symmetry a stiffness has, and about which axes
-//! - [`control`]: what a loading path asks of each strain component, and the law that answers
-//! - [`waves`]: plane waves in a medium, measured speeds of them
+//! - `stiffness`: the 6×6 elastic stiffness and its transversely isotropic projection
+//! - `symmetry`: which symmetry a stiffness has, and about which axes
+//! - `control`: what a loading path asks of each strain component, and the law that answers
+//! - `waves`: plane waves in a medium, measured speeds of them
 //! - [`results`]: what is measured on a packing
 //! - [`quantity`]: tables of what is measured: key, symbol, unit, meaning, value
 
