@@ -126,19 +126,7 @@ impl Knob {
             }
             Self::Damping => phase.damping = (phase.damping * factor).min(1.0),
             Self::StrainRate | Self::GasRate => {
-                match &mut phase.kind {
-                    PhaseKind::Gas { rate, .. } => *rate *= factor,
-                    PhaseKind::Relax => {}
-                    PhaseKind::Strain { rate } => rate.iter_mut().for_each(|r| *r *= factor),
-                    PhaseKind::Servo { controls, rate_limit, .. } => {
-                        *rate_limit *= factor;
-                        for control in controls {
-                            if let ComponentControl::StrainRate(rate) = control {
-                                *rate *= factor;
-                            }
-                        }
-                    }
-                }
+                phase.kind.scale_rates(factor);
                 // A slower path needs the longer time; a faster one fails no later.
                 phase.until.timeout *= (1.0 / factor).max(1.0);
             }
@@ -194,12 +182,8 @@ pub(crate) fn converged(scene: &Scene, quick: bool) -> Scene {
 
 /// Largest strain rate imposed or allowed behind the gas, 1/s.
 fn largest_rate(scene: &Scene) -> Option<f64> {
-    let of = |p: &Phase| match &p.kind {
-        PhaseKind::Gas { .. } | PhaseKind::Relax => None,
-        PhaseKind::Strain { rate } => rate.iter().map(|r| r.abs()).reduce(f64::max),
-        PhaseKind::Servo { rate_limit, .. } => Some(*rate_limit),
-    };
-    scene.phases.iter().filter_map(of).reduce(f64::max)
+    let behind_gas = scene.phases.iter().filter(|p| !matches!(p.kind, PhaseKind::Gas { .. }));
+    behind_gas.filter_map(|p| p.kind.rate_limit()).reduce(f64::max)
 }
 
 /// Inertial number I = rate·D·√(ρ/p) of the fastest straining behind the gas, at the mean stress target p of the last

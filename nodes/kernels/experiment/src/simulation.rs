@@ -168,12 +168,7 @@ impl Simulation {
     pub fn request(&self) -> Option<ServoRequest> {
         let phase = self.path.phase(&self.scene)?;
         let fixed = ServoLaw::Scaled { response_time: 1.0 };
-        let (law, rate_limit) = match phase.kind {
-            PhaseKind::Servo { law, rate_limit, .. } => (law, rate_limit),
-            PhaseKind::Gas { rate, .. } => (fixed, rate.abs()),
-            PhaseKind::Strain { rate } => (fixed, rate.iter().fold(0.0f64, |a, r| a.max(r.abs()))),
-            PhaseKind::Relax => (fixed, 0.0),
-        };
+        let law = if let PhaseKind::Servo { law, .. } = phase.kind { law } else { fixed };
         Some(ServoRequest {
             sequence: self.sequence,
             step: self.engine.steps(),
@@ -183,7 +178,7 @@ impl Simulation {
             controls: phase.controls(),
             rate: self.engine.rate(),
             // A limit must be positive, also in a phase that imposes no rate.
-            rate_limit: if rate_limit > 0.0 { rate_limit } else { 1.0 },
+            rate_limit: phase.kind.rate_limit().filter(|limit| *limit > 0.0).unwrap_or(1.0),
             law,
             control_interval: self.event_driven(phase).map_or(self.engine.time_step(), |gas| gas.step)
                 * f64::from(phase.control_period),

@@ -16,6 +16,18 @@ macro_rules! keys {
 
 const GLASS: Material = Material::GLASS;
 
+/// The kinds of entries of a path, and their titles in the reference.
+pub(crate) const KINDS: [(&str, &str); 5] = [
+    (
+        "gas",
+        "`kind = \"gas\"`: grains placed at random and agitated, compressed isotropically; the first phase, and no other",
+    ),
+    ("strain", "`kind = \"strain\"`: an imposed strain rate"),
+    ("servo", "`kind = \"servo\"`: on each component a stress target, a strain rate, or nothing"),
+    ("cycle", "`kind = \"cycle\"`: phases to repeat"),
+    ("relax", "`kind = \"relax\"`: a fixed cell; it has no keys of its own"),
+];
+
 const GAS: &[&str] = &["gas"];
 const STRAIN: &[&str] = &["strain"];
 const SERVO: &[&str] = &["servo"];

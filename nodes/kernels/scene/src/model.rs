@@ -129,6 +129,50 @@ pub enum PhaseKind {
     },
 }
 
+impl Phase {
+    /// What is imposed on each strain component while this phase runs.
+    pub fn controls(&self) -> [ComponentControl; 6] {
+        use ComponentControl::{Held, StrainRate};
+        match &self.kind {
+            PhaseKind::Gas { rate, .. } => {
+                std::array::from_fn(|i| if i < 3 { StrainRate(*rate) } else { Held })
+            }
+            PhaseKind::Relax => [Held; 6],
+            PhaseKind::Strain { rate } => rate.map(|r| if r == 0.0 { Held } else { StrainRate(r) }),
+            PhaseKind::Servo { controls, .. } => *controls,
+        }
+    }
+}
+
+impl PhaseKind {
+    /// Largest magnitude of a component of the strain rate, 1/s; `None` in a fixed cell.
+    pub fn rate_limit(&self) -> Option<f64> {
+        match self {
+            Self::Gas { rate, .. } => Some(rate.abs()),
+            Self::Relax => None,
+            Self::Strain { rate } => rate.iter().map(|r| r.abs()).reduce(f64::max),
+            Self::Servo { rate_limit, .. } => Some(*rate_limit),
+        }
+    }
+
+    /// Multiplies every strain rate, and the limit of one, by `factor`.
+    pub fn scale_rates(&mut self, factor: f64) {
+        match self {
+            Self::Gas { rate, .. } => *rate *= factor,
+            Self::Relax => {}
+            Self::Strain { rate } => rate.iter_mut().for_each(|r| *r *= factor),
+            Self::Servo { controls, rate_limit, .. } => {
+                *rate_limit *= factor;
+                for control in controls {
+                    if let ComponentControl::StrainRate(rate) = control {
+                        *rate *= factor;
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// How the grains of a gas collide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GasMethod {

@@ -1,6 +1,6 @@
 //! The loading path as a state machine.
 
-use crate::model::{Condition, Measure, Phase, PhaseKind, Scene};
+use crate::model::{Condition, Measure, Phase, Scene};
 use grainlab_core::{ComponentControl, SymTensor};
 
 /// What the path sees of the packing at each exchange.
@@ -107,21 +107,6 @@ impl PathState {
             return Err(PathError::Timeout { index, name, timeout, unmet });
         }
         Ok(PathEvent::Stay)
-    }
-}
-
-impl Phase {
-    /// What is imposed on each strain component while this phase runs.
-    pub fn controls(&self) -> [ComponentControl; 6] {
-        use ComponentControl::{Held, StrainRate};
-        match &self.kind {
-            PhaseKind::Gas { rate, .. } => {
-                std::array::from_fn(|i| if i < 3 { StrainRate(*rate) } else { Held })
-            }
-            PhaseKind::Relax => [Held; 6],
-            PhaseKind::Strain { rate } => rate.map(|r| if r == 0.0 { Held } else { StrainRate(r) }),
-            PhaseKind::Servo { controls, .. } => *controls,
-        }
     }
 }
 

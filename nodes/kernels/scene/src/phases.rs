@@ -15,9 +15,6 @@ const MAX_PHASES: usize = 100_000;
 const GAS_METHODS: [(&str, GasMethod); 2] =
     [("event_driven", GasMethod::EventDriven), ("soft", GasMethod::Soft)];
 
-/// Kinds of entries of a path.
-const KINDS: [&str; 5] = ["gas", "relax", "strain", "servo", "cycle"];
-
 /// Grains that a shear wave crosses while a spin dies away, where grains are to come to rest.
 ///
 /// Packings of 500 grains settle in two thirds of the steps that they take without, as with 10 or 100; with 10⁴ in as
@@ -103,7 +100,7 @@ fn one(
     let place = if name.is_empty() { place } else { format!("{place} ({name})") };
     let mut r = Reader::new(place.clone(), table);
     let word = table.get("kind").and_then(Value::as_str);
-    let Some(word) = KINDS.into_iter().find(|kind| Some(*kind) == word) else {
+    let Some(word) = keys::KINDS.into_iter().map(|(kind, _)| kind).find(|kind| Some(*kind) == word) else {
         // Without a kind the other keys cannot be judged; the missing kind is the fault to mend first.
         r.refuse(&keys::KIND, table.get("kind"));
         let (_, faults) = r.finish();

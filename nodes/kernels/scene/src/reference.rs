@@ -1,22 +1,9 @@
 //! The reference of the format as a page of Markdown, written from the table of keys.
 
 use crate::key::{DefaultValue, Domain, Key};
-use crate::keys::KEYS;
+use crate::keys::{KEYS, KINDS};
 
 const INTRODUCTION: &str = include_str!("reference/introduction.md");
-
-/// The kinds of phases and what their keys are.
-const KINDS: [(&str, &str); 6] = [
-    ("", "Every phase"),
-    (
-        "gas",
-        "`kind = \"gas\"`: grains placed at random and agitated, compressed isotropically; the first phase, and no other",
-    ),
-    ("strain", "`kind = \"strain\"`: an imposed strain rate"),
-    ("servo", "`kind = \"servo\"`: on each component a stress target, a strain rate, or nothing"),
-    ("cycle", "`kind = \"cycle\"`: phases to repeat"),
-    ("relax", "`kind = \"relax\"`: a fixed cell; it has no keys of its own"),
-];
 
 /// The page: how scenes are written and changed, and every key with its unit, its default and the values that it takes.
 pub fn reference() -> String {
@@ -34,7 +21,7 @@ pub fn reference() -> String {
     ] {
         page += &section(title, |k| k.path.starts_with(table));
     }
-    for (kind, title) in KINDS {
+    for (kind, title) in std::iter::once(("", "Every phase")).chain(KINDS) {
         let own = |k: &Key| match k.kinds {
             [only] => *only == kind,
             _ => kind.is_empty(),
