@@ -41,8 +41,7 @@ pub(crate) struct Args {
     /// 2 launch [default: demo], and values for its arguments, as in threads:=2
     #[arg(value_name = "FILE or NAME:=VALUE")]
     words: Vec<String>,
-    /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
-    #[arg(long, value_name = "SCENE")]
+    #[arg(long, value_name = "SCENE", help = scene_help())]
     scene: Option<String>,
     /// Sets a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; repeat it for more. `grainlab scene keys`
     /// lists the keys
@@ -64,6 +63,11 @@ pub(crate) struct Args {
     /// Print all that was measured of each packing, what each model infers, and the messages of each topic
     #[arg(long)]
     verbose: bool,
+}
+
+fn scene_help() -> String {
+    let known = grainlab_scene::BUILT_IN.map(|(name, _)| name).join(", ");
+    format!("Scene: {known} or a file [default: the one of the launch file]")
 }
 
 impl Default for Args {
