@@ -23,8 +23,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`] with zero for the others; an
-    /// error if one of them is missing, or one of them or of `conditions` lies outside.
+    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`], with zero for the
+    /// others. An error if one of them is missing, or if one of them or of `conditions` lies outside.
     pub fn validate(
         &self,
         structure: &Structure,
