@@ -16,7 +16,7 @@ pub(crate) struct Descent<'a, T, const G: bool> {
     step: Vec<Rows<T>>,
     /// t = (D + L)⁻ᵀ p.
     half: Vec<Rows<T>>,
-    /// s = p − D t = Lᵀ t, which the forward sweep uses up.
+    /// s = p − D t = Lᵀ t, consumed by the forward sweep.
     taken: Vec<Rows<T>>,
     /// Whether a direction of negative stiffness was found, which requires prestress.
     pub(crate) unstable: bool,
