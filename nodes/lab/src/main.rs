@@ -1,12 +1,12 @@
 //! The `grainlab` binary: every node, the launcher and the tools as subcommands.
 //!
-//! - [`cli`]: the command line, as typed
-//! - [`commands`]: one module a command; low arguments become checked ones there
-//! - [`results`]: what is printed and stored: states, inferences, tables
+//! - [`cli`]: the command line
+//! - [`commands`]: one module per command, with the checks of its arguments
+//! - [`results`]: results as text, JSON and CSV: states, inferences, tables
 //! - [`launch`]: launch files, processes and their supervision
 //! - [`nodes`]: every node, and how it is started
-//! - [`launcher_pipe`]: ends a node whose launcher died
-//! - [`tape`]: a recording of what a node would publish
+//! - [`launcher_pipe`]: ends a node whose launcher has ended
+//! - [`tape`]: a recording of the messages that a node would publish
 
 mod cli;
 mod commands;
