@@ -30,7 +30,7 @@ const RESTART_PAUSE: Duration = Duration::from_millis(100);
 /// Period of the checks of the processes.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Time for a process that was stopped to catch up before the run ends, and how long the end waits for it.
+/// Time for a process that was stopped to catch up before the run ends, and the time limit of the end for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
