@@ -1,7 +1,7 @@
 //! External files: regular files of bounded size.
 //!
-//! A device may never end, a pipe may never begin, and a few bytes of gzip may be gigabytes of text: none of them may
-//! exhaust the memory or block a command.
+//! A device may be endless, a pipe may block, and a few bytes of gzip may decompress to gigabytes: none of
+//! them may exhaust the memory or block a command.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -16,8 +16,7 @@ pub const SETTINGS: u64 = 1 << 20;
 /// Maximum size of tables and packings as text, bytes, decompressed.
 pub const TEXT: u64 = 4 << 30;
 
-/// Maximum compression ratio of a text. Numbers compress to a third; zeros to a
-/// thousandth.
+/// Maximum compression ratio of a text. Numbers compress to a third, zeros to a thousandth.
 const RATIO: u64 = 64;
 
 /// Decompressed size that is always accepted, bytes.
@@ -59,7 +58,7 @@ pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large());
     }
     let mut content = Vec::with_capacity(size as usize);
-    // The stated size may be wrong, as in /proc.
+    // The stated size may be wrong, for example in /proc.
     file.take(most + 1).read_to_end(&mut content)?;
     if content.len() as u64 > most { Err(too_large()) } else { Ok(content) }
 }

@@ -9,8 +9,8 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const CHECK: Check = Check("Packing");
 
-/// The message of a packing, bit for bit. `scene` names the scene, `run_state` is what only a resumed run needs. The
-/// packing is taken to be a validated one.
+/// The message of a packing, bit for bit. `scene` names the scene, `run_state` is needed only by a resumed
+/// run. The packing must be validated.
 pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> msg::Packing {
     let contacts = &packing.contacts;
     msg::Packing {
@@ -42,7 +42,7 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
     }
 }
 
-/// The header of that message, and so of all that is measured on it.
+/// The header of that message, and of all its measurements.
 pub fn packing_header(packing: &Packing) -> Header {
     header(stamp(packing.time))
 }

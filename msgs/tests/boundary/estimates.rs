@@ -8,7 +8,7 @@ use grainlab_msgs::{from_cdr, to_cdr};
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
 
-/// A model that speaks of k, k̂ and ε, and has no word on the other two.
+/// A model that infers k, k̂ and ε, and not the other two.
 fn estimate() -> Estimate {
     let mut e = Estimate {
         model: "ratio".into(),
@@ -33,7 +33,7 @@ fn estimate() -> Estimate {
         e.covariance_model[at] = 0.5 * variance;
     }
     (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
-    // ε: G12 and G13 share it, and what they have in common takes some of it away again.
+    // ε: contributions of G12 and G13, reduced by their correlation.
     (e.information[27], e.information[28], e.information[29]) = (0.75, 0.5, -0.25);
     e
 }

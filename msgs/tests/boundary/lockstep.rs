@@ -133,7 +133,7 @@ fn a_rate_that_is_not_finite_is_refused_with_its_component() {
     );
 }
 
-/// What no reader would take is not written either.
+/// Messages that readers refuse are not written.
 #[test]
 fn nothing_that_would_be_refused_goes_out() {
     let mut request = StressRequest::try_from(&stress()).unwrap();

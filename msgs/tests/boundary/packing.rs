@@ -29,7 +29,7 @@ fn matrix() -> impl Strategy<Value = Mat3> {
         .prop_filter("regular", |m| m.determinant() > 0.05)
 }
 
-/// Every contact of these spheres with images up to two cells away, with a share of Hertz's force.
+/// Every contact of these spheres with images up to two cells away, with a fraction of Hertz's force.
 fn contacts(
     cell: &Cell,
     material: &Material,
@@ -63,7 +63,7 @@ prop_compose! {
         friction in prop_oneof![Just(INF), Just(0.0), positive()],
         (first, share, tangential_force) in (any::<u32>(), -1.0..50.0f64, vector()),
     ) -> Packing {
-        // A cell that is large enough for five of the largest.
+        // A cell that is large enough for the five largest spheres.
         let cell = Cell::new(matrix_of(&cell)).unwrap();
         let material = Material { shear_modulus, poisson_ratio, density };
         let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
@@ -94,7 +94,7 @@ proptest! {
         let received: msg::Packing = from_cdr(&bytes).unwrap();
         let back = Packing::try_from(&received).unwrap();
         prop_assert_eq!(&back, &packing);
-        // Equality takes -0 for 0; bytes do not.
+        // Equality does not distinguish -0 from 0; bytes do.
         prop_assert_eq!(to_cdr(&packing_message(&back, &received.scene, received.run_state.clone())), bytes);
     }
 

@@ -4,14 +4,14 @@ use grainlab_node_kit::WriterId;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A running simulator with the larger GUID may have started at the same moment: it gets this long to end.
+/// A running simulator with the larger GUID may have started at the same moment: time for it to end.
 const GRACE: Duration = Duration::from_secs(2);
 
 /// A crashed process stays in the graph until its lease ends, within a minute. A writer that has published nothing for
 /// this long and is still in the graph has not crashed.
 const SILENCE: Duration = Duration::from_secs(75);
 
-/// Maximum number of other simulators that are remembered: one is enough to refuse a run.
+/// Maximum number of other simulators that are stored: one suffices to refuse a run.
 const KEPT: usize = 512;
 
 type Participant = [u8; 12];
@@ -30,7 +30,7 @@ pub(crate) struct DuplicateSimulators {
 pub(crate) enum Verdict {
     /// There is no other writer.
     Clear,
-    /// Whether this writer is a simulator is not known yet.
+    /// It is not yet determined whether this writer is a simulator.
     Wait(WriterId),
     /// Another simulator started earlier.
     Refuse(WriterId),
@@ -41,7 +41,7 @@ impl DuplicateSimulators {
         Self { own, seen: BTreeMap::new(), heard: BTreeMap::new() }
     }
 
-    /// Notes a `run_state` of this writer. True the first time for each other simulator.
+    /// Records a `run_state` of this writer. True the first time for each other simulator.
     pub(crate) fn hear(&mut self, writer: WriterId, now: Duration) -> bool {
         let participant = writer.participant();
         if self.heard.len() >= KEPT {

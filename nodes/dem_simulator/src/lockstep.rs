@@ -84,7 +84,7 @@ impl Lockstep {
         self.resend_at = now + self.pause;
     }
 
-    /// Notes the time spent computing while the answer was in transit.
+    /// Records the time spent computing while the answer was in transit.
     pub(crate) fn computed(&mut self, time: Duration) {
         self.busy += time;
     }

@@ -1,4 +1,4 @@
-//! From what a model says to an `Estimate`.
+//! From the result of a model to an `Estimate`.
 
 use crate::observed::{Observed, Unobservable};
 use grainlab_emt::{
@@ -8,7 +8,7 @@ use grainlab_emt::{
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
 
-/// The message of an estimate. What a reader would refuse is sent as a failure that says why.
+/// The message of an estimate. An invalid estimate is sent as a failure with the reason.
 pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let message = as_it_is(estimate, observed);
     match EstimateReading::try_from(&message) {
@@ -68,13 +68,14 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     }
 }
 
-/// What the model speaks of and the data do not determine, where they determine something.
+/// Quantities of the model that the data do not determine, if they determine any.
 fn undetermined(estimate: &Estimate) -> Option<String> {
     let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
     (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }
 
-/// Misfit of data about moduli and of moduli about a structure: the squares and the freedoms add up.
+/// Misfit of the speeds about the moduli and of the moduli about the structure: squares and degrees of
+/// freedom add up.
 fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
     let nothing = Misfit { chi_square: 0.0, degrees_of_freedom: 0 };
     [of_data, of_moduli].into_iter().flatten().filter(|m| m.degrees_of_freedom > 0).fold(nothing, |sum, m| {
@@ -85,7 +86,7 @@ fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
     })
 }
 
-/// A covariance of zeros says nothing.
+/// A covariance of zeros contains no information.
 fn known_covariance(covariance: Option<StructureCovariance>) -> Option<StructureCovariance> {
     covariance.filter(|c| c.amax() > 0.0)
 }
@@ -99,7 +100,7 @@ fn gamma_fields(gamma: Option<StrainRatio>) -> (Vec<f64>, String) {
     (gamma.iter().map(|g| g.value).collect(), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
-/// The message of a model that has no estimate.
+/// The message of a model without an estimate.
 pub(crate) fn failure(
     model: &dyn Model,
     calibration: &str,
@@ -111,7 +112,7 @@ pub(crate) fn failure(
     without_values(model, calibration, gamma, error.is_input_error(), reasons)
 }
 
-/// The message of a model that was never asked, because there was nothing to ask it.
+/// The message of a model that was not applied, because there were no moduli.
 pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
     without_values(model, calibration, StrainRatio::ZERO, nothing.is_input_error(), vec![nothing.to_string()])
 }

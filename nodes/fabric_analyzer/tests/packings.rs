@@ -1,4 +1,4 @@
-//! The analyzer node on the bus in memory, with a packing that can be reckoned by hand.
+//! The analyzer node on the bus in memory, with a packing of known properties.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
@@ -10,7 +10,8 @@ use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publis
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 2e-8;
 
-/// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
+/// One grain per cell touching its own images: a simple cubic lattice, or grains apart if `overlap` is not
+/// positive.
 fn lattice(overlap: f64) -> grainlab_core::Packing {
     let cell = Cell::cube(DIAMETER - overlap).unwrap();
     let contact = |axis: usize| {
@@ -158,7 +159,7 @@ fn the_method_asked_for_is_used_and_said() {
     let c44 = [network, probe].map(|s| s.stiffness[21]);
     assert!(c44[0] > 0.0 && (c44[1] / c44[0] - 1.0).abs() < 1e-2, "{c44:?}");
     assert!(network.stddev.iter().all(|s| *s > 0.0));
-    // Smooth grains on such a lattice slip past each other under the least pressure.
+    // Smooth grains on such a lattice slip past each other under any pressure.
     assert!(matches!(with("prestressed"), Err(MeasureError::Analysis { step: 12, .. })));
 }
 

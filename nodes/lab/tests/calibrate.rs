@@ -18,7 +18,7 @@ fn ensemble(name: &str) -> String {
     format!("{ENSEMBLES}/{name}.csv")
 }
 
-/// Words and numbers of a text, apart.
+/// Words and numbers of a text, separately.
 fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
     let tokens = text.split(|c: char| c.is_whitespace() || "[],=".contains(c)).filter(|t| !t.is_empty());
     let (numbers, words): (Vec<&str>, Vec<&str>) = tokens.partition(|t| t.parse::<f64>().is_ok());
@@ -39,7 +39,7 @@ fn the_calibration_built_in_is_what_its_packings_teach() {
     let largest = known.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     assert!(largest > 1e9, "the modulus of the grains is there");
     for (i, (found, expected)) in numbers.iter().zip(&known).enumerate() {
-        // Another processor rounds otherwise, and the minimum of a fit is flat.
+        // Rounding differs between processors, and the minimum of a fit is flat.
         assert!((found - expected).abs() <= 1e-4 * expected.abs() + 1e-9, "number {i}: {found} {expected}");
     }
 }

@@ -36,9 +36,9 @@ fn the_waves_of_a_packing_made_elsewhere_have_the_moduli_of_its_network() {
         assert!((ratio - 1.0).abs() < 0.01, "{modulus}: {ratio}");
     }
     let [density, bulk] = ["density", "density_bulk"].map(|key| number(&a[key]));
-    // 24 of 500 grains rattle, and more turn freely about two contacts.
+    // 24 of 500 grains are rattlers, and more rotate freely about two contacts.
     assert!(density < bulk * (1.0 - 24.0 / 500.0) && density > 0.9 * bulk, "{density} of {bulk}");
-    // Truth stands beside it, counted.
+    // The counted truth is in the same row.
     assert!((number(&state["k"]) - 5.108).abs() < 1e-9 && (number(&state["z"]) - 5.361).abs() < 1e-3);
 }
 

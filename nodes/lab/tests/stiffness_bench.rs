@@ -1,4 +1,4 @@
-//! `grainlab bench stiffness`: what it reports, not how fast it is.
+//! `grainlab bench stiffness`: its report, not its speed.
 
 use serde_json::Value;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn a_tighter_solve_takes_more_iterations_and_errs_less_and_affine_motion_errs_mo
     assert!(of("iterations")[2..5].is_sorted_by(|a, b| a < b), "{rows:?}");
     // Affine motion overestimates the shear moduli of such a packing by more than half.
     assert!(errors[0] > 0.3 && errors[4] < 1e-12 && errors[5] < 1e-12, "{rows:?}");
-    // A factorisation leaves little to refine.
+    // A factorisation leaves a small residual to refine.
     assert!(of("iterations")[5].unwrap() <= 3.0, "{rows:?}");
     assert!(of("seconds").iter().all(|s| s.unwrap() > 0.0));
 }

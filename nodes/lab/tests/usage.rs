@@ -1,4 +1,4 @@
-//! The binary as a user first meets it: help, usage errors, exit codes.
+//! The binary on the command line: help, usage errors, exit codes.
 
 use std::process::{Command, Output, Stdio};
 

@@ -15,7 +15,7 @@ const MODULI_WITHIN: Duration = Duration::from_secs(5);
 /// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
-/// The result that is waited for, and its time limit.
+/// The pending result, and its time limit.
 pub(super) struct Deadline {
     pub(super) of: ResultState,
     pub(super) patience: Patience,
@@ -24,7 +24,7 @@ pub(super) struct Deadline {
 }
 
 impl Deadline {
-    /// For a last packing that was published within a phase: it need not have anything to measure.
+    /// For a last packing that was published within a phase: it may have no results.
     pub(super) fn within_a_phase(standing: ResultState) -> Self {
         let whole = Self::of(standing);
         match standing {
@@ -62,7 +62,7 @@ impl Deadline {
     }
 }
 
-/// What a node did not find of a packing, and where it says why.
+/// The result that a node does not have for a packing, and the log with the reason.
 pub(super) fn nothing(source: Source) -> String {
     let data = match source {
         Source::Node(NodeKind::AcousticProbe) => "wave speeds",

@@ -2,7 +2,7 @@
 //!
 //! - `child`: one process, which ends with the launcher
 //! - `progress`: a line for each phase
-//! - `pending_results`: results of the last packing that are still to come; `deadline`: how long they may take
+//! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits
 //! - `watch`: the messages of the run
 //! - `stopped`: processes that are stopped by a signal; `patience`: a time limit that does not count those
 //! - `supervisor`: restarts, and ends of processes that end the run; `ending`: the order in which processes end

@@ -30,7 +30,7 @@ const RESTART_PAUSE: Duration = Duration::from_millis(100);
 /// Period of the checks of the processes.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Time for a process that was stopped to catch up before the run ends, and how long the end waits for it.
+/// Time for a process that was stopped to catch up before the run ends, and the time limit of the end for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
@@ -40,12 +40,12 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 /// The message while the simulator has published nothing.
 const SEARCHING: &str = "its processes have not found each other";
 
-/// The node whose end is the end of the record.
+/// The recorder, whose end is the end of the record.
 const RECORDER: NodeKind = NodeKind::Recorder;
-/// The node that goes on from its last packing when it dies.
+/// The simulator, which continues from its last packing after a crash.
 const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 
-/// The last packing is being measured by the probe, or waits for it.
+/// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// A run from its first process to its last.
@@ -60,7 +60,7 @@ pub struct Supervisor {
     pub(super) terminate: Signal,
     hangup: Signal,
     pub(super) progress: Progress,
-    /// The last packing is recorded within a phase: it need not have anything to measure.
+    /// The last packing was recorded within a phase: it may have no results.
     ends_within: bool,
     begun: bool,
     /// The step at which the run began or resumed.
@@ -242,7 +242,7 @@ impl Supervisor {
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
-                    // Bursts through a long path take as long as they take; who is at work is waited for.
+                    // Bursts through a long path may take any time; the run waits for a probe that works.
                     let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         let of = if self.ends_within { Deadline::within_a_phase } else { Deadline::of };
@@ -311,7 +311,7 @@ impl Supervisor {
                 self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
                 self.progress.say(&match step {
-                    // Data of an external instrument belong to no packing of the run.
+                    // Data of an external instrument do not belong to a packing of the run.
                     0 => format!("the {data} of an instrument inverted"),
                     _ => format!("packing of step {step} measured and inverted, by its {data}"),
                 });
@@ -326,7 +326,7 @@ impl Supervisor {
         }
     }
 
-    /// Data of an external instrument belong to no packing of the run.
+    /// Data of an external instrument do not belong to a packing of the run.
     fn heard(&mut self, topic: &'static str, step: u64) {
         if step > 0 {
             self.results.entry(topic).or_default().insert(step);
@@ -347,7 +347,7 @@ impl Supervisor {
         self.stopped.any()
     }
 
-    /// What the simulator waits for, from its log.
+    /// The condition that the simulator waits for, from its log.
     fn say_what_is_waited_for(&self) {
         let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
         let waits = simulator.and_then(|c| c.last_line_if(&self.logs, "waiting for"));
@@ -410,7 +410,7 @@ impl Supervisor {
     async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
         let packings = crate::last_packing::count(&self.directory);
         self.deaths.push(packings);
-        // Three attempts ended at the same packing: the next one would, too.
+        // Three attempts ended at the same packing: a fourth one would, too.
         if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
             grainlab_console::say!(
                 "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"

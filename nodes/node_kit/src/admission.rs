@@ -78,15 +78,15 @@ impl Admission {
         &self.identity
     }
 
-    /// Notes a discovered participant and its process.
+    /// Records a discovered participant and its process.
     pub(crate) fn discovered(&mut self, participant: Participant, process: Process) {
-        // As many as discovery itself keeps; further ones stay unnamed.
+        // As many as discovery itself keeps; further ones have no name.
         if self.processes.len() < 16 * COUNTED || self.processes.contains_key(&participant) {
             self.processes.insert(participant, process);
         }
     }
 
-    /// Forgets a participant that left.
+    /// Removes a participant that left.
     pub(crate) fn lost(&mut self, participant: &Participant) {
         self.processes.remove(participant);
     }

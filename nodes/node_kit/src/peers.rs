@@ -15,7 +15,7 @@ use std::time::Duration;
 /// The period of heartbeats is 1 s. A node that computes sends none, so silence alone does not prove a crash.
 pub const SILENCE: Duration = Duration::from_secs(5);
 
-/// Maximum number of peers; beyond it, the one silent for longest is forgotten.
+/// Maximum number of peers; beyond it, the one silent for longest is removed.
 const KEPT: usize = 512;
 
 /// Queue of heartbeats between two calls: one minute of all peers.
@@ -114,7 +114,8 @@ impl PeerWatch {
         Ok(Self { subscription, peers: Peers::default() })
     }
 
-    /// Processes the heartbeats since the last call, and passes each sample's origin and report on.
+    /// Processes the heartbeats since the last call, and passes the origin and report of each sample to the
+    /// caller.
     pub fn update(
         &mut self,
         bus: &mut dyn Bus,

@@ -1,4 +1,4 @@
-//! Finds the messages of a run whose processes were started by hand and share no run id.
+//! Selects the messages of a run whose processes were started by hand and have no common run id.
 //!
 //! The run is that of the first simulator that publishes. Its id is the participant of that simulator: answers and
 //! results refer to its samples (see `SampleInfo::about`).
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(
             takes(topics::STRAIN_RATE, 3, Some(1)),
             Ok(()),
-            "an answer to the first one is of this run, too"
+            "an answer to the first one belongs to this run, too"
         );
         assert_eq!(takes(topics::STRAIN_RATE, 4, Some(2)), Ok(()), "and so is its successor's");
     }

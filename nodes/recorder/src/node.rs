@@ -20,8 +20,9 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many
-/// of each topic, also after they were taken, so that a topic of few or long messages gets less.
+/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS
+/// keeps as many of each topic, also after they were taken, so that a topic with few or long messages gets
+/// fewer.
 fn backlog(topic: &Topic) -> u32 {
     match topic.name {
         name if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&name) => 20_000,
@@ -40,8 +41,8 @@ const OLD_ENOUGH: Duration = Duration::from_secs(1);
 /// A recorder without a step for this long was stopped by a signal, or its disk was slow.
 const STALLED: Duration = Duration::from_secs(2);
 
-/// How long an ending recorder waits for reported messages that it lacks, and how long for a pause of messages, unless
-/// every process has sent its last report.
+/// Time limits for an ending recorder to receive reported messages that it lacks, and for a pause of
+/// messages, unless every process has sent its last report.
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
 
@@ -389,15 +390,15 @@ impl Node for Recorder {
         }
         if self.stalled && missing > 0 && !self.whole_run {
             log::error!(
-                "{missing} processes left without a last report, and the recorder was stopped for a while: how many of their \
-                 messages are missing is not known"
+                "{missing} processes left without a last report, and the recorder was stopped for a while: the number of their \
+                 missing messages is not known"
             );
             return Ok(Exit::DataLoss);
         }
         let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
         if seconds > 0 || self.contradictions > 0 {
             log::error!(
-                "two processes wrote what one should: which of them is right cannot be told. Start the processes of a run \
+                "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
                  with a run of their own (GRAINLAB_RUN=any_name for each of them)"
             );
             return Ok(Exit::Failure);

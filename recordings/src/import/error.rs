@@ -149,9 +149,9 @@ pub enum ImportError {
         "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to look at): check the cell, or list the contacts in the file"
     )]
     Clustered {
-        /// Most grains in one box.
+        /// Largest number of grains in one box.
         together: usize,
-        /// Pairs to look at.
+        /// Number of pairs to check.
         pairs: f64,
     },
     /// The packing is invalid.

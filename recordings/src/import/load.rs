@@ -128,13 +128,14 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
 const FROM_YADE: &str =
     "from YADE, export with textExt, or with the script of `grainlab analyze --yade-script`";
 
-/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line may be anything.
+/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line is
+/// arbitrary.
 const HEADER: usize = 20;
 
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
 fn by_name(extension: &str, stem: &str) -> Option<Format> {
-    // LAMMPS users name files dump.x and data.x as often as x.dump and x.data.
+    // LAMMPS users name files dump.x and data.x as well as x.dump and x.data.
     match (extension, stem) {
         ("csv", _) => Some(Format::Csv),
         ("dump" | "lammpstrj", _) | (_, "dump") => Some(Format::Dump),
@@ -171,7 +172,7 @@ pub fn text(path: &Path) -> Result<String, ImportError> {
         let line = e.as_bytes()[..good].iter().filter(|b| **b == b'\n').count() + 1;
         refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is no UTF-8)"))
     })?;
-    // Windows programs put a byte order mark in front.
+    // Some Windows programs write a byte order mark first.
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
     }

@@ -54,7 +54,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     text.lines().enumerate().map(|(k, text)| Line { number: k + 1, text })
 }
 
-/// Maximum number of characters of a field in an error: a line of a file that is not a table may have megabytes.
+/// Maximum number of characters of a field in an error: a line of an arbitrary file may have megabytes.
 const SHOWN: usize = 40;
 
 /// `text` in quotation marks, truncated.

@@ -39,8 +39,8 @@ impl OpenFile {
         if size == 0 {
             return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
         }
-        // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user
-        // (module text).
+        // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
+        // (see the module).
         let map = unsafe { Mmap::map(&file) }.map_err(io)?;
         Self::new(path, Bytes::Mapped(map), warnings)
     }

@@ -1,4 +1,4 @@
-//! One MCAP file that is being written.
+//! One MCAP file being written.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -47,7 +47,7 @@ impl Part {
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
             other => other.map_err(io("create the file"))?,
         };
-        // Without locks in the file system there is nothing to respect.
+        // A file system without locks cannot report another recorder.
         let _ = file.try_lock();
         let clone = || file.try_clone().map_err(io("duplicate the handle"));
         let (handle, synced) = (clone()?, clone()?);
@@ -94,7 +94,7 @@ impl Part {
         publish_time: u64,
         payload: &[u8],
     ) -> Result<(), McapError> {
-        // Topics are declared in every part before anything is written.
+        // Topics are declared in every part before any message is written.
         let channel_id = self.channels.get(topic).copied().unwrap_or(0);
         let header = MessageHeader { channel_id, sequence, log_time, publish_time };
         self.mcap.write_to_known_channel(&header, payload)?;

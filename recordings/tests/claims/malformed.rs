@@ -183,7 +183,7 @@ fn an_empty_file_is_refused_under_every_name() {
             assert!(error.to_string().contains("it contains no packing"), "{name}: {error}");
         }
     }
-    // Comments and headers alone are no packing either.
+    // Comments and headers alone are not a packing, either.
     for text in ["# particles\n", "#format x_y_z_r\n"] {
         assert!(folder.refusal(text, &in_cube(1.0)).contains("no packing"));
     }

@@ -1,4 +1,4 @@
-//! What goes in comes out.
+//! Written data are read back unchanged.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -124,7 +124,7 @@ fn what_the_recorder_cannot_take_is_refused_by_name() {
     run.add_topic(&other).unwrap();
     other.ros_type = "x/msg/Y".into();
     assert!(matches!(run.add_topic(&other), Err(WriteError::ConflictingTopic(_))));
-    // None of this ended the recording.
+    // None of these errors ended the recording.
     run.write("/clock", &sample(SIMULATOR, 1, START, &body)).unwrap();
     assert_eq!(run.finish().unwrap().messages, 1);
     let again = RunWriter::create(&directory, "r", &contract(), options());
@@ -203,7 +203,7 @@ fn metadata_yaml_agrees_with_the_file() {
     for topic in bag["topics_with_message_count"].as_array().unwrap() {
         let metadata = &topic["topic_metadata"];
         let channel = recording.channel(metadata["name"].as_str().unwrap()).unwrap();
-        // Where these differ, readers of rosbag2 recordings find no message of the topic.
+        // If these differ, readers of rosbag2 recordings find no message of the topic.
         assert_eq!(metadata["offered_qos_profiles"].as_str(), Some(channel.qos.as_str()));
         assert_eq!(metadata["type_description_hash"].as_str(), Some(channel.type_hash.as_str()));
     }

@@ -1,4 +1,4 @@
-//! A packing that can be reckoned by hand, and what might be measured of it.
+//! A packing with known properties, and a result of its measurement.
 
 use grainlab_acoustics::Channel;
 use grainlab_acoustics::{AcousticsError, EffectiveDensity, Measurement, Trace};
@@ -9,7 +9,8 @@ use grainlab_msgs::msg;
 pub(crate) const DIAMETER: f64 = 2e-4;
 pub(crate) const OVERLAP: f64 = 2e-8;
 
-/// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
+/// One grain per cell touching its own images: a simple cubic lattice, or grains apart if `overlap` is not
+/// positive.
 pub(crate) fn lattice(overlap: f64) -> grainlab_core::Packing {
     let contact = |axis: usize| {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());

@@ -3,11 +3,12 @@
 use super::row::Row;
 use super::statistics::{Estimate, Observables};
 
-/// Relative scatter of the CPU time of a run on a shared machine; smaller gains do not count.
+/// Relative scatter of the CPU time of a run on a shared machine; smaller gains are ignored.
 const TIME_NOISE: f64 = 0.05;
 
-/// The default's place, what could replace it, and one sentence for each setting that changes something for sure or
-/// fails. A change that is not resolved is no reason for or against a setting: only more seeds tell.
+/// The cost of the default, faster alternatives, and one sentence for each setting with a resolved change or
+/// a failure. A change that is not resolved is no reason for or against a setting: only more seeds resolve
+/// it.
 pub(crate) fn verdict(rows: &[Row]) -> Vec<String> {
     let Some(default) = rows.iter().find(|r| r.default) else { return Vec::new() };
     let (Some(seconds), Some(bound)) = (default.seconds, default.combined) else { return Vec::new() };

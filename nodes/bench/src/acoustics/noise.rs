@@ -1,4 +1,5 @@
-//! Microstructure inferred from noisy speeds and from the analyzer's moduli, both by the inversion of the node.
+//! Microstructure inferred from noisy speeds and from the moduli of the analyzer, both by the inversion of
+//! the node.
 
 use super::args::Args;
 use crate::packing::load_all;
@@ -35,16 +36,16 @@ struct Row {
     eps_stiffness: Score,
 }
 
-/// Inferred less counted.
+/// Inferred minus counted.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 struct Score {
     rms: Option<f64>,
     bias: Option<f64>,
-    /// Share within the 95 % interval.
+    /// Fraction within the 95 % interval.
     covered: Option<f64>,
 }
 
-/// Inferred values less those counted, in their standard deviations as well.
+/// Inferred minus counted values, also in units of their standard deviations.
 type Errors = [Option<(f64, f64)>; 4];
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -65,7 +66,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Of one packing: the errors by the analyzer's moduli, then those of every draw of every level.
+/// For one packing: the errors from the moduli of the analyzer, then those of every draw of every level.
 fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
@@ -87,7 +88,7 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     for noise in &args.noise {
         let draws = if *noise > 0.0 { args.draws } else { 1 };
         let draw = |seed: u32| {
-            // Draws of one packing are not those of another.
+            // Each packing has different draws.
             let seed = packing.step.wrapping_mul(u64::from(args.draws) + 1).wrapping_add(seed.into());
             let waves = with_speed_noise(&measurement.waves, *noise, seed);
             let noisy = Measurement { waves, ..measurement.clone() };

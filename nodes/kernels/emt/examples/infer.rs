@@ -5,7 +5,8 @@
 use grainlab_emt::{Measured, Observation, Quantity, StrainRatio, models, recommended};
 
 fn main() {
-    // G12, G13, Theta and pressure in Pa, each modulus known to 1 %; gamma/Delta as the paper gives it.
+    // G12, G13, Theta and pressure in Pa, each modulus with an error of 1 %; gamma/Delta is that of the
+    // paper.
     let gamma = StrainRatio::given(-0.0623);
     let mut state = Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, gamma);
     state.conditions.solid_fraction = Some(Measured::exact(0.636));

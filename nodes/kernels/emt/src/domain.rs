@@ -28,8 +28,8 @@ impl Domain {
         Self { model, structure, gamma: [-1.0, 1.0], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
     }
 
-    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`] with zero for the others; an
-    /// error if one of them is missing, or one of them or of `conditions` lies outside.
+    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`], with zero for the
+    /// others. An error if one of them is missing, or if one of them or of `conditions` lies outside.
     pub fn validate(
         &self,
         structure: &Structure,

@@ -55,7 +55,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Covariance of the estimate, from data and model as far as either is known; `None` if neither is.
+    /// Covariance of the estimate: the sum of those of data and model that are known; `None` if neither is.
     pub fn covariance(&self) -> Option<StructureCovariance> {
         match (self.data_covariance, self.model_covariance) {
             (None, None) => None,

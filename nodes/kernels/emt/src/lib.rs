@@ -7,9 +7,9 @@
 //!
 //! - `structure`, `moduli`, `conditions`: what is inferred, what it is inferred from, and at what state
 //! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion
-//! - `model`, `point_estimate`, `domain`: what a model is, what it returns, and where it applies
+//! - `model`, `point_estimate`, `domain`: the trait of the models, their result, and their range
 //! - `registry`: the list of the models
-//! - `models`: a file for each model
+//! - `models`: one file per model
 //!   - `effective_medium`: the plain theory, at given pressure
 //!   - `ratio`: the paper's model, corrected, as printed, and at fixed volume
 //!   - `unequal_springs`: the same with K_N ≠ K_T, and with the overlap law linear in g or not

@@ -1,4 +1,4 @@
-//! What a model is.
+//! The trait of all models.
 
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
@@ -41,8 +41,8 @@ pub trait Model: Sync + Debug {
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError>;
 
-    /// The structure whose prediction equals this observation, or comes nearest to it; `None` for what the known moduli
-    /// do not determine. The observation comes from [`Observation::checked`].
+    /// The structure whose prediction equals this observation or is closest to it; `None` for quantities that
+    /// the known moduli do not determine. The observation comes from [`Observation::checked`].
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError>;
 
     /// The structure with its uncertainty.

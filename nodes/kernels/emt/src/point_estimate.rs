@@ -9,19 +9,19 @@ use nalgebra::SMatrix;
 /// [`crate::Quantity::ALL`], columns in the order of [`crate::INPUT_NAMES`].
 pub type Jacobian = SMatrix<f64, QUANTITIES, INPUTS>;
 
-/// A point estimate, and what only the model knows about it.
+/// A point estimate, with the data on its error that depend on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointEstimate {
     /// The structure.
     pub structure: Structure,
-    /// How it depends on the inputs; `None`: by central differences of [`crate::Model::solve`].
+    /// Its derivatives with respect to the inputs; `None`: by central differences of [`crate::Model::solve`].
     pub jacobian: Option<Jacobian>,
     /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the
     /// model.
     pub discrepancy: Option<StructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
-    /// Warnings of this model; those of every model are added later.
+    /// Warnings of this model; those common to all models are added later.
     pub warnings: Vec<Warning>,
 }
 
@@ -32,7 +32,7 @@ impl PointEstimate {
     }
 }
 
-/// How far the data are from every structure, where they are more than the unknowns.
+/// Distance of the data from every structure, where there are more data than unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
     /// Sum of squares weighted by the errors of data and model.

@@ -9,8 +9,8 @@ use nalgebra::SVector;
 /// Relative step. The error of central differences is its square times a third derivative, plus rounding over it.
 const STEP: f64 = 1e-5;
 
-/// Derivatives of `solve` at `observation`, where it gives `structure`, by central differences, or one-sided ones where
-/// an observation beside it has no solution.
+/// Derivatives of `solve` at `observation`, where it gives `structure`, by central differences, or by
+/// one-sided ones if a neighbouring observation has no solution.
 pub(crate) fn numerical_jacobian(
     observation: &Observation,
     structure: &Structure,

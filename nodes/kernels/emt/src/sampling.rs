@@ -1,9 +1,9 @@
 //! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
-//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a draw of
-//! the model's own error is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals
-//! become asymmetric, and some draws have no solution. Those are counted. Every number here is of the draws with a
-//! solution, and is not meaningful where many have none.
+//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a
+//! draw of the model's error is added. With small errors this agrees with [`crate::Estimate`]. With large
+//! ones intervals become asymmetric, and some draws have no solution. These are counted. Every number here
+//! refers to the draws with a solution, and is not meaningful if many draws have none.
 
 use crate::calibration::Calibration;
 use crate::error::EmtError;
@@ -44,7 +44,7 @@ pub struct MonteCarlo {
     pub draws: usize,
     /// Number of draws without a solution.
     pub unsolved: usize,
-    /// The fault of the first of those.
+    /// The error of the first of these.
     pub first_fault: Option<EmtError>,
     /// Means; `None` is undetermined, or not part of the model.
     pub mean: Structure,
@@ -93,7 +93,7 @@ impl MonteCarlo {
 
 /// Draws from the distribution of what `model` infers from `observation`, whose covariance of the moduli must be known.
 ///
-/// The observation itself must have a solution; the model's own error is that of this solution for every draw.
+/// The observation must have a solution; the model's error at this solution is used for every draw.
 pub fn monte_carlo(
     model: &dyn Model,
     observation: &Observation,
@@ -193,8 +193,8 @@ fn solve(
     Ok(values)
 }
 
-/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an error
-/// depends on those before it.
+/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an
+/// error depends on earlier ones.
 fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     /// Fraction of a variance that is rounding.
     const ROUNDING: f64 = 1e-12;

@@ -1,4 +1,4 @@
-//! What is inferred of a packing.
+//! Microstructure: the result of an inversion.
 
 use nalgebra::SMatrix;
 use std::fmt;
@@ -6,7 +6,8 @@ use std::fmt;
 /// Number of [`Quantity`]s.
 pub const QUANTITIES: usize = 5;
 
-/// A covariance of the quantities, in the order of [`Quantity::ALL`]; rows and columns of what is undetermined are zero.
+/// A covariance of the quantities, in the order of [`Quantity::ALL`]; rows and columns of undetermined
+/// quantities are zero.
 pub type StructureCovariance = SMatrix<f64, QUANTITIES, QUANTITIES>;
 
 /// One number of the microstructure, dimensionless.
@@ -16,7 +17,7 @@ pub enum Quantity {
     K,
     /// Coordination number k̂ of the equivalent isotropic packing, in the sense of the calibration.
     KHat,
-    /// Coordination number z of the grains that are no rattlers.
+    /// Coordination number z of the grains without rattlers.
     Z,
     /// Anisotropy ε of the number of contacts about the axis, Eq. 6.
     Eps,
@@ -29,7 +30,7 @@ impl Quantity {
     pub const ALL: [Quantity; QUANTITIES] =
         [Quantity::K, Quantity::KHat, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness];
 
-    /// As messages, tables and files name it.
+    /// Its name in messages, tables and files.
     pub const fn name(self) -> &'static str {
         match self {
             Quantity::K => "k",
@@ -40,7 +41,7 @@ impl Quantity {
         }
     }
 
-    /// Whether its errors are best told in parts of it: a coordination number, not an anisotropy.
+    /// Whether its errors are given relative to it: true for coordination numbers, false for anisotropies.
     pub(crate) const fn is_coordination(self) -> bool {
         matches!(self, Quantity::K | Quantity::KHat | Quantity::Z)
     }
@@ -68,7 +69,7 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// What the paper's models speak of.
+    /// The quantities of the paper's models.
     pub const fn paper(k: f64, k_hat: f64, eps: f64) -> Self {
         Self { k: Some(k), k_hat: Some(k_hat), z: None, eps: Some(eps), eps_stiffness: None }
     }
@@ -83,7 +84,7 @@ impl Structure {
         Self { k, k_hat, z, eps, eps_stiffness }
     }
 
-    /// The same with this one.
+    /// The same with this quantity.
     #[must_use]
     pub const fn with(self, quantity: Quantity, value: f64) -> Self {
         let mut values = self.values();
@@ -91,7 +92,7 @@ impl Structure {
         Self::of_values(values)
     }
 
-    /// One of them.
+    /// One quantity.
     pub const fn get(&self, quantity: Quantity) -> Option<f64> {
         self.values()[quantity as usize]
     }

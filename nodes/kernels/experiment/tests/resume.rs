@@ -1,4 +1,4 @@
-//! A packing and its run state are a checkpoint: a run taken up from them goes on bit for bit.
+//! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
 use grainlab_dem::DemError;
 use grainlab_experiment::{ExperimentError, Simulation};
@@ -67,7 +67,7 @@ fn event_driven() -> String {
 
 #[test]
 fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
-    // The phase of every request, to save in the middle of each phase and where each begins.
+    // The phase of every request, to save in the middle and at the start of each phase.
     let (mut run, mut phases) = (start(), Vec::new());
     while run.request().is_some() {
         phases.push(run.path().phase);
@@ -136,7 +136,7 @@ fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
     let reached = run.packing().solid_fraction();
     assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
     assert!(run.engine().speed() > 0.9, "still a gas: {}", run.engine().speed());
-    // The contact law takes over at its own time step.
+    // The contact law continues with its own time step.
     assert!(run.engine().time_step() < 1e-6, "{}", run.engine().time_step());
 }
 
@@ -149,7 +149,7 @@ fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
     assert!(error.contains("not isotropic"), "{error}");
     let error = run.advance(&[f64::NAN; 6]).unwrap_err().to_string();
     assert!(error.contains("finite"), "{error}");
-    // Refused, the run is back at a state from which it can go on.
+    // After a refused rate, the run is in a state from which it can continue.
     assert!(run.engine().steps() <= before.0.step);
     assert!(advance(&mut run));
 

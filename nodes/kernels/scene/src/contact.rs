@@ -4,7 +4,7 @@ use crate::keys;
 use crate::reader::Reader;
 use grainlab_core::contact::{ContactLaw, Linear};
 
-/// Reads `[contact]`: the law and the keys of that law. What it does not name is that of `default`.
+/// Reads `[contact]`: the law and its keys. Missing keys are those of `default`.
 pub(crate) fn read(r: &mut Reader<'_>, default: &ContactLaw) -> ContactLaw {
     let laws = ContactLaw::examples().map(|law| (law.name(), law));
     match r.choice(&keys::CONTACT_LAW, default.name(), &laws) {

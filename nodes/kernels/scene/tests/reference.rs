@@ -1,4 +1,4 @@
-//! The page about the format, and the scene to start from.
+//! The page about the format, and the template of a scene.
 
 use grainlab_scene::{Draft, KEYS, Scene, reference, template};
 

@@ -1,4 +1,4 @@
-//! Scenes as their authors write them, right and wrong.
+//! Valid and invalid scenes.
 
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
@@ -170,7 +170,7 @@ fn a_phase_ends_only_after_its_conditions_held_for_the_hold_time() {
     let mut state = PathState { phase: 1, began: 1.0, holding_since: None };
     let at = |time: f64, speed: f64| Observation { speed, ..seen(time) };
     assert_eq!(state.observe(&scene, &at(1.0, 1e-4)), Ok(PathEvent::Stay));
-    // The condition fails once: the hold starts again.
+    // The condition fails once: the hold time restarts.
     assert_eq!(state.observe(&scene, &at(1.00005, 1.0)), Ok(PathEvent::Stay));
     assert_eq!(state.observe(&scene, &at(1.00009, 1e-4)), Ok(PathEvent::Stay));
     assert_eq!(state.observe(&scene, &at(1.00015, 1e-4)), Ok(PathEvent::Stay));
@@ -205,7 +205,7 @@ fn grains_have_one_size_or_a_law() {
     let two = "[{ diameter = 1e-4, share = 3 }, { diameter = 2e-4, share = 1 }]";
     let species = |diameter, share| Species { diameter, share };
     assert_eq!(sizes(two), Sizes::Mixture(vec![species(1e-4, 0.75), species(2e-4, 0.25)]));
-    // Counts are those of the list, or agree with it.
+    // Counts are those of the list, or equal to its sum.
     let list = "[{ diameter = 1e-4, count = 30 }, { diameter = 2e-4, count = 70 }]";
     assert_eq!(sizes(list), Sizes::Mixture(vec![species(1e-4, 0.3), species(2e-4, 0.7)]));
     let without = GOOD.replace("count = 100\ndiameter = 2e-4", &format!("diameter = {list}"));

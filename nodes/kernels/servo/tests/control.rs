@@ -1,4 +1,4 @@
-//! One request, one answer.
+//! One request, one response.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_servo::{ServoError, ServoInput, control, critical_gain};
@@ -185,8 +185,8 @@ fn law() -> impl Strategy<Value = ServoLaw> {
 }
 
 proptest! {
-    /// `any::<f64>()` spans every normal and subnormal magnitude of both signs; magnitudes are taken of what must not
-    /// be negative, so that most requests are answered.
+    /// `any::<f64>()` covers every normal and subnormal magnitude of both signs. Quantities that must not be
+    /// negative take the magnitude, so that most requests are valid.
     #[test]
     fn any_answer_is_finite_within_the_limit_and_the_same_twice(
         stress in any::<[f64; 6]>(), rate in any::<[f64; 6]>(), tangent in any::<[f64; 6]>(),

@@ -1,7 +1,7 @@
-//! `grainlab calibrate`: constants of the models, learned from packings that were measured.
+//! `grainlab calibrate`: constants of the models, learned from measured packings.
 //!
-//! - [`packings`]: from the rows of a table to what the kernel learns from
-//! - [`report`]: constants, errors and ranges for people
+//! - [`packings`]: from the rows of a table to samples
+//! - [`report`]: constants, errors and ranges as text
 
 mod packings;
 mod report;
@@ -34,19 +34,20 @@ pub(crate) struct Args {
     /// Isotropic packings of many coordination numbers and pressures, CSV; - is the standard input
     #[arg(long, value_name = "FILE.csv")]
     isotropic: PathBuf,
-    /// Packings that are not isotropic, CSV: without them there are Eqs. 21 and 22 alone, and nothing for the model relaxed
+    /// Anisotropic packings, CSV; without them only Eqs. 21 and 22 are fitted, not the model relaxed
     #[arg(long, value_name = "FILE.csv")]
     anisotropic: Option<PathBuf>,
-    /// Columns that say how a packing was prepared: the laws are judged on each preparation by the others
+    /// Columns that identify the preparation of a packing: the laws are tested on each preparation with those
+    /// learned from the others
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2")]
     preparation: Vec<String>,
-    /// Columns that say which packing it is: states of one at several pressures are no independent data
+    /// Columns that identify the packing: states of one packing at several pressures are not independent
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2,seed")]
     packing: Vec<String>,
-    /// Name of the calibration, reported with every estimate [default: the name of the file written]
+    /// Name of the calibration, reported with every estimate [default: the name of the output file]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
-    /// Write the calibration here (TOML); - is the standard output, which is then nothing else
+    /// Write the calibration to this file (TOML); - is the standard output, without the report
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
@@ -70,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Some(path) => {
             std::fs::write(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
             print(&report::text(&calibration, &isotropic, &anisotropic))?;
-            say!("grainlab: {} is written; take it with --calibration {0}", path.display());
+            say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }
         None => print(&report::text(&calibration, &isotropic, &anisotropic))?,
     }

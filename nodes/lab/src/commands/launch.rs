@@ -33,7 +33,7 @@ Examples:
 The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
-/// What to launch.
+/// The run to launch.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -44,8 +44,8 @@ pub(crate) struct Args {
     /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Sets a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; repeat it for more. `grainlab scene keys`
-    /// lists the keys
+    /// Set a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; may be repeated. `grainlab
+    /// scene keys` lists the keys
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Seed of every random choice [default: the one of the scene]
@@ -54,14 +54,14 @@ pub(crate) struct Args {
     /// Folder for the directory of the run
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
-    /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed;
-    /// the result is the same to the last byte as without the interruption
+    /// Continue this run from the last packing in its recording, with its launch file, arguments, scene and
+    /// seed; the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out"])]
     resume: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Print all that was measured of each packing, what each model infers, and the messages of each topic
+    /// Print all measurements of each packing, the estimate of each model, and the counts of each topic
     #[arg(long)]
     verbose: bool,
 }

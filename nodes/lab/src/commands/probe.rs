@@ -30,7 +30,7 @@ Examples:
   What the inversion makes of the speeds, judged by what was counted:
     grainlab probe recordings/runs/* --format csv | grainlab invert --table - --judge --model relaxed";
 
-/// Files to send waves through, and what they do not say.
+/// Files to send waves through, and data that they lack.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS),

@@ -1,4 +1,4 @@
-//! A launched run in at most 20 lines: what was prepared, measured and inferred, and where it is.
+//! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
 use super::acoustic_text;
 use super::inference::{Inference, Origin, by_origin};
@@ -19,7 +19,7 @@ const MOST_GROUPS: usize = 3;
 /// Rows of the table of states; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
 
-/// The end of a run, for people. `program` is how the command was called.
+/// The result of a run as text. `program` is the name of the binary on the command line.
 pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines = match s.states.as_slice() {
         [] => vec![row("Prepared", "no packing was published")],
@@ -123,7 +123,7 @@ fn measured(r: &PackingReport) -> String {
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
-/// What was inverted: `moduli`, or `wave speeds (…)`; and by which node, where several infer.
+/// The data inverted: `moduli`, or `wave speeds (…)`; and the node, if several infer.
 fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
     let data = match (origin.source.as_deref(), &state.acoustic) {
         (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
@@ -140,7 +140,7 @@ fn standing(r: &Inference) -> &'static str {
     if r.status == "ok" { "inside its range" } else { r.status }
 }
 
-/// Name, value, standard deviation, and error against what was counted, of each quantity of an estimate.
+/// Name, value, standard deviation, and error against the counted value, of each quantity of an estimate.
 fn estimate(
     e: &Inference,
     truth: &PackingReport,

@@ -1,18 +1,19 @@
-//! What makes a measured state doubtful, said beside it.
+//! Warnings about a measured state.
 
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
 
-/// Unbalanced force ratio from which the stiffness of the network is not that of a packing at rest. Packings that have
-/// come to rest are below 1e-3; contact forces that are not those of the positions leave some tenths.
+/// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
+/// meaningful. Packings at rest are below 1e-3; contact forces that do not match the positions give some
+/// tenths.
 const RESTLESS: f64 = 0.01;
 
-/// Θ may be below its bound by this share: packings whose stress is not quite isotropic.
+/// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
-/// Every doubt about `packing` and what was measured on it, in words; `notes` are those of whoever read it.
+/// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
 pub(crate) fn doubts(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
     [restless(report), below_its_bound(report), pulling(packing), missing(packing, notes)]
         .into_iter()
@@ -51,7 +52,7 @@ fn pulling(packing: &Packing) -> Option<String> {
     ))
 }
 
-/// Contacts by position that the list lacks; files have said so when they were read.
+/// Contacts by position that are missing in the list; the readers of some files have already reported them.
 fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     if notes.iter().any(|w| w.contains("are not listed")) {
         return None;
@@ -59,12 +60,12 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, force).ok()?;
     let listed: BTreeSet<_> = packing.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
-    // Of a contact with an own image, either of the two names may be listed.
+    // A contact with an own image may be listed under either of its two images.
     let has = |c: &grainlab_core::Contact| {
         listed.contains(&(c.i, c.j, c.image))
             || (c.i == c.j && listed.contains(&(c.i, c.j, c.image.map(|k| k.saturating_neg()))))
     };
-    // Touching by less than rounding is not a contact.
+    // Overlaps below rounding are not contacts.
     let rounding = 64.0 * f64::EPSILON * packing.cell.matrix().amax();
     let mut missing = found.iter().filter(|c| c.overlap > rounding && !has(c));
     let first = missing.next()?;

@@ -1,4 +1,4 @@
-//! What the models infer, as cells of a table or of a CSV.
+//! Results of the models, as cells of a table or of CSV.
 
 use super::inference::Inference;
 use grainlab_console::{Table, exact, fixed};
@@ -9,7 +9,7 @@ impl Inference {
     pub(crate) const COLUMNS: [&str; 11] =
         ["model", "calibration", "k", "sigma", "k_hat", "sigma", "z", "sigma", "eps", "sigma", "status"];
 
-    /// As cells for people; a column that no row has a value for is better left out.
+    /// Cells of a text table; columns without values should be left out.
     pub(crate) fn cells(&self) -> Vec<String> {
         let (v, s) = (&self.values, &self.sigma);
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
@@ -48,7 +48,7 @@ impl Inference {
     }
 }
 
-/// The warnings of several results as lines, each with the models it comes from.
+/// The warnings of several results as lines, each with its models.
 pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for r in results {
@@ -62,7 +62,7 @@ pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>
     seen.iter().map(|(text, models)| format!("  {}: {text}\n", models.join(", "))).collect()
 }
 
-/// Results as a table for people, warnings below.
+/// Results as a text table, warnings below.
 pub(crate) fn table(results: &[Inference]) -> String {
     let mut t = Table::new(Inference::COLUMNS);
     results.iter().for_each(|r| t.row(r.cells()));

@@ -1,4 +1,4 @@
-//! What commands find, in the forms in which it is printed and stored.
+//! Results of commands, as they are printed and stored.
 
 pub(crate) mod acoustic;
 mod acoustic_text;

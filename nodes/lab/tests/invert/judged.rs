@@ -3,8 +3,8 @@
 use crate::{grainlab, text};
 use serde_json::Value;
 
-/// S1 at 50 kPa of the paper's Table III (k = 5.73, eps = 0.016) with these coordination numbers and anisotropies said to
-/// be the truth.
+/// S1 at 50 kPa of the paper's Table III (k = 5.73, eps = 0.016), with these coordination numbers and
+/// anisotropies as the truth.
 fn said(truths: &[(f64, f64)]) -> String {
     let mut input = String::from("mu,p_kpa,gamma_over_delta,g_total,g12_pa,g13_pa,theta_pa,k,eps\n");
     for (i, (k, eps)) in truths.iter().enumerate() {

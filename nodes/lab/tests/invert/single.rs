@@ -92,7 +92,7 @@ fn small_errors_sampled_agree_with_those_propagated_and_a_seed_repeats_them() {
     for s in sampled {
         let quantity = s["quantity"].as_str().unwrap();
         let linear = answer["results"][0]["sigma"][quantity].as_f64().unwrap();
-        // The standard deviation of 20,000 draws is known to half a percent.
+        // The standard deviation of 20,000 draws has an error of half a percent.
         assert!((s["sigma"].as_f64().unwrap() / linear - 1.0).abs() < 0.02, "{s}");
         assert_eq!((s["draws"].as_u64(), s["unsolved"].as_u64()), (Some(20000), Some(0)));
     }

@@ -1,4 +1,4 @@
-//! Tables of any quality in, results in order out.
+//! Valid and invalid tables; results are in order.
 
 use crate::{RATIO, grainlab, number, table, text};
 use serde_json::Value;
@@ -63,7 +63,7 @@ fn results_come_in_the_order_of_the_rows_however_many() {
     let mut input = String::from("sample,g12_pa,g13_pa,theta_pa,p_kpa\n");
     let rows = 20_000;
     for i in 0..rows {
-        // Every tenth takes longer, or less.
+        // Every tenth row takes longer, or less long.
         let g13 = if i % 10 == 0 { "3e8" } else { "1e8" };
         input += &format!("{i},1e8,{g13},{},50\n", 1.3e8 + f64::from(i));
     }
@@ -105,7 +105,7 @@ fn what_is_missing_leaves_undetermined_what_needs_it_and_no_more() {
     assert_eq!(result["eps"].to_string(), rows[0]["eps"].as_str().unwrap());
     assert!(result["k"].is_null() && answer["inputs"]["theta_pa"].is_null());
     let said = result["warnings"].to_string();
-    assert!(said.contains("does not determine k, k_hat"), "{said}");
+    assert!(said.contains("do not determine k, k_hat"), "{said}");
 }
 
 #[test]

@@ -204,7 +204,7 @@ fn every_body_arrives_once_whole_and_in_order_whatever_the_network_does() {
     for seed in 0..20 {
         let weather = Weather { lost: 0.2, twice: 0.2, corrupt: 0.1, delay: 30 };
         let mut world = World::new(seed, 3, weather);
-        // Lengths around whole numbers of parts, and longer than what a credit can name.
+        // Lengths around multiples of a part, and longer than the range of one credit.
         let lengths = [STRIDE + 1, 9 * STRIDE, 20 * STRIDE - 7, STRIDE];
         let bodies: Vec<Vec<u8>> = (0..4).map(|n| body(seed + n, lengths[n as usize])).collect();
         for bytes in &bodies {
@@ -256,7 +256,7 @@ fn the_sender_stops_waiting_for_a_silent_reader_and_the_others_receive_everythin
     assert!(world.now - died <= SILENCE + Duration::from_secs(1));
     assert_eq!(world.left.len(), 1);
     assert!(world.left[0].contains("no credit for"), "{:?}", world.left);
-    // It was only suspended: it receives the latest.
+    // It was only suspended: it receives the latest body.
     world.ends[0].deaf = false;
     world.offer(&bodies[1]);
     world.run_until("both have it", 10, |w| w.ends.iter().all(|end| end.bodies.last() == Some(&bodies[1])));
@@ -294,7 +294,7 @@ fn a_late_or_restarted_reader_receives_the_latest_body_once() {
         let bodies = [body(5, 12 * STRIDE), body(6, 30 * STRIDE + 5)];
         world.offer(&bodies[0]);
         world.offer(&bodies[1]);
-        // One reader is replaced in the middle of it, another one joins after it.
+        // One reader is replaced during the transfer, another one joins after it.
         (0..20).for_each(|_| world.tick());
         world.ends.remove(0);
         world.join(3);
@@ -355,7 +355,7 @@ fn a_reader_that_is_not_ready_stops_the_writer_until_it_is() {
     assert_eq!(world.ends[0].bodies.len(), 1);
 }
 
-/// A part as a writer makes it, changed, with a crc that agrees with the change.
+/// A part from a writer, changed, with a CRC that matches the change.
 fn forged(change: impl Fn(&mut PackingChunk)) -> PartError {
     let bytes = body(11, 3 * STRIDE + 10);
     let mut part = Shape::of(1, &bytes).cut(&bytes, 1);

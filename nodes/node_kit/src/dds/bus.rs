@@ -36,7 +36,7 @@ const STATUS: Token = Token(1);
 const WAKER: Token = Token(2);
 const FIRST_READER: usize = 3;
 
-/// One reader of ours, as the waiting thread knows it.
+/// One reader of this process, in the waiting thread.
 struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: GUID,

@@ -1,4 +1,4 @@
-//! How processes end, and what their peers see of it.
+//! The end of processes, as observed by their peers.
 
 use super::{PATIENCE, Role, claim};
 use grainlab_msgs::msg::StrainRate;
@@ -9,7 +9,7 @@ use grainlab_node_kit::{
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Watches a child as the launcher and the recorder do.
+/// Observes a child like the launcher and the recorder.
 struct Observer {
     bus: DdsBus,
     watch: PeerWatch,
@@ -164,7 +164,7 @@ fn a_dead_reliable_reader_delays_a_writer_but_never_stops_it() {
         assert!(accepted < 20_000, "the window never filled");
     };
     assert!(matches!(refusal.0, BusError::Full { .. }), "{}", refusal.0);
-    // The bounded wait is 20 ms; a loaded machine may add some scheduling.
+    // The bounded wait is 20 ms; scheduling on a loaded machine may add to it.
     assert!(refusal.1 >= Duration::from_millis(20) && refusal.1 < Duration::from_secs(2), "{:?}", refusal.1);
     assert!(accepted > 8000, "the window is 8192: {accepted}");
     assert_eq!(bus.published()[0].full, 1);

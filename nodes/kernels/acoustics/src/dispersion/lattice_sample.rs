@@ -1,4 +1,4 @@
-//! A small packing without any symmetry.
+//! A small packing without symmetry.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 

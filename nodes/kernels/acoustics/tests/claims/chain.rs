@@ -7,7 +7,7 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 4e-4 * DIAMETER;
 
-/// `grains` along e3, which touch each other and the next cell's, and nothing beside them.
+/// `grains` along e3 that touch each other and those of the next cell, and no other grains.
 fn chain(grains: u32) -> Packing {
     let spacing = DIAMETER - OVERLAP;
     let material = Material::GLASS;
@@ -59,7 +59,7 @@ fn a_chain_rings_at_the_frequencies_of_a_chain() {
     for point in &curve.points {
         let omega = 2.0 * (stiffness / mass).sqrt() * (0.5 * point.wavenumber * spacing).sin();
         let found = point.speed * point.wavenumber;
-        // The steps of the engine make up for a part in 10⁴ at the shortest.
+        // The time step of the engine adds up to 1e-4 at the shortest wave.
         assert!((found / omega - 1.0).abs() < 5e-4, "{found:e} {omega:e}");
     }
     let longest = &curve.points[0];

@@ -1,4 +1,4 @@
-//! Claims about time of flight through the particle engine.
+//! Tests of the time of flight through the particle engine.
 
 use crate::sample;
 use grainlab_acoustics::AcousticsError;
@@ -14,7 +14,8 @@ use std::f64::consts::{PI, TAU};
 const DIAMETER: f64 = 2e-4;
 const GRAINS: u32 = 8;
 
-/// A chain of equal grains along e3, alone in its cell, pressed by an overlap of a thousandth; `aside` adds a grain
+/// A chain of equal grains along e3, alone in its cell, with overlaps of a thousandth; `aside` adds a
+/// rattler.
 /// that touches nothing.
 fn chain(aside: bool) -> Packing {
     let step = DIAMETER * (1.0 - 1e-3);
@@ -124,7 +125,7 @@ fn the_same_bits_whatever_the_threads() {
     };
     let one = measured(1);
     assert_eq!(one, measured(3));
-    // Another ray has other noise.
+    // Another ray has different noise.
     assert_ne!(one.1[0].channels, one.1[3].channels);
 }
 
@@ -152,7 +153,7 @@ fn a_frequency_above_the_band_is_refused_with_the_cutoff() {
     let error = send(1.5 * edge);
     let AcousticsError::CutOff { cutoff, frequency, .. } = error else { panic!("{error:?}") };
     assert!((cutoff / edge - 1.0).abs() < 0.02 && frequency == 1.5 * edge, "{cutoff} {edge}");
-    // It is the edge of the band: 2√(k/m)/2π.
+    // The edge of the band is 2√(k/m)/2π.
     let packing = chain(false);
     let (stiffness, _) = packing.contact_stiffness(&packing.contacts[0]);
     let omega = 2.0 * (stiffness / packing.material.sphere_mass(0.5 * DIAMETER)).sqrt();
@@ -210,7 +211,7 @@ fn grains_that_do_not_touch_carry_no_wave() {
         matches!(found, Err(AcousticsError::NotJammed(NotJammed::NoContacts { grains: 8 }))),
         "{found:?}"
     );
-    // A chain with a gap: all its grains are rattlers, one after the other.
+    // A chain with a gap: all its grains become rattlers, one after the other.
     let mut packing = chain(false);
     packing.contacts.truncate(3);
     let found = sent(&packing);
@@ -281,7 +282,8 @@ fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
 
 #[test]
 fn speeds_through_packings_are_those_of_the_frozen_network() {
-    // Two wavelengths, not as long as by default, which leave the peaks of P uncertain, and take half of the time.
+    // Two wavelengths, shorter than the default ones, which leave the peaks of P uncertain, but need half of
+    // the time.
     for (packing, indices, speed, waves) in [
         (sample::anisotropic(), [0, 0, 1], 440.0, [26.0, 34.0]),
         (sample::isotropic(), [1, 0, 0], 280.0, [20.0, 28.0]),

@@ -9,8 +9,9 @@ impl Calibration {
     /// The names of [`Calibration::builtin`].
     pub const BUILTIN: [&str; 3] = ["paper", "grainlab", "grainlab-z"];
 
-    /// `paper`: the paper's constants. `grainlab`: learned from simulated packings of 2,000 grains, with k̂ and k counted over
-    /// all grains. `grainlab-z`: learned from the same packings, with rattlers left out of the count.
+    /// `paper`: the constants of the paper. `grainlab`: learned from simulated packings of 2,000 grains, with
+    /// k̂ and k counted over all grains. `grainlab-z`: learned from the same packings, with rattlers left out
+    /// of the count.
     pub fn builtin(name: &str) -> Option<&'static Self> {
         static PAPER: Calibration = Calibration::PAPER;
         static BY_K: LazyLock<Option<Calibration>> =

@@ -22,7 +22,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The paper's isotropic constants alone.
+    /// Only the isotropic constants of the paper.
     pub const PAPER: Calibration = Calibration {
         name: Cow::Borrowed("paper"),
         isotropic: IsotropicCalibration::PAPER,
@@ -65,12 +65,12 @@ impl Calibration {
         self.pressures
     }
 
-    /// Constants of the model `relaxed`; `None` if the calibration has none.
+    /// Constants of the model `relaxed`; `None` if the calibration lacks them.
     pub fn network(&self) -> Option<&RelaxationCalibration> {
         self.network.as_deref()
     }
 
-    /// Eqs. 21 and 22 for the calibration's own material.
+    /// Eqs. 21 and 22 for the material of the calibration.
     pub fn isotropic(&self) -> &IsotropicCalibration {
         &self.isotropic
     }
@@ -88,7 +88,8 @@ impl Calibration {
         material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
     }
 
-    /// The same with this coordination number for its isotropic packings; `None` if the calibration has no such fit.
+    /// The same with this coordination number for the isotropic packings; `None` if the calibration lacks
+    /// such a fit.
     pub fn with_coordination_kind(&self, kind: Quantity) -> Option<Self> {
         if self.isotropic.coordination_kind == kind {
             return Some(self.clone());
@@ -97,7 +98,8 @@ impl Calibration {
         Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
     }
 
-    /// Covariance of the error of a model that is given this γ/Δ and infers this ε; `None` if it was not learned.
+    /// Covariance of the error of a model that takes this γ/Δ and infers this ε; `None` if it was not
+    /// learned.
     pub(crate) fn discrepancy(
         &self,
         model: &str,

@@ -8,8 +8,8 @@ use crate::model::Model;
 use crate::registry::models;
 use crate::structure::Quantity;
 
-/// The errors of every model that does not compute its own, for each γ/Δ and coordination number. Of isotropic packings
-/// only the errors of ε are used, since every model is fitted to the rest.
+/// The errors of every model without its own error estimate, for each γ/Δ and coordination number. Isotropic
+/// packings contribute only errors of ε, because every model is fitted to their moduli.
 pub(super) fn discrepancies(
     isotropic: &[CalibrationSample],
     anisotropic: &[CalibrationSample],

@@ -1,10 +1,11 @@
 //! Each modulus with its own coordination number: G_ij = α(k·3 m_ij + β) p^⅓, Θ = ρ(k + ζ) p^⅓ with the constants of
 //! Eqs. 21 and 22, and 3 m_ij the fraction of contacts that carry shear in the plane ij, 1 in an isotropic packing.
 //!
-//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies the
-//! effect of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε; with all three, k and ε
-//! minimise the sum of squares of the relative deviations. On the paper's own rows this is the best of the models that
-//! use three moduli; on packings of the calibration `grainlab` the amplification is too large.
+//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies
+//! the effect of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε. With all
+//! three, k and ε minimise the sum of squares of the relative deviations. On the rows of the paper this is
+//! the best model that uses three moduli; on packings of the calibration `grainlab` the amplification is too
+//! large.
 
 use crate::calibration::{Calibration, IsotropicCalibration};
 use crate::checks::outside_fit;

@@ -1,7 +1,7 @@
 //! The plain effective medium: absolute moduli, Eqs. 10–15, at the volume strain that gives the pressure.
 //!
-//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of real
-//! packings several times and therefore infers k far too low, which is why there are the ratio models.
+//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of
+//! real packings several times and therefore infers k far too low; the ratio models avoid this.
 //!
 //! With r = G13/G12 and g, ε follows as in the ratio model; at given pressure the moduli are proportional to k^⅔, so
 //! that G12 gives k (the paper's k_EMT, but with the Δ that gives the pressure). Θ, C11, C33 and C13 would each give
@@ -24,8 +24,8 @@ use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
 use crate::structure::{QUANTITIES, Quantity, Structure};
 
-/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. Of the calibration it uses the material alone, where that of the
-/// grains is not known.
+/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. It uses only the material of the calibration, where that of
+/// the grains is not known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EffectiveMedium;
 

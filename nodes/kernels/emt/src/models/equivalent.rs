@@ -15,7 +15,8 @@ use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
 use crate::structure::{QUANTITIES, Quantity, Structure};
 
-/// Highest coordination number of the domain: more than the neighbours that equal spheres can touch.
+/// Highest coordination number of the domain: larger than the number of neighbours that equal spheres can
+/// have.
 pub(super) const MAX_COORDINATION: f64 = 15.0;
 
 /// Moduli over those of an isotropic packing with as many contacts.

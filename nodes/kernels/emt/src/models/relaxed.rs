@@ -7,7 +7,7 @@
 //! model, the most probable one with a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z,
 //! ε and the residual of the moduli.
 //!
-//! The constants come from packings ([`crate::Calibration`]); only the form is derived.
+//! The constants are learned from packings ([`crate::Calibration`]); only the form of the laws is derived.
 
 mod fit;
 mod scan;
@@ -32,7 +32,7 @@ pub struct Relaxed;
 
 const NAME: &str = "relaxed";
 
-/// Standard deviation of ε from which on ε counts as undetermined: more than the ε of any packing.
+/// Standard deviation of ε above which ε counts as undetermined: larger than the ε of any packing.
 const UNDETERMINED: f64 = 0.2;
 
 impl Model for Relaxed {
@@ -83,7 +83,7 @@ impl Model for Relaxed {
         let fit = match both {
             Some(Ok(fit)) if fit.eps_stddev() < UNDETERMINED => fit,
             Some(Err(error)) if data.used > 2 => return Err(error),
-            // The coordination number alone, with ε distributed as in the packings of the calibration.
+            // Only the coordination number, with ε distributed as in the packings of the calibration.
             _ => scan::best(&data, network, &state, calibration.name(), true)?,
         };
         Ok(point_estimate(&fit, &data, network, &state))

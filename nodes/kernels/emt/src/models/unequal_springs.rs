@@ -34,7 +34,7 @@ pub(crate) const LINEAR: UnequalSprings = UnequalSprings { name: "full", integra
 /// With the overlap law not linear in g: model `sqrt`.
 pub(crate) const NONLINEAR: UnequalSprings = UnequalSprings { name: "sqrt", integrals: overlap::nonlinear };
 
-/// The ε for which Eq. 6 gives no direction a negative contact density.
+/// Range of ε in which Eq. 6 gives no direction a negative contact density.
 const EPS: [f64; 2] = [-0.5, 1.0];
 
 /// Rounding of a G13/G12 at the very ends of [`EPS`].

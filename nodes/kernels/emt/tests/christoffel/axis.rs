@@ -1,4 +1,4 @@
-//! The axis, from the speeds.
+//! The axis inferred from the speeds.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, every_mode, thirteen};
 use grainlab_core::{TransverseIsotropy, Vec3, WaveSpeed};
@@ -20,13 +20,13 @@ fn is_compressional(speed: &WaveSpeed) -> bool {
     speed.direction.dot(&speed.polarization).abs() > 0.7
 }
 
-/// The axis found less the true one, and its square by its covariance.
+/// The difference between the axis found and the true one, and its square weighted by its inverse covariance.
 fn error(found: &AxisEstimate, truth: &Vec3) -> (Vec3, f64) {
     assert!((found.axis.norm() - 1.0).abs() < 1e-12 && found.axis.z >= 0.0, "{found:?}");
     let error = found.axis * found.axis.dot(truth).signum() - truth;
     let eigen = SymmetricEigen::new(found.covariance);
     let parts = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
-    // The least is that along the axis.
+    // The smallest eigenvalue is that along the axis.
     let known = parts.filter(|(_, variance)| **variance > 1e-9 * eigen.eigenvalues.max());
     (error, known.map(|(towards, variance)| error.dot(&towards).powi(2) / variance).sum())
 }
@@ -35,7 +35,7 @@ fn error(found: &AxisEstimate, truth: &Vec3) -> (Vec3, f64) {
 fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_within_theirs() {
     const DRAWS: usize = 60;
     let mut numbers = Numbers::new(1);
-    // Root mean square in degrees: the axis is known as well as the speeds.
+    // Root mean square in degrees: the relative error of the axis is that of the speeds.
     for (relative, degrees) in [(0.0005, 0.18), (0.003, 1.2), (0.01, 3.5)] {
         let (mut square, mut scaled, mut of_moduli) = (0.0, 0.0, 0.0);
         for _ in 0..DRAWS {
@@ -65,7 +65,7 @@ fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_wi
     }
 }
 
-/// Squared distance of the moduli from the truth by their covariance; of chance it is 5.
+/// Squared distance of the moduli from the truth, weighted by their inverse covariance; its expectation is 5.
 fn distance(sample: &Sample, fitted: &christoffel::SpeedFit) -> f64 {
     const FIVE: [Modulus; 5] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G13, Modulus::G12];
     let error =
@@ -126,15 +126,15 @@ fn too_few_speeds_are_told_how_many_are_missing_and_where() {
         panic!("{fault}")
     };
     assert!(unknowns == 7 && direction.y.abs() > 0.95, "{fault}");
-    // Without errors their scatter is one unknown more.
+    // Without errors, their scatter is one more unknown.
     speeds.iter_mut().for_each(|s| s.stddev = None);
     let fault = christoffel::find_axis(&speeds).unwrap_err();
     assert!(matches!(fault, AxisError::TooFew { scatter: true, unknowns: more, .. } if more == unknowns + 1));
     assert!(fault.to_string().contains("6 wave speeds cannot determine"), "{fault}");
 }
 
-/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have
-/// them all, and each has a mirror image.
+/// P speeds in one plane give as many numbers as there are harmonics up to the fourth, five: media about
+/// several axes fit them, and each has a mirror image.
 #[test]
 fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_true_one() {
     let mut numbers = Numbers::new(6);

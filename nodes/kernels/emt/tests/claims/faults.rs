@@ -20,7 +20,7 @@ fn set(o: &mut Observation, modulus: Modulus, value: f64) {
     o.moduli = o.moduli.with(modulus, value);
 }
 
-/// What every model says to a changed observation; they must agree.
+/// The result of every model for a changed observation; all must agree.
 fn fault(change: impl Fn(&mut Observation)) -> EmtError {
     let mut o = sound();
     change(&mut o);
@@ -36,7 +36,7 @@ fn estimate(o: &Observation) -> Estimate {
     model("ratio").infer(o, &Calibration::PAPER).unwrap()
 }
 
-/// The estimate from what a structure is predicted to have.
+/// The estimate from the moduli predicted for a structure.
 fn of_structure(k: f64, k_hat: f64, eps: f64, g: f64) -> Estimate {
     let conditions = Conditions { gamma: StrainRatio::given(g), ..Conditions::at(100.0e3) };
     let moduli =
@@ -99,7 +99,7 @@ fn states_that_no_packing_has_are_refused() {
     }
 }
 
-/// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33 leaves Θ no choice where the others are known.
+/// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33 determines Θ if the others are known.
 #[test]
 fn moduli_that_leave_another_one_no_stable_value_are_refused_by_its_name() {
     let e = fault(|o| {
@@ -120,7 +120,7 @@ fn uncertainties_must_be_uncertainties() {
     assert!(fault(|o| o.clone_from(&skew)).to_string().contains("symmetric"));
     let indefinite = of(Mat3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0));
     assert!(fault(|o| o.clone_from(&indefinite)).to_string().contains("negative eigenvalue"));
-    // Fully correlated errors are a covariance, of rank one.
+    // The covariance of fully correlated errors, of rank one.
     assert!(estimate(&of(Mat3::from_element(1.0))).stddev(Quantity::K).is_some());
 }
 
@@ -131,8 +131,8 @@ fn strain_ratios_that_turn_contacts_inside_out_are_refused() {
     }
 }
 
-/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all. `sqrt`
-/// has no such state.
+/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is not a contact distribution.
+/// `sqrt` has no such state.
 #[test]
 fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
     let mut o = Observation::from_g12_g13_theta(100.0e6, 195.0e6, 144.4e6, 50.0e3, StrainRatio::given(-0.9));
@@ -186,7 +186,7 @@ fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
     assert_eq!((inside.status, inside.warnings.len()), (Status::Ok, 0));
 }
 
-/// Shear of 60 MPa beside a P modulus of 50 MPa: a strain E11 = −E22 would cost no energy.
+/// With shear moduli of 60 MPa and a P modulus of 50 MPa, a strain E11 = −E22 would cost no energy.
 #[test]
 fn moduli_of_no_stable_medium_are_used_with_a_warning() {
     let mut o = sound();

@@ -1,4 +1,4 @@
-//! Cases at the edges of what the models can be asked, by name, with what comes out.
+//! Cases at the edges of the domains of the models, by name, with their results.
 
 use crate::cases::Random;
 use crate::{PAPER_MODELS, model};
@@ -20,7 +20,7 @@ fn infer(name: &str, o: &Observation) -> Result<Estimate, EmtError> {
     model(name).infer(o, &Calibration::PAPER)
 }
 
-/// The estimate from what a structure is predicted to have.
+/// The estimate from the moduli predicted for a structure.
 fn there_and_back(name: &str, structure: Structure, g: f64, nu: f64) -> Estimate {
     let conditions = Conditions {
         gamma: StrainRatio::given(g),
@@ -36,8 +36,8 @@ fn eps_of(name: &str, ratio: f64) -> f64 {
     infer(name, &with_ratio(ratio)).unwrap().structure.eps.unwrap()
 }
 
-/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not
-/// move.
+/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one is
+/// unchanged.
 #[test]
 fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_eps() {
     for name in PAPER_MODELS {
@@ -52,11 +52,12 @@ fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_
     }
 }
 
-/// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: said to be outside, or, where ε is looked for in its range only, refused.
+/// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: a warning that it is outside or, in models that search only their
+/// range, an error.
 #[test]
 fn a_shear_ratio_of_1_99_is_outside_every_range_and_said_to_be() {
     for name in PAPER_MODELS {
-        // Beside the usual Θ the shear is too stiff for any k̂ there.
+        // With the usual Θ, no k̂ gives so large a shear modulus.
         let mut o = with_ratio(1.99);
         o.moduli = o.moduli.with(Modulus::Theta, 50.0 * 160.0e6);
         match infer(name, &o) {
@@ -127,8 +128,8 @@ fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
     }
 }
 
-/// Inside, everything comes back; outside, Eq. 10 goes on with a warning, and contacts of an overlap that is not linear
-/// are open.
+/// Inside, every value is recovered. Outside, Eq. 10 continues with a warning, and contacts of a nonlinear
+/// overlap law are open.
 #[test]
 fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
     let truth = Structure::paper(5.2, 5.4, 0.1);
@@ -172,7 +173,7 @@ fn eps_of_minus_a_half_and_1_come_back() {
     }
 }
 
-/// Towards ν = 1/2, where K_N/K_T is 3/2, nothing is singular; beyond there is no such material.
+/// Towards ν = 1/2, where K_N/K_T is 3/2, nothing is singular; beyond, there is no such material.
 #[test]
 fn nu_of_a_half_is_the_last_one() {
     for name in PAPER_MODELS {
@@ -212,7 +213,7 @@ fn a_bulk_modulus_or_pressure_that_is_none_is_refused_by_name() {
     }
 }
 
-/// Nothing of k or k̂ is guessed; ε is the same as with Θ.
+/// k and k̂ are undetermined; ε is the same as with Θ.
 #[test]
 fn without_theta_eps_alone_is_determined() {
     let all = with_ratio(1.02).with_relative_error(0.01);
@@ -222,7 +223,7 @@ fn without_theta_eps_alone_is_determined() {
         let (e, with_theta) = (infer(name, &o).unwrap(), infer(name, &all).unwrap());
         assert_eq!(e.structure.eps, with_theta.structure.eps);
         if name == "emt" {
-            // It has no use for Θ.
+            // It does not use Θ.
             assert_eq!(e.structure, with_theta.structure);
             continue;
         }
@@ -233,7 +234,7 @@ fn without_theta_eps_alone_is_determined() {
     }
 }
 
-/// The one modulus that the others leave no choice for is as good as given.
+/// The one modulus that follows from the others may be left out.
 #[test]
 fn theta_follows_from_the_p_moduli() {
     let mut o = with_ratio(1.02);
@@ -254,7 +255,8 @@ fn theta_follows_from_the_p_moduli() {
     }
 }
 
-/// 0 %, 1 %, 5 % and 30 % noise on each modulus: an error, or numbers with an uncertainty. Up to 5 % it is an estimate.
+/// 0 %, 1 %, 5 % and 30 % noise on each modulus: an error, or numbers with an uncertainty. Up to 5 % it is an
+/// estimate.
 #[test]
 fn noise_of_30_percent_gives_an_error_or_numbers_never_a_nan() {
     let mut random = Random::new(30);

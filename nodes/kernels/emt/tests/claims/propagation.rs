@@ -13,8 +13,8 @@ use proptest::prelude::*;
 const PRESSURE: usize = 6;
 const GAMMA: usize = 7;
 
-/// The slopes of (k, k̂, ε) of the ratio model with the paper's constants by hand, where k/k̂ counts with this power.
-/// With N and D of ε = N/D, r = 1 + a = G13/G12 and s = (k̂+β)/(k̂+ζ):
+/// The slopes of (k, k̂, ε) of the ratio model with the paper's constants, derived by hand, for this power of
+/// k/k̂. With N and D of ε = N/D, r = 1 + a = G13/G12 and s = (k̂+β)/(k̂+ζ):
 /// dε = (N_a D − N D_a)/D² dr + (N_g D − N D_g)/D² dg, dr = r (dlnG13 − dlnG12),
 /// dk̂ = (k̂+ζ)²/(ζ−β) s {dlnG12 − dlnΘ + [1/(2−r) − 1/(4−r)] dr},
 /// (k/k̂)^power = Θ/[ρ (k̂+ζ) p^⅓ (1 − 4εg/5)].
@@ -51,8 +51,9 @@ fn slopes_by_hand(o: &Observation, [k, k_hat, eps]: [f64; 3], power: f64) -> Jac
 }
 
 proptest! {
-    /// Correlated errors of all five inputs. Central differences with step h = 1e-5 are off by h² times a third
-    /// derivative, which reaches some 1e3 times the value where s is near 1: 1e-6 of the largest entry.
+    /// Correlated errors of all five inputs. The error of central differences with step h = 1e-5 is h² times
+    /// a third derivative, which reaches some 1e3 times the value where s is near 1: 1e-6 of the largest
+    /// entry.
     #[test]
     fn slopes_and_covariance_are_those_of_the_closed_form(
         k in 3.0..8.0f64, k_hat in 4.0..8.0f64, eps in -0.45..0.9f64, g in -0.4..0.2f64,
@@ -88,9 +89,9 @@ proptest! {
     }
 }
 
-/// What comes back when the moduli move as the forward map says they do: the slopes of every model times the forward
-/// map's own are the unit matrix, and a change of γ/Δ, pressure or solid fraction that moduli follow changes nothing.
-/// Cases keep a tenth of each range away from its ends, where one-sided differences are first order only.
+/// The slopes of every model times those of its forward map are the unit matrix. A change of γ/Δ, pressure or
+/// solid fraction together with the moduli predicted for it changes nothing. Cases keep a tenth of each range
+/// away from its ends, where one-sided differences are only of first order.
 #[test]
 fn slopes_of_every_model_undo_those_of_its_forward_map() {
     const STEP: f64 = 1e-3;
@@ -115,7 +116,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                 };
                 let slopes =
                     model.infer(&Observation::new(moduli, conditions), &calibration).unwrap().jacobian;
-                // Relative change of the moduli along one variable, five points, and of what else it is.
+                // Relative change of the moduli along one variable by five points, and the other variables.
                 let along = |moved: &dyn Fn(f64) -> (grainlab_emt::Structure, Conditions),
                              own: Option<usize>| {
                     let at = |by: f64| {
@@ -163,8 +164,8 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
     }
 }
 
-/// One percent on each modulus, independent: extremes over the rows of Table III, computed apart from this code by
-/// finite differences and rounded to the digits given.
+/// Errors of one percent of each modulus, independent: extremes over the rows of Table III, computed by
+/// finite differences independent of this code and rounded to the digits given.
 #[test]
 fn one_percent_on_each_modulus_costs_what_is_known() {
     let mut extremes = [[f64::INFINITY, 0.0]; 3];
@@ -211,11 +212,11 @@ fn unknown_uncertainty_stays_unknown_and_a_known_one_gives_the_95_percent_interv
         assert!(((high - low) / (2.0 * sigma) - 1.959_964).abs() < 1e-6);
         assert!((low + high - 2.0 * middle).abs() < 1e-14);
     }
-    // Of what is no part of the model nothing is said.
+    // Quantities that are not part of the model are left out.
     assert!(known.interval(Quantity::Z).is_none() && known.stddev(Quantity::EpsStiffness).is_none());
 }
 
-/// ε follows G13 and G12 alike and nothing else; k follows the bulk modulus almost alone.
+/// ε depends on G13 and G12 equally and on no other modulus; k depends almost only on the bulk modulus.
 #[test]
 fn information_says_which_datum_decides_which_unknown() {
     let o = table3::rows()[0].observation().with_relative_error(0.01);
@@ -230,7 +231,7 @@ fn information_says_which_datum_decides_which_unknown() {
     );
 }
 
-/// A sum of two moduli that share their error does not help, their ratio does.
+/// A common error of two moduli does not cancel in their sum, but does in their ratio.
 #[test]
 fn an_error_that_both_shear_moduli_share_does_not_reach_eps() {
     let row = &table3::rows()[0];

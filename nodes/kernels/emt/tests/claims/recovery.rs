@@ -1,4 +1,4 @@
-//! Every model of the list against its own forward map. A new model is tested by being listed.
+//! Every model of the list against its own forward map. A new model in the list is tested automatically.
 
 use crate::cases::{Random, calibrations};
 use grainlab_core::Material;
@@ -10,7 +10,8 @@ use proptest::prelude::*;
 
 const CASES: usize = 100_000;
 
-/// Every model with every calibration that holds its constants, and its domain there; each has one at least.
+/// Every model with every calibration that contains its constants, and its domain there; each has at least
+/// one.
 fn calibrated() -> Vec<(&'static dyn Model, Calibration, Domain)> {
     let mut all = Vec::new();
     for model in models() {
@@ -49,7 +50,7 @@ fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() 
     }
 }
 
-/// A little beyond each end of each range, one at a time.
+/// Values slightly beyond each end of each range, one at a time.
 #[test]
 fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
     for (model, calibration, domain) in calibrated() {

@@ -1,4 +1,4 @@
-//! The relaxed network: what any set of moduli tells, and how sure it is.
+//! The relaxed network: the estimate from any set of moduli, and its uncertainty.
 
 use crate::cases::Random;
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
@@ -46,7 +46,7 @@ fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
         assert!((found.structure.z.unwrap() - 5.3).abs() < 1e-9, "{set:?}: {:?}", found.structure);
         assert!((found.structure.eps.unwrap() - 0.05).abs() < 1e-9, "{set:?}: {:?}", found.structure);
     }
-    // One modulus has nothing to say of ε, and says z less well than two.
+    // One modulus does not determine ε, and determines z less well than two.
     for one in [G12, Theta, C33] {
         let found = infer(only(&all, &[one])).unwrap();
         assert_eq!((found.structure.eps, found.structure.eps_stiffness), (None, None), "{one}");
@@ -69,8 +69,9 @@ fn more_moduli_are_never_worse() {
     assert!(four >= five.stddev(Quantity::Eps).unwrap());
 }
 
-/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they
-/// promise, and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
+/// Samples drawn from the scatter of packings assumed by the model, with these measurement errors: the
+/// intervals have their stated coverage. Data with 30 % error give a wide interval or a typed error, never a
+/// wrong estimate with a small uncertainty.
 #[test]
 fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
     let network = ours().network().unwrap();
@@ -108,13 +109,13 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
                 );
             }
         } else {
-            // Far beyond first order, which every one of them was warned of.
+            // Far outside first order, for which every estimate has a warning.
             assert!(held.iter().all(|h| h / solved > 0.6), "noise {noise}: {held:?} of {solved}");
         }
     }
 }
 
-/// The five independent moduli of a sample of this mean, in the order of [`Modulus::ALL`] and without Θ.
+/// The five independent moduli of a sample with this mean, in the order of [`Modulus::ALL`] and without Θ.
 fn scattered(
     mean: &Moduli,
     network: &grainlab_emt::RelaxationCalibration,
@@ -152,7 +153,7 @@ fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
     }
 }
 
-/// Six moduli are one more than a medium has: the sixth is a check, and is not thrown away.
+/// Six moduli are one more than a medium has: the sixth is a check, and is used.
 #[test]
 fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nobody_gave() {
     let sound = moduli(5.2, 0.03);
@@ -162,7 +163,7 @@ fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nob
     assert!(!infer(sound).unwrap().warnings.iter().any(imbalance));
     let found = infer(wrong).unwrap();
     assert!(found.warnings.iter().any(imbalance) && found.warnings.iter().any(conflict), "{found:?}");
-    // Without errors nothing can be weighed, and the five are taken; it is told all the same.
+    // Without errors there are no weights, and the five are taken; the warning is still given.
     let exact = Relaxed.infer(&Observation::new(wrong, conditions()), ours()).unwrap();
     assert!(exact.warnings.iter().any(imbalance));
     assert!((exact.structure.eps.unwrap() - 0.03).abs() < 1e-9);
@@ -224,7 +225,8 @@ fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
         let o = Observation { grains, ..exact };
         Relaxed.infer(&o, ours()).unwrap().stddev(Quantity::Eps).unwrap()
     };
-    // A quarter of the grains, twice the standard deviation; more grains than in the calibration promise no more.
+    // A quarter of the grains, twice the standard deviation. More grains than in the calibration do not
+    // reduce it.
     assert!((sigma(Some(500)) / sigma(Some(2000)) - 2.0).abs() < 1e-9);
     assert_eq!(sigma(Some(1_000_000)), sigma(None));
 
@@ -235,7 +237,7 @@ fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
     assert!(found.warnings.iter().any(told) && found.status == grainlab_emt::Status::Extrapolated);
 }
 
-/// Hertz contacts know no length and no pressure but in units of E*.
+/// Hertz contacts have no length scale, and no pressure scale but E*.
 #[test]
 fn stiffer_grains_at_as_much_higher_a_pressure_are_the_same_packing() {
     let (z, eps) = (5.4, -0.02);

@@ -1,4 +1,4 @@
-//! The sampled distribution against the first-order one, and where they part.
+//! The sampled distribution against the first-order one, and where they differ.
 
 use crate::cases::calibrations;
 use crate::{PAPER_MODELS, model, table3};
@@ -10,7 +10,7 @@ use grainlab_emt::{
 
 const DRAWS: usize = 40_000;
 
-/// A packing as they are, in the state that every model may ask for, known to `relative`.
+/// A typical packing, in a state that every model accepts, with the relative error `relative`.
 fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Option<Observation> {
     let structure = Structure {
         k: Some(5.2),
@@ -32,8 +32,8 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
     }
 }
 
-/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave
-/// out is a thousandth of σ here.
+/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). The error
+/// of the linear slopes is a thousandth of σ here.
 #[test]
 fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
     let settings = SamplingSettings { draws: DRAWS, seed: 1 };
@@ -74,8 +74,8 @@ fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
     }
 }
 
-/// At 30 % slopes know nothing of the wall that k̂ runs into: the samples are lopsided, wider, and part of them has no
-/// solution.
+/// At 30 % the linear slopes ignore the upper bound of k̂: the samples are asymmetric, wider, and a part of
+/// them has no solution.
 #[test]
 fn at_30_percent_they_part_and_the_samples_say_so() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
@@ -131,7 +131,7 @@ fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
     );
 }
 
-/// k is Θ in 20 MPa, refused above 6; what it leaves out has a standard deviation of 0.3.
+/// k is Θ in 20 MPa, refused above 6; the model's error has a standard deviation of 0.3.
 #[derive(Debug)]
 struct Line;
 
@@ -172,7 +172,8 @@ impl Model for Line {
     }
 }
 
-/// 5 ± 0.4 from the data and ± 0.3 from the model make ± 0.5; 6 lies 2.5 σ of the data above, where 0.62 % are.
+/// 5 ± 0.4 from the data and ± 0.3 from the model make ± 0.5. 6 lies 2.5 σ of the data above the mean; 0.62 %
+/// of the draws exceed it.
 #[test]
 fn what_the_model_leaves_out_is_added_and_draws_without_a_solution_are_counted() {
     let theta = 100.0e6;
@@ -186,15 +187,15 @@ fn what_the_model_leaves_out_is_added_and_draws_without_a_solution_are_counted()
         s.failed_fraction()
     );
     assert!(matches!(s.first_fault, Some(EmtError::NoCoordination { nearest, .. }) if nearest > 6.0));
-    // Cut at 2.5 σ a normal distribution has mean −0.01764 σ and variance 0.9556 σ².
+    // Truncated at 2.5 σ, a normal distribution has mean −0.01764 σ and variance 0.9556 σ².
     assert!((s.mean.k.unwrap() - (5.0 - 0.01764 * 0.4)).abs() < 5.0 * 0.5 / 200_000f64.sqrt());
     let variance: f64 = 0.9556 * 0.16 + 0.09;
     assert!((s.stddev(Quantity::K).unwrap() / variance.sqrt() - 1.0).abs() < 5.0 / 400_000f64.sqrt());
     assert!(s.quantile(Quantity::K, 0.0).unwrap() < 3.5 && s.quantile(Quantity::K, 1.0).unwrap() > 6.0);
 }
 
-/// Θ that follows from C11, C33, C13 and G12 is drawn with them: the five stay those of one medium, which a model that
-/// reads them all may count on.
+/// Θ that follows from C11, C33, C13 and G12 is drawn with them: the five remain those of one medium, which a
+/// model that uses all of them requires.
 #[test]
 fn correlated_errors_are_drawn_as_they_are() {
     #[derive(Debug)]
@@ -213,7 +214,7 @@ fn correlated_errors_are_drawn_as_they_are() {
             assert!(o.moduli.imbalance().unwrap().abs() < 1e-9);
             let [k, z] = [Modulus::G12, Modulus::G13].map(|m| o.moduli.get(m).unwrap() / 1e8);
             let structure = Structure { k: Some(k), z: Some(z), ..Structure::default() };
-            // Differences would move one modulus without the others.
+            // Differences would change one modulus without the others.
             Ok(PointEstimate { jacobian: Some(Jacobian::zeros()), ..PointEstimate::exact(structure) })
         }
     }

@@ -8,7 +8,7 @@ pub(crate) struct Row {
     pub(crate) label: String,
     /// γ/Δ of Table II.
     pub(crate) g: f64,
-    /// k, k̂ and ε as Table III has them.
+    /// k, k̂ and ε of Table III.
     pub(crate) printed: [f64; 3],
     /// Pa.
     pub(crate) g12: f64,
@@ -29,7 +29,7 @@ impl Row {
         self.with_theta(self.theta_printed)
     }
 
-    /// What Table III says.
+    /// The values of Table III.
     pub(crate) fn structure(&self) -> Structure {
         let [k, k_hat, eps] = self.printed;
         Structure::paper(k, k_hat, eps)

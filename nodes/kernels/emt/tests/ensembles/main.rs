@@ -1,4 +1,5 @@
-//! The kept ensembles of packings: what the built-in calibration was learned from, and what it was not.
+//! The stored ensembles of packings: those from which the built-in calibration was learned, and held-out
+//! ones.
 
 mod csv;
 
@@ -6,7 +7,7 @@ use grainlab_emt::{
     Calibration, CalibrationSample, Moduli, Modulus, Observation, Quantity, StrainRatioSource, learn,
 };
 
-/// Packings that no calibration has seen: 24 seeds, 4 frictions, 4 pressures.
+/// Packings not used in any calibration: 24 seeds, 4 frictions, 4 pressures.
 fn held_out() -> Vec<CalibrationSample> {
     csv::samples("held_out.csv")
 }
@@ -15,8 +16,8 @@ fn ours() -> &'static Calibration {
     Calibration::builtin("grainlab").unwrap()
 }
 
-/// The constants are learned and not written by hand. Logarithms differ by a rounding between libraries: 1e-6 of each
-/// number, an absolute 1e-12 for those that are zero but for rounding.
+/// The constants are learned, not written by hand. Logarithms differ by rounding between libraries: 1e-6 of
+/// each number, an absolute 1e-12 for those that are zero up to rounding.
 #[test]
 fn the_built_in_calibration_is_what_the_kept_ensembles_teach() {
     let learned =
@@ -110,7 +111,7 @@ fn three_moduli_or_the_p_moduli_alone_are_worth_what_is_stated() {
     }
 }
 
-/// The paper's own 16 states, which are four loadings of one packing each: three moduli and no γ/Δ.
+/// The 16 states of the paper, which are four loadings of one packing each: three moduli and no γ/Δ.
 #[test]
 fn directional_coordination_halves_the_paper_s_own_error_on_its_own_rows() {
     let rows = csv::paper_rows();

@@ -1,4 +1,4 @@
-//! A calibration for people.
+//! A calibration as text.
 
 use grainlab_console::Table;
 use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
@@ -85,7 +85,7 @@ fn network_text(n: &RelaxationCalibration) -> String {
     let [z, eps] = [n.z, n.eps];
     format!(
         "\nRelaxed networks of {} grains, in units of E*^(2/3) p^(1/3): z {:.3} to {:.3}, eps {:.3} to {:.3}, phi0 = {:.4}, \
-         p0 = {} kPa\n{}{}Scatter of packings that the laws have not seen, times (z - 4)/z\n{}",
+         p0 = {} kPa\n{}{}Scatter of packings left out of the fit of the laws, times (z - 4)/z\n{}",
         n.grains,
         z[0],
         z[1],

@@ -1,4 +1,4 @@
-//! Which datum decides which unknown, and what the uncertainty is made of.
+//! Contribution of each datum to the uncertainty of each unknown, and the parts due to data and model.
 
 use super::way::Way;
 use grainlab_console::{Table, fixed};
@@ -15,15 +15,15 @@ pub(super) struct Explained {
     quantity: &'static str,
     value: Option<f64>,
     sigma: Option<f64>,
-    /// The parts of it: from the errors of the data, and from what the model leaves out.
+    /// Its parts: from the errors of the data, and from the model.
     sigma_data: Option<f64>,
     sigma_model: Option<f64>,
-    /// Share of each input in the variance that the errors of the data cause.
+    /// Contribution of each input to the variance from the errors of the data, as fractions.
     information: BTreeMap<&'static str, f64>,
     condition_number: Option<f64>,
 }
 
-/// All that the models found.
+/// All results of the models.
 pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -> Vec<Explained> {
     let found = outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
     found.flat_map(|(estimate, way)| of_estimate(estimate, way)).collect()
@@ -52,7 +52,7 @@ fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
     determined.map(one).collect()
 }
 
-/// As a table for people: a column for each input that has a say.
+/// As a text table with a column for each contributing input.
 pub(super) fn people(explained: &[Explained]) -> String {
     let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
     let inputs: Vec<&str> = INPUT_NAMES.iter().filter(has_a_say).copied().collect();

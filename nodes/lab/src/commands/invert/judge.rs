@@ -1,6 +1,6 @@
-//! Estimates against the truth of a table, model by model.
+//! Estimates against the truth in a table, model by model.
 //!
-//! - [`score`]: errors of one quantity, summed up; [`plot`]: estimates against the truth, drawn
+//! - [`score`]: statistics of the errors of one quantity; [`plot`]: estimates against the truth, plotted
 
 mod plot;
 mod score;
@@ -19,23 +19,23 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What one way makes of one quantity of one group of rows.
+/// The result of one way for one quantity of one group of rows.
 #[derive(Debug, Serialize)]
 struct Judged {
     /// Cells of the columns grouped by.
     group: Vec<String>,
     model: &'static str,
     calibration: String,
-    /// Which γ/Δ the model was fed with, or `none`.
+    /// The γ/Δ that the model used, or `none`.
     gamma_over_delta_source: &'static str,
     quantity: &'static str,
-    /// What it is compared with.
+    /// The quantity that it is compared with.
     truth: &'static str,
     #[serde(flatten)]
     score: Score,
 }
 
-/// What one row says of one way: the γ/Δ it was fed with, and the error of each quantity whose truth is known.
+/// The result of one way for one row: the γ/Δ used, and the error of each quantity whose truth is known.
 struct Verdict {
     gamma: &'static str,
     errors: [Option<score::Error>; grainlab_emt::QUANTITIES],
@@ -43,7 +43,8 @@ struct Verdict {
     anisotropy: Option<[f64; 2]>,
 }
 
-/// Inverts every row, and prints how far from the truth it is; `plot` is the file of the figure, if one is drawn.
+/// Inverts every row, and prints the errors against the truth; `plot` is the file of the plot, if one is
+/// drawn.
 pub(super) fn run(
     mut rows: Rows,
     by: &[String],
@@ -74,7 +75,7 @@ pub(super) fn run(
                     }
                     board.enter(group, &verdicts);
                 }
-                // That a model has no estimate is what is judged. That a row is none is not.
+                // A missing estimate is part of the statistics. An invalid row is an error.
                 Err((number, bad)) => {
                     let answer = Answer::of_bad_row(bad, number);
                     tally.add(answer.exit(), &answer.complaint(ways));
@@ -108,7 +109,8 @@ impl Verdict {
     }
 }
 
-/// What a quantity is compared with: k̂ is no property of a packing, the coordination number that it stands for is.
+/// The quantity for comparison: k̂ is not a property of a packing, so that the coordination number of its
+/// calibration is used.
 fn against(quantity: Quantity, way: &Way) -> Quantity {
     match quantity {
         Quantity::KHat => way.calibration.isotropic().coordination_kind,
@@ -152,7 +154,7 @@ impl Board {
         }
     }
 
-    /// Of everything that a model speaks of and the truth is known of.
+    /// For each quantity of the model whose truth is known.
     fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
         self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
         let groups = self.groups;
@@ -184,7 +186,7 @@ fn people(judged: &[Judged], by: &[String]) -> String {
     for j in judged {
         let digits = if j.quantity.starts_with("eps") { 4 } else { 3 };
         let s = &j.score;
-        // Rounding leaves no sign on a zero.
+        // Removes the sign of a rounded zero.
         let number = |value: Option<f64>| {
             let text = fixed(value, digits);
             let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));

@@ -1,4 +1,4 @@
-//! What files do not say, as flags.
+//! Flags for data that files lack.
 
 use grainlab_console::Failure;
 use grainlab_core::contact::ContactLaw;
@@ -22,7 +22,7 @@ all of which are needed where there is friction (fx fy fz of granular pair style
 Columns are found by these names, by those of dump_modify colname (patom1 patom2 fx fy fz p1 p2 p3), or by
 --contact-columns.";
 
-/// A flag goes before what a file or its sidecar says.
+/// A flag takes precedence over a file and its sidecar.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Shear modulus of the grains, Pa
@@ -40,19 +40,20 @@ pub(crate) struct Args {
     /// Contact law with its parameters: hertz_mindlin, or linear:KN,RATIO with k_n in N/m and k_t/k_n
     #[arg(long, value_name = "LAW")]
     contact_law: Option<ContactLaw>,
-    /// Radius of every grain, m, for files that have none
+    /// Radius of every grain, m, for files without radii
     #[arg(long, value_name = "M")]
     radius: Option<f64>,
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
     #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
     cell: Vec<f64>,
-    /// Topic that holds the packings: of recordings, or of a live run
+    /// Topic of the packings: of recordings, or of a live run
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
-    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its columns
+    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its
+    /// columns
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
-    /// Its columns, where they are others: ids, normal force, tangential force (or ids and the whole force)
+    /// Its columns, if they differ: ids, normal force, tangential force (or ids and the whole force)
     #[arg(long, value_name = "ID,ID,FX,FY,FZ,P1,P2,P3", value_delimiter = ',', requires = "contact_forces")]
     contact_columns: Vec<String>,
 }

@@ -85,7 +85,7 @@ pub(super) struct Inferred {
 }
 
 impl Fit {
-    /// At z, with the given ε or, for `None`, the best one; `None` where the covariance is singular.
+    /// At z, with the given ε or, for `None`, the best one; `None` if the covariance is singular.
     pub(super) fn at(
         data: &Data,
         network: &RelaxationCalibration,
@@ -206,7 +206,7 @@ impl Fit {
         data.used.checked_sub(unknowns).filter(|d| *d > 0)
     }
 
-    /// The modulus furthest from its prediction by the others, and by how many standard deviations.
+    /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
     pub(super) fn worst(&self, data: &Data) -> (Modulus, f64) {
         // A datum left out of the fit differs from its prediction by (W r)_i over the square root of (W C W)_ii.
         let left = self.weight - self.weight * self.by_unknowns * self.gain();
