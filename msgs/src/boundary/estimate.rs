@@ -3,9 +3,7 @@
 use super::check::Check;
 use super::error::BoundaryError;
 use crate::msg::Estimate;
-
-/// The quantities of the microstructure, in the order of every array.
-pub const QUANTITIES: [&str; 5] = ["k", "k_hat", "z", "eps", "eps_stiffness"];
+use grainlab_core::results::InferredQuantity;
 
 /// The data, in the order of every row of [`Inferred::information`].
 pub const DATA: [&str; 9] =
@@ -50,7 +48,7 @@ pub struct StrainRatio {
     pub source: &'static str,
 }
 
-/// Inferred values; arrays have the order of [`QUANTITIES`].
+/// Inferred values; arrays have the order of [`InferredQuantity::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inferred {
     /// The values, at least one of them known; `None`: undetermined, or not part of the model.
@@ -144,7 +142,7 @@ fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
 fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
     let mut values = [None; 5];
     for (i, value) in [&m.k, &m.k_hat, &m.z, &m.eps, &m.eps_stiffness].into_iter().enumerate() {
-        values[i] = CHECK.optional_finite(QUANTITIES[i], value)?;
+        values[i] = CHECK.optional_finite(InferredQuantity::ALL[i].name(), value)?;
     }
     let any = values.iter().any(Option::is_some);
     CHECK.that(

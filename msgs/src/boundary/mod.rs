@@ -20,9 +20,7 @@ mod wave_speeds;
 mod waveform;
 
 pub use error::BoundaryError;
-pub use estimate::{
-    DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
-};
+pub use estimate::{DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, StrainRatio};
 pub use fabric::{FabricReading, fabric_message};
 pub use microstructure::MicrostructureReading;
 pub use moduli::{ModuliReading, moduli_message};

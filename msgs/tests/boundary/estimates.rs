@@ -1,7 +1,6 @@
 use super::refuses;
-use grainlab_msgs::boundary::{
-    EstimateStatus, Interval, MicrostructureReading, Misfit, QUANTITIES, StrainRatio,
-};
+use grainlab_core::results::InferredQuantity;
+use grainlab_msgs::boundary::{EstimateStatus, Interval, MicrostructureReading, Misfit, StrainRatio};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
@@ -87,7 +86,10 @@ fn each_quantity_is_read_from_its_own_field() {
         assert_eq!(found.values.to_vec(), expected);
         field(&mut e)[0] = NAN;
         let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
-        assert_eq!(refused, format!("Estimate.{} = NaN is refused: it must be finite", QUANTITIES[i]));
+        assert_eq!(
+            refused,
+            format!("Estimate.{} = NaN is refused: it must be finite", InferredQuantity::ALL[i].name())
+        );
     }
 }
 

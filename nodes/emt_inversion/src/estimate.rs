@@ -1,10 +1,8 @@
 //! From the result of a model to an `Estimate`.
 
 use crate::observed::{Observed, Unobservable};
-use grainlab_emt::{
-    CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Quantity, Status, StrainRatio,
-    StructureCovariance,
-};
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
 
@@ -35,8 +33,8 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     };
     let misfit = both(observed.misfit, estimate.misfit);
     let covariance = known_covariance(estimate.covariance());
-    let bounds = Quantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
-    let shares = Quantity::ALL.map(|q| estimate.information(q));
+    let bounds = InferredQuantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
+    let shares = InferredQuantity::ALL.map(|q| estimate.information(q));
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(estimate.gamma);
     msg::Estimate {
         model: estimate.model.to_owned(),
@@ -70,7 +68,7 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
 
 /// Quantities of the model that the data do not determine, if they determine any.
 fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
+    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
     (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }
 
@@ -87,12 +85,12 @@ fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
 }
 
 /// A covariance of zeros contains no information.
-fn known_covariance(covariance: Option<StructureCovariance>) -> Option<StructureCovariance> {
+fn known_covariance(covariance: Option<MicrostructureCovariance>) -> Option<MicrostructureCovariance> {
     covariance.filter(|c| c.amax() > 0.0)
 }
 
-fn entries(covariance: Option<StructureCovariance>) -> Vec<f64> {
-    let row_major = |c: StructureCovariance| c.transpose().iter().copied().collect();
+fn entries(covariance: Option<MicrostructureCovariance>) -> Vec<f64> {
+    let row_major = |c: MicrostructureCovariance| c.transpose().iter().copied().collect();
     covariance.map_or_else(Vec::new, row_major)
 }
 

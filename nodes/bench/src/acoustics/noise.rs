@@ -6,8 +6,8 @@ use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
+use grainlab_core::results::InferredQuantity;
 use grainlab_core::results::PackingReport;
-use grainlab_emt::Quantity;
 use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
@@ -21,7 +21,8 @@ const MODEL: &str = "relaxed";
 /// Half the width of a 95 % interval, standard deviations.
 const INTERVAL: f64 = 1.96;
 
-const QUANTITIES: [Quantity; 4] = [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness];
+const JUDGED: [InferredQuantity; 4] =
+    [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// One level of noise, or the analyzer's moduli.
 #[derive(Debug, Serialize)]
@@ -110,19 +111,19 @@ fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
 fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let reading = MicrostructureReading::try_from(found).ok();
     let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
-    let of = |quantity: Quantity| {
+    let of = |quantity: InferredQuantity| {
         let (inferred, at) = (inferred.as_ref()?, quantity as usize);
         let counted = match quantity {
-            Quantity::K => truth.contacts.coordination,
-            Quantity::Z => truth.contacts.mechanical_coordination,
-            Quantity::Eps => truth.fabric.contact_anisotropy,
-            Quantity::EpsStiffness => truth.stiffness_anisotropy()?,
-            Quantity::KHat => return None,
+            InferredQuantity::K => truth.contacts.coordination,
+            InferredQuantity::Z => truth.contacts.mechanical_coordination,
+            InferredQuantity::Eps => truth.fabric.contact_anisotropy,
+            InferredQuantity::EpsStiffness => truth.stiffness_anisotropy()?,
+            InferredQuantity::KHat => return None,
         };
         let error = inferred.values[at]? - counted;
         Some((error, error / inferred.covariance?[6 * at].sqrt()))
     };
-    QUANTITIES.map(of)
+    JUDGED.map(of)
 }
 
 fn row(noise: Option<f64>, packings: usize, errors: &[Errors]) -> Row {

@@ -9,7 +9,7 @@ use crate::moduli::Moduli;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
 use crate::propagation::numerical_jacobian;
-use crate::structure::Structure;
+use grainlab_core::results::Microstructure;
 use std::fmt::Debug;
 
 /// A theory that relates microstructure to moduli. A new one is a file in `models` with this trait and a line in
@@ -36,7 +36,7 @@ pub trait Model: Sync + Debug {
     /// The moduli of a packing of this structure in this state; `None` for those that the model does not predict.
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError>;

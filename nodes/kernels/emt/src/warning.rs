@@ -1,7 +1,7 @@
 //! Warnings about an estimate.
 
 use crate::moduli::Modulus;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use std::fmt;
 
 /// A limitation of an estimate.
@@ -10,7 +10,7 @@ pub enum Warning {
     /// A coordination number lies outside the packings of the calibration.
     CoordinationOutsideFit {
         /// The quantity.
-        quantity: Quantity,
+        quantity: InferredQuantity,
         /// Its value.
         value: f64,
         /// Lowest and highest of the calibration.
@@ -91,7 +91,7 @@ pub enum Warning {
     /// The coordination number is less than one contact per grain.
     CoordinationAbsurd {
         /// The quantity.
-        quantity: Quantity,
+        quantity: InferredQuantity,
         /// Its value.
         value: f64,
     },

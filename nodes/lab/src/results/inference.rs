@@ -1,6 +1,7 @@
 //! Results of the models, with the stable keys of `results[]`.
 
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity, Status, recommended};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -58,15 +59,15 @@ pub(crate) struct Quantities<T> {
 }
 
 impl<T> Quantities<T> {
-    pub(super) fn of(value: impl FnMut(Quantity) -> T) -> Self {
-        let [k, k_hat, z, eps, eps_stiffness] = Quantity::ALL.map(value);
+    pub(super) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
+        let [k, k_hat, z, eps, eps_stiffness] = InferredQuantity::ALL.map(value);
         Self { k, k_hat, z, eps, eps_stiffness }
     }
 }
 
 impl<T: Copy> Quantities<T> {
-    /// In the order of [`Quantity::ALL`].
-    pub(super) fn all(&self) -> [T; grainlab_emt::QUANTITIES] {
+    /// In the order of [`InferredQuantity::ALL`].
+    pub(super) fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }
@@ -151,7 +152,7 @@ impl Inference {
             ..Self::failed(&e.model, &e.calibration, status, e.warnings.clone())
         };
         let Some(found) = &e.inferred else { return without_values };
-        let value = |q: Quantity| found.values[q as usize];
+        let value = |q: InferredQuantity| found.values[q as usize];
         let sigma = |covariance: Option<[f64; 25]>| {
             Quantities::of(|q| value(q).and(covariance).map(|c| c[6 * q as usize].sqrt()))
         };
@@ -177,7 +178,7 @@ impl Inference {
             Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),
         };
         let known = estimate.covariance().is_some();
-        let of_model = |q: Quantity| {
+        let of_model = |q: InferredQuantity| {
             let i = q as usize;
             estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
         };

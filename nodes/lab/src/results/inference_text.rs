@@ -2,7 +2,7 @@
 
 use super::inference::Inference;
 use grainlab_console::{Table, exact, fixed};
-use grainlab_emt::Quantity;
+use grainlab_core::results::InferredQuantity;
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].
@@ -23,7 +23,7 @@ impl Inference {
 
     /// Names of the cells of [`Inference::exact_cells`].
     pub(crate) fn exact_columns() -> Vec<String> {
-        let names = Quantity::ALL.map(Quantity::name);
+        let names = InferredQuantity::ALL.map(InferredQuantity::name);
         let with = |prefix: &'static str| names.into_iter().map(move |name| format!("{prefix}{name}"));
         let mut columns: Vec<String> = ["model", "calibration"].map(str::to_owned).into();
         columns.extend(["", "sigma_", "sigma_model_"].into_iter().flat_map(with));

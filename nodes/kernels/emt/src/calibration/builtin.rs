@@ -1,7 +1,7 @@
 //! The calibrations that come with the crate.
 
 use super::constants::Calibration;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ impl Calibration {
         static BY_K: LazyLock<Option<Calibration>> =
             LazyLock::new(|| Calibration::parse(include_str!("grainlab.toml")).ok());
         static BY_Z: LazyLock<Option<Calibration>> = LazyLock::new(|| {
-            let by_z = BY_K.as_ref()?.with_coordination_kind(Quantity::Z)?;
+            let by_z = BY_K.as_ref()?.with_coordination_kind(InferredQuantity::Z)?;
             Some(Calibration { name: Cow::Borrowed("grainlab-z"), ..by_z })
         });
         match name {

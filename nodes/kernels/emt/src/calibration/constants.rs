@@ -4,8 +4,8 @@ use super::discrepancy::ModelDiscrepancy;
 use super::isotropic::IsotropicCalibration;
 use super::relaxation::RelaxationCalibration;
 use crate::conditions::StrainRatioSource;
-use crate::structure::{Quantity, StructureCovariance};
 use grainlab_core::Material;
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
 use std::borrow::Cow;
 
 /// Constants of the models, measured on packings of one material.
@@ -90,7 +90,7 @@ impl Calibration {
 
     /// The same with this coordination number for the isotropic packings; `None` if the calibration lacks
     /// such a fit.
-    pub fn with_coordination_kind(&self, kind: Quantity) -> Option<Self> {
+    pub fn with_coordination_kind(&self, kind: InferredQuantity) -> Option<Self> {
         if self.isotropic.coordination_kind == kind {
             return Some(self.clone());
         }
@@ -105,14 +105,14 @@ impl Calibration {
         model: &str,
         gamma: Option<StrainRatioSource>,
         eps: Option<f64>,
-    ) -> Option<StructureCovariance> {
+    ) -> Option<MicrostructureCovariance> {
         let kind = self.isotropic.coordination_kind;
         let learned = self
             .discrepancies
             .iter()
             .find(|d| d.model == model && d.gamma == gamma && d.coordination_kind == kind)?;
-        let mut covariance = StructureCovariance::zeros();
-        let order = [kind, Quantity::KHat, Quantity::Eps];
+        let mut covariance = MicrostructureCovariance::zeros();
+        let order = [kind, InferredQuantity::KHat, InferredQuantity::Eps];
         for (a, row) in order.into_iter().zip(learned.at(eps)) {
             for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;

@@ -3,7 +3,7 @@
 use super::error::{CalibrationError, constant};
 use super::names::{coordination_kind, strain_ratio};
 use crate::conditions::StrainRatioSource;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use serde::{Deserialize, Serialize};
 
 /// The difference of a model from the packings of the calibration.
@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub struct ModelDiscrepancy {
     /// Name of the model.
     pub model: String,
-    /// The coordination number of the isotropic packings: [`Quantity::K`] or [`Quantity::Z`].
+    /// The coordination number of the isotropic packings: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
     #[serde(rename = "abscissa", with = "coordination_kind")]
-    pub coordination_kind: Quantity,
+    pub coordination_kind: InferredQuantity,
     /// The γ/Δ that the model takes; `None` if it uses none.
     #[serde(with = "strain_ratio")]
     pub gamma: Option<StrainRatioSource>,

@@ -17,7 +17,7 @@ use crate::moments::{Moments, eps_of_spin};
 use crate::observation::Observation;
 use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
-use crate::structure::{Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// The ratio model in one reading of Eqs. 16–18.
 #[derive(Clone, Copy, Debug)]
@@ -51,12 +51,12 @@ impl Model for Ratio {
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).validate(structure, conditions)?;
-        let (eps, g) = (found[Quantity::Eps as usize], conditions.gamma.value);
+        let (eps, g) = (found[InferredQuantity::Eps as usize], conditions.gamma.value);
         let factors = self.factors(eps, Moments::new(eps, g).spin(), g);
         Ok(factors.moduli(&found, self.power, conditions, calibration))
     }

@@ -260,7 +260,10 @@ fn a_fit_is_an_observation_that_every_model_takes() {
     let direct =
         grainlab_emt::model("ratio").unwrap().infer(&direct, &grainlab_emt::Calibration::PAPER).unwrap();
     let [found, expected] = [&estimate, &direct].map(|e| e.structure.k.unwrap());
-    assert!((found - expected).abs() < 1e-9 && estimate.stddev(grainlab_emt::Quantity::K).unwrap() > 0.0);
+    assert!(
+        (found - expected).abs() < 1e-9
+            && estimate.stddev(grainlab_core::results::InferredQuantity::K).unwrap() > 0.0
+    );
 }
 
 /// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one

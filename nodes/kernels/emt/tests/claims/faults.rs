@@ -2,11 +2,11 @@
 
 use crate::{PAPER_MODELS, model};
 use grainlab_core::results::StrainRatios;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Mat3, Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::{
     Calibration, CalibrationError, Conditions, EmtError, Estimate, IsotropicCalibration, Measured, Moduli,
-    ModuliCovariance, Modulus, Observation, Quantity, Status, StrainRatio, StrainRatioSource, Structure,
-    Warning,
+    ModuliCovariance, Modulus, Observation, Status, StrainRatio, StrainRatioSource, Warning,
 };
 
 fn sound() -> Observation {
@@ -39,8 +39,9 @@ fn estimate(o: &Observation) -> Estimate {
 /// The estimate from the moduli predicted for a structure.
 fn of_structure(k: f64, k_hat: f64, eps: f64, g: f64) -> Estimate {
     let conditions = Conditions { gamma: StrainRatio::given(g), ..Conditions::at(100.0e3) };
-    let moduli =
-        model("ratio").predict(&Structure::paper(k, k_hat, eps), &conditions, &Calibration::PAPER).unwrap();
+    let moduli = model("ratio")
+        .predict(&Microstructure::paper(k, k_hat, eps), &conditions, &Calibration::PAPER)
+        .unwrap();
     estimate(&Observation::new(moduli, conditions))
 }
 
@@ -121,7 +122,7 @@ fn uncertainties_must_be_uncertainties() {
     let indefinite = of(Mat3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0));
     assert!(fault(|o| o.clone_from(&indefinite)).to_string().contains("negative eigenvalue"));
     // The covariance of fully correlated errors, of rank one.
-    assert!(estimate(&of(Mat3::from_element(1.0))).stddev(Quantity::K).is_some());
+    assert!(estimate(&of(Mat3::from_element(1.0))).stddev(InferredQuantity::K).is_some());
 }
 
 #[test]
@@ -166,7 +167,7 @@ fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
         assert_eq!(e.status, Status::Extrapolated);
     };
     warned(of_structure(4.9, 4.79, 0.0, 0.0), |w| {
-        matches!(w, Warning::CoordinationOutsideFit { quantity: Quantity::KHat, range: [4.8, _], .. })
+        matches!(w, Warning::CoordinationOutsideFit { quantity: InferredQuantity::KHat, range: [4.8, _], .. })
     });
     warned(of_structure(5.5, 5.5, 0.1, -0.35), |w| matches!(w, Warning::GammaLarge { .. }));
     let with = |change: fn(&mut Observation)| {
@@ -252,12 +253,12 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
         ([170.0, -3.66, f64::NAN, -0.5], "rho"),
         ([170.0, -3.66, 75.0, -3.66], "zeta"),
     ] {
-        let refused = IsotropicCalibration::new(constants, Quantity::K, [4.8, 6.0]).unwrap_err();
+        let refused = IsotropicCalibration::new(constants, InferredQuantity::K, [4.8, 6.0]).unwrap_err();
         let CalibrationError::Constant { field, .. } = refused else { panic!("{refused}") };
         assert_eq!(field, at_fault);
     }
     let upside_down =
-        IsotropicCalibration::new([170.0, -3.66, 75.0, -0.5], Quantity::K, [6.0, 4.8]).unwrap_err();
+        IsotropicCalibration::new([170.0, -3.66, 75.0, -0.5], InferredQuantity::K, [6.0, 4.8]).unwrap_err();
     assert!(matches!(upside_down, CalibrationError::Constant { field: "fitted", .. }));
 }
 

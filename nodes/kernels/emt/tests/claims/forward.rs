@@ -3,8 +3,9 @@
 use crate::cases::calibrations;
 use crate::sphere::{contact_density, directions, stiffness};
 use crate::{PAPER_MODELS, model};
+use grainlab_core::results::Microstructure;
 use grainlab_core::{Material, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio, Structure};
+use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio};
 use std::f64::consts::PI;
 
 /// Values of ε and g: both ends and their neighbours, and values where the overlap is almost linear.
@@ -82,7 +83,7 @@ fn ratios_are_those_of_the_integral_with_the_spin_that_keeps_stress_symmetric() 
                         over[2] += 0.4 * eps * (2.0 - over[1] / over[0]);
                     }
                     let fitted = calibration.isotropic_for(Some(grains));
-                    let structure = Structure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
+                    let structure = Microstructure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
                     let conditions = Conditions {
                         gamma: StrainRatio::given(g),
                         material: Some(grains),
@@ -124,7 +125,7 @@ fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
             });
             let expected = Moduli::of_medium(&Stiffness(c).transverse_isotropy());
 
-            let structure = Structure { k: Some(k), eps: Some(eps), ..Structure::default() };
+            let structure = Microstructure { k: Some(k), eps: Some(eps), ..Microstructure::default() };
             let conditions = Conditions {
                 gamma: StrainRatio::given(g),
                 solid_fraction: Some(Measured::exact(phi)),
@@ -163,8 +164,8 @@ fn g13_over_g12_rises_with_eps_at_every_g_and_nu() {
                 };
                 let ratio = |i: i32| {
                     let eps = -0.5 + 0.015 * f64::from(i);
-                    let structure =
-                        Structure::paper(5.0, 5.0, eps.min(1.0)).with(grainlab_emt::Quantity::Z, 5.0);
+                    let structure = Microstructure::paper(5.0, 5.0, eps.min(1.0))
+                        .with(grainlab_core::results::InferredQuantity::Z, 5.0);
                     let m = model(name).predict(&structure, &conditions, &calibration).unwrap();
                     m.get(Modulus::G13).unwrap() / m.get(Modulus::G12).unwrap()
                 };

@@ -3,9 +3,9 @@
 use crate::cases::Random;
 use crate::{PAPER_MODELS, model};
 use grainlab_core::Material;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Modulus, Observation, Quantity, Status,
-    StrainRatio, Structure, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Modulus, Observation, Status, StrainRatio, Warning,
 };
 
 /// G12, G13 = `ratio` G12 and Θ of a packing of some k̂ near 5.
@@ -21,7 +21,7 @@ fn infer(name: &str, o: &Observation) -> Result<Estimate, EmtError> {
 }
 
 /// The estimate from the moduli predicted for a structure.
-fn there_and_back(name: &str, structure: Structure, g: f64, nu: f64) -> Estimate {
+fn there_and_back(name: &str, structure: Microstructure, g: f64, nu: f64) -> Estimate {
     let conditions = Conditions {
         gamma: StrainRatio::given(g),
         solid_fraction: Some(Measured::exact(0.636)),
@@ -116,10 +116,10 @@ fn as_s_goes_to_1_k_hat_grows_without_bound_and_from_1_on_there_is_none() {
 fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
         for k_hat in [3.67, 4.79] {
-            let e = there_and_back(name, Structure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
+            let e = there_and_back(name, Microstructure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
             assert!((e.structure.k_hat.unwrap() - k_hat).abs() < 1e-12, "{name}");
             let below = Warning::CoordinationOutsideFit {
-                quantity: Quantity::KHat,
+                quantity: InferredQuantity::KHat,
                 value: e.structure.k_hat.unwrap(),
                 range: [4.8, f64::INFINITY],
             };
@@ -132,7 +132,7 @@ fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
 /// overlap law are open.
 #[test]
 fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
-    let truth = Structure::paper(5.2, 5.4, 0.1);
+    let truth = Microstructure::paper(5.2, 5.4, 0.1);
     for name in PAPER_MODELS {
         for g in [0.25, -0.5] {
             let found = there_and_back(name, truth, g, 0.2).structure;
@@ -167,7 +167,7 @@ fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
 fn eps_of_minus_a_half_and_1_come_back() {
     for name in PAPER_MODELS {
         for (eps, g) in [-0.5, 1.0].into_iter().flat_map(|eps| [-0.5, 0.0, 0.25].map(|g| (eps, g))) {
-            let found = there_and_back(name, Structure::paper(5.2, 5.4, eps), g, 0.2).structure;
+            let found = there_and_back(name, Microstructure::paper(5.2, 5.4, eps), g, 0.2).structure;
             assert!((found.eps.unwrap() - eps).abs() < 1e-12, "{name} eps {eps} g {g}");
         }
     }
@@ -178,7 +178,7 @@ fn eps_of_minus_a_half_and_1_come_back() {
 fn nu_of_a_half_is_the_last_one() {
     for name in PAPER_MODELS {
         for nu in [0.5 - 1e-9, 0.5] {
-            let found = there_and_back(name, Structure::paper(5.2, 5.4, 0.1), -0.07, nu).structure;
+            let found = there_and_back(name, Microstructure::paper(5.2, 5.4, 0.1), -0.07, nu).structure;
             assert!(
                 (found.eps.unwrap() - 0.1).abs() < 1e-12 && (found.k.unwrap() - 5.2).abs() < 1e-12,
                 "{name}"
@@ -227,9 +227,13 @@ fn without_theta_eps_alone_is_determined() {
             assert_eq!(e.structure, with_theta.structure);
             continue;
         }
-        assert_eq!(e.structure, Structure { eps: e.structure.eps, ..Structure::default() }, "{name}");
-        assert!(e.stddev(Quantity::Eps).unwrap() > 0.01);
-        assert!(e.stddev(Quantity::K).is_none() && e.information(Quantity::KHat).is_none());
+        assert_eq!(
+            e.structure,
+            Microstructure { eps: e.structure.eps, ..Microstructure::default() },
+            "{name}"
+        );
+        assert!(e.stddev(InferredQuantity::Eps).unwrap() > 0.01);
+        assert!(e.stddev(InferredQuantity::K).is_none() && e.information(InferredQuantity::KHat).is_none());
         assert_eq!(e.condition_number(), Some(1.0));
     }
 }
@@ -272,7 +276,9 @@ fn noise_of_30_percent_gives_an_error_or_numbers_never_a_nan() {
                     Ok(e) => {
                         let numbers = e.structure.values().into_iter().flatten();
                         assert!(numbers.chain(e.covariance().unwrap().iter().copied()).all(f64::is_finite));
-                        assert!(Quantity::ALL.into_iter().all(|q| e.stddev(q).is_none_or(|s| s >= 0.0)));
+                        assert!(
+                            InferredQuantity::ALL.into_iter().all(|q| e.stddev(q).is_none_or(|s| s >= 0.0))
+                        );
                     }
                     Err(e) => {
                         assert!(relative > 0.05 || matches!(e, EmtError::NoAnisotropy { .. }), "{name}: {e}")

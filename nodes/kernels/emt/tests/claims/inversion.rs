@@ -2,8 +2,9 @@
 
 use crate::{PAPER_MODELS, model, table3};
 use grainlab_core::Material;
+use grainlab_core::results::Microstructure;
 use grainlab_emt::{
-    Calibration, Conditions, Eq16Reading, Measured, Medium, Observation, StrainRatio, Structure, models,
+    Calibration, Conditions, Eq16Reading, Measured, Medium, Observation, StrainRatio, models,
 };
 
 /// The accuracy claimed is 1e-6; the moduli are stored to 1 mPa, which adds at most 1e-9.
@@ -78,7 +79,7 @@ fn eps_taken(true_model: &str, taken: &str, eps: f64, g: f64, nu: f64) -> f64 {
         material: Some(Material { poisson_ratio: nu, ..Material::GLASS }),
         ..Conditions::at(100.0e3)
     };
-    let truth = Structure::paper(5.2, 5.1, eps);
+    let truth = Microstructure::paper(5.2, 5.1, eps);
     let moduli = model(true_model).predict(&truth, &conditions, &Calibration::PAPER).unwrap();
     let found = model(taken).infer(&Observation::new(moduli, conditions), &Calibration::PAPER).unwrap();
     found.structure.eps.unwrap()

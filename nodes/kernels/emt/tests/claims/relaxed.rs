@@ -1,11 +1,11 @@
 //! The relaxed network: the estimate from any set of moduli, and its uncertainty.
 
 use crate::cases::Random;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::Relaxed;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Quantity,
-    Structure, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Warning,
 };
 use nalgebra::Matrix6;
 
@@ -21,8 +21,8 @@ fn conditions() -> Conditions {
     }
 }
 
-fn structure(z: f64, eps: f64) -> Structure {
-    Structure { z: Some(z), eps: Some(eps), ..Structure::default() }
+fn structure(z: f64, eps: f64) -> Microstructure {
+    Microstructure { z: Some(z), eps: Some(eps), ..Microstructure::default() }
 }
 
 fn moduli(z: f64, eps: f64) -> Moduli {
@@ -51,9 +51,9 @@ fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
         let found = infer(only(&all, &[one])).unwrap();
         assert_eq!((found.structure.eps, found.structure.eps_stiffness), (None, None), "{one}");
         let off = (found.structure.z.unwrap() - 5.3).abs();
-        assert!(off < 2.0 * found.stddev(Quantity::Z).unwrap(), "{one}: {found:?}");
+        assert!(off < 2.0 * found.stddev(InferredQuantity::Z).unwrap(), "{one}: {found:?}");
         let together = infer(all).unwrap();
-        assert!(found.stddev(Quantity::Z) > together.stddev(Quantity::Z), "{one}");
+        assert!(found.stddev(InferredQuantity::Z) > together.stddev(InferredQuantity::Z), "{one}");
     }
     let nothing = Relaxed.infer(&Observation::new(Moduli::NONE, conditions()), ours()).unwrap_err();
     assert!(matches!(nothing, EmtError::Missing { .. }), "{nothing}");
@@ -63,10 +63,10 @@ fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
 fn more_moduli_are_never_worse() {
     use Modulus::{C11, C33, G12, G13, Theta};
     let all = moduli(5.1, 0.04);
-    let sigma = |set: &[Modulus]| infer(only(&all, set)).unwrap().stddev(Quantity::Eps).unwrap();
+    let sigma = |set: &[Modulus]| infer(only(&all, set)).unwrap().stddev(InferredQuantity::Eps).unwrap();
     let (three, four, five) = (sigma(&[G12, G13, Theta]), sigma(&[G12, G13, C11, C33]), infer(all).unwrap());
     assert!(three > 1.5 * four, "{three} {four}: P moduli carry more of eps than the ratio of shear moduli");
-    assert!(four >= five.stddev(Quantity::Eps).unwrap());
+    assert!(four >= five.stddev(InferredQuantity::Eps).unwrap());
 }
 
 /// Samples drawn from the scatter of packings assumed by the model, with these measurement errors: the
@@ -90,7 +90,9 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
             solved += 1.0;
             let warned = found.warnings.iter().any(|w| matches!(w, Warning::ErrorsLarge { .. }));
             assert_eq!(warned, noise > 0.1);
-            for (i, (q, truth)) in [(Quantity::Z, z), (Quantity::Eps, eps)].into_iter().enumerate() {
+            for (i, (q, truth)) in
+                [(InferredQuantity::Z, z), (InferredQuantity::Eps, eps)].into_iter().enumerate()
+            {
                 let Some([low, high]) = found.interval(q) else {
                     held[i] += 1.0;
                     continue;
@@ -174,7 +176,7 @@ fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nob
         _ => None,
     });
     assert!(blamed.is_some_and(|m| m != Modulus::C13), "{:?}", found.warnings);
-    assert_eq!(found.information(Quantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
+    assert_eq!(found.information(InferredQuantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
 }
 
 #[test]
@@ -213,9 +215,9 @@ fn an_unknown_solid_fraction_is_assumed_and_costs_certainty() {
     o.conditions.solid_fraction = None;
     let assumed = Relaxed.infer(&o, ours()).unwrap();
     assert!(assumed.warnings.iter().any(|w| matches!(w, Warning::SolidFractionAssumed { .. })));
-    assert!(assumed.stddev(Quantity::Z) > known.stddev(Quantity::Z));
+    assert!(assumed.stddev(InferredQuantity::Z) > known.stddev(InferredQuantity::Z));
     let off = (assumed.structure.z.unwrap() - 5.3).abs();
-    assert!(off < 2.0 * assumed.stddev(Quantity::Z).unwrap());
+    assert!(off < 2.0 * assumed.stddev(InferredQuantity::Z).unwrap());
 }
 
 #[test]
@@ -223,7 +225,7 @@ fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
     let sigma = |grains| {
         let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
         let o = Observation { grains, ..exact };
-        Relaxed.infer(&o, ours()).unwrap().stddev(Quantity::Eps).unwrap()
+        Relaxed.infer(&o, ours()).unwrap().stddev(InferredQuantity::Eps).unwrap()
     };
     // A quarter of the grains, twice the standard deviation. More grains than in the calibration do not
     // reduce it.
@@ -261,7 +263,9 @@ fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
             Relaxed.solve(&Observation { moduli: m, ..exact.clone() }, ours()).unwrap().structure
         };
         let (up, down) = (at(STEP), at(-STEP));
-        for q in [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness] {
+        for q in
+            [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness]
+        {
             let numerical = (up.get(q).unwrap() - down.get(q).unwrap()) / (2.0 * STEP);
             let stated = slopes[(q as usize, modulus as usize)];
             assert!((numerical - stated).abs() < 1e-4, "{q} by {modulus}: {numerical} {stated}");
@@ -272,7 +276,7 @@ fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
         o.conditions.pressure.value *= 1.0 + by;
         Relaxed.solve(&o, ours()).unwrap().structure
     };
-    for q in [Quantity::K, Quantity::Z, Quantity::Eps] {
+    for q in [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps] {
         let numerical = (at(STEP).get(q).unwrap() - at(-STEP).get(q).unwrap()) / (2.0 * STEP);
         assert!((numerical - slopes[(q as usize, 6)]).abs() < 1e-4, "{q} by pressure");
     }

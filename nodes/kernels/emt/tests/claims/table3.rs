@@ -1,6 +1,7 @@
 //! The sixteen states of the paper's Table III, with the moduli that its k, k̂ and ε imply.
 
-use grainlab_emt::{Observation, StrainRatio, Structure};
+use grainlab_core::results::Microstructure;
+use grainlab_emt::{Observation, StrainRatio};
 
 /// One state.
 pub(crate) struct Row {
@@ -30,9 +31,9 @@ impl Row {
     }
 
     /// The values of Table III.
-    pub(crate) fn structure(&self) -> Structure {
+    pub(crate) fn structure(&self) -> Microstructure {
         let [k, k_hat, eps] = self.printed;
-        Structure::paper(k, k_hat, eps)
+        Microstructure::paper(k, k_hat, eps)
     }
 
     fn with_theta(&self, theta: f64) -> Observation {

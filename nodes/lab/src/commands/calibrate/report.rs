@@ -1,8 +1,9 @@
 //! A calibration as text.
 
 use grainlab_console::Table;
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
-use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Quantity};
+use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
@@ -18,7 +19,7 @@ pub(super) fn text(
         }
     }
     text += "\nEqs. 21 and 22, G = alpha (k + beta) p^(1/3), Theta = rho (k + zeta) p^(1/3), in MPa\n";
-    let lines = [Quantity::K, Quantity::Z].map(|q| calibration.with_coordination_kind(q));
+    let lines = [InferredQuantity::K, InferredQuantity::Z].map(|q| calibration.with_coordination_kind(q));
     text += &line_table(lines.iter().flatten().map(Calibration::isotropic));
     if let Some(network) = calibration.network() {
         text += &network_text(network);

@@ -7,7 +7,8 @@ use super::state::State;
 use super::way::Way;
 use crate::results::inference::Inference;
 use grainlab_console::worse;
-use grainlab_emt::{EmtError, Estimate, Quantity};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{EmtError, Estimate};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
 
@@ -150,6 +151,6 @@ fn is_lacking(error: &EmtError) -> bool {
 
 /// Quantities of the model that the data do not determine.
 fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
+    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
     (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }

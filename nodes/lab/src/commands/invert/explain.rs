@@ -2,7 +2,8 @@
 
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{EmtError, Estimate, INPUT_NAMES, Quantity, StructureCovariance};
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
+use grainlab_emt::{EmtError, Estimate, INPUT_NAMES};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,10 +32,10 @@ pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -
 
 fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
     let condition_number = estimate.condition_number();
-    let determined = Quantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
-    let one = |quantity: Quantity| {
+    let determined = InferredQuantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
+    let one = |quantity: InferredQuantity| {
         let i = quantity as usize;
-        let part = |c: Option<StructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
+        let part = |c: Option<MicrostructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
         let shares = estimate.information(quantity).unwrap_or_default();
         Explained {
             model: way.model.name(),

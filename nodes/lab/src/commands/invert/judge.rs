@@ -12,7 +12,7 @@ use super::state::State;
 use super::table::Tally;
 use super::way::Way;
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
-use grainlab_emt::Quantity;
+use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
 use serde::Serialize;
@@ -38,7 +38,7 @@ struct Judged {
 /// The result of one way for one row: the γ/Δ used, and the error of each quantity whose truth is known.
 struct Verdict {
     gamma: &'static str,
-    errors: [Option<score::Error>; grainlab_emt::QUANTITIES],
+    errors: [Option<score::Error>; grainlab_core::results::InferredQuantity::COUNT],
     /// True and inferred contact anisotropy.
     anisotropy: Option<[f64; 2]>,
 }
@@ -53,7 +53,7 @@ pub(super) fn run(
     format: Format,
 ) -> Result<Exit, Failure> {
     if !rows.columns.has_truth() {
-        let needed = Quantity::ALL.map(Quantity::name).join(", ");
+        let needed = InferredQuantity::ALL.map(InferredQuantity::name).join(", ");
         return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));
     }
     let mut tally = Tally::new();
@@ -99,7 +99,7 @@ pub(super) fn run(
 impl Verdict {
     fn of(state: &State, way: &Way) -> Self {
         let estimate = state.infer(way).ok();
-        let errors = Quantity::ALL.map(|quantity| {
+        let errors = InferredQuantity::ALL.map(|quantity| {
             let truth = state.truth.get(against(quantity, way))?;
             Some(score::Error::of(estimate.as_ref(), quantity, truth))
         });
@@ -111,9 +111,9 @@ impl Verdict {
 
 /// The quantity for comparison: k̂ is not a property of a packing, so that the coordination number of its
 /// calibration is used.
-fn against(quantity: Quantity, way: &Way) -> Quantity {
+fn against(quantity: InferredQuantity, way: &Way) -> InferredQuantity {
     match quantity {
-        Quantity::KHat => way.calibration.isotropic().coordination_kind,
+        InferredQuantity::KHat => way.calibration.isotropic().coordination_kind,
         other => other,
     }
 }
@@ -126,7 +126,7 @@ type Place = (usize, usize, &'static str);
 struct Board {
     groups: Vec<Vec<String>>,
     index: HashMap<Vec<String>, usize>,
-    scores: Vec<(Place, [Score; grainlab_emt::QUANTITIES])>,
+    scores: Vec<(Place, [Score; grainlab_core::results::InferredQuantity::COUNT])>,
     places: HashMap<Place, usize>,
 }
 
@@ -158,20 +158,25 @@ impl Board {
     fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
         self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
         let groups = self.groups;
-        let of = |((group, way, gamma), scores): (Place, [Score; grainlab_emt::QUANTITIES])| {
+        let of = |((group, way, gamma), scores): (
+            Place,
+            [Score; grainlab_core::results::InferredQuantity::COUNT],
+        )| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
-            let speaks = move |(q, score): &(Quantity, Score)| {
+            let speaks = move |(q, score): &(InferredQuantity, Score)| {
                 score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
             };
-            Quantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| Judged {
-                group: group.clone(),
-                model: way.model.name(),
-                calibration: way.calibration.name().to_owned(),
-                gamma_over_delta_source: gamma,
-                quantity: quantity.name(),
-                truth: against(quantity, way).name(),
-                score,
+            InferredQuantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| {
+                Judged {
+                    group: group.clone(),
+                    model: way.model.name(),
+                    calibration: way.calibration.name().to_owned(),
+                    gamma_over_delta_source: gamma,
+                    quantity: quantity.name(),
+                    truth: against(quantity, way).name(),
+                    score,
+                }
             })
         };
         self.scores.into_iter().flat_map(of).collect()

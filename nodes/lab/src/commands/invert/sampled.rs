@@ -3,7 +3,8 @@
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, Quantity, SamplingSettings, monte_carlo};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, SamplingSettings, monte_carlo};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -46,8 +47,8 @@ fn of_way(state: &State, way: &Way, settings: SamplingSettings) -> Result<MonteC
 }
 
 fn of_samples(samples: &MonteCarlo) -> Vec<Sampled> {
-    let determined = Quantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
-    let one = |quantity: Quantity| Sampled {
+    let determined = InferredQuantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
+    let one = |quantity: InferredQuantity| Sampled {
         model: samples.model,
         calibration: samples.calibration.clone(),
         quantity: quantity.name(),

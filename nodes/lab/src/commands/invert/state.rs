@@ -2,10 +2,11 @@
 
 use super::way::Way;
 use grainlab_core::Material;
+use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
-    StrainRatio, StrainRatioSource, Structure,
+    StrainRatio, StrainRatioSource,
 };
 
 /// One state, as given.
@@ -36,7 +37,7 @@ pub(crate) struct State {
     /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
     /// The true microstructure, if a table contains it.
-    pub(crate) truth: Structure,
+    pub(crate) truth: Microstructure,
 }
 
 impl State {
@@ -57,7 +58,7 @@ impl State {
             phi: None,
             grain_shear_modulus: None,
             poisson: None,
-            truth: Structure::default(),
+            truth: Microstructure::default(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Statistics of the errors of one quantity.
 
-use grainlab_emt::{Estimate, Quantity, Status};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Estimate, Status};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -15,7 +16,7 @@ pub(super) struct Error {
 }
 
 impl Error {
-    pub(super) fn of(estimate: Option<&Estimate>, quantity: Quantity, truth: f64) -> Self {
+    pub(super) fn of(estimate: Option<&Estimate>, quantity: InferredQuantity, truth: f64) -> Self {
         let found = estimate.and_then(|e| Some((e, e.structure.get(quantity)?)));
         Self {
             error: found.map(|(_, value)| value - truth),

@@ -3,16 +3,13 @@
 use nalgebra::SMatrix;
 use std::fmt;
 
-/// Number of [`Quantity`]s.
-pub const QUANTITIES: usize = 5;
-
-/// A covariance of the quantities, in the order of [`Quantity::ALL`]; rows and columns of undetermined
+/// A covariance of the quantities, in the order of [`InferredQuantity::ALL`]; rows and columns of undetermined
 /// quantities are zero.
-pub type StructureCovariance = SMatrix<f64, QUANTITIES, QUANTITIES>;
+pub type MicrostructureCovariance = SMatrix<f64, { InferredQuantity::COUNT }, { InferredQuantity::COUNT }>;
 
 /// One number of the microstructure, dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantity {
+pub enum InferredQuantity {
     /// Coordination number k: twice the contacts over all grains.
     K,
     /// Coordination number k̂ of the equivalent isotropic packing, in the sense of the calibration.
@@ -25,29 +22,37 @@ pub enum Quantity {
     EpsStiffness,
 }
 
-impl Quantity {
+impl InferredQuantity {
+    /// Number of quantities.
+    pub const COUNT: usize = 5;
+
     /// All of them, in the order of every array and matrix.
-    pub const ALL: [Quantity; QUANTITIES] =
-        [Quantity::K, Quantity::KHat, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness];
+    pub const ALL: [InferredQuantity; InferredQuantity::COUNT] = [
+        InferredQuantity::K,
+        InferredQuantity::KHat,
+        InferredQuantity::Z,
+        InferredQuantity::Eps,
+        InferredQuantity::EpsStiffness,
+    ];
 
     /// Its name in messages, tables and files.
     pub const fn name(self) -> &'static str {
         match self {
-            Quantity::K => "k",
-            Quantity::KHat => "k_hat",
-            Quantity::Z => "z",
-            Quantity::Eps => "eps",
-            Quantity::EpsStiffness => "eps_stiffness",
+            InferredQuantity::K => "k",
+            InferredQuantity::KHat => "k_hat",
+            InferredQuantity::Z => "z",
+            InferredQuantity::Eps => "eps",
+            InferredQuantity::EpsStiffness => "eps_stiffness",
         }
     }
 
     /// Whether its errors are given relative to it: true for coordination numbers, false for anisotropies.
-    pub(crate) const fn is_coordination(self) -> bool {
-        matches!(self, Quantity::K | Quantity::KHat | Quantity::Z)
+    pub const fn is_coordination(self) -> bool {
+        matches!(self, InferredQuantity::K | InferredQuantity::KHat | InferredQuantity::Z)
     }
 }
 
-impl fmt::Display for Quantity {
+impl fmt::Display for InferredQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
@@ -55,45 +60,47 @@ impl fmt::Display for Quantity {
 
 /// Microstructure: what a model infers, or predicts from. `None` is undetermined, or not part of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Structure {
-    /// [`Quantity::K`].
+pub struct Microstructure {
+    /// [`InferredQuantity::K`].
     pub k: Option<f64>,
-    /// [`Quantity::KHat`].
+    /// [`InferredQuantity::KHat`].
     pub k_hat: Option<f64>,
-    /// [`Quantity::Z`].
+    /// [`InferredQuantity::Z`].
     pub z: Option<f64>,
-    /// [`Quantity::Eps`].
+    /// [`InferredQuantity::Eps`].
     pub eps: Option<f64>,
-    /// [`Quantity::EpsStiffness`].
+    /// [`InferredQuantity::EpsStiffness`].
     pub eps_stiffness: Option<f64>,
 }
 
-impl Structure {
+impl Microstructure {
     /// The quantities of the paper's models.
     pub const fn paper(k: f64, k_hat: f64, eps: f64) -> Self {
         Self { k: Some(k), k_hat: Some(k_hat), z: None, eps: Some(eps), eps_stiffness: None }
     }
 
-    /// In the order of [`Quantity::ALL`].
-    pub const fn values(&self) -> [Option<f64>; QUANTITIES] {
+    /// In the order of [`InferredQuantity::ALL`].
+    pub const fn values(&self) -> [Option<f64>; InferredQuantity::COUNT] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 
-    /// From the order of [`Quantity::ALL`].
-    pub const fn of_values([k, k_hat, z, eps, eps_stiffness]: [Option<f64>; QUANTITIES]) -> Self {
+    /// From the order of [`InferredQuantity::ALL`].
+    pub const fn of_values(
+        [k, k_hat, z, eps, eps_stiffness]: [Option<f64>; InferredQuantity::COUNT],
+    ) -> Self {
         Self { k, k_hat, z, eps, eps_stiffness }
     }
 
     /// The same with this quantity.
     #[must_use]
-    pub const fn with(self, quantity: Quantity, value: f64) -> Self {
+    pub const fn with(self, quantity: InferredQuantity, value: f64) -> Self {
         let mut values = self.values();
         values[quantity as usize] = Some(value);
         Self::of_values(values)
     }
 
     /// One quantity.
-    pub const fn get(&self, quantity: Quantity) -> Option<f64> {
+    pub const fn get(&self, quantity: InferredQuantity) -> Option<f64> {
         self.values()[quantity as usize]
     }
 }
