@@ -21,6 +21,7 @@
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
+//! use grainlab_core::results::InferredQuantity;
 //! use grainlab_emt::{Calibration, Observation, StrainRatio};
 //! // The first row of the paper's Table III: k = 5.73, k_hat = 5.63, eps = 0.016.
 //! let gamma = StrainRatio::given(-0.0623);
