@@ -92,7 +92,7 @@ impl Engine {
         self.pass(PassKind::Motion, false).1
     }
 
-    /// Evaluates forces, with the losses of tangential springs added to the energy balance.
+    /// Evaluates forces, with the works along the paths of contacts added to the energy balance.
     fn evaluate_forces(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
         if let Some(meter) = &mut self.energy {
             meter.save_history(&self.contacts);
@@ -103,7 +103,7 @@ impl Engine {
         }
         let Self { state, contacts, settings, energy, .. } = self;
         if let Some(meter) = energy {
-            meter.add_history(state, contacts, settings);
+            meter.add_paths(state, contacts, settings);
         }
         results
     }

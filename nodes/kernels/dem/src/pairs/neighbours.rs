@@ -161,7 +161,7 @@ impl<'a> HistoryCursor<'a> {
 /// A table of images with direct access to the near ones.
 struct ImageRows {
     images: Images,
-    /// Rows of images up to [`NEAR`] cells away; 0 where there is none yet.
+    /// Rows of images up to [`NEAR`] cells away; 0 for images that have no row yet.
     near: [u32; (2 * NEAR as usize + 1).pow(3)],
 }
 

@@ -13,8 +13,8 @@ const INERTIA_RATIO: f64 = 2.5;
 ///
 /// With velocities half a step behind, grains of stiffness K and damping C (per mass) are stable while
 /// 4 − h² K − 2 h C ≥ 0: the roots of a mode x are those of the scalar step with k = x·Kx and c = x·Cx. The relative
-/// displacement B_i u_i + B_j u_j of a contact obeys |B u|² ≤ (1 + θ) |B_i u_i|² + (1 + 1/θ) |B_j u_j|² for any θ > 0. This
-/// leaves one block of 6 × 6 per grain, translations and rotations:
+/// displacement at a contact is B u = B_i u_i + B_j u_j. Its square |B u|² is at most (1 + θ) |B_i u_i|² + (1 + 1/θ) |B_j u_j|²,
+/// for any θ > 0. This leaves one block of 6 × 6 per grain, translations and rotations:
 ///
 /// 4 − Σ_c (1 + s_j/s_i) B_iᵀ (h² k_c + 2 h c_c) B_i/m_i ≥ 0.
 ///
