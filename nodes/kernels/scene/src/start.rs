@@ -56,7 +56,7 @@ pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
 pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
     let of = &packing.law;
     (own != of).then(|| {
-        format!("is {own:?}, but the forces of the packing that the run starts from are those of {of:?}")
+        format!("is {own}, but the forces of the packing that the run starts from are those of {of}")
     })
 }
 

@@ -89,7 +89,16 @@ mod tests {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
             let normal_force = Material::GLASS.normal_force(5e-5, overlap);
-            Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+            Contact {
+                i: 0,
+                j: 0,
+                image,
+                overlap,
+                normal,
+                normal_force,
+                tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
+            }
         };
         Packing {
             step: 0,

@@ -12,12 +12,11 @@
 
 use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
-use crate::pairs::types::Pair;
+use crate::pairs::types::{History, Pair};
 use crate::settings::{EngineSettings, Features};
-use crate::simd::simd_f64::BLOCK_SIZE;
 
 use grainlab_core::contact::{
-    ContactKinematics, ContactSprings, LawVisitor, SpringDashpotSlider, TangentialLaw,
+    ContactKinematics, ContactSprings, HistoryStep, LawVisitor, SpringDashpotSlider, TangentialLaw,
 };
 use grainlab_core::lanes::LaneVec3;
 use grainlab_core::material::effective_radius;
@@ -36,13 +35,19 @@ pub struct EnergyBalance {
     pub normal_springs: f64,
     /// Present energy of the tangential springs.
     pub tangential_springs: f64,
+    /// Present energy of the rolling springs.
+    pub rolling_springs: f64,
     /// Dissipated by normal dashpots.
     pub normal_damping: f64,
     /// Dissipated by tangential dashpots.
     pub tangential_damping: f64,
+    /// Dissipated by rolling dashpots.
+    pub rolling_damping: f64,
     /// Dissipated by sliding.
     pub sliding: f64,
-    /// Lost by tangential springs whose stiffness changes or whose contact opens.
+    /// Dissipated by rolling beyond the limit of the rolling springs.
+    pub rolling: f64,
+    /// Lost by tangential springs whose stiffness changes, and by tangential and rolling springs whose contact opens.
     pub history: f64,
     /// Dissipated by the drags on velocities and spins.
     pub drag: f64,
@@ -56,14 +61,16 @@ pub struct EnergyBalance {
 impl EnergyBalance {
     /// Present kinetic and elastic energy, J.
     pub fn stored(&self) -> f64 {
-        self.kinetic + self.normal_springs + self.tangential_springs
+        self.kinetic + self.normal_springs + self.tangential_springs + self.rolling_springs
     }
 
     /// Dissipated in all channels, J.
     pub fn dissipated(&self) -> f64 {
         self.normal_damping
             + self.tangential_damping
+            + self.rolling_damping
             + self.sliding
+            + self.rolling
             + self.history
             + self.drag
             + self.thermostat
@@ -86,8 +93,8 @@ impl EnergyBalance {
 pub(crate) struct EnergyMeter {
     /// The works; energies other than `start` are zero.
     works: EnergyBalance,
-    /// Contact radius and history of each slot before forces are evaluated.
-    before: Vec<(f64, Vec3)>,
+    /// The pair in each place before forces are evaluated.
+    before: Vec<Option<Pair>>,
     /// Strain rate that the present forces were evaluated with, 1/s: it may change before the grains move.
     rate: Mat3,
 }
@@ -109,9 +116,19 @@ struct ContactWork {
     elastic: f64,
     normal_force: f64,
     tangential_force: Vec3,
-    history: Vec3,
+    /// R*, m.
+    r_eff: f64,
+    rolling_force: Vec3,
+    history: History,
     normal_energy: f64,
     tangential_energy: f64,
+    rolling_energy: f64,
+}
+
+impl ContactWork {
+    fn energy(&self) -> f64 {
+        self.normal_energy + self.tangential_energy + self.rolling_energy
+    }
 }
 
 impl EnergyMeter {
@@ -122,7 +139,7 @@ impl EnergyMeter {
         let half = kick(state, settings, &list, 0.5 * state.time_step);
         let mut works = EnergyBalance::default();
         add(&mut works, &half.works, -1.0);
-        works.start = half.kinetic + list.iter().map(|c| c.normal_energy + c.tangential_energy).sum::<f64>();
+        works.start = half.kinetic + list.iter().map(ContactWork::energy).sum::<f64>();
         Self { works, before: Vec::new(), rate: state.rate }
     }
 
@@ -142,13 +159,7 @@ impl EnergyMeter {
     /// Saves the history of all pairs. Call it after the lists of pairs are updated, before forces are evaluated.
     pub(crate) fn save_history(&mut self, contacts: &Contacts) {
         self.before.clear();
-        for block in contacts.blocks() {
-            for lane in 0..BLOCK_SIZE {
-                let h = &block.history;
-                let history = Vec3::new(h[0][lane], h[1][lane], h[2][lane]);
-                self.before.push((block.contact_radius[lane], history));
-            }
-        }
+        self.before.extend(contacts.pairs());
     }
 
     /// Adds what springs and sliders do along the paths of their contacts. Call it after forces are evaluated.
@@ -157,6 +168,7 @@ impl EnergyMeter {
         let paths = PathWorks { state, contacts, settings, before: &self.before };
         let works = state.law.visit(&state.material, paths);
         self.works.sliding += works.sliding;
+        self.works.rolling += works.rolling;
         self.works.history += works.history;
         self.works.integration += works.integration;
     }
@@ -175,6 +187,7 @@ impl EnergyMeter {
         balance.kinetic = half.kinetic;
         balance.normal_springs = list.iter().map(|c| c.normal_energy).sum();
         balance.tangential_springs = list.iter().map(|c| c.tangential_energy).sum();
+        balance.rolling_springs = list.iter().map(|c| c.rolling_energy).sum();
         balance
     }
 }
@@ -184,6 +197,7 @@ fn add(sum: &mut EnergyBalance, kick: &EnergyBalance, factor: f64) {
     sum.strain_work += factor * kick.strain_work;
     sum.normal_damping += factor * kick.normal_damping;
     sum.tangential_damping += factor * kick.tangential_damping;
+    sum.rolling_damping += factor * kick.rolling_damping;
     sum.drag += factor * kick.drag;
     sum.integration += factor * kick.integration;
 }
@@ -197,8 +211,9 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
         let moment = c.normal.cross(&c.tangential_force);
         force[c.i] -= f;
         force[c.j] += f;
-        torque[c.i] += moment * c.levers[0];
-        torque[c.j] += moment * c.levers[1];
+        let rolling = c.normal.cross(&c.rolling_force) * c.r_eff;
+        torque[c.i] += moment * c.levers[0] + rolling;
+        torque[c.j] += moment * c.levers[1] - rolling;
     }
     let has_spins = settings.features() != Features::Frictionless;
     let keep = |drag: f64| (1.0 - drag * h).max(0.0);
@@ -230,8 +245,12 @@ fn kick(state: &State, settings: &EngineSettings, contacts: &[ContactWork], h: f
         let f = c.normal * c.normal_force - c.tangential_force;
         works.strain_work -= h * f.dot(&affine);
         works.normal_damping -= h * (c.normal_force - c.elastic) * separation;
-        works.tangential_damping += h * (c.tangential_force - c.history).dot(&slip);
-        works.integration += h * (c.elastic * separation - c.history.dot(&slip));
+        let rolling = (spin[c.j] - spin[c.i]).cross(&c.normal) * c.r_eff;
+        works.tangential_damping += h * (c.tangential_force - c.history.tangential).dot(&slip);
+        works.rolling_damping += h * (c.rolling_force - c.history.rolling).dot(&rolling);
+        let elastic =
+            c.elastic * separation - c.history.tangential.dot(&slip) - c.history.rolling.dot(&rolling);
+        works.integration += h * elastic;
     }
     Kick { works, kinetic }
 }
@@ -261,26 +280,38 @@ impl LawVisitor for ContactWorks<'_> {
         let Self { state, contacts, settings, rate } = self;
         let law = law(settings, springs);
         let no_slip = settings.features() == Features::NoSlip;
+        let frictional = settings.features() != Features::Frictionless;
         let work = |p: Pair| {
-            let (c, branch, levers) = kinematics(state, contacts, rate, &p, p.contact_radius);
+            let m = kinematics(state, contacts, rate, &p, p.history.contact_radius);
+            let (c, tangential) = (&m.contact, lanes(p.history.tangential));
             let f = if no_slip {
-                law.full_force::<f64, false, false, false>(&c, lanes(p.history), 0.0)
+                law.full_force::<f64, false, false, false>(c, tangential, 0.0)
             } else {
-                law.full_force::<f64, false, true, false>(&c, lanes(p.history), 0.0)
+                law.full_force::<f64, false, true, false>(c, tangential, 0.0)
             };
-            let k_t = springs.tangential_stiffness(p.contact_radius, 1.0);
+            let rolling = if S::ROLLS && frictional {
+                vec3(
+                    law.rolling_force::<f64, false>(c, m.rolling, f.elastic, lanes(p.history.rolling), 0.0)
+                        .total,
+                )
+            } else {
+                Vec3::zeros()
+            };
             ContactWork {
                 i: p.i as usize,
                 j: p.j as usize,
                 normal: vec3(c.normal),
-                branch,
-                levers,
+                branch: m.branch,
+                levers: m.levers,
                 elastic: f.elastic,
                 normal_force: f.normal,
                 tangential_force: vec3(f.tangential),
+                r_eff: m.r_eff,
+                rolling_force: rolling,
                 history: p.history,
                 normal_energy: springs.normal_energy(f.elastic, c.overlap),
-                tangential_energy: 0.5 * p.history.norm_squared() / k_t,
+                tangential_energy: tangential_energy(&springs, &p.history.tangential, c.contact_radius),
+                rolling_energy: rolling_energy(&springs, &p.history.rolling),
             }
         };
         contacts.touching().map(work).collect()
@@ -292,7 +323,7 @@ struct PathWorks<'a> {
     state: &'a State,
     contacts: &'a Contacts,
     settings: &'a EngineSettings,
-    before: &'a [(f64, Vec3)],
+    before: &'a [Option<Pair>],
 }
 
 impl LawVisitor for PathWorks<'_> {
@@ -303,46 +334,84 @@ impl LawVisitor for PathWorks<'_> {
         let law = law(settings, springs);
         let frictional = settings.features() != Features::Frictionless;
         let normal_energy = |p: &Pair, contact_radius: f64| {
-            let overlap = overlap(state, p, contact_radius);
-            let force = springs.normal_force(springs.normal_stiffness(contact_radius), overlap);
-            springs.normal_energy(force, overlap)
-        };
-        let tangential_energy = |history: &Vec3, contact_radius: f64| {
-            0.5 * history.norm_squared() / springs.tangential_stiffness(contact_radius, 1.0)
+            let force = springs
+                .normal_force(springs.normal_stiffness(contact_radius), overlap(state, p, contact_radius));
+            springs.normal_energy(force, overlap(state, p, contact_radius))
         };
         let mut works = EnergyBalance::default();
-        let lanes_of_blocks = contacts.blocks().flat_map(|b| (0..BLOCK_SIZE).map(|lane| b.pair(lane)));
-        for (pair, (radius_before, history_before)) in lanes_of_blocks.zip(before) {
-            let Some(p) = pair else { continue };
-            if *radius_before > 0.0 {
-                works.integration -= normal_energy(&p, *radius_before);
-                works.history += tangential_energy(history_before, *radius_before);
+        for (pair, before) in contacts.pairs().zip(before) {
+            let (Some(p), Some(b)) = (pair, before) else { continue };
+            let before = b.history;
+            if b.touches() {
+                works.integration -= normal_energy(&p, before.contact_radius);
+                works.history += tangential_energy(&springs, &before.tangential, before.contact_radius);
+                works.history += rolling_energy(&springs, &before.rolling);
             }
             if !p.touches() {
                 continue;
             }
-            works.integration += normal_energy(&p, p.contact_radius);
+            works.integration += normal_energy(&p, p.history.contact_radius);
             if !frictional {
                 continue;
             }
-            let (c, ..) = kinematics(state, contacts, &state.rate, &p, *radius_before);
+            let m = kinematics(state, contacts, &state.rate, &p, before.contact_radius);
+            let history = lanes(before.tangential);
             let step = match settings.tangential {
                 TangentialLaw::Rescaled => {
-                    law.history_step::<f64, true>(&c, lanes(*history_before), state.time_step)
+                    law.history_step::<f64, true>(&m.contact, history, state.time_step)
                 }
                 TangentialLaw::Incremental => {
-                    law.history_step::<f64, false>(&c, lanes(*history_before), state.time_step)
+                    law.history_step::<f64, false>(&m.contact, history, state.time_step)
                 }
             };
-            let (carried, elastic) = (vec3(step.carried), vec3(step.elastic));
-            works.history -= tangential_energy(&carried, p.contact_radius);
-            // The mean force over the slip, and over the part of it that the slider takes.
-            let mean = 0.5 * (carried + p.history) / springs.tangential_stiffness(p.contact_radius, 1.0);
-            works.integration += mean.dot(&(elastic - carried));
-            works.sliding += mean.dot(&(elastic - p.history));
+            let k_t = springs.tangential_stiffness(p.history.contact_radius, 1.0);
+            let slip = SpringStep::new(step, p.history.tangential, k_t);
+            works.history -= slip.carried;
+            works.sliding += slip.slider;
+            works.integration += slip.given;
+            if S::ROLLS {
+                let step = law.rolling_step(&m.contact, m.rolling, lanes(before.rolling), state.time_step);
+                let roll = SpringStep::new(step, p.history.rolling, springs.rolling().stiffness);
+                works.history -= roll.carried;
+                works.rolling += roll.slider;
+                works.integration += roll.given;
+            }
         }
         works
     }
+}
+
+/// A spring in series with a slider over one step, J.
+struct SpringStep {
+    /// Energy of the spring as carried from the step before.
+    carried: f64,
+    /// Work done on spring and slider.
+    given: f64,
+    /// The part of that which the slider takes.
+    slider: f64,
+}
+
+impl SpringStep {
+    /// `after` is the force at the end, N, `stiffness` that of the spring, N/m.
+    fn new(step: HistoryStep<f64>, after: Vec3, stiffness: f64) -> Self {
+        let (carried, elastic) = (vec3(step.carried), vec3(step.elastic));
+        let mean = 0.5 * (carried + after) / stiffness;
+        Self {
+            carried: 0.5 * carried.norm_squared() / stiffness,
+            given: mean.dot(&(elastic - carried)),
+            slider: mean.dot(&(elastic - after)),
+        }
+    }
+}
+
+/// Energy of a tangential spring, J.
+fn tangential_energy(springs: &impl ContactSprings, force: &Vec3, contact_radius: f64) -> f64 {
+    0.5 * force.norm_squared() / springs.tangential_stiffness(contact_radius, 1.0)
+}
+
+/// Energy of a rolling spring, J.
+fn rolling_energy<S: ContactSprings>(springs: &S, force: &Vec3) -> f64 {
+    if S::ROLLS { 0.5 * force.norm_squared() / springs.rolling().stiffness } else { 0.0 }
 }
 
 /// Full overlap of a pair with this contact radius, m.
@@ -354,35 +423,50 @@ fn law<S: ContactSprings>(settings: &EngineSettings, springs: S) -> SpringDashpo
     SpringDashpotSlider { springs, friction: settings.friction, damping: settings.damping }
 }
 
-/// Kinematics of a pair, its branch vector (m) and the levers R − δ/2 of both grains (m).
+/// How a pair stands and moves.
+struct PairMotion {
+    contact: ContactKinematics<f64>,
+    /// R* (ω_j − ω_i) × n, m/s.
+    rolling: LaneVec3<f64>,
+    branch: Vec3,
+    /// R − δ/2 of both grains, m.
+    levers: [f64; 2],
+    /// R*, m.
+    r_eff: f64,
+}
+
+/// The motion of a pair in a cell that strains at `rate` (1/s).
 fn kinematics(
     state: &State,
     contacts: &Contacts,
     rate: &Mat3,
     p: &Pair,
     contact_radius_before: f64,
-) -> (ContactKinematics<f64>, Vec3, [f64; 2]) {
+) -> PairMotion {
     let (i, j) = (p.i as usize, p.j as usize);
     let branch = contacts.branch(p, state);
     let distance = branch.norm();
+    let normal = branch / distance;
     let (r_i, r_j) = (state.radius[i], state.radius[j]);
-    let overlap = overlap(state, p, p.contact_radius);
+    let overlap = overlap(state, p, p.history.contact_radius);
     let levers = [r_i - 0.5 * overlap, r_j - 0.5 * overlap];
+    let r_eff = effective_radius(r_i, r_j);
     let (v_i, v_j) = (&state.twist[i].0, &state.twist[j].0);
     let velocity = |t: &[f64; 8]| Vec3::new(t[0], t[1], t[2]);
     let spin = |t: &[f64; 8]| Vec3::new(t[4], t[5], t[6]);
-    let c = ContactKinematics {
-        normal: lanes(branch / distance),
+    let contact = ContactKinematics {
+        normal: lanes(normal),
         inverse_distance: 1.0 / distance,
         overlap,
-        contact_radius: p.contact_radius,
+        contact_radius: p.history.contact_radius,
         contact_radius_before,
         m_eff: 1.0 / (state.inverse_mass[i] + state.inverse_mass[j]),
         relative_velocity: lanes(velocity(v_j) - velocity(v_i) + rate * branch),
         spin_velocity: lanes(spin(v_i) * levers[0] + spin(v_j) * levers[1]),
         spin_sum: lanes(spin(v_i) + spin(v_j)),
     };
-    (c, branch, levers)
+    let rolling = lanes((spin(v_j) - spin(v_i)).cross(&normal) * r_eff);
+    PairMotion { contact, rolling, branch, levers, r_eff }
 }
 
 fn lanes(v: Vec3) -> LaneVec3<f64> {
