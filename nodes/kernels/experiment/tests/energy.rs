@@ -41,11 +41,13 @@ publish = true
 /// of integration it does not close to 1e-6.
 #[test]
 fn the_balance_of_a_scene_closes_in_every_phase() {
-    for law in ["law = 'hertz_mindlin'", "law = 'linear'\nnormal_stiffness = 2e5\nstiffness_ratio = 0.4"] {
+    let linear = "law = 'linear'\nnormal_stiffness = 2e5\nstiffness_ratio = 0.4\n";
+    let rolling = "rolling_stiffness = 5e4\nrolling_damping = 5e-3\nrolling_friction = 0.1";
+    for law in ["", linear, rolling, &format!("{linear}{rolling}")] {
         let scene = Scene::parse(&SCENE.replace("LAW", law)).unwrap();
-        let (name, phases) = (scene.law.name(), scene.phases.len());
+        let (name, phases, contact_law) = (scene.law.to_string(), scene.phases.len(), scene.law);
         let mut run = Simulation::new(scene).unwrap();
-        let (mut ended, mut slid) = (0, 0.0f64);
+        let (mut ended, mut slid, mut rolled) = (0, 0.0f64, 0.0f64);
         while let Some(r) = run.request() {
             let rate = grainlab_servo::control(&r.servo_input()).unwrap().rate;
             let outcome = run.advance(&rate).unwrap();
@@ -53,6 +55,7 @@ fn the_balance_of_a_scene_closes_in_every_phase() {
             let residual = balance.relative_residual().abs();
             assert!(residual < 1e-9, "{name}, phase {ended}, {residual:e}: {balance:?}");
             slid = slid.max(balance.sliding);
+            rolled = rolled.max(balance.rolling.min(balance.rolling_damping).min(balance.rolling_springs));
             if outcome.ended.is_some() {
                 let lacking = EnergyBalance { integration: 0.0, ..balance };
                 assert!(lacking.relative_residual().abs() > 1e-6, "{name}, phase {ended}: {balance:?}");
@@ -61,6 +64,7 @@ fn the_balance_of_a_scene_closes_in_every_phase() {
         }
         assert_eq!(ended, phases);
         assert!(slid > 0.0, "{name}");
-        assert_eq!(run.packing().law.name(), name);
+        assert_eq!(rolled > 0.0, contact_law.rolling.is_some(), "{name}");
+        assert_eq!(run.packing().law, contact_law);
     }
 }

@@ -62,10 +62,11 @@ pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
 
 /// Why the first phase cannot take the packing up, if it cannot.
 pub(crate) fn refused(first: &Phase, packing: &Packing) -> Option<String> {
-    let pulled = packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0);
+    let pulled =
+        packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0 || c.rolling_force.norm() > 0.0);
     (first.friction == 0.0 && pulled).then(|| {
         format!(
-            "{} has no friction, and the packing that the run starts from has tangential forces (friction {}), which it would \
+            "{} has no friction, and the packing that the run starts from has tangential or rolling forces (friction {}), which it would \
              drop at once; begin with a phase with friction",
             first.name, packing.friction
         )

@@ -14,6 +14,7 @@
 mod contact_statistics;
 mod elastic_stiffness;
 mod fabric;
+mod left_out;
 mod packing_report;
 mod quantities;
 mod strain_ratios;
@@ -27,6 +28,7 @@ pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
 };
+pub use left_out::LeftOut;
 pub use packing_report::PackingReport;
 pub use quantities::QUANTITIES;
 pub use strain_ratios::StrainRatios;
