@@ -1,26 +1,22 @@
-//! Contact laws: one file each, and the list of them.
+//! Contact laws: springs, dashpots and sliders of a contact.
 //!
 //! A law is its springs ([`ContactSprings`]). Dashpots, tangential history and the Coulomb limit are the same for all
-//! ([`SpringDashpotSlider`]), and so is the resistance to rolling, which any law may have ([`RollingResistance`]). To add a
-//! law: write its file, and add it to [`SpringLaw`]. Scenes, messages, engine and measurements take it from there.
+//! ([`SpringDashpotSlider`]), and so is the resistance to rolling, which any law may have ([`RollingResistance`]). The
+//! springs are listed in `laws`.
 
-mod hertz_mindlin;
 mod law_parameter;
-mod linear;
+mod laws;
 mod rolling;
 mod rolling_resistance;
 mod spring_dashpot_slider;
-mod spring_law;
 mod springs;
 mod tangential;
 
-pub use hertz_mindlin::HertzMindlin;
 pub use law_parameter::LawParameter;
-pub use linear::Linear;
+pub use laws::*;
 pub use rolling::{RollingForce, RollingSprings};
 pub use rolling_resistance::RollingResistance;
 pub use spring_dashpot_slider::{ContactForces, ContactKinematics, HistoryStep, SpringDashpotSlider};
-pub use spring_law::SpringLaw;
 pub use springs::{ContactSprings, LawVisitor};
 pub use tangential::TangentialLaw;
 

@@ -2,8 +2,8 @@
 //!
 //! F = k_n δ with the same k_n for every pair, k_t = ratio × k_n (Cundall & Strack, Géotechnique 29, 47 (1979)).
 
-use super::law_parameter::LawParameter;
-use super::springs::ContactSprings;
+use crate::contact::law_parameter::LawParameter;
+use crate::contact::springs::ContactSprings;
 use crate::lanes::Lanes;
 
 /// Linear springs.
