@@ -32,6 +32,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
                 normal,
                 normal_force,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }

@@ -180,7 +180,8 @@ impl DemSimulator {
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
             if let Some(energy) = &advanced.energy {
-                log::info!("energy balance of phase {phase}, J: {energy:?}");
+                let residual = energy.residual();
+                log::info!("energy balance of phase {phase}, J: {energy:?}, residual {residual:e}");
             }
             if !advanced.finished {
                 self.next_beat = now + BEAT;

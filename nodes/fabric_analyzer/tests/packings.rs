@@ -18,7 +18,16 @@ fn lattice(overlap: f64) -> grainlab_core::Packing {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());
         (image[axis], normal[axis]) = (1, 1.0);
         let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
-        Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+        Contact {
+            i: 0,
+            j: 0,
+            image,
+            overlap,
+            normal,
+            normal_force,
+            tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
+        }
     };
     grainlab_core::Packing {
         step: 12,

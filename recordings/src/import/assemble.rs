@@ -41,6 +41,8 @@ pub(super) struct ListedContact {
     pub(super) overlap: Option<f64>,
     /// On the first grain, N.
     pub(super) force: ListedForce,
+    /// Elastic rolling force, N; the same seen from either grain.
+    pub(super) rolling: Vec3,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -279,7 +281,7 @@ fn listed_contact(
         return Err(contradiction("tangential force along the normal (N)", along, 0.0));
     }
     let (i, j) = (i as u32, j as u32);
-    Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
+    Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force, rolling_force: c.rolling })
 }
 
 /// Warns if listed forces are not those of the contact law: the stiffness would be that of different

@@ -70,6 +70,7 @@ pub fn find(
                 normal: branch / distance,
                 normal_force: normal_force(r_eff, overlap),
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
             Ok(())
         })?;

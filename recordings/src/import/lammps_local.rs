@@ -83,6 +83,7 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
                 continue;
             }
             local.contacts.push(ListedContact {
+                rolling: Vec3::zeros(),
                 line: line.number,
                 ids: (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?),
                 normal: None,

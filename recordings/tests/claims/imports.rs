@@ -68,7 +68,7 @@ fn malformed_rows_are_named_by_line() {
     for (row, expected) in [
         ("x,1", "p or c"),
         ("p,3,1,2", "12 fields, not 3"),
-        ("c,1,2", "10 fields, not 2"),
+        ("c,1,2", "10 or 13 fields, not 2"),
         ("p,-3,0,0,0,1,1,0,0,0,0,0,0", "id is -3"),
         ("p,3,0,zero,0,1,1,0,0,0,0,0,0", "position is \"zero\""),
         ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "line 3: position is not finite"),

@@ -1,7 +1,7 @@
 //! Exported packings are read back unchanged.
 
-use grainlab_core::contact::{ContactLaw, Linear};
-use grainlab_core::{Cell, Mat3, Packing};
+use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Topic, to_cdr, topics};
 use grainlab_recordings::import::{ImportOptions, csv, lammps_dump, load};
@@ -14,11 +14,16 @@ use crate::support::{SIMULATOR, START, options, sample};
 fn rich() -> Packing {
     let mut p = reference().packing;
     (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
-    p.law = ContactLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
+    let springs = SpringLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    p.law = ContactLaw::of(springs).with_rolling(rolling);
     let forces: Vec<f64> = (p.contacts.iter())
         .map(|c| p.law.normal_force(&p.material, p.effective_radius(c), c.overlap))
         .collect();
     p.contacts.iter_mut().zip(forces).for_each(|(c, force)| c.normal_force = force);
+    for (k, c) in p.contacts.iter_mut().enumerate() {
+        c.rolling_force = c.normal.cross(&Vec3::x()) / (k as f64 + 7.0);
+    }
     p.deformation = Mat3::new(0.99, 1e-3, 0.0, 0.0, 0.98, -2e-4, 1e-9, 0.0, 0.97);
     for (k, spin) in p.spins.iter_mut().enumerate() {
         spin.x = 1.0 / (k as f64 + 3.0);

@@ -12,6 +12,7 @@ use crate::survey::Survey;
 use crate::trace::Trace;
 use crate::warning::Warning;
 use crate::{dispersion, standing_wave, time_of_flight};
+use grainlab_core::results::StiffnessMethod;
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// Relative standard deviation of a speed above which there is a warning.
@@ -61,7 +62,8 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (curves, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            let (curves, mut warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            warnings.extend(StiffnessMethod::FrozenNetwork.leaves_out(&packing.law).map(Warning::Springs));
             (curves, Vec::new(), warnings)
         }
         MethodSettings::StandingWave(of) => standing_wave::curves(packing, &lattice(), of, instrument)?,

@@ -1,6 +1,7 @@
 //! Limitations of a measurement.
 
 use crate::error::{AcousticsError, in_brackets};
+use grainlab_core::results::LeftOut;
 
 /// A limitation of a measurement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -50,6 +51,9 @@ pub enum Warning {
         /// Mean net force of the grains that carry force, over the mean contact force.
         unbalanced: f64,
     },
+    /// The waves are those of a network that lacks springs of the contact law.
+    #[error("waves of the contact network: {0}")]
+    Springs(LeftOut),
     /// A mode was left out.
     #[error("left out: {0}")]
     LeftOut(AcousticsError),

@@ -73,7 +73,6 @@ impl Simulation {
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
         let engine = Engine::from_packing(&start, phase_settings(&scene, phase));
         let mut run = Self::begin(scene, engine, packing.friction)?;
-        run.engine.measure_energy(run.scene.numerics.energy_balance);
         // It is published before the first request.
         run.packings = 1;
         Ok(run)
@@ -81,6 +80,9 @@ impl Simulation {
 
     fn begin(scene: Scene, mut engine: Engine, friction: f64) -> Result<Self, ExperimentError> {
         engine.initialise()?;
+        // Hard spheres that only collide have no balance.
+        let hard = |p: &Phase| matches!(p.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. });
+        engine.measure_energy(scene.numerics.energy_balance && !scene.phases.first().is_some_and(hard));
         let observables = engine.observables()?;
         Ok(Self {
             friction,

@@ -3,14 +3,15 @@
 use crate::key::{DefaultValue, Domain, Interval, Key};
 use DefaultValue::{Required, Words};
 use grainlab_core::Material;
+use grainlab_core::contact::{LawParameter, RollingResistance, SpringLaw};
 use std::ops::Bound::{Excluded, Included};
+use std::sync::LazyLock;
 
-/// Declares a constant for each key, and `KEYS` with all of them in this order.
+/// Declares a constant for each key, and `FIXED` with all of them in this order.
 macro_rules! keys {
     ($($id:ident = $key:expr;)*) => {
         $(pub(crate) static $id: Key = $key;)*
-        /// Every key of the format, in the order of the reference.
-        pub static KEYS: &[&Key] = &[$(&$id),*];
+        static FIXED: &[&Key] = &[$(&$id),*];
     };
 }
 
@@ -47,9 +48,7 @@ keys! {
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
     DENSITY = number("material.density", "kg/m3", Interval::POSITIVE, DefaultValue::Number(GLASS.density), "density of the grains");
 
-    CONTACT_LAW = choice("contact.law", &["hertz_mindlin", "linear"], "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
-    NORMAL_STIFFNESS = number("contact.normal_stiffness", "N/m", Interval::POSITIVE, Required, "normal stiffness k_n; law linear");
-    STIFFNESS_RATIO = number("contact.stiffness_ratio", "", Interval::POSITIVE, DefaultValue::Number(0.5), "k_t/k_n; law linear");
+    CONTACT_LAW = choice("contact.law", &SpringLaw::NAMES, "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
 
     TIME_STEP_SAFETY = number("numerics.time_step_safety", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.8), "time step over its stability bound");
     SKIN = number("numerics.skin", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.05), "Verlet skin over grain diameter");
@@ -103,6 +102,41 @@ keys! {
     UNTIL_ON_TARGET = Key { kinds: SERVO, ..condition("phase.until.on_target", "", "error of every stress component that has a target, over the mean target, at or below it") };
     HOLD = Key { kinds: STEPS, ..number("phase.until.hold", "s", Interval::FROM_ZERO, DefaultValue::Number(0.0), "simulated time for which all conditions must hold; below timeout") };
     TIMEOUT = Key { kinds: STEPS, ..number("phase.until.timeout", "s", Interval::POSITIVE, DefaultValue::Number(1.0), "simulated time after which the phase, and with it the run, has failed") };
+}
+
+/// Every key of the format, in the order of the reference.
+pub static KEYS: LazyLock<Vec<&'static Key>> = LazyLock::new(|| {
+    let laws = LAW_KEYS.iter().flat_map(|(_, keys)| keys).chain(ROLLING_KEYS.iter());
+    let (before, after) =
+        FIXED.split_at(FIXED.iter().take_while(|k| k.path != TIME_STEP_SAFETY.path).count());
+    before.iter().copied().chain(laws).chain(after.iter().copied()).collect()
+});
+
+/// Keys of the parameters of each law of springs, by its name.
+pub(crate) static LAW_KEYS: LazyLock<Vec<(&'static str, Vec<Key>)>> = LazyLock::new(|| {
+    let of = |springs: &SpringLaw| {
+        let keys = springs.parameter_list().iter().map(|p| law_key(p, &format!("law {}", springs.name())));
+        (springs.name(), keys.collect())
+    };
+    SpringLaw::EXAMPLES.iter().map(of).collect()
+});
+
+/// Keys of the resistance to rolling.
+pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
+    let of = |p: &LawParameter| {
+        let key = law_key(p, "any law");
+        let default = if p.default.is_none() { Words("none: no resistance to rolling") } else { key.default };
+        Key { default, ..key }
+    };
+    RollingResistance::PARAMETERS.iter().map(of).collect()
+});
+
+/// The key of a parameter of a contact law. Its text lives as long as the program, as that of every key.
+fn law_key(p: &LawParameter, whose: &str) -> Key {
+    let path = String::leak(format!("contact.{}", p.key));
+    let range = if p.may_be_zero { Interval::FROM_ZERO } else { Interval::POSITIVE };
+    let default = p.default.map_or(Required, DefaultValue::Number);
+    number(path, p.unit, range, default, String::leak(format!("{}; {whose}", p.meaning)))
 }
 
 const OVER_ZERO_TO_ONE: Interval = Interval { low: Excluded(0.0), high: Included(1.0) };

@@ -56,16 +56,17 @@ pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
 pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
     let of = &packing.law;
     (own != of).then(|| {
-        format!("is {own:?}, but the forces of the packing that the run starts from are those of {of:?}")
+        format!("is {own}, but the forces of the packing that the run starts from are those of {of}")
     })
 }
 
 /// Why the first phase cannot start from the packing, if it cannot.
 pub(crate) fn refused(first: &Phase, packing: &Packing) -> Option<String> {
-    let pulled = packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0);
+    let pulled =
+        packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0 || c.rolling_force.norm() > 0.0);
     (first.friction == 0.0 && pulled).then(|| {
         format!(
-            "{} has no friction, and the packing that the run starts from has tangential forces (friction {}), which it would \
+            "{} has no friction, and the packing that the run starts from has tangential or rolling forces (friction {}), which it would \
              drop at once; begin with a phase with friction",
             first.name, packing.friction
         )

@@ -41,6 +41,14 @@ fn the_samples_of_the_paper_are_what_they_were_as_whole_files() {
 }
 
 #[test]
+fn the_scene_with_resistance_to_rolling_is_the_demo_but_for_its_contact_law() {
+    let (rolling, demo) = (scene(&[], "rolling"), scene(&[], "demo"));
+    assert!(rolling.law.rolling.is_some() && rolling.law.springs == demo.law.springs);
+    let (name, description, law) = (demo.name.clone(), demo.description.clone(), demo.law);
+    assert_eq!(Scene { name, description, law, ..rolling }, demo);
+}
+
+#[test]
 fn the_scenes_of_the_ensembles_are_what_they_were_as_whole_files() {
     let files = [
         ("uniaxial.toml", include_str!("../../../scenes/ensemble/uniaxial.toml")),

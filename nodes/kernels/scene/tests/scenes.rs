@@ -1,6 +1,6 @@
 //! Valid and invalid scenes.
 
-use grainlab_core::contact::ContactLaw;
+use grainlab_core::contact::{ContactLaw, RollingResistance};
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
     Condition, Draft, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Record,
@@ -267,6 +267,47 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     assert!(unread.contains("start: names a packing, which has not been read"), "{unread}");
 }
 
+/// A scene with these lines in its table of the contact law.
+fn with_contact(lines: &str) -> Result<Scene, grainlab_scene::SceneError> {
+    Scene::parse(&format!("{GOOD}\n[contact]\n{lines}\n"))
+}
+
+#[test]
+fn every_contact_law_is_read_by_its_own_parameters() {
+    for law in ContactLaw::examples() {
+        let keys = law.springs.parameter_list().iter().chain(&RollingResistance::PARAMETERS);
+        let pairs = keys.zip(law.parameters()).map(|(key, value)| format!("{} = {value:?}", key.key));
+        let lines =
+            [format!("law = '{}'", law.name())].into_iter().chain(pairs).collect::<Vec<_>>().join("\n");
+        let scene = with_contact(&lines).unwrap();
+        assert_eq!(scene.law, law, "{lines}");
+        let text = format!("{GOOD}\n[contact]\n{lines}\n");
+        let canonical = Draft::of_text(&text).unwrap().resolve().unwrap().toml;
+        assert_eq!(Scene::parse(&canonical).unwrap().law, law, "the canonical text means the same");
+    }
+}
+
+#[test]
+fn resistance_to_rolling_needs_a_stiffness_and_a_friction_and_may_lack_a_dashpot() {
+    let undamped = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    let read = with_contact("rolling_stiffness = 1e4\nrolling_friction = 0.1").unwrap();
+    assert_eq!(read.law, ContactLaw::default().with_rolling(undamped));
+    for (wrong, place) in [
+        ("rolling_stiffness = 1e4", "contact.rolling_friction"),
+        ("rolling_friction = 0.1", "contact.rolling_stiffness"),
+        ("rolling_damping = 1e-3", "contact.rolling_friction"),
+        ("rolling_stiffness = 1e4\nrolling_friction = 0.0", "contact.rolling_friction"),
+        (
+            "rolling_stiffness = 1e4\nrolling_friction = 0.1\nrolling_damping = -1.0",
+            "contact.rolling_damping",
+        ),
+        ("normal_stiffness = 1e4", "contact.normal_stiffness"),
+    ] {
+        let error = with_contact(wrong).unwrap_err();
+        assert!(error.faults.iter().any(|f| f.place == place), "{wrong}: {error}");
+    }
+}
+
 /// Two unequal grains that touch, with a tangential force.
 fn pair() -> Packing {
     let overlap = 1e-8;
@@ -278,6 +319,7 @@ fn pair() -> Packing {
         normal: Vec3::x(),
         normal_force: 1e-4,
         tangential_force: Vec3::y() * 1e-6,
+        rolling_force: Vec3::zeros(),
     };
     Packing {
         step: 0,

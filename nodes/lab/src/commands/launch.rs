@@ -41,7 +41,7 @@ pub(crate) struct Args {
     /// 2 launch [default: demo], and values for its arguments, as in threads:=2
     #[arg(value_name = "FILE or NAME:=VALUE")]
     words: Vec<String>,
-    /// Scene: demo, s1, s2, s3, s4 or a file [default: the one of the launch file]
+    /// Scene: demo, s1, s2, s3, s4, rolling or a file [default: the one of the launch file]
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
     /// Set a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; may be repeated. `grainlab

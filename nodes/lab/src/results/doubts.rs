@@ -15,10 +15,16 @@ const BELOW: f64 = 1e-3;
 
 /// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
 pub(crate) fn doubts(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
-    [restless(report), below_its_bound(report), pulling(packing), missing(packing, notes)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        restless(report),
+        below_its_bound(report),
+        pulling(packing),
+        missing(packing, notes),
+        left_out(packing, report),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn restless(report: &PackingReport) -> Option<String> {
@@ -52,6 +58,10 @@ fn pulling(packing: &Packing) -> Option<String> {
     ))
 }
 
+fn left_out(packing: &Packing, report: &PackingReport) -> Option<String> {
+    Some(report.stiffness()?.method.leaves_out(&packing.law)?.to_string())
+}
+
 /// Contacts by position that are missing in the list; the readers of some files have already reported them.
 fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     if notes.iter().any(|w| w.contains("are not listed")) {
@@ -79,6 +89,7 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_core::contact::RollingResistance;
     use grainlab_core::results::Elasticity;
     use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
@@ -90,7 +101,16 @@ mod tests {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
             let normal_force = Material::GLASS.normal_force(5e-5, overlap);
-            Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+            Contact {
+                i: 0,
+                j: 0,
+                image,
+                overlap,
+                normal,
+                normal_force,
+                tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
+            }
         };
         Packing {
             step: 0,
@@ -132,6 +152,12 @@ mod tests {
         );
         let pulls = said(|p| p.contacts[1].normal_force *= -1.0);
         assert!(pulls.contains("1 contact(s) pull") && pulls.contains("grains 5 and 5"), "{pulls}");
+    }
+
+    #[test]
+    fn rolling_springs_that_the_network_lacks_are_said() {
+        let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+        assert!(said(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
     }
 
     #[test]

@@ -140,6 +140,8 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
                 let report = reported(&packing, fabric, about.stiffness);
                 let mut measured = MeasuredPacking::new(source.clone(), report);
                 measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
+                let left_out = measured.report.stiffness().and_then(|s| s.method.leaves_out(&packing.law));
+                measured.warnings.extend(left_out.map(|left_out| left_out.to_string()));
                 let acoustic = about.wave_speeds.map(|reading| AcousticReport::new(&packing, reading));
                 back.states.push(InvertedPacking { packing: measured, acoustic, results: about.results });
             }

@@ -49,6 +49,7 @@ pub(crate) fn lattice() -> Packing {
                 normal: branch.normalize(),
                 normal_force,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }

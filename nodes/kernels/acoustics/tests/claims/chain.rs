@@ -18,7 +18,16 @@ fn chain(grains: u32) -> Packing {
         let (i, j, image, normal) =
             if last { (0, i, [0, 0, -1], -Vec3::z()) } else { (i, i + 1, [0; 3], Vec3::z()) };
         let normal_force = material.normal_force(0.5 * radius, OVERLAP);
-        Contact { i, j, image, overlap: OVERLAP, normal, normal_force, tangential_force: Vec3::zeros() }
+        Contact {
+            i,
+            j,
+            image,
+            overlap: OVERLAP,
+            normal,
+            normal_force,
+            tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
+        }
     };
     let mut contacts: Vec<Contact> = (0..grains).map(contact).collect();
     contacts.sort_by_key(|c| (c.i, c.j, c.image));

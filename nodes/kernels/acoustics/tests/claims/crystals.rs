@@ -48,6 +48,7 @@ fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
                 normal: l.normalize(),
                 normal_force: p.material.normal_force(0.5 * RADIUS, OVERLAP),
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }

@@ -78,6 +78,7 @@ fn read(name: &str) -> Packing {
             normal,
             normal_force: v[6],
             tangential_force: Vec3::new(v[7], v[8], v[9]),
+            rolling_force: Vec3::zeros(),
         });
     }
     p.validated().unwrap()

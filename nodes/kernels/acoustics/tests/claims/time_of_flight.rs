@@ -34,6 +34,7 @@ fn chain(aside: bool) -> Packing {
         normal,
         normal_force: 0.0,
         tangential_force: Vec3::zeros(),
+        rolling_force: Vec3::zeros(),
     };
     let mut contacts: Vec<Contact> = (0..last).map(|k| pair(k, k + 1, 0, Vec3::z())).collect();
     contacts.push(pair(0, last, -1, -Vec3::z()));

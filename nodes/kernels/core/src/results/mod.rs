@@ -15,6 +15,7 @@
 mod contact_statistics;
 mod elastic_stiffness;
 mod fabric;
+mod left_out;
 mod microstructure;
 mod packing_report;
 mod quantities;
@@ -29,6 +30,7 @@ pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
 };
+pub use left_out::LeftOut;
 pub use microstructure::{InferredQuantity, Microstructure, MicrostructureCovariance};
 pub use packing_report::PackingReport;
 pub use quantities::QUANTITIES;

@@ -5,6 +5,9 @@
 //! levers λ_i = R_i − δ/2 and λ_j = R_j − δ/2 from the centres; they are (|l| ± (R_i − R_j))/2, so that they add up to
 //! |l| and a rigid rotation of the pair costs nothing. Rotations are held as φ = θ a (a the mean branch length over 2),
 //! so that every degree of freedom is a displacement in m and every load a force in N.
+//!
+//! The rolling springs of a contact law with resistance to rolling are not in the network: its stiffness is a lower bound of
+//! that of the packing ([`LeftOut`](grainlab_core::results::LeftOut)).
 
 use super::preconditioner::Block;
 use crate::error::MicroError;

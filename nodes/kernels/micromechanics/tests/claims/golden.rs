@@ -68,6 +68,7 @@ pub(crate) fn reference() -> Packing {
                 normal: -Vec3::new(v[2], v[3], v[4]),
                 normal_force: v[6],
                 tangential_force: Vec3::new(v[7], v[8], v[9]),
+                rolling_force: Vec3::zeros(),
             };
             p.contacts.push(ordered(contact));
         }

@@ -63,6 +63,7 @@ pub(crate) fn packing_of_sizes(
                         normal_force: Material::GLASS
                             .normal_force(effective_radius(packing.radii[i], packing.radii[j]), overlap),
                         tangential_force: Vec3::zeros(),
+                        rolling_force: Vec3::zeros(),
                     });
                 }
             }
@@ -208,6 +209,7 @@ pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
             normal: pair.normal,
             normal_force: pair.normal_force,
             tangential_force: -pair.tangential_force,
+            rolling_force: Vec3::zeros(),
         });
     }
     p.validated().expect("pairs are a packing")
