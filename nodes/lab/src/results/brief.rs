@@ -16,6 +16,9 @@ const PAPER: &str = "ratio";
 /// Sets of data, or nodes that infer, that are shown of one packing.
 const MOST_GROUPS: usize = 3;
 
+/// Notes on a packing that are shown.
+const MOST_NOTES: usize = 2;
+
 /// Rows of the table of states; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
 
@@ -48,6 +51,9 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         None => lines.push(row("Measured", &measured(r))),
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
+    let told = r.elasticity.not_jammed().map(ToString::to_string);
+    let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref()).take(MOST_NOTES);
+    lines.extend(notes.map(|note| row("Note", note)));
     let groups = by_origin(&state.results);
     let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
     for (origin, results) in &groups[..shown] {
@@ -73,7 +79,7 @@ fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String
     let title = format!("from {source} alone, by model {} ({}):", e.model, standing(e));
     let values = estimate(e, truth).map(|(name, value, sigma, error)| {
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
-        row("", &format!("{name:4}{value} +- {sigma:8}  error {error}"))
+        row("", &format!("{name:4}{value:6} +- {sigma:6}  error {error}"))
     });
     std::iter::once(row("Inferred", &title)).chain(values).collect()
 }
