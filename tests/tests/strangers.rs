@@ -1,4 +1,4 @@
-//! Who is not of a run changes no byte of it, no exit code, and is named.
+//! Processes outside a run change none of its bytes and no exit code, and are named.
 
 use serde_json::Value;
 use std::path::Path;
@@ -7,7 +7,7 @@ use system_tests::bodies::assert_same;
 use system_tests::forger::{FORGERIES, Forger, Forgery};
 use system_tests::lab::{LIMIT, Lab, golden};
 
-/// Time in which a process that starts finds those that are there.
+/// Time in which a starting process discovers the running ones.
 const DISCOVERY: Duration = Duration::from_millis(600);
 
 fn strangers(run: &Path) -> Vec<Value> {
@@ -17,7 +17,7 @@ fn strangers(run: &Path) -> Vec<Value> {
     summary["strangers"].as_array().unwrap().clone()
 }
 
-/// Messages of strangers that the recorder left out.
+/// Number of messages from outside the run that the recorder left out.
 fn ignored(run: &Path) -> u64 {
     let counts =
         |s: &Value| s["ignored"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum::<u64>();
@@ -144,7 +144,7 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
             "exit_when_finished:=true",
         ];
         let simulator = lab.start(&simulator);
-        // Once the run is under way, as the forger of answers has to be: before, two servos are an error.
+        // After the start of the run, like the forger of answers: before it, two servos are an error.
         std::thread::sleep(DISCOVERY);
         let forger = forgery.map(|f| Forger::start(lab.domain, f));
         let ended = simulator.ended(LIMIT);

@@ -1,8 +1,8 @@
-//! Rules that the source of every crate keeps, read off the source itself.
+//! Rules for the source of every crate, checked on the source.
 //!
-//! - [`modules`]: the modules of a crate, a file each
-//! - [`imports`]: which module uses which, re-exports resolved to where an item is defined
-//! - [`rules`]: what breaks a rule, in words
+//! - [`modules`]: the modules of a crate, one file each
+//! - [`imports`]: the modules that a module uses, with re-exports resolved
+//! - [`rules`]: violations of the rules, as text
 
 pub mod imports;
 pub mod modules;

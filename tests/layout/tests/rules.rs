@@ -1,4 +1,4 @@
-//! Every crate of the workspace keeps the rules.
+//! The crates of the workspace follow the rules.
 
 use layout::modules::{Module, ModulePath, modules};
 use layout::rules;
@@ -20,7 +20,7 @@ fn roots() -> Vec<PathBuf> {
     roots
 }
 
-/// Asserts that `rule` finds nothing in any crate but these.
+/// Asserts that `rule` finds no violation in any crate except these.
 fn holds(rule: fn(&BTreeMap<ModulePath, Module>) -> Vec<String>, but: &[&str]) {
     let faults: Vec<String> = roots()
         .iter()

@@ -1,11 +1,11 @@
-//! Who may die, who may not, and what is left then.
+//! Crashes of each process of a run, and their consequences.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{Process, children, send};
 
-/// A run that would not end by itself, some seconds under way; the launcher and the pid of `node`.
+/// A run that does not end by itself, after some seconds; the launcher and the pid of `node`.
 fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
     let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     let begin = Instant::now();
