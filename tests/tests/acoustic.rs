@@ -102,7 +102,7 @@ fn recorded_wave_speeds_played_into_a_fresh_inversion_give_the_recorded_bytes() 
 }
 
 #[test]
-fn the_death_of_the_probe_changes_no_byte() {
+fn killing_the_probe_changes_no_byte() {
     let (_, quiet) = &*RUN;
     let lab = Lab::new();
     let scene = golden("scenes/tiny.toml");
@@ -130,7 +130,7 @@ fn the_death_of_the_probe_changes_no_byte() {
 }
 
 #[test]
-fn grainlab_probe_says_of_a_recording_what_the_live_probe_said() {
+fn grainlab_probe_of_a_recording_gives_the_results_of_the_live_probe() {
     let (lab, run) = &*RUN;
     let out = lab.folder().join("offline");
     let ended = lab.run(&[

@@ -133,7 +133,7 @@ fn a_refused_launch_leaves_no_folder() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_at_once() {
+fn paths_that_are_not_files_are_refused_at_once() {
     let lab = Lab::new();
     let pipe = lab.folder().join("pipe");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());

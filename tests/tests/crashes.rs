@@ -25,7 +25,7 @@ fn messages(run: &Path) -> usize {
 }
 
 #[test]
-fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_finished_recording() {
+fn a_simulator_that_is_killed_repeatedly_ends_the_run_with_exit_code_1_and_a_finished_recording() {
     let lab = Lab::new();
     let (launcher, first) = under_way(&lab, "dem_simulator");
     let mut victim = first;
@@ -51,7 +51,7 @@ fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_fin
 }
 
 #[test]
-fn the_death_of_the_recorder_ends_the_run_with_exit_code_3_and_keeps_what_was_recorded() {
+fn a_killed_recorder_ends_the_run_with_exit_code_3_and_keeps_its_recording() {
     let lab = Lab::new();
     let (launcher, recorder) = under_way(&lab, "recorder");
     send(recorder, libc::SIGKILL);
@@ -62,7 +62,7 @@ fn the_death_of_the_recorder_ends_the_run_with_exit_code_3_and_keeps_what_was_re
 }
 
 #[test]
-fn the_death_of_the_launcher_ends_every_process_and_finishes_the_recording() {
+fn a_killed_launcher_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
     let (launcher, _) = under_way(&lab, "dem_simulator");
     let all = children(launcher.pid(), "run ");

@@ -44,7 +44,7 @@ fn received(message: &Value) -> Microstructure {
 }
 
 #[test]
-fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_mean() {
+fn an_instrument_of_another_vendor_receives_every_digit_of_its_microstructure() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
     let script = here("../nodes/launch/instrument.sh");
@@ -100,7 +100,7 @@ fn emt_models() -> usize {
 }
 
 #[test]
-fn what_a_broken_instrument_sends_is_refused_by_name_and_counted_and_the_next_good_message_answered() {
+fn invalid_messages_of_an_instrument_are_refused_by_name_and_counted_and_the_next_valid_one_is_answered() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
     let mut node = lab.start(&["run", "emt_inversion"]);

@@ -110,7 +110,7 @@ fn nothing_from_another_host_reaches_a_node_that_stays_on_this_one() {
 }
 
 #[test]
-fn a_flood_from_another_host_does_not_take_the_memory_of_a_node_that_listens_to_it() {
+fn a_flood_from_another_host_does_not_exhaust_the_memory_of_a_node_that_receives_it() {
     let Some([reached, _, grown]) = sprayed("SUBNET", "multicast off") else { return };
     assert!(reached > SPRAYS / 200, "only {reached} datagrams of {SPRAYS} came");
     assert!(grown < 60, "the node grew by {grown} MB");

@@ -73,7 +73,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorde
 }
 
 #[test]
-fn an_analyzer_that_is_killed_and_started_again_gets_the_latest_large_packing_and_makes_the_same_bytes() {
+fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes() {
     let lab = Lab::new();
     let (source, out) = (lab.folder().join("large"), lab.folder().join("again"));
     record(&source, 26);

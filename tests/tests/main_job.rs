@@ -108,7 +108,7 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
 }
 
 #[test]
-fn launches_without_a_domain_take_one_each_lose_nothing_and_end_with_a_screenful() {
+fn launches_without_a_domain_take_one_each_lose_nothing_and_print_one_screen() {
     let labs = [Lab::new(), Lab::new()];
     let scene = golden("scenes/tiny.toml");
     let start = |lab: &Lab| {

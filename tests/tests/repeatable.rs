@@ -27,7 +27,7 @@ fn two_runs_of_one_scene_and_seed_are_byte_identical_and_another_seed_is_not() {
 }
 
 #[test]
-fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
+fn killing_simulator_servo_analyzer_and_inversion_changes_no_byte() {
     let (quiet, deadly) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&longer_scene(&quiet), &[]);
 

@@ -25,7 +25,7 @@ fn ignored(run: &Path) -> u64 {
 }
 
 #[test]
-fn whatever_a_stranger_forges_a_launched_run_comes_to_the_same_bytes_and_names_it() {
+fn a_launched_run_gives_the_same_bytes_under_forged_messages_and_names_the_stranger() {
     let scene = golden("scenes/tiny.toml");
     let quiet = Lab::new();
     let expected = quiet.launch(&scene, &[]);
@@ -63,7 +63,7 @@ fn an_old_result_that_is_latched_does_not_end_a_run_early() {
 }
 
 #[test]
-fn an_inversion_that_was_there_before_the_run_costs_nothing() {
+fn an_inversion_started_before_the_run_changes_nothing() {
     let scene = golden("scenes/tiny.toml");
     let (quiet, lab) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&scene, &[]);
@@ -85,7 +85,7 @@ fn an_inversion_that_was_there_before_the_run_costs_nothing() {
 }
 
 #[test]
-fn two_labs_in_one_domain_each_come_to_their_own_bytes() {
+fn two_labs_in_one_domain_give_the_bytes_of_each_alone() {
     let scene = golden("scenes/tiny.toml");
     let path = scene.to_string_lossy();
     let shared = Lab::new();

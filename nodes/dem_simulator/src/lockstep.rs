@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_heard_before_the_first_request_is_no_answer_to_it() {
+    fn an_answer_received_before_the_first_request_is_ignored() {
         let mut lockstep = Lockstep::new(&Settings::default());
         let early =
             StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };

@@ -325,11 +325,11 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
 /// Passes the counts of a report to the recording, with the node's name; true for the last report of a process.
 fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
-    let mut goodbye = false;
+    let mut is_last_report = false;
     for report in Report::from_message(&message) {
         // A replayed report refers to writers that do not exist.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
-        goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
+        is_last_report |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
@@ -339,7 +339,7 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
             }
         }
     }
-    goodbye
+    is_last_report
 }
 
 impl Node for Recorder {
@@ -412,7 +412,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+    fn everyone_has_left_after_the_last_report_of_each() {
         let writer = |who| WriterId([who; 16]);
         let mut company = Company { own: Some([1; 12]), ..Company::default() };
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");

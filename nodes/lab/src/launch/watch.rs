@@ -143,14 +143,14 @@ struct Ears {
 impl Ears {
     fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let demand = Demand::reliable(BACKLOG);
-        let heard = Demand::best_effort(BACKLOG);
+        let reports = Demand::best_effort(BACKLOG);
         Ok(Self {
             states: Subscription::subscribe(bus, &topics::RUN_STATE, demand)?,
             fabrics: Subscription::subscribe(bus, &topics::FABRIC, demand)?,
             moduli: Subscription::subscribe(bus, &topics::MODULI, demand)?,
             speeds: Subscription::subscribe(bus, &topics::WAVE_SPEEDS, demand)?,
             microstructures: Subscription::subscribe(bus, &topics::MICROSTRUCTURE, demand)?,
-            reports: Subscription::subscribe(bus, &topics::DIAGNOSTICS, heard)?,
+            reports: Subscription::subscribe(bus, &topics::DIAGNOSTICS, reports)?,
         })
     }
 

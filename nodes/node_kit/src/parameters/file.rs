@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn misshapen_files_say_where() {
+    fn the_error_of_an_invalid_file_has_the_place() {
         for (text, needle) in [
             ("ros__parameters: {dt: 1}", "is at the top level"),
             ("- 1\n- 2\n", "node keys"),

@@ -76,7 +76,8 @@ impl Lines {
             }
             self.unended += count as u64;
             if self.unended > ENDLESS {
-                let problem = format!("line {} has more than {ENDLESS} bytes: this is not a table", self.number);
+                let problem =
+                    format!("line {} has more than {ENDLESS} bytes: this is not a table", self.number);
                 return Err(Failure::failed(format!("{}: {problem}", self.name)));
             }
             let room = (LONGEST + 1).saturating_sub(self.rest.len());
