@@ -10,7 +10,6 @@ pub const REPRODUCIBLE: [&str; 6] =
 /// Distinct message bodies of one topic, in the order of their first appearance. A request repeated because
 /// its answer was late, or a result published again by a restarted node, has the same bytes; one of them
 /// remains.
-/// bytes; what is left is what was said, however often.
 pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     let recording = Recording::open(run).unwrap_or_else(|e| panic!("{}: {e}", run.display()));
     let messages = recording.messages(&Selection::topics([topic]));

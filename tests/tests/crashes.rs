@@ -69,8 +69,8 @@ fn a_killed_launcher_ends_every_process_and_finishes_the_recording() {
     assert_eq!(all.len(), 5);
     launcher.signal(libc::SIGKILL);
     let begin = Instant::now();
-    let lives = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
-    while all.iter().any(lives) {
+    let runs = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
+    while all.iter().any(runs) {
         assert!(begin.elapsed() < Duration::from_secs(20), "processes outlive their launcher");
         std::thread::sleep(Duration::from_millis(50));
     }

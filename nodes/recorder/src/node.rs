@@ -109,7 +109,7 @@ struct Company {
 }
 
 impl Company {
-    fn hear(&mut self, writer: WriterId) {
+    fn note_writer(&mut self, writer: WriterId) {
         self.heard.insert(writer.participant());
     }
 
@@ -212,7 +212,7 @@ impl Recorder {
                     writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
                     continue;
                 }
-                self.company.hear(sample.info.writer);
+                self.company.note_writer(sample.info.writer);
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
@@ -416,7 +416,7 @@ mod tests {
         let writer = |who| WriterId([who; 16]);
         let mut company = Company { own: Some([1; 12]), ..Company::default() };
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
-        company.hear(writer(2));
+        company.note_writer(writer(2));
         assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
         assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
         company.left.insert([2; 12]);

@@ -154,6 +154,6 @@ fn what_the_instrument_warns_of_reaches_every_estimate() {
     let warned = WaveSpeeds { warnings: vec!["speeds[3] was picked by hand".into()], ..upright() };
     let message = microstructure_of_speeds(&warned, &Settings::default()).unwrap();
     for e in &message.estimates {
-        assert!(says(e, "the instrument says: speeds[3] was picked by hand"), "{e:?}");
+        assert!(says(e, "the instrument reports: speeds[3] was picked by hand"), "{e:?}");
     }
 }

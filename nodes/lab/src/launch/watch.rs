@@ -131,7 +131,7 @@ impl Drop for Watch {
 }
 
 /// Subscriptions to the run's messages.
-struct Ears {
+struct RunSubscriptions {
     states: Subscription<RunState>,
     fabrics: Subscription<Fabric>,
     moduli: Subscription<Moduli>,
@@ -140,7 +140,7 @@ struct Ears {
     reports: Subscription<DiagnosticArray>,
 }
 
-impl Ears {
+impl RunSubscriptions {
     fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let demand = Demand::reliable(BACKLOG);
         let reports = Demand::best_effort(BACKLOG);
@@ -154,7 +154,7 @@ impl Ears {
         })
     }
 
-    fn hear(&self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
+    fn receive(&self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
         while let Some((state, _)) = self.states.take_valid(bus)? {
             match RunStateReading::try_from(&state) {
                 Ok(reading) => send(Event::State(reading)),
@@ -196,12 +196,12 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
     let send = |event| {
         let _ = events.send(event);
     };
-    let ears = Ears::new(bus).map_err(|e| e.to_string())?;
+    let subscriptions = RunSubscriptions::new(bus).map_err(|e| e.to_string())?;
     send(Event::Open);
     let mut named = BTreeSet::new();
     let mut next_look = bus.now() + LOOK_AROUND;
     while !stop.load(Ordering::Relaxed) {
-        ears.hear(bus, send).map_err(|e| e.to_string())?;
+        subscriptions.receive(bus, send).map_err(|e| e.to_string())?;
         if bus.now() >= next_look {
             next_look = bus.now() + LOOK_AROUND;
             watchdog::check().map_err(|e| e.to_string())?;

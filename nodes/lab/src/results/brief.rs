@@ -147,12 +147,12 @@ fn estimate(e: &Inference, truth: &PackingReport) -> String {
         ("z", e.values.z, e.sigma.z, c.mechanical_coordination, 3),
         ("eps", e.values.eps, e.sigma.eps, truth.fabric.contact_anisotropy, 4),
     ];
-    let told = parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
+    let values = parts.into_iter().filter_map(|(name, value, sigma, truth, digits)| {
         let (value, error) = (value?, value? - truth);
         let sigma = sigma.map_or_else(String::new, |s| format!(" +- {s:.digits$}"));
         Some(format!("{name} {value:.digits$}{sigma} (error {error:+.digits$})"))
     });
-    told.collect::<Vec<_>>().join(", ")
+    values.collect::<Vec<_>>().join(", ")
 }
 
 fn several(states: &[InvertedPacking]) -> Vec<String> {

@@ -70,7 +70,7 @@ fn flatten(prefix: &str, yaml: Yaml, values: &mut Vec<(String, ParameterValue)>)
     Ok(())
 }
 
-/// Whether a node key is for `node`: `*` stands for one token, `**` for any number of them.
+/// Whether a node key is for `node`: `*` matches one token, `**` for any number of them.
 fn matches(key: &str, node: &str) -> bool {
     fn tokens_match(key: &[&str], node: &[&str]) -> bool {
         match (key, node) {

@@ -16,7 +16,6 @@ const GRAINS: u32 = 8;
 
 /// A chain of equal grains along e3, alone in its cell, with overlaps of a thousandth; `aside` adds a
 /// rattler.
-/// that touches nothing.
 fn chain(aside: bool) -> Packing {
     let step = DIAMETER * (1.0 - 1e-3);
     let length = step * f64::from(GRAINS);
@@ -196,8 +195,8 @@ fn settings_out_of_range_are_refused_by_name() {
         assert!(matches!(found, AcousticsError::Setting { name: n, .. } if n == name), "{name} {found:?}");
     }
     let packing = chain(false);
-    let deaf = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
-    assert!(curves(&packing, &up(&packing), &good(), &deaf).is_err());
+    let noisy = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
+    assert!(curves(&packing, &up(&packing), &good(), &noisy).is_err());
 }
 
 #[test]

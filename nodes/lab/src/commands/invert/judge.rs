@@ -161,10 +161,10 @@ impl Board {
         let of = |((group, way, gamma), scores): (Place, [Score; grainlab_emt::QUANTITIES])| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
-            let speaks = move |(q, score): &(Quantity, Score)| {
+            let relevant = move |(q, score): &(Quantity, Score)| {
                 score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
             };
-            Quantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| Judged {
+            Quantity::ALL.into_iter().zip(scores).filter(relevant).map(move |(quantity, score)| Judged {
                 group: group.clone(),
                 model: way.model.name(),
                 calibration: way.calibration.name().to_owned(),
