@@ -105,7 +105,7 @@ class Lammps:
         text = run(command, job.directory, self.environment(threads), job.timeout)
         loop, usage = last_loop(text), re.findall(r"([\d.]+)% CPU use with (\d+) MPI tasks", text)
         if not usage:
-            raise RunFailed(f"LAMMPS said no CPU use:\n{last_words(text)}")
+            raise RunFailed(f"LAMMPS printed no CPU use:\n{last_words(text)}")
         if int(usage[-1][1]) != ranks:
             raise RunFailed(f"{usage[-1][1]} ranks ran, not {ranks}: {self.mpiexec} belongs to another MPI than lmp")
         # The share is the mean of the ranks, each with its threads.

@@ -11,7 +11,7 @@ class RunFailed(Exception):
 
 
 def loopback_only(threads: int) -> dict[str, str]:
-    """The environment of a child: no display, one OpenMP thread unless told, MPI through shared memory.
+    """The environment of a child: no display, one OpenMP thread unless `threads` is larger, MPI through shared memory.
 
     UCX_TLS keeps MPICH's ranks, and the OMPI_ variables keep Open MPI's, from opening network sockets;
     with ess_singleton_isolated a process without mpirun starts no daemon.
@@ -69,7 +69,7 @@ def run(command: list, directory: Path, environment: dict[str, str], timeout: fl
 def last_words(text: str, count: int = 12) -> str:
     """The last lines of a text, indented."""
     lines = [line for line in text.splitlines() if line.strip()]
-    return "\n".join(f"    | {line}" for line in lines[-count:]) or "    | (it said nothing)"
+    return "\n".join(f"    | {line}" for line in lines[-count:]) or "    | (no output)"
 
 
 def _end(child: subprocess.Popen) -> None:

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p grainlab_emt --example infer`
 
-use grainlab_emt::{Calibration, Measured, Observation, Quantity, StrainRatio, models, recommended};
+use grainlab_emt::{Measured, Observation, Quantity, StrainRatio, models, recommended};
 
 fn main() {
     // G12, G13, Theta and pressure in Pa, each modulus with an error of 1 %; gamma/Delta is that of the
