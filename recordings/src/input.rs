@@ -40,7 +40,7 @@ pub fn open(path: &Path) -> io::Result<(File, u64)> {
     } else {
         "a device"
     };
-    let problem = format!("it is {what}, not a file: write what comes from it to a file first");
+    let problem = format!("it is {what}, not a file: write its content to a file first");
     Err(io::Error::new(ErrorKind::InvalidInput, problem))
 }
 
@@ -51,7 +51,7 @@ pub fn open(path: &Path) -> io::Result<(File, u64)> {
 pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let (file, size) = open(path)?;
     let too_large = || {
-        let problem = format!("it has more than {most} bytes, which is more than any such file has");
+        let problem = format!("it has more than {most} bytes, the maximum for such files");
         io::Error::new(ErrorKind::FileTooLarge, problem)
     };
     if size > most {
@@ -70,7 +70,7 @@ pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(bytes(path, most)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        io::Error::new(ErrorKind::InvalidData, format!("it is not text: byte {at} is no UTF-8"))
+        io::Error::new(ErrorKind::InvalidData, format!("it is not text: byte {at} is not UTF-8"))
     })
 }
 
@@ -94,7 +94,7 @@ pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
     })?;
     if content.len() as u64 > most {
         let problem = format!(
-            "its {} compressed bytes are more than {most} bytes of text, which no table of numbers is: unpack it first",
+            "its {} compressed bytes decompress to more than {most} bytes, the maximum for a table: unpack it first",
             compressed.len()
         );
         return Err(io::Error::new(ErrorKind::FileTooLarge, problem));

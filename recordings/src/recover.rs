@@ -155,9 +155,9 @@ fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
     });
     let written = outcome.inspect_err(|_| _ = fs::remove_file(&new))?;
     drop(recording);
-    let original = keep(&path).map_err(io("keep the original beside it"))?;
-    fs::rename(&new, &path).map_err(io("put the new file in its place"))?;
-    sync_directory(&path).map_err(io("push the directory to the device"))?;
+    let original = keep(&path).map_err(io("keep the original"))?;
+    fs::rename(&new, &path).map_err(io("replace it by the new file"))?;
+    sync_directory(&path).map_err(io("sync the directory to the device"))?;
     Ok(RecoveredFile {
         path,
         messages: written.messages,
@@ -175,7 +175,7 @@ fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
         match (a.next(), b.next()) {
             (None, None) => break,
             (Some(a), Some(b)) if a.says_the_same(&b) => {}
-            _ => return Err(format!("message {n} is another than in the original")),
+            _ => return Err(format!("message {n} differs from the original")),
         }
     }
     Ok(())

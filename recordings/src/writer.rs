@@ -170,9 +170,9 @@ impl RunWriter {
             let path = path.to_owned();
             move |source| WriteError::Io { path, action, source }
         };
-        fs::create_dir_all(directory).map_err(io(directory, "make the directory"))?;
+        fs::create_dir_all(directory).map_err(io(directory, "create the directory"))?;
         let file = part_path(directory, name, number);
-        let free = free_space(directory).map_err(io(directory, "ask for free space"))?;
+        let free = free_space(directory).map_err(io(directory, "query the free space"))?;
         if free < options.free_to_start {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
@@ -297,7 +297,7 @@ impl RunWriter {
             Some(source) => {
                 let error = WriteError::Io {
                     path: self.file.clone(),
-                    action: "push the recording to the device",
+                    action: "sync the recording to the device",
                     source,
                 };
                 self.ended = Some(error.to_string());
@@ -359,7 +359,7 @@ impl RunWriter {
         self.close_part(if finished { "true" } else { "false" })?;
         self.bag.write(&self.directory).map_err(|source| WriteError::Io {
             path: self.file.clone(),
-            action: "write metadata.yaml beside it",
+            action: "write metadata.yaml",
             source,
         })?;
         let (start, end) = self.bounds.unwrap_or((0, 0));
@@ -386,7 +386,7 @@ impl RunWriter {
         }
         let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
             path: self.file.clone(),
-            action: "express the account",
+            action: "write the ledger as JSON",
             source: e.into(),
         })?;
         metadata.insert(LEDGER_KEY.into(), tallies);
@@ -435,7 +435,7 @@ impl RunWriter {
         self.unchecked = 0;
         let free = free_space(&self.directory).map_err(|source| WriteError::Io {
             path: self.directory.clone(),
-            action: "ask for free space",
+            action: "query the free space",
             source,
         })?;
         if free >= self.options.free_to_continue {

@@ -73,9 +73,9 @@ impl TryFrom<&msg::Packing> for Packing {
             deformation: Mat3::from_row_slice(&m.deformation),
             ids: m.id.clone(),
             radii: m.radius.clone(),
-            positions: triples("position", &m.position, m.radius.len(), THREE_A_GRAIN)?,
-            velocities: triples("velocity", &m.velocity, m.radius.len(), THREE_A_GRAIN)?,
-            spins: triples("angular_velocity", &m.angular_velocity, m.radius.len(), THREE_A_GRAIN)?,
+            positions: triples("position", &m.position, m.radius.len(), THREE_PER_GRAIN)?,
+            velocities: triples("velocity", &m.velocity, m.radius.len(), THREE_PER_GRAIN)?,
+            spins: triples("angular_velocity", &m.angular_velocity, m.radius.len(), THREE_PER_GRAIN)?,
             contacts: contacts(m, law.rolling.is_some())?,
             material: Material {
                 shear_modulus: m.shear_modulus,
@@ -90,22 +90,22 @@ impl TryFrom<&msg::Packing> for Packing {
     }
 }
 
-const THREE_A_GRAIN: &str = "three a grain, as many grains as radii";
-const ONE_A_CONTACT: &str = "one a contact, as many contacts as overlaps";
-const TWO_A_CONTACT: &str = "two a contact, as many contacts as overlaps";
-const THREE_A_CONTACT: &str = "three a contact, as many contacts as overlaps";
+const THREE_PER_GRAIN: &str = "three per grain, as many grains as radii";
+const ONE_PER_CONTACT: &str = "one per contact, as many contacts as overlaps";
+const TWO_PER_CONTACT: &str = "two per contact, as many contacts as overlaps";
+const THREE_PER_CONTACT: &str = "three per contact, as many contacts as overlaps";
 const NO_ROLLING: &str = "none, because the contact law has no resistance to rolling";
 
 fn contacts(m: &msg::Packing, resists_rolling: bool) -> Result<Vec<Contact>, BoundaryError> {
     let count = m.contact_overlap.len();
-    CHECK.length("contact_pair", m.contact_pair.len(), 2 * count, TWO_A_CONTACT)?;
-    CHECK.length("contact_image", m.contact_image.len(), 3 * count, THREE_A_CONTACT)?;
-    CHECK.length("contact_normal_force", m.contact_normal_force.len(), count, ONE_A_CONTACT)?;
-    let normals = triples("contact_normal", &m.contact_normal, count, THREE_A_CONTACT)?;
+    CHECK.length("contact_pair", m.contact_pair.len(), 2 * count, TWO_PER_CONTACT)?;
+    CHECK.length("contact_image", m.contact_image.len(), 3 * count, THREE_PER_CONTACT)?;
+    CHECK.length("contact_normal_force", m.contact_normal_force.len(), count, ONE_PER_CONTACT)?;
+    let normals = triples("contact_normal", &m.contact_normal, count, THREE_PER_CONTACT)?;
     let tangential =
-        triples("contact_tangential_force", &m.contact_tangential_force, count, THREE_A_CONTACT)?;
+        triples("contact_tangential_force", &m.contact_tangential_force, count, THREE_PER_CONTACT)?;
     let rolling = if resists_rolling {
-        triples("contact_rolling_force", &m.contact_rolling_force, count, THREE_A_CONTACT)?
+        triples("contact_rolling_force", &m.contact_rolling_force, count, THREE_PER_CONTACT)?
     } else {
         CHECK.length("contact_rolling_force", m.contact_rolling_force.len(), 0, NO_ROLLING)?;
         vec![Vec3::zeros(); count]

@@ -47,7 +47,7 @@ fn read(estimate: Estimate) -> grainlab_msgs::boundary::EstimateReading {
 }
 
 #[test]
-fn an_estimate_is_read_with_none_for_what_the_model_has_no_word_on() {
+fn an_estimate_has_none_where_the_model_gives_no_value() {
     let e = read(estimate());
     assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", EstimateStatus::Ok));
     assert_eq!(e.strain_ratio, Some(StrainRatio { value: -0.0623, source: "total" }));

@@ -130,7 +130,7 @@ fn an_inversion_reads_what_the_analysis_measured() {
 
 /// An instrument measures two or three moduli, pressure and the material; all other fields are unknown.
 #[test]
-fn what_an_instrument_does_not_know_is_none() {
+fn fields_unknown_to_an_instrument_are_none() {
     let message = msg::Moduli {
         covariance: vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
         g12: vec![140e6],

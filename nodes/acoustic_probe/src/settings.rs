@@ -11,7 +11,7 @@ use grainlab_node_kit::Parameters;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings(pub grainlab_acoustics::Settings);
 
-/// Parameters that are in range but inconsistent. The process then ends with
+/// Parameters whose values are in range but invalid. The process then ends with
 /// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {

@@ -23,9 +23,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const EXAMPLES: &str = "\
-Each knob is turned alone, on a scene run in this process from gas to packing at several seeds. The error of a setting is
+Each knob is varied alone, on a scene run in this process from gas to packing at several seeds. The error of a setting is
 the mean over the seeds of its difference, in k, eps, phi, G12 and Theta, from a converged run with every knob at its most
-careful value. Packings diverge from any perturbation: an error below two standard errors is not resolved, and said to be.
+accurate value. Packings diverge from any perturbation: an error below two standard errors is marked as not resolved.
 
 Examples:
   All knobs on a path of 200 grains, with a plot of the Pareto front (about 15 minutes of two cores):
@@ -156,12 +156,12 @@ fn every_seed(scenes: &[(&Scene, &Vec<u64>)], seeds: &[u64], threads: usize, wha
 fn no_reference(reference: &Sample, default: &Sample) -> Failure {
     let first = |sample: &Sample| sample.iter().find_map(|r| r.as_ref().err().cloned());
     let reason = match (first(default), first(reference)) {
-        (Some(reason), _) => format!("the scene as it stands: {reason}"),
+        (Some(reason), _) => format!("the unchanged scene: {reason}"),
         (None, Some(reason)) => format!("the converged run: {reason}"),
         (None, None) => "no run has a result".to_owned(),
     };
     Failure::new(
         Exit::PhysicsInvalid,
-        format!("fewer than two seeds ended, nothing to compare with: {reason}"),
+        format!("fewer than two seeds succeeded, so that there is no reference: {reason}"),
     )
 }

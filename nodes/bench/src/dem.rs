@@ -17,15 +17,15 @@ use std::path::PathBuf;
 use stepping::{Case, Features, Loop, Packings};
 
 const EXAMPLES: &str = "\
-Grains of a packing at rest near 100 kPa, with 2.55 contacts a grain, are stepped with friction 0.1, damping 0.3 and a time
-step of 3e-8 s, and only the stepping is timed. Without --packing it is one of 2,000 grains made by LAMMPS, repeated along
-each axis for the larger sizes; without friction it would fall apart, so that the frictionless rows step the same grains
-pressed anew without it. Every repetition goes once through all cases; medians are reported.
+A packing at rest near 100 kPa, with 2.55 contacts per grain, is stepped with friction 0.1, damping 0.3 and a time step of
+3e-8 s; only the stepping is timed. The default packing has 2,000 grains and was made by LAMMPS; it is repeated along each
+axis for the larger sizes. Without friction it would collapse, so that the frictionless rows step the same grains compressed
+again without friction. Every repetition runs all cases once; medians are reported.
 
 Examples:
-  One core, one size, with the servo answering every step:
+  One core, one size, with the servo at every step:
     grainlab bench dem --grains 2000 --threads 1 --features coulomb --servo
-  What each instruction set gives:
+  Comparison of the instruction sets:
     grainlab bench dem --grains 16000 --threads 1 --simd scalar,avx2,avx512 --format json";
 
 /// The cases to time.

@@ -29,7 +29,7 @@ Examples:
   grainlab bench faults --seeds 1000
   grainlab bench faults --seed 4711 --seeds 1 --explain
 
-Exit 1 if a run came to other results without an error, or to no end.";
+Exit 1 if a run had different results without an error, or did not end.";
 
 /// The runs.
 #[derive(Debug, clap::Args)]

@@ -9,10 +9,10 @@ use role::Role;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
-One process asks with a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
-followed by one without the recorder (`alone`), and by one of the same two messages over bare ros2-client, also without, so
-that all see the same machine. How long an exchange takes depends on where the processes run: waking a process on another
-processor takes longer than on the same one. `taskset -c 0` puts all on one.
+One process sends a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
+followed by one without the recorder (`alone`), and by one with the same two messages over bare ros2-client, also without
+a recorder, so that all run under the same load. The duration depends on the placement of the processes: waking a process on
+another processor takes longer than on the same one. `taskset -c 0` runs all on one processor.
 
 Examples:
   taskset -c 0 grainlab bench lockstep

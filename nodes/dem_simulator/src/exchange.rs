@@ -40,10 +40,10 @@ impl DemSimulator {
                     continue;
                 }
             }
-            let heard = StrainRateAnswer::try_from(&message)
+            let answer = StrainRateAnswer::try_from(&message)
                 .map_err(|e| e.to_string())
-                .and_then(|answer| self.lockstep.hear(&answer).map_err(|e| e.to_string()));
-            match heard {
+                .and_then(|answer| self.lockstep.receive(&answer).map_err(|e| e.to_string()));
+            match answer {
                 Ok(AnswerKind::New) => {
                     if self.partner.stay_with(info.writer) {
                         log::info!("{} is now the servo", bus.describe(info.writer));

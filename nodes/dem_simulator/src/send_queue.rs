@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_that_died_does_not_keep_the_run_from_its_end() {
+    fn a_killed_reader_does_not_delay_the_end_of_a_run() {
         let mut bench = Bench::new();
         (0..100).for_each(|_| bench.look());
         let run_state = bench.run_state;

@@ -22,7 +22,7 @@ impl DemSimulator {
             if predecessor(&info.writer.participant(), &self.participant) {
                 continue;
             }
-            if self.duplicates.hear(info.writer, now) && self.stage != Stage::Starting {
+            if self.duplicates.note_state(info.writer, now) && self.stage != Stage::Starting {
                 log::error!(
                     "a second simulator ({}) publishes on our topics; it should end by itself",
                     info.writer

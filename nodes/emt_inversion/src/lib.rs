@@ -1,4 +1,4 @@
-//! The inversion node: turns moduli and wave speeds into microstructure.
+//! The inversion node: infers the microstructure from moduli and wave speeds.
 //!
 //! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`microstructure_message`], [`microstructure_of_speeds`]: the work of the node, pure functions of one

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn without_any_error_all_six_are_given_and_nothing_is_said_of_theirs() {
+    fn without_any_error_all_six_are_given_without_errors() {
         let observation = observation(None, 0.0);
         assert_eq!((observation.moduli.known().count(), observation.covariance), (6, None));
     }

@@ -24,7 +24,7 @@ pub(crate) enum Unobservable {
     NoAxis,
     /// The moduli cannot be transformed to another axis.
     #[error(
-        "the moduli given are those about e3, and without the full stiffness they say nothing about the axis \
+        "the moduli given are those about e3, and without the full stiffness they do not determine those about \
          ({:.4}, {:.4}, {:.4})", axis[0], axis[1], axis[2]
     )]
     NoStiffness {

@@ -37,7 +37,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     };
     let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
-    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
+    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument reports: {warning}")));
     let other = other_axis(&fitted, &speeds, density, &axis);
     let in_conflict = fitted.conflict.is_some() || other.is_some();
     notes.extend(other);
@@ -106,7 +106,7 @@ fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3)
         let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);
         notes.push(format!(
             "the wave speeds contradict each other: chi-square {chi_square:.1} for {freedom} degrees of freedom, speeds[{worst}] \
-             is {sigma:.1} sigma from what the others say"
+             is {sigma:.1} sigma from the prediction by the others"
         ));
     }
     if !fitted.undetermined.is_empty() {

@@ -1,4 +1,4 @@
-//! The analyzer node: turns packings into fabric and moduli.
+//! The analyzer node: measures fabric and moduli of packings.
 //!
 //! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
 //! - [`measure()`]: the work of the node, a pure function of one message; [`messages`]: its second half

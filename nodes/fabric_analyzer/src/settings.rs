@@ -38,7 +38,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings(pub(crate) grainlab_micromechanics::Settings);
 
-/// Parameters that are in range but inconsistent. The process then ends with
+/// Parameters whose values are in range but invalid. The process then ends with
 /// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]

@@ -27,7 +27,7 @@ fn row<'a>(report: &'a Value, knob: &str, default: bool) -> &'a Value {
 }
 
 #[test]
-fn the_skin_changes_nothing_and_what_changes_something_is_told_with_its_standard_error() {
+fn the_skin_changes_nothing_and_other_changes_have_a_standard_error() {
     let (folder, scene) = scene("accuracy");
     let out = folder.join("out");
     let out = out.to_string_lossy();

@@ -55,7 +55,7 @@ fn one_bad_file_of_ten_loses_none_of_the_others_and_sets_the_exit_code() {
 }
 
 #[test]
-fn what_the_file_does_not_say_is_asked_for_and_the_exit_code_is_that_of_usage() {
+fn missing_properties_of_a_file_are_listed_and_the_exit_code_is_that_of_usage() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
     std::fs::write(&path, "#format x_y_z_r\n0.1\t0\t0\t0.1\n0.29\t0\t0\t0.1\n").unwrap();

@@ -26,7 +26,7 @@ fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
 }
 
 #[test]
-fn the_calibration_built_in_is_what_its_packings_teach() {
+fn the_built_in_calibration_is_learned_from_its_packings() {
     let (isotropic, anisotropic) = (ensemble("isotropic"), ensemble("anisotropic"));
     let tables =
         ["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic, "--name", "grainlab"];
@@ -71,7 +71,7 @@ fn a_calibration_written_is_one_to_invert_with() {
 }
 
 #[test]
-fn packings_that_teach_nothing_are_refused_with_the_reason() {
+fn packings_that_determine_no_constants_are_refused_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let whole = std::fs::read_to_string(ensemble("isotropic")).unwrap();
     let head = |lines: usize| whole.lines().take(lines).collect::<Vec<_>>().join("\n");

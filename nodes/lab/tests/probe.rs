@@ -82,7 +82,7 @@ fn the_table_is_one_that_the_inversion_reads_and_judges() {
 }
 
 #[test]
-fn a_packing_that_carries_no_wave_says_so_and_ends_with_exit_code_4() {
+fn a_packing_that_carries_no_wave_is_reported_and_ends_with_exit_code_4() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pair.dump");
     let text = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\n\
@@ -103,7 +103,7 @@ fn a_packing_that_carries_no_wave_says_so_and_ends_with_exit_code_4() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_the_name_of_its_flag() {
+fn invalid_flags_are_refused_by_name() {
     let file = reference();
     for (flags, word) in [
         (["--speed-noise", "2"], "speed_noise"),

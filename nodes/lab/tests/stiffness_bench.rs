@@ -53,7 +53,7 @@ fn a_probe_of_a_small_strain_agrees_with_the_network_as_far_as_contacts_hold() {
 }
 
 #[test]
-fn copies_of_a_packing_are_said_to_be_copies_and_as_stiff_as_the_packing() {
+fn copies_of_a_packing_are_marked_as_copies_and_as_stiff_as_the_packing() {
     let rows =
         rows(&["--packing", &reference(), "--grains", "4000", "--tolerances", "1e-6", "--direct-up-to", "0"]);
     let told: Vec<_> = rows.iter().map(|r| (r["grains"].as_u64(), r["replicated"].as_bool())).collect();

@@ -1,7 +1,7 @@
 //! Time limits at the end of a run for its pending results.
 
-use super::patience::Patience;
 use super::pending_results::{ResultState, Source};
+use super::time_limit::TimeLimit;
 use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
@@ -18,7 +18,7 @@ const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 /// The pending result, and its time limit.
 pub(super) struct Deadline {
     pub(super) of: ResultState,
-    pub(super) patience: Patience,
+    pub(super) limit: TimeLimit,
     pub(super) exit: Exit,
     pub(super) message: String,
 }
@@ -30,7 +30,7 @@ impl Deadline {
         match standing {
             ResultState::Measured(_) => whole,
             ResultState::Open(_) => {
-                Self { patience: Patience::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
+                Self { limit: TimeLimit::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
             }
             _ => Self { exit: Exit::Done, ..whole },
         }
@@ -58,7 +58,7 @@ impl Deadline {
             }
             ResultState::Complete => (Duration::ZERO, Exit::Done, String::new()),
         };
-        Self { of: standing, patience: Patience::new(time), exit, message }
+        Self { of: standing, limit: TimeLimit::new(time), exit, message }
     }
 }
 

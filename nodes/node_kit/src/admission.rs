@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn by_hand_a_node_of_the_lockstep_ignores_launched_runs_and_a_tool_hears_everyone() {
+    fn by_hand_a_node_of_the_lockstep_ignores_launched_runs_and_a_tool_receives_from_all() {
         let launched = Identity::member_of(RunId::named("a"), 1).guid_prefix();
         let by_hand = Admission::new(HAND, HAND.guid_prefix());
         assert!(!by_hand.admits(&launched));

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thread_that_is_gone_is_missed_from_the_first_look_on() {
+    fn an_ended_thread_is_reported_at_the_first_check() {
         assert_eq!(judge(2, Some(2)), Ok(()));
         assert_eq!(judge(2, None), Ok(()), "no count is no evidence");
         assert_eq!(judge(2, Some(1)), Err(DdsFailure::Ended { started: 2, left: 1 }));

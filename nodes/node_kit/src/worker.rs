@@ -101,7 +101,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_panic_of_a_job_is_the_nodes() {
+    fn a_panic_of_a_job_resumes_in_the_node() {
         let (called, calls) = channel();
         let caller = Caller(Arc::new(move || called.send(()).unwrap()));
         let mut worker = Worker::threaded(caller, "worker", |job: i32| {

@@ -294,7 +294,7 @@ fn cpu_time() -> Duration {
 }
 
 #[test]
-fn a_process_hears_what_it_says_itself_once_whatever_it_asks_for() {
+fn a_process_receives_its_own_messages_once_for_any_demand() {
     let claimed = claim();
     let (mut bus, mut peer) = (open(claimed.network(), "recorder"), open(claimed.network(), "peer"));
     let strong =

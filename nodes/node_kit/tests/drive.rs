@@ -115,7 +115,7 @@ fn an_error_ends_the_node_with_its_own_exit_code() {
 }
 
 #[test]
-fn an_interrupted_node_says_how_complete_it_is() {
+fn an_interrupted_node_reports_how_complete_it_is() {
     let (exit, node, _) = run(|_| Ok(Next::Wait(TICK)), true);
     assert_eq!((exit, node.ticks), (Exit::Interrupted, 1));
 }

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_gone_has_a_successor() {
+    fn a_writer_that_left_is_replaced() {
         let alone = |_: &Topic| vec![WriterId([2; 16]), WriterId([4; 16])];
         let mut binding = Binding::default();
         let mut takes = |topic, who, about| binding.takes(&topic, &info(who, about), alone);

@@ -109,7 +109,7 @@ struct Company {
 }
 
 impl Company {
-    fn hear(&mut self, writer: WriterId) {
+    fn note_writer(&mut self, writer: WriterId) {
         self.heard.insert(writer.participant());
     }
 
@@ -212,7 +212,7 @@ impl Recorder {
                     writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
                     continue;
                 }
-                self.company.hear(sample.info.writer);
+                self.company.note_writer(sample.info.writer);
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
@@ -325,11 +325,11 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
 /// Passes the counts of a report to the recording, with the node's name; true for the last report of a process.
 fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
-    let mut goodbye = false;
+    let mut is_last_report = false;
     for report in Report::from_message(&message) {
         // A replayed report refers to writers that do not exist.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
-        goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
+        is_last_report |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
@@ -339,7 +339,7 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
             }
         }
     }
-    goodbye
+    is_last_report
 }
 
 impl Node for Recorder {
@@ -412,11 +412,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+    fn everyone_has_left_after_the_last_report_of_each() {
         let writer = |who| WriterId([who; 16]);
         let mut company = Company { own: Some([1; 12]), ..Company::default() };
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
-        company.hear(writer(2));
+        company.note_writer(writer(2));
         assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
         assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
         company.left.insert([2; 12]);

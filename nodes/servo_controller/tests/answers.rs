@@ -86,7 +86,7 @@ fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
 }
 
 #[test]
-fn what_cannot_be_answered_is_counted_and_the_node_lives() {
+fn requests_that_cannot_be_answered_are_counted_and_the_node_continues() {
     let hub = Hub::new(1);
     let mut asker = Asker::new(&hub);
     let mut bus = hub.bus(Names::new("servo_controller").unwrap());

@@ -101,7 +101,7 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
         return unsupported("a VTK file", FROM_YADE);
     }
     if begins("<?xml") || begins("<boost_serialization") {
-        return unsupported("XML (a simulation that YADE saved?)", FROM_YADE);
+        return unsupported("XML (a saved simulation of YADE?)", FROM_YADE);
     }
     if begins("LIGGGHTS Description") {
         let reason = "it has radii for diameters and no periodic cell: export with format id_x_y_z_r_matId";
@@ -164,13 +164,13 @@ pub fn text(path: &Path) -> Result<String, ImportError> {
         bytes = input::gunzip(&bytes).map_err(io)?;
     }
     if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {
-        let problem = "it is compressed otherwise than by gzip: unpack it first";
+        let problem = "it is not compressed by gzip: unpack it first";
         return Err(refuse(io::ErrorKind::InvalidData, problem.to_owned()));
     }
     let mut text = String::from_utf8(bytes).map_err(|e| {
         let (good, e) = (e.utf8_error().valid_up_to(), e);
         let line = e.as_bytes()[..good].iter().filter(|b| **b == b'\n').count() + 1;
-        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is no UTF-8)"))
+        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is not UTF-8)"))
     })?;
     // Some Windows programs write a byte order mark first.
     if text.starts_with('\u{feff}') {

@@ -22,7 +22,7 @@ impl<'a> Line<'a> {
 
     /// The number in `field`; `name` is its name in errors.
     pub(super) fn number<T: std::str::FromStr>(&self, name: &str, field: &str) -> Result<T, ImportError> {
-        let problem = || format!("{name} is {}, not a number of its kind", shown(field));
+        let problem = || format!("{name} is {}, not a valid number", shown(field));
         field.trim().parse().map_err(|_| self.error(problem()))
     }
 

@@ -72,7 +72,7 @@ fn writers_are_accounted_apart_and_a_silent_topic_appears() {
 }
 
 #[test]
-fn a_writer_of_which_nothing_came_is_all_loss() {
+fn all_messages_of_a_writer_without_received_ones_are_lost() {
     let mut ledger = Ledger::default();
     ledger.report("/stress", A, 40);
     let t = only(&ledger);

@@ -37,7 +37,7 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
     let most = limit(data.len());
     if size > most {
         return Err(format!(
-            "it claims {size} uncompressed bytes; of {} compressed ones, at most {most} are believed",
+            "its stated size is {size} bytes; for {} compressed ones, at most {most} are accepted",
             data.len()
         ));
     }

@@ -18,7 +18,7 @@ pub enum ReadError {
         source: io::Error,
     },
     /// A directory without a recording.
-    #[error("{path} holds no .mcap file: name a run directory or an MCAP file")]
+    #[error("{path} contains no .mcap file: give a run directory or an MCAP file")]
     Empty {
         /// The directory.
         path: PathBuf,
@@ -83,7 +83,7 @@ impl fmt::Display for Warning {
         let (path, at, detail) = (self.path.display(), self.offset, &self.detail);
         match self.kind {
             WarningKind::Truncated => {
-                write!(f, "{path} is truncated: {detail}; what stands before byte {at} is used")
+                write!(f, "{path} is truncated: {detail}; the part before byte {at} is used")
             }
             WarningKind::NoIndex => write!(f, "{path}: the index is damaged ({detail}); it was rebuilt"),
             WarningKind::DamagedChunk => write!(f, "{path}: the chunk at byte {at} is left out: {detail}"),

@@ -115,11 +115,11 @@ impl OpenFile {
     }
 
     fn record(&self, entry: &Entry) -> Result<Record<'_>, String> {
-        Records::at(self.bytes(), entry.offset).ok_or("there is no whole record")?.parse()
+        Records::at(self.bytes(), entry.offset).ok_or("the record is incomplete")?.parse()
     }
 
     fn damaged(&self, entry: &Entry, detail: Option<String>) -> Warning {
-        let detail = detail.unwrap_or_else(|| "it is not what the index says".into());
+        let detail = detail.unwrap_or_else(|| "it differs from the index".into());
         let detail = format!("{} cannot be read: {detail}", entry.name);
         self.warning(usize::try_from(entry.offset).unwrap_or(usize::MAX), WarningKind::DamagedRecord, detail)
     }

@@ -137,7 +137,7 @@ impl Index {
         let end = stop.unwrap_or(MAGIC.len());
         let detail = match bytes.len().saturating_sub(end) {
             0 => "its end record is missing".to_owned(),
-            left => format!("its last {left} bytes are no whole record"),
+            left => format!("its last {left} bytes are an incomplete record"),
         };
         scan.warn(end, WarningKind::Truncated, detail);
         scan.index
@@ -165,7 +165,7 @@ impl Index {
             id => match self.schemas.get(&id) {
                 Some((header, text)) => (header.name.clone(), header.encoding.clone(), text.clone()),
                 None => {
-                    return Err(format!("channel {} names schema {id}, which is not there", channel.topic));
+                    return Err(format!("channel {} names schema {id}, which is missing", channel.topic));
                 }
             },
         };
@@ -261,7 +261,7 @@ impl Scan<'_> {
         for inner in Records::new(&content, 0) {
             let parsed = match inner {
                 Ok(inner) => inner.parse(),
-                Err(at) => Err(format!("byte {at} of its content starts no whole record")),
+                Err(at) => Err(format!("an incomplete record starts at byte {at} of its content")),
             };
             let outcome = parsed.and_then(|parsed| match parsed {
                 Record::Message { header, .. } => {

@@ -51,8 +51,7 @@ impl Part {
         let _ = file.try_lock();
         let clone = || file.try_clone().map_err(io("duplicate the handle"));
         let (handle, synced) = (clone()?, clone()?);
-        let sync =
-            DeviceSync::start(synced).map_err(io("start the thread that pushes data to the device"))?;
+        let sync = DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
         let mcap = options("")
             .chunk_size(Some(chunk_size))
             .create(BufWriter::with_capacity(64 << 10, file))
@@ -124,7 +123,7 @@ impl Part {
             let path = path.clone();
             move |source| WriteError::Io { path, action, source }
         };
-        self.mcap.write_metadata(&metadata).map_err(format("write the account"))?;
+        self.mcap.write_metadata(&metadata).map_err(format("write the ledger"))?;
         self.mcap.finish().map_err(format("write the index"))?;
         let handle = self
             .mcap
@@ -132,8 +131,8 @@ impl Part {
             .into_inner()
             .map_err(|e| io("write the end of the file")(e.into_error()))?;
         self.sync.stop();
-        handle.sync_all().map_err(io("push the recording to the device"))?;
-        let bytes = handle.metadata().map_err(io("ask for the size"))?.len();
+        handle.sync_all().map_err(io("sync the recording to the device"))?;
+        let bytes = handle.metadata().map_err(io("query the size"))?.len();
         let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let count = FileCount { name, bounds: self.bounds, messages: self.messages };
         Ok(Closed { path, bytes, count })

@@ -80,7 +80,7 @@ fn a_truncated_file_with_a_flipped_bit_still_reads() {
 }
 
 #[test]
-fn files_that_are_no_recordings_are_refused_with_a_reason() {
+fn files_that_are_not_recordings_are_refused_with_a_reason() {
     let root = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| {
         let path = root.path().join(name);
@@ -101,7 +101,7 @@ fn files_that_are_no_recordings_are_refused_with_a_reason() {
 }
 
 #[test]
-fn lengths_that_lie_do_not_exhaust_memory() {
+fn false_lengths_do_not_exhaust_memory() {
     let root = tempfile::tempdir().unwrap();
     let (_, bytes) = run_in(&root, 100);
     // Every eight bytes in turn become a huge length; reading must stay fast and need little memory.
@@ -146,7 +146,7 @@ fn bomb(chunks: u32, bytes: usize) -> Vec<u8> {
 }
 
 #[test]
-fn a_chunk_of_a_few_bytes_is_not_believed_to_be_a_hundred_megabytes() {
+fn a_small_chunk_with_a_stated_size_of_a_hundred_megabytes_is_refused() {
     let bytes = bomb(1, 100 << 20);
     assert!(bytes.len() < 20_000, "{}", bytes.len());
     let (found, warnings) = read(&bytes);

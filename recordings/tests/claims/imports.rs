@@ -255,7 +255,7 @@ fn contact_forces_of_a_dump_local_are_taken() {
 }
 
 #[test]
-fn the_format_is_told_by_name_and_then_by_content() {
+fn the_format_is_recognised_by_name_and_then_by_content() {
     let root = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         let path = root.path().join(name);

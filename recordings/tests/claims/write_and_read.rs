@@ -63,7 +63,7 @@ fn attachments_metadata_channels_and_the_account_come_back() {
 }
 
 #[test]
-fn a_time_range_cuts_where_it_says() {
+fn a_time_range_includes_its_start_and_excludes_its_end() {
     let root = tempfile::tempdir().unwrap();
     let (directory, _) = run_in(&root, 300);
     let recording = Recording::open(&directory).unwrap();
@@ -91,7 +91,7 @@ fn arrival_times_that_stand_still_or_go_back_give_increasing_log_times() {
 }
 
 #[test]
-fn repeats_are_counted_and_not_written_and_two_writers_are_told_apart() {
+fn repeats_are_counted_and_not_written_and_two_writers_are_separate() {
     let root = tempfile::tempdir().unwrap();
     let directory = root.path().join("r");
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
@@ -168,7 +168,7 @@ fn a_quiet_topic_is_on_disk_after_the_flush_interval() {
 }
 
 #[test]
-fn a_dropped_writer_leaves_a_whole_file_that_says_so() {
+fn a_dropped_writer_leaves_a_complete_file_marked_as_unfinished() {
     let root = tempfile::tempdir().unwrap();
     let directory = root.path().join("r");
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();

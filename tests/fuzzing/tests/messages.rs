@@ -13,7 +13,8 @@ use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_m
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A decoded message is at most some times as large as its bytes: a string of no byte has four in CDR and 24 in memory.
+/// A decoded message is at most a few times as large as its bytes: an empty string has four in CDR and 24 in
+/// memory.
 const MEMORY: (usize, usize) = (1 << 20, 64);
 
 fn packing() -> Packing {

@@ -25,7 +25,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_without_a_result_is_on_no_front_and_keeps_nobody_off_it() {
+    fn a_setting_without_a_result_is_not_on_the_front_and_excludes_no_other() {
         assert_eq!(front(&[(f64::NAN, 0.0), (1.0, f64::NAN), (2.0, 2.0)]), [false, false, true]);
         assert!(front(&[]).is_empty());
     }

@@ -309,7 +309,7 @@ mod tests {
     const SERVOED: Option<Servoed> = Some(Servoed { tangent: 3e8, interval: 3.5e-7 });
 
     #[test]
-    fn every_knob_has_exactly_one_default_and_turns_nothing_that_is_not_its_own() {
+    fn every_knob_has_exactly_one_default_and_changes_only_its_own_setting() {
         for quick in [false, true] {
             for knob in Knob::value_variants() {
                 let settings = knob.settings(&scene(), SERVOED, quick);

@@ -55,11 +55,11 @@ pub(crate) fn verdict(rows: &[Row]) -> Vec<String> {
 /// The resolved differences that are not exactly zero.
 fn resolved(differences: Option<&Observables<Estimate>>) -> Vec<String> {
     let Some(differences) = differences else { return Vec::new() };
-    let told = |(name, d): (&str, &Estimate)| {
+    let text = |(name, d): (&str, &Estimate)| {
         let certain = d.resolved() && d.mean != 0.0;
         certain.then(|| format!("{name} {:+.2e} ± {:.0e}", d.mean, d.standard_error))
     };
-    Observables::<f64>::NAMES.into_iter().zip(&differences.array()).filter_map(told).collect()
+    Observables::<f64>::NAMES.into_iter().zip(&differences.array()).filter_map(text).collect()
 }
 
 fn name(row: &Row) -> String {

@@ -7,15 +7,15 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-Without --packing it is one of 2,000 grains made by LAMMPS, whose file holds no tangential forces: prepared packings are
-the better test.
+The default packing has 2,000 grains and was made by LAMMPS; its file has no tangential forces, so that prepared packings
+are a better test.
 
 Examples:
-  Every way on one packing along three rays, with the pictures (some minutes):
+  Every method on one packing along three rays, with plots (some minutes):
     grainlab bench acoustics --packing recordings/runs/s2-1-1 --out acoustics
   A full set of speeds by dispersion:
     grainlab bench acoustics --survey complete --method dispersion
-  What speeds with errors of 0 to 3 % tell of the microstructure, beside moduli of the network (every packing of every file):
+  Microstructure from speeds with errors of 0 to 3 %, and from moduli of the network (every packing of every file):
     grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
 
 /// The packings, methods and values to measure.

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_way_that_failed_has_a_row_without_numbers_and_says_why() {
+    fn a_failed_method_has_a_row_without_numbers_and_a_reason() {
         let row = Row {
             method: Method::Peak,
             value: None,

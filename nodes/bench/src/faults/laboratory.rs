@@ -21,7 +21,7 @@ const LAST_CALL: Duration = Duration::from_secs(2);
 
 /// Maximum number of restarts of the simulator after one packing. The next crash ends the run, as in the
 /// launcher.
-const DEATHS: usize = 3;
+const CRASHES_ALLOWED: usize = 3;
 
 /// The outcome of a run.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ struct Laboratory<'a> {
     strangers: Vec<Stranger>,
     events: std::vec::IntoIter<(super::plan::Moment, Event)>,
     next: Option<(super::plan::Moment, Event)>,
-    deaths: Vec<usize>,
+    crashes: Vec<usize>,
     done: Done,
     explain: bool,
 }
@@ -80,7 +80,7 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         strangers: Vec::new(),
         events,
         next,
-        deaths: Vec::new(),
+        crashes: Vec::new(),
         done: Done::default(),
         explain,
     };
@@ -158,7 +158,7 @@ impl Laboratory<'_> {
 
     /// Time of the next event, if any.
     fn next_moment(&self, now: Duration) -> Option<Duration> {
-        let of = |p: &Process| match &p.alive {
+        let of = |p: &Process| match &p.running {
             _ if p.ended.is_some() => None,
             None => p.restart_at,
             Some((_, bus)) => {
@@ -176,7 +176,7 @@ impl Laboratory<'_> {
         if process.ended.is_some() || process.stopped_until > now {
             return Ok(false);
         }
-        let Some((node, bus)) = &mut process.alive else { return Ok(false) };
+        let Some((node, bus)) = &mut process.running else { return Ok(false) };
         if process.due > now && !bus.has_arrivals() {
             return Ok(false);
         }
@@ -254,7 +254,7 @@ impl Laboratory<'_> {
 
     fn crash(&mut self, kind: Kind, back_at: Duration) -> Result<(), Outcome> {
         let Some(process) = self.processes.iter_mut().find(|p| p.kind == kind) else { return Ok(()) };
-        if process.alive.take().is_none() {
+        if process.running.take().is_none() {
             return Ok(());
         }
         match kind {
@@ -262,8 +262,8 @@ impl Laboratory<'_> {
             Kind::Simulator if process.ended == Some(Exit::Done) => return Ok(()),
             Kind::Simulator => {
                 let packings = self.record.borrow().packings();
-                self.deaths.push(packings);
-                if self.deaths.iter().filter(|known| **known == packings).count() > DEATHS {
+                self.crashes.push(packings);
+                if self.crashes.iter().filter(|known| **known == packings).count() > CRASHES_ALLOWED {
                     return Err(Outcome::Failed("the simulator crashed too often: exit 1".to_owned()));
                 }
             }
@@ -274,14 +274,14 @@ impl Laboratory<'_> {
     }
 
     fn describe(&self, why: &str) -> String {
-        let dead = self.processes.iter().filter(|p| p.alive.is_none()).map(|p| p.kind);
+        let crashed = self.processes.iter().filter(|p| p.running.is_none()).map(|p| p.kind);
         let record = self.record.borrow();
         format!(
-            "{why}: at {:.1} s, {} samples, state {:?}, dead: {:?}",
+            "{why}: at {:.1} s, {} samples, state {:?}, not running: {:?}",
             self.hub.now().as_secs_f64(),
             record.seen,
             record.state.as_ref().map(|s| (s.status, s.step)),
-            dead.collect::<Vec<_>>()
+            crashed.collect::<Vec<_>>()
         )
     }
 

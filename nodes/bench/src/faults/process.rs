@@ -46,7 +46,7 @@ impl Kind {
 pub(super) struct Process {
     pub(super) kind: Kind,
     /// `None` between a crash and the restart.
-    pub(super) alive: Option<(Box<dyn Node>, MemoryBus)>,
+    pub(super) running: Option<(Box<dyn Node>, MemoryBus)>,
     /// Latest time of its next step.
     pub(super) due: Duration,
     /// Earliest time of its next step.
@@ -68,7 +68,7 @@ impl Process {
     pub(super) fn start(kind: Kind, with: &Start) -> Result<Self, NodeError> {
         let mut process = Self {
             kind,
-            alive: None,
+            running: None,
             due: Duration::ZERO,
             stopped_until: Duration::ZERO,
             restart_at: None,
@@ -105,7 +105,7 @@ impl Process {
                 Box::new(simulator.map_err(|e| failed(&e))?)
             }
         };
-        self.alive = Some((node, bus));
+        self.running = Some((node, bus));
         self.due = with.hub.now();
         (self.stopped_until, self.restart_at, self.ended) = (Duration::ZERO, None, None);
         Ok(())

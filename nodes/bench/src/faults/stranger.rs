@@ -52,9 +52,9 @@ impl Stranger {
 
     /// Forges a fraction of the received messages; true if any arrived.
     pub(super) fn step(&mut self) -> Result<bool, BusError> {
-        let mut heard = false;
+        let mut received = false;
         while let Some(sample) = self.bus.take(self.input)? {
-            heard = true;
+            received = true;
             // Two strangers that forge each other's messages would never end.
             let of_the_run = run_of(&sample.info.writer.participant()) == Some(self.run);
             if !of_the_run || self.dice.unit() >= self.plan.share {
@@ -67,7 +67,7 @@ impl Stranger {
                 self.publish(&body, about)?;
             }
         }
-        Ok(heard)
+        Ok(received)
     }
 }
 

@@ -6,15 +6,15 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-Without --packing it is one of 2,000 grains made by LAMMPS. Copies of a packing converge more easily than a packing of
-that size; their rows say so, and exponents never mix the two. A solve that fails has a row that says why.
+The default packing has 2,000 grains and was made by LAMMPS. Copies of a packing converge faster than a packing of that
+size; their rows are marked, and exponents never mix the two. The row of a failed solve has the reason.
 
 Examples:
-  Every method on 2,000 grains, with its picture (some seconds):
+  Every method on 2,000 grains, with a plot (some seconds):
     grainlab bench stiffness --all --out stiffness
-  How the cost grows, over packings of one's own and over copies of the first (minutes):
+  Growth of the cost over several packings and over copies of the first (minutes):
     grainlab bench stiffness --packing a --packing b --packing c --grains 16000,54000,128000 --out stiffness
-  A frictionless packing near isostaticity, where iterations become many:
+  A frictionless packing near isostaticity, where many iterations are needed:
     grainlab bench stiffness --packing recordings/runs/frictionless-1-1 --frictionless";
 
 /// Residual of the reference solve: the smallest that a solve accepts.

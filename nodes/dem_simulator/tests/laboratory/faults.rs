@@ -149,7 +149,7 @@ fn ten_answers_beyond_the_rate_limit_end_the_run_with_its_state_saved() {
 }
 
 #[test]
-fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_lives() {
+fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() {
     let record = Bench::new(0).whole_run(&Settings::default(), None);
     let good: msg::Packing = record.last(&topics::PACKING).unwrap();
     let mut broken = good.clone();

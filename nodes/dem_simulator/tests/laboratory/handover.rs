@@ -36,8 +36,8 @@ fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
     ];
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 300));
     actors.pop();
-    let death = bench.hub.now();
-    run_until(&bench.hub, &mut actors, death + Duration::from_secs(3), |_| false);
+    let killed = bench.hub.now();
+    run_until(&bench.hub, &mut actors, killed + Duration::from_secs(3), |_| false);
     assert!(!bench.record.borrow().complete(), "the simulator waits");
     let (mut second, second_bus) = bench.servo();
     actors.push(Actor::new(&mut second, second_bus));

@@ -27,7 +27,7 @@ fn with_error(modulus_error: f64) -> Settings {
 }
 
 #[test]
-fn the_words_of_the_wire_are_those_of_the_kernel() {
+fn names_in_messages_are_those_of_the_kernel() {
     assert_eq!(grainlab_emt::INPUT_NAMES, DATA);
 }
 
@@ -118,7 +118,7 @@ fn the_uncertainty_is_that_of_the_data_else_that_of_the_parameter_else_unknown()
 }
 
 #[test]
-fn an_estimate_says_which_datum_decides_what() {
+fn an_estimate_has_the_contribution_of_each_datum() {
     let e = corrected(&s1(), &with_error(0.01));
     let of_eps = &e.information[27..36];
     // ε follows only from G13/G12: half of the variance from each.
@@ -130,7 +130,7 @@ fn an_estimate_says_which_datum_decides_what() {
 }
 
 #[test]
-fn an_estimate_says_which_strain_ratio_it_was_fed_with() {
+fn an_estimate_names_the_strain_ratio_it_used() {
     let of = |change: fn(&mut Moduli)| {
         let mut moduli = s1();
         change(&mut moduli);
@@ -144,7 +144,7 @@ fn an_estimate_says_which_strain_ratio_it_was_fed_with() {
 }
 
 #[test]
-fn data_without_a_solution_say_why_and_carry_no_values() {
+fn data_without_a_solution_have_a_reason_and_no_values() {
     let of = |change: fn(&mut Moduli)| {
         let mut moduli = s1();
         change(&mut moduli);
@@ -206,7 +206,7 @@ fn a_covariance_of_the_three_is_kept_where_the_stiffness_is_known_too() {
 }
 
 #[test]
-fn a_stiffness_that_is_not_isotropic_about_the_axis_says_so() {
+fn a_stiffness_that_is_not_isotropic_about_the_axis_gives_a_warning() {
     let mut orthotropic = s1_stiffness();
     orthotropic.stiffness[0].stiffness[0] *= 1.4;
     let e = corrected(&orthotropic, &Settings::default());
@@ -233,7 +233,7 @@ fn turned(axis: Vec3) -> Moduli {
 }
 
 #[test]
-fn a_sample_on_its_side_is_understood_about_the_axis_found_or_given() {
+fn a_rotated_sample_is_inverted_about_the_axis_found_or_given() {
     let axis = Vec3::new(0.6, -0.48, 0.64);
     let zero = Moduli { strain_ratios: StrainRatios::default(), ..s1_stiffness() };
     let upright = corrected(&zero, &Settings::default());

@@ -64,7 +64,7 @@ fn moduli_and_the_wave_speeds_of_a_remapped_instrument_are_answered_side_by_side
     assert_eq!(node.health().level, Level::Warn);
     // Without the remap no message of the instrument arrives.
     drop((node, bus));
-    let (mut deaf, mut bus) = start(Names::new("emt_inversion").unwrap());
-    deaf.step(&mut bus).unwrap();
+    let (mut other, mut bus) = start(Names::new("emt_inversion").unwrap());
+    other.step(&mut bus).unwrap();
     assert_eq!(bus.received().iter().map(|r| r.taken).collect::<Vec<_>>(), [1, 0]);
 }

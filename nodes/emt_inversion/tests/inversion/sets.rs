@@ -49,7 +49,7 @@ fn is_compressional(s: &WaveSpeed) -> bool {
 }
 
 #[test]
-fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() {
+fn an_unknown_axis_is_inferred_from_the_speeds_if_set() {
     let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.2);
     let lying = everywhere(&s1_medium().rotated(turn.matrix()));
     let expected = answer(&upright(), &Settings::default());
@@ -69,7 +69,7 @@ fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() 
 }
 
 #[test]
-fn of_a_medium_that_looks_isotropic_e3_is_taken_and_that_is_said() {
+fn a_medium_that_looks_isotropic_gets_e3_and_a_note() {
     let (p, s) = (300e6, 120e6);
     let isotropic = TransverseIsotropy {
         c11: p,
@@ -101,7 +101,7 @@ fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
 }
 
 #[test]
-fn shear_waves_alone_tell_eps_to_the_ratios_and_all_to_the_relaxed_network() {
+fn shear_waves_alone_determine_eps_for_the_ratios_and_all_for_the_relaxed_network() {
     let shear = all(&only(|s| !is_compressional(s)));
     let ratio = shear("ratio");
     assert_eq!(
@@ -154,6 +154,6 @@ fn what_the_instrument_warns_of_reaches_every_estimate() {
     let warned = WaveSpeeds { warnings: vec!["speeds[3] was picked by hand".into()], ..upright() };
     let message = microstructure_of_speeds(&warned, &Settings::default()).unwrap();
     for e in &message.estimates {
-        assert!(says(e, "the instrument says: speeds[3] was picked by hand"), "{e:?}");
+        assert!(says(e, "the instrument reports: speeds[3] was picked by hand"), "{e:?}");
     }
 }

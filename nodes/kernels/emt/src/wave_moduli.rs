@@ -23,8 +23,8 @@ impl WaveModuli {
         named: Option<Vec3>,
         conditions: Conditions,
     ) -> Self {
-        let told = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
-        let axis = named.or_else(told).unwrap_or_else(Vec3::z);
+        let inferred = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
+        let axis = named.or_else(inferred).unwrap_or_else(Vec3::z);
         Self { axis, fitted: christoffel::moduli_from_speeds(speeds, density, Some(axis), conditions) }
     }
 

@@ -71,7 +71,7 @@ fn filmed() -> String {
 
 /// Expected: the same end, bit for bit, with a packing per thousandth of strain and one at the end.
 #[test]
-fn a_run_that_is_filmed_is_the_run_that_is_not() {
+fn recording_packings_within_phases_does_not_change_a_run() {
     let ((_, plain), (film, frames)) = (run(of(SCENE)), run(of(&filmed())));
     assert_eq!(plain.len(), 1);
     assert_eq!(frames.last().unwrap().0, plain[0].0);
@@ -88,7 +88,7 @@ fn a_run_that_is_filmed_is_the_run_that_is_not() {
 
 /// Expected: a run resumed from any of its packings continues to the same packings, bit for bit.
 #[test]
-fn a_filmed_run_goes_on_from_each_of_its_packings() {
+fn a_run_resumes_from_each_packing_recorded_within_phases() {
     let scene = filmed();
     let (_, frames) = run(of(&scene));
     for at in (0..frames.len() - 1).step_by(7) {
@@ -144,7 +144,7 @@ fn a_run_starts_from_a_packing() {
 
 /// Expected: what each phase leaves out, by name.
 #[test]
-fn a_run_says_what_each_phase_leaves_out() {
+fn a_run_reports_what_each_phase_leaves_out() {
     let mut run = of(SCENE);
     let mut said = Vec::new();
     while let Some(request) = run.request() {

@@ -134,7 +134,7 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
 }
 
 #[test]
-fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
+fn an_event_driven_phase_keeps_its_clock_and_meets_its_conditions() {
     let mut run = begin(&event_driven());
     while run.path().phase == 0 {
         let asked = run.request().unwrap();
@@ -156,7 +156,7 @@ fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
 }
 
 #[test]
-fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
+fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     let mut run = begin(&event_driven());
     advance(&mut run);
     let before = (run.packing(), run.run_state());

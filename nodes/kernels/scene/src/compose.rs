@@ -4,7 +4,6 @@
 //! path is an array, so `[[phase]]` replaces it whole; `[phase.NAME]` changes the phase of that name,
 //! `remove` leaves phases out and `[[append]]` adds some, in this order. Keys set on a command line are
 //! merged in the same way.
-//! `[[append]]` adds some, in this order. What is set on a command line is merged in the same way.
 
 use crate::built_in::built_in;
 use crate::fault::{Fault, SceneError};

@@ -32,7 +32,7 @@ keys! {
     REMOVE = form("remove", "names of phases of the base, as in [\"unload\", \"reload\"]", Words("none"), "phases of the base to leave out; only with base");
     APPEND = form("append", "tables like those of phase, with or without after = \"NAME\"", Words("none"), "phases to add behind the last one of the base, or behind the one named by after; only with base");
     NAME = text("name", Required, "name, also of the runs; lower case letters, digits, _ and -");
-    DESCRIPTION = text("description", DefaultValue::Text(""), "one line for people");
+    DESCRIPTION = text("description", DefaultValue::Text(""), "description in one line");
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
     FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that does not set it, except a gas");
 

@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_stands_for_any_letters() {
+    fn a_star_matches_any_letters() {
         let fits = |pattern, names: [&str; 3]| names.map(|name| matches(pattern, name));
         assert_eq!(fits("load-*", ["load-50kPa", "load-", "unload-50kPa"]), [true, true, false]);
         assert_eq!(fits("*load*Pa", ["unload-50kPa", "load-50kPb", "settle"]), [true, false, false]);

@@ -94,7 +94,7 @@ fn the_canonical_text_of_a_scene_means_the_same_and_is_its_own() {
 }
 
 #[test]
-fn bases_form_a_chain_in_which_the_last_word_wins() {
+fn bases_form_a_chain_in_which_the_last_value_wins() {
     let files = [
         ("a", "base = 'demo'\nname = 'a'\ngrains.count = 300\nphase.rest.drag = 1e3"),
         ("b", "base = 'a'\nname = 'b'\nphase.rest.drag = 5e2\nphase.settle.until.hold = 'unset'"),
@@ -153,7 +153,7 @@ fn a_circle_of_bases_is_named_and_so_is_a_base_that_is_not_there() {
 }
 
 #[test]
-fn what_is_set_and_not_known_is_named_with_what_was_meant() {
+fn an_unknown_key_is_named_with_a_suggestion() {
     let set = |text: &str| {
         let mut draft = compose(&[], "s2").unwrap();
         faults(draft.set(assignment(text).unwrap()).map(|()| draft))

@@ -66,7 +66,7 @@ fn cycles_unroll_into_numbered_phases() {
 }
 
 #[test]
-fn a_servo_phase_is_normalised_unless_it_says_otherwise() {
+fn a_servo_phase_is_normalised_by_default() {
     let law = |keys: &str| {
         let text = GOOD.replace("response_time = 2e-5", keys);
         match Scene::parse(&text)?.phases.swap_remove(3).kind {
@@ -130,7 +130,7 @@ fn every_fault_is_reported_at_once_with_its_place() {
 }
 
 #[test]
-fn a_gas_is_event_driven_unless_it_says_soft() {
+fn a_gas_is_event_driven_by_default() {
     let method = |text: &str| match Scene::parse(text).unwrap().phases[0].kind {
         PhaseKind::Gas { method, .. } => method,
         _ => panic!("a gas phase"),
@@ -146,7 +146,7 @@ fn a_gas_is_event_driven_unless_it_says_soft() {
 }
 
 #[test]
-fn an_event_driven_gas_refuses_what_only_the_contact_law_knows() {
+fn an_event_driven_gas_refuses_what_needs_the_contact_law() {
     let text = GOOD.replace("rate = -12.0", "rate = -12.0\ndamping = 0.002\nfriction = 0.1").replace(
         "until = { solid_fraction = 0.6 }",
         "until = { solid_fraction = 0.6, pressure_above = 1e3 }",
@@ -159,7 +159,7 @@ fn an_event_driven_gas_refuses_what_only_the_contact_law_knows() {
 }
 
 #[test]
-fn text_that_is_no_toml_is_refused_with_its_line() {
+fn invalid_toml_is_refused_with_its_line() {
     let error = Scene::parse("name = \n").unwrap_err();
     assert!(error.to_string().contains("line 1"), "{error}");
 }

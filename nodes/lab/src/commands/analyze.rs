@@ -29,14 +29,14 @@ Examples:
   Every packing of a recorded run, or of all runs:
     grainlab analyze recordings/runs/demo-1-1
     grainlab analyze recordings/runs/* --format csv > all.csv
-  A LAMMPS dump (id type x y z radius ...), with what the file does not say:
+  A LAMMPS dump (id type x y z radius ...), with the properties that the file lacks:
     grainlab analyze settle.dump --shear-modulus 29e9 --poisson 0.2 --density 2500 --friction 0.3 --format json
-  A packing in YADE, contact forces included (run the script within YADE, it says how):
+  A packing in YADE, with contact forces (run the script within YADE; its first lines explain how):
     grainlab analyze --yade-script > grainlab_export.py
     grainlab analyze packing.csv
-  What a running simulator publishes, until Ctrl-C, and the messages of the analyzer node about it:
+  The packings of a running simulator, until Ctrl-C, with a recording of the messages of the analyzer node:
     grainlab analyze --live --record measured
-  The same stiffness by straining the packing itself, to see what the linear response leaves out:
+  The stiffness by straining the packing, which includes the nonlinear response:
     grainlab analyze recordings/runs/demo-1-1 --method probe";
 
 /// Files to measure, and data that they lack. A flag takes precedence over a file and its sidecar.

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  What the calibration grainlab was learned from:
+  The packings of the calibration grainlab:
     S=nodes/scenes/ensemble
     nodes/launch/ensemble.sh $S/isotropic.toml \"0.01 0.03 0.1 0.2 0.4 1.0\" 41 44 > isotropic.csv
     nodes/launch/ensemble.sh $S/uniaxial.toml \"0.05 0.1 0.15 0.3\" 11 26 > anisotropic.csv
@@ -23,9 +23,9 @@ Examples:
     grainlab calibrate --isotropic isotropic.csv --anisotropic anisotropic.csv --name mine --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 
-Tables are those that `grainlab analyze --format csv` prints: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
-moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact where they
-are known; and columns that say how each packing was prepared, and which of them it is.";
+Tables have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
+moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact if known;
+and columns that identify the preparation of each packing and the packing.";
 
 /// Packings to learn from.
 #[derive(Debug, clap::Args)]

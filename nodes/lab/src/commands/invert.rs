@@ -37,19 +37,19 @@ const EXAMPLES: &str = "\
 Examples:
   The first state of the paper's Table III (k = 5.73, k_hat = 5.63, eps = 0.016), with 1 % error on each modulus:
     grainlab invert --g12 121.7e6 --g13 127.4e6 --theta 144.4e6 --pressure 50e3 --gamma-over-delta -0.0623 --error 0.01
-  Many states at once, or what an analysis has measured:
+  Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
-  How good the models are on packings whose structure was counted:
+  Errors of the models on packings with counted structure:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
-A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
-columns are ignored. The pressure is needed, and one modulus at least; k, z and eps are for --judge:
+A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown, other
+columns are ignored. The pressure and at least one modulus are required; k, z and eps are for --judge:
   sample, or source and step         kept with the result
-  c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on its medium isotropic about
-  reference_axis_x _y _z             this axis, which all other columns are about, too; without, e3
-{COLUMNS}A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
-in the results, and does not stop the rest; the exit code is that of the worst row.";
+  c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on the medium isotropic about
+  reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3
+{COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status failed or
+undetermined in the results; the other rows are processed. The exit code is that of the worst row.";
 
 /// The data to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]

@@ -24,13 +24,13 @@ Examples:
   grainlab                                  the demo scene
   grainlab launch --scene s2 --seed 3       a scene of the paper
   grainlab launch --scene s2 --set grains.count=500 --set friction=0.2 --set phase.rest.drag=1e3
-  grainlab launch acoustic                  the same, with wave speeds measured and inverted beside the moduli
+  grainlab launch acoustic                  the same, with wave speeds measured and inverted, too
   grainlab launch acoustic method:=standing_wave speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
   grainlab launch --resume recordings/runs/s2-1-1
 
-The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
+The run is stored in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
 /// The run to launch.

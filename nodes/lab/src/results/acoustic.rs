@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_speeds_leave_open_is_null_and_why_there_is_no_medium_is_said() {
+    fn undetermined_moduli_are_null_and_a_missing_medium_has_a_reason() {
         let one = AcousticReport::new(&packing(), speeds(&[Vec3::z()])).medium;
         assert!(one.modulus(Modulus::C33).is_some());
         assert!(one.modulus(Modulus::C11).is_none() && one.stddev(Modulus::C11).is_none());

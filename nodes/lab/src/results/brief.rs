@@ -228,7 +228,7 @@ fn pace(s: &Summary) -> String {
         text += &format!(", {} packings within phases", s.film.packings);
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("; {} was started again {} times", node.name, node.restarts);
+        text += &format!("; {} was restarted {} times", node.name, node.restarts);
     }
     text
 }

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_for_people_leaves_out_what_no_model_knows() {
+    fn the_text_table_leaves_out_what_no_model_infers() {
         let failed = || Inference::failed("ours", "paper", "failed", vec!["because".into()]);
         let text = table(&[s1(0.01), failed()]);
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();

@@ -106,7 +106,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_lattice_says_its_structure_and_its_symmetry() {
+    fn the_text_of_a_lattice_has_its_structure_and_symmetry() {
         let s = serde_json::to_value(measured(&lattice(true))).unwrap();
         assert_eq!(s["symmetry"], "cubic");
         assert_eq!(s["orientation_contacts"], serde_json::json!([2, 0, 0, 0, 0, 0, 0, 0, 0, 1]));
@@ -119,7 +119,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_a_gas_has_not_is_null() {
+    fn quantities_undefined_for_a_gas_are_null() {
         let s = serde_json::to_value(measured(&lattice(false))).unwrap();
         for key in [
             "symmetry",

@@ -49,7 +49,7 @@ pub(crate) fn text(s: &Summary) -> String {
         text += &indented(&t.text());
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("  {} was started again {} times\n", node.name, node.restarts);
+        text += &format!("  {} was restarted {} times\n", node.name, node.restarts);
     }
     text
 }

@@ -78,7 +78,7 @@ fn every_strain_ratio_is_judged_and_one_that_is_not_there_solves_nothing() {
 }
 
 #[test]
-fn rows_that_are_none_are_named_and_not_judged() {
+fn invalid_rows_are_named_and_not_judged() {
     let input = said(&[(5.73, 0.016)]) + "0.1,50,none,,1,1,1,5,0\n";
     let output = grainlab(&["invert", "--table=-", "--judge", "--model=ratio"], input.as_bytes());
     let (out, err) = (text(&output.stdout), text(&output.stderr));

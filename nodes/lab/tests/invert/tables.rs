@@ -171,7 +171,7 @@ fn the_csv_of_analyze_is_a_table_of_states() {
 }
 
 #[test]
-fn a_table_that_is_none_says_what_is_missing() {
+fn an_invalid_table_is_refused_with_what_is_missing() {
     for (input, word) in [
         ("", "empty"),
         ("# only a comment\n", "empty"),
@@ -187,7 +187,7 @@ fn a_table_that_is_none_says_what_is_missing() {
 }
 
 #[test]
-fn thousands_of_states_are_no_table_for_people() {
+fn thousands_of_states_are_not_printed_as_a_text_table() {
     let input = "g12_pa,g13_pa,theta_pa,p_kpa\n".to_owned() + &"1e8,1e8,1.3e8,50\n".repeat(1001);
     let output = grainlab(&["invert", "--table", "-"], input.as_bytes());
     assert_eq!(output.status.code(), Some(2));

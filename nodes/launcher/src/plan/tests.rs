@@ -58,7 +58,7 @@ fn a_value_with_blanks_stays_one_word() {
 }
 
 #[test]
-fn a_program_of_anybodys_gets_its_words_as_a_shell_would_split_them_and_values_without_quotes() {
+fn a_third_party_program_gets_its_words_as_a_shell_would_split_them_and_values_without_quotes() {
     let cmd = r#"python3 probe.py "two words" '' --scene $(var scene)"#;
     let text = format!("{DEFAULT}- executable:\n    cmd: {cmd}\n    name: probe\n");
     let plans = nodes(&text, &[("scene", r#""/a b/scene.toml""#)]).unwrap();
@@ -96,7 +96,7 @@ fn what_is_not_supported_is_refused_and_named() {
 }
 
 #[test]
-fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
+fn a_launched_simulator_does_not_look_for_duplicates_by_default() {
     let mut plans = nodes(DEFAULT, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     for plan in plans {

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Mutex;
 
-/// The rules of admission of one bus, and the topics of its readers. RustDDS asks it for each sample.
+/// The rules of admission of one bus, and the topics of its readers. RustDDS calls it for each sample.
 #[derive(Debug)]
 pub(super) struct Gate {
     identity: Identity,

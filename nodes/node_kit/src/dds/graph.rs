@@ -6,7 +6,7 @@ use crate::sample::WriterId;
 use rustdds::{DomainParticipantStatusEvent as Event, GUID};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Endpoints of other processes, and the matches of ours.
+/// Endpoints of other processes, and the matches of those of this process.
 #[derive(Default)]
 pub(super) struct Graph {
     own: [u8; 12],

@@ -23,7 +23,7 @@ pub enum SearchError {
     },
     /// The grains are in so small a part of the cell that a search would take too long.
     #[error(
-        "the grains lie in a small part of the cell, up to {together} of them in one box of the search: {pairs:.1e} pairs would have to be looked at"
+        "the grains lie in a small part of the cell, up to {together} of them in one box of the search: {pairs:.1e} pairs would have to be checked"
     )]
     Clustered {
         /// Largest number of grains in one box.

@@ -82,7 +82,7 @@ fn a_chain_rings_at_the_frequencies_of_a_chain() {
 }
 
 #[test]
-fn a_motion_that_meets_no_resistance_is_left_out() {
+fn a_polarization_without_stiffness_is_left_out() {
     let packing = chain(12);
     let settings = Settings::default();
     let both = ray(&[Vec3::z(), Vec3::x()]);

@@ -26,7 +26,7 @@ fn rms(of: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn a_silent_instrument_writes_down_what_is_heard() {
+fn without_noise_the_record_is_the_signal() {
     let samples = Instrument::default().record(&sine(), &window(), 1.0, &[0]);
     for (channel, phase) in samples.iter().zip([0.0, 1.0]) {
         for (k, sample) in channel.iter().enumerate() {
@@ -54,7 +54,7 @@ fn noise_has_the_stated_level_and_shots_average_it() {
 }
 
 #[test]
-fn a_trigger_that_jitters_wears_an_average_down_as_a_gaussian_does() {
+fn jitter_attenuates_an_average_like_a_gaussian() {
     let jitter = 0.15 / FREQUENCY;
     let instrument = Instrument { jitter, shots: 2000, ..Instrument::default() };
     let samples = instrument.record(&sine(), &window(), 1.0, &[0]);

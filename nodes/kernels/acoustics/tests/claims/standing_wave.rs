@@ -44,7 +44,7 @@ fn compared(packing: &Packing, curves: &[DispersionCurve]) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn what_rings_has_the_stiffness_of_the_frozen_network() {
+fn standing_waves_have_the_stiffness_of_the_frozen_network() {
     for packing in [sample::isotropic(), sample::anisotropic()] {
         let rays = [
             ray(&packing, [0, 0, 1], &[0, 1]),
@@ -73,7 +73,7 @@ fn what_rings_has_the_stiffness_of_the_frozen_network() {
 }
 
 #[test]
-fn waves_that_ring_at_once_do_not_know_of_each_other() {
+fn waves_excited_at_once_are_independent() {
     let packing = sample::isotropic();
     let (few, _) = quick(&packing, 1, &QUICK);
     let (many, _) = quick(&packing, 1, &Settings { copies: 12, ..QUICK });
@@ -97,7 +97,7 @@ fn the_amplitude_does_not_matter_while_it_is_small() {
 }
 
 #[test]
-fn an_amplitude_that_opens_contacts_is_told_and_widens_the_uncertainty() {
+fn an_amplitude_that_opens_contacts_gives_a_warning_and_a_larger_uncertainty() {
     let packing = sample::anisotropic();
     let (small, _) = quick(&packing, 1, &QUICK);
     for amplitude in [1e-6, 1e-4] {
@@ -111,7 +111,7 @@ fn an_amplitude_that_opens_contacts_is_told_and_widens_the_uncertainty() {
 }
 
 #[test]
-fn noise_widens_the_uncertainty_by_what_it_does() {
+fn noise_widens_the_uncertainty_by_its_effect() {
     let packing = sample::isotropic();
     let rays = [ray(&packing, [0, 0, 1], &[0])];
     let measured = |instrument: &Instrument| curves(&packing, &rays, &QUICK, instrument).unwrap();
@@ -176,7 +176,7 @@ fn settings_out_of_range_are_refused_by_name() {
 }
 
 #[test]
-fn rays_that_are_no_normals_and_packings_without_network_are_refused() {
+fn rays_not_normal_to_planes_and_packings_without_network_are_refused() {
     let packing = sample::isotropic();
     let good = ray(&packing, [0, 0, 1], &[0]);
     let none = Ray { indices: None, ..good.clone() };

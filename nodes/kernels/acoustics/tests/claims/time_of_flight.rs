@@ -16,7 +16,6 @@ const GRAINS: u32 = 8;
 
 /// A chain of equal grains along e3, alone in its cell, with overlaps of a thousandth; `aside` adds a
 /// rattler.
-/// that touches nothing.
 fn chain(aside: bool) -> Packing {
     let step = DIAMETER * (1.0 - 1e-3);
     let length = step * f64::from(GRAINS);
@@ -81,7 +80,7 @@ fn refused(settings: Settings) -> AcousticsError {
 }
 
 #[test]
-fn a_pulse_along_a_chain_goes_as_the_closed_form_says() {
+fn a_pulse_along_a_chain_has_the_speed_of_the_closed_form() {
     let packing = chain(false);
     let (step, speed) = closed_form();
     let settings = Settings::default();
@@ -106,7 +105,7 @@ fn a_pulse_along_a_chain_goes_as_the_closed_form_says() {
 }
 
 #[test]
-fn a_grain_that_touches_nothing_is_not_heard() {
+fn a_grain_without_contacts_does_not_change_the_signal() {
     let signals = |packing: &Packing| {
         curves(packing, &up(packing), &Settings::default(), &Instrument::default()).unwrap()
     };
@@ -131,7 +130,7 @@ fn the_same_bits_whatever_the_threads() {
 }
 
 #[test]
-fn a_path_too_short_says_how_long_it_must_be() {
+fn the_error_of_a_short_path_has_the_length_needed() {
     let packing = chain(false);
     let short = |copies| refused(Settings { copies: Some(copies), ..Settings::default() });
     let AcousticsError::PathTooShort { enough, path, needed, .. } = short(3) else {
@@ -162,7 +161,7 @@ fn a_frequency_above_the_band_is_refused_with_the_cutoff() {
 }
 
 #[test]
-fn one_frequency_gives_a_speed_and_says_how_little_that_is() {
+fn one_frequency_gives_a_speed_with_a_large_uncertainty() {
     let packing = chain(false);
     let (_, speed) = closed_form();
     let frequency = speed / (25.0 * DIAMETER);
@@ -197,8 +196,8 @@ fn settings_out_of_range_are_refused_by_name() {
         assert!(matches!(found, AcousticsError::Setting { name: n, .. } if n == name), "{name} {found:?}");
     }
     let packing = chain(false);
-    let deaf = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
-    assert!(curves(&packing, &up(&packing), &good(), &deaf).is_err());
+    let noisy = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
+    assert!(curves(&packing, &up(&packing), &good(), &noisy).is_err());
 }
 
 #[test]
@@ -220,7 +219,7 @@ fn grains_that_do_not_touch_carry_no_wave() {
 }
 
 #[test]
-fn rays_that_are_none_are_refused() {
+fn invalid_rays_are_refused() {
     let packing = chain(false);
     let [good] = up(&packing);
     let sent = |ray: Ray| curves(&packing, &[ray], &Settings::default(), &Instrument::default());
@@ -252,7 +251,7 @@ fn a_wave_that_opens_contacts_is_called_nonlinear() {
 }
 
 #[test]
-fn a_wave_that_noise_hides_is_no_speed() {
+fn a_wave_hidden_by_noise_gives_no_speed() {
     let packing = chain(false);
     let sent = |signal_to_noise: f64| {
         let instrument = Instrument { signal_to_noise, ..Instrument::default() };

@@ -89,7 +89,7 @@ fn exact_speeds_give_the_exact_axis_whether_or_not_their_errors_are_known() {
 }
 
 #[test]
-fn compression_alone_tells_the_axis_of_a_strongly_anisotropic_medium() {
+fn p_speeds_alone_determine_the_axis_of_a_strongly_anisotropic_medium() {
     let mut numbers = Numbers::new(3);
     for _ in 0..10 {
         let sample = Sample::new(PACKING, numbers.frame());
@@ -103,7 +103,7 @@ fn compression_alone_tells_the_axis_of_a_strongly_anisotropic_medium() {
 }
 
 #[test]
-fn a_medium_that_is_isotropic_within_the_noise_has_no_axis_and_that_is_said() {
+fn a_medium_that_is_isotropic_within_the_noise_gives_an_error_instead_of_an_axis() {
     let mut numbers = Numbers::new(4);
     for relative in [0.0005, 0.003, 0.01] {
         for _ in 0..20 {
@@ -116,7 +116,7 @@ fn a_medium_that_is_isotropic_within_the_noise_has_no_axis_and_that_is_said() {
 }
 
 #[test]
-fn too_few_speeds_are_told_how_many_are_missing_and_where() {
+fn the_error_of_too_few_speeds_has_their_number_and_a_direction() {
     let mut numbers = Numbers::new(5);
     let sample = Sample::new(PACKING, Rotation3::identity());
     let axes = [Vec3::x(), Vec3::z()];
@@ -167,7 +167,7 @@ fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_t
 }
 
 #[test]
-fn speeds_that_are_none_are_refused_as_such() {
+fn invalid_speeds_are_refused_before_the_search() {
     assert_eq!(christoffel::find_axis(&[]), Err(ChristoffelError::NoSpeeds.into()));
     let sample = Sample::new(PACKING, Rotation3::identity());
     let speeds = every_mode(&sample.stiffness, &thirteen(), 0.003, &mut Numbers::new(7));

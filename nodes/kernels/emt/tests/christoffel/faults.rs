@@ -31,7 +31,7 @@ fn about(axis: Option<Vec3>, density: Measured) -> Result<SpeedFit, ChristoffelE
 }
 
 #[test]
-fn no_speeds_are_no_data() {
+fn an_empty_list_of_speeds_is_refused() {
     assert_eq!(fault(Vec::clear), ChristoffelError::NoSpeeds);
 }
 
@@ -69,7 +69,7 @@ fn directions_and_motions_have_unit_length() {
 }
 
 #[test]
-fn the_density_is_that_of_something() {
+fn the_density_is_positive_and_finite() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = about(Some(Vec3::z()), Measured::exact(value)).unwrap_err();
         assert!(matches!(error, ChristoffelError::Density { .. }), "{error}");

@@ -126,7 +126,7 @@ fn uncertainties_must_be_uncertainties() {
 }
 
 #[test]
-fn strain_ratios_that_turn_contacts_inside_out_are_refused() {
+fn strain_ratios_that_open_contacts_are_refused() {
     for g in [-1.0, -1.5, 0.5, 3.0] {
         assert!(matches!(fault(|o| o.conditions.gamma.value = g), EmtError::GammaOutOfRange { .. }));
     }
@@ -198,7 +198,7 @@ fn moduli_of_no_stable_medium_are_used_with_a_warning() {
 
 /// C22 = 1.5 C11 is far from any medium isotropic about e3; the moduli taken are those of the nearest one.
 #[test]
-fn an_orthotropic_stiffness_is_used_with_a_warning_that_tells_its_asymmetry() {
+fn an_orthotropic_stiffness_is_used_with_a_warning_that_has_its_asymmetry() {
     let medium = TransverseIsotropy {
         c11: 240.0e6,
         c12: 60.0e6,

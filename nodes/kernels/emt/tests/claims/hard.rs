@@ -55,7 +55,7 @@ fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_
 /// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: a warning that it is outside or, in models that search only their
 /// range, an error.
 #[test]
-fn a_shear_ratio_of_1_99_is_outside_every_range_and_said_to_be() {
+fn a_shear_ratio_of_1_99_is_outside_every_range_and_reported() {
     for name in PAPER_MODELS {
         // With the usual Θ, no k̂ gives so large a shear modulus.
         let mut o = with_ratio(1.99);
@@ -113,7 +113,7 @@ fn as_s_goes_to_1_k_hat_grows_without_bound_and_from_1_on_there_is_none() {
 }
 
 #[test]
-fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
+fn k_hat_of_3_67_and_4_79_come_back_with_a_warning() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
         for k_hat in [3.67, 4.79] {
             let e = there_and_back(name, Microstructure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
@@ -191,7 +191,7 @@ fn nu_of_a_half_is_the_last_one() {
 }
 
 #[test]
-fn a_bulk_modulus_or_pressure_that_is_none_is_refused_by_name() {
+fn an_invalid_bulk_modulus_or_pressure_is_refused_by_name() {
     for name in PAPER_MODELS {
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut theta = with_ratio(1.02);

@@ -226,7 +226,7 @@ fn unknown_uncertainty_stays_unknown_and_a_known_one_gives_the_95_percent_interv
 
 /// ε depends on G13 and G12 equally and on no other modulus; k depends almost only on the bulk modulus.
 #[test]
-fn information_says_which_datum_decides_which_unknown() {
+fn information_is_the_contribution_of_each_datum() {
     let o = table3::rows()[0].observation().with_relative_error(0.01);
     let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
     let [g12, g13, theta, others @ ..] = e.information(InferredQuantity::Eps).unwrap();

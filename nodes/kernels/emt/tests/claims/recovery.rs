@@ -52,7 +52,7 @@ fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() 
 
 /// Values slightly beyond each end of each range, one at a time.
 #[test]
-fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
+fn outside_its_domain_a_model_predicts_nothing_and_names_the_quantity() {
     for (model, calibration, domain) in calibrated() {
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let inside = Microstructure::of_values(domain.structure.map(|r| r.map(middle)));

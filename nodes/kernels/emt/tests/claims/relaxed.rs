@@ -38,7 +38,7 @@ fn only(all: &Moduli, kept: &[Modulus]) -> Moduli {
 }
 
 #[test]
-fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
+fn missing_moduli_leave_the_rest_and_undetermined_quantities_are_listed() {
     use Modulus::{C11, C33, G12, G13, Theta};
     let all = moduli(5.3, 0.05);
     for set in [&[G12, G13, Theta][..], &[C11, C33], &[G12, G13], &[C11, C33, G12, G13], &[C33, Theta]] {
@@ -73,7 +73,7 @@ fn more_moduli_are_never_worse() {
 /// intervals have their stated coverage. Data with 30 % error give a wide interval or a typed error, never a
 /// wrong estimate with a small uncertainty.
 #[test]
-fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
+fn intervals_contain_the_truth_as_often_as_stated_at_any_noise() {
     let network = ours().network().unwrap();
     let mut random = Random::new(7);
     for (noise, at_least_solved) in [(0.0, 1.0), (0.01, 1.0), (0.05, 0.999), (0.3, 0.5)] {
@@ -138,7 +138,7 @@ fn scattered(
 }
 
 #[test]
-fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
+fn contradictory_data_give_a_warning_that_names_the_outlier() {
     let sound = moduli(5.2, 0.03);
     let conflict = |m: Moduli| {
         let found = infer(m).unwrap();
@@ -157,7 +157,7 @@ fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
 
 /// Six moduli are one more than a medium has: the sixth is a check, and is used.
 #[test]
-fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nobody_gave() {
+fn a_theta_that_contradicts_the_other_five_gives_a_warning_about_given_moduli_only() {
     let sound = moduli(5.2, 0.03);
     let wrong = sound.with(Modulus::Theta, 1.3 * sound.get(Modulus::Theta).unwrap());
     let imbalance = |w: &Warning| matches!(w, Warning::Imbalance { .. });
@@ -221,7 +221,7 @@ fn an_unknown_solid_fraction_is_assumed_and_costs_certainty() {
 }
 
 #[test]
-fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
+fn fewer_grains_scatter_more_and_a_looser_packing_gives_a_warning() {
     let sigma = |grains| {
         let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
         let o = Observation { grains, ..exact };

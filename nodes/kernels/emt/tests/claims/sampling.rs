@@ -77,7 +77,7 @@ fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
 /// At 30 % the linear slopes ignore the upper bound of k̂: the samples are asymmetric, wider, and a part of
 /// them has no solution.
 #[test]
-fn at_30_percent_they_part_and_the_samples_say_so() {
+fn at_30_percent_samples_and_slopes_differ() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
         let o = observed(model(name), &Calibration::PAPER, 0.3).unwrap();
         let linear = model(name).infer(&o, &Calibration::PAPER).unwrap();

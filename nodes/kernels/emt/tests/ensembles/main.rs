@@ -18,7 +18,7 @@ fn ours() -> &'static Calibration {
 /// The constants are learned, not written by hand. Logarithms differ by rounding between libraries: 1e-6 of
 /// each number, an absolute 1e-12 for those that are zero up to rounding.
 #[test]
-fn the_built_in_calibration_is_what_the_kept_ensembles_teach() {
+fn the_built_in_calibration_is_learned_from_the_stored_ensembles() {
     let learned =
         learn("grainlab", &csv::samples("isotropic.csv"), &csv::samples("anisotropic.csv")).unwrap();
     let numbers = |c: &Calibration| -> Vec<String> {

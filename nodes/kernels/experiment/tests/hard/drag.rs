@@ -21,7 +21,7 @@ fn left(e: &mut Engine) -> f64 {
 /// Expected: grains compressed under drag far below the jamming density show a pressure; at rest it is zero.
 /// The unbalanced force indicates this beforehand.
 #[test]
-fn a_pressure_propped_up_by_drag_is_gone_at_rest_and_shows_in_the_unbalanced_force() {
+fn a_pressure_due_to_drag_vanishes_at_rest_and_shows_in_the_unbalanced_force() {
     for seed in 1..4 {
         let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
         let mut s = setting(0.1, 0.0);

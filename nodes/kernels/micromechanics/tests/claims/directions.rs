@@ -49,7 +49,7 @@ fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
 
 /// χ² detects contacts that do not follow Eq. 6: a density 1 + P4.
 #[test]
-fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
+fn chi_squared_detects_a_distribution_that_eq_6_does_not_describe() {
     let fourth = |x: f64| x + 0.125 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
     let directions = drawn(&mut Dice(52), 2000, fourth);
     let fit = orientation_fit(directions.iter().map(|n| n.z)).unwrap();
@@ -57,7 +57,7 @@ fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
 }
 
 #[test]
-fn eps_is_kept_where_no_density_is_negative_and_not_fitted_where_nothing_tells() {
+fn eps_is_kept_where_no_density_is_negative_and_not_fitted_without_information() {
     let chain = orientation_fit([1.0, 1.0, -1.0].into_iter()).unwrap();
     let disc = orientation_fit([0.0, 0.0].into_iter()).unwrap();
     assert_eq!((chain.eps, disc.eps), (1.0, -0.5));

@@ -142,7 +142,7 @@ fn sizes_from_one_to_five_leave_the_relation_alone() {
 
 /// A chain and a simple cubic lattice do not determine how forces depend on direction: the anisotropy is 0.
 #[test]
-fn directions_that_are_not_there_get_no_anisotropy() {
+fn missing_directions_get_no_anisotropy() {
     let chain = structure(&pairs(&[Pair::along(Vec3::z()), Pair::along(Vec3::z())], 1));
     let a = chain.stress.stress_force_fabric.unwrap();
     assert_eq!((largest(&a.normal_forces), largest(&a.tangential_forces)), (0.0, 0.0));

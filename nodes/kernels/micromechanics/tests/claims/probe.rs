@@ -274,7 +274,7 @@ fn the_same_packing_gives_the_same_bits() {
 }
 
 #[test]
-fn what_cannot_be_probed_says_why() {
+fn packings_that_cannot_be_probed_are_refused_with_the_reason() {
     let cell = Cell::cube(1e-3).unwrap();
     let gas = packing(cell, vec![Vec3::zeros(), Vec3::repeat(5e-4)], 1e-4, 0.1, None);
     let refused = strain_probe(&gas, &StrainProbe::default()).unwrap_err();

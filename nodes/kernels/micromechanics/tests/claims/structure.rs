@@ -203,7 +203,7 @@ fn fitted_g_returns_the_law_that_wrote_the_overlaps() {
 }
 
 #[test]
-fn the_unbalanced_ratio_counts_net_forces_of_those_who_carry() {
+fn the_unbalanced_ratio_counts_net_forces_of_non_rattlers() {
     // A closed chain of one grain: two equal and opposite forces.
     let cell = Cell::new(Mat3::from_diagonal(&(Vec3::new(3.0, 3.0, 2.0) * D))).unwrap();
     let mut p = packing(cell, vec![Vec3::zeros(), Vec3::z() * D], 0.5 * D * 1.0001, 0.1, None);

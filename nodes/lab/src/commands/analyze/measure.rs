@@ -1,9 +1,9 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::commands::packings::Measure;
-use crate::results::doubts::doubts;
 use crate::results::measured_packing::MeasuredPacking;
 use crate::results::probe::{ProbeView, ScanView};
+use crate::results::state_warnings::state_warnings;
 use grainlab_core::Packing;
 use grainlab_fabric_analyzer::{Measured, messages};
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
@@ -53,7 +53,7 @@ impl Measure for Analysis {
             measured.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
         }
         let mut warnings = imported.notes.clone();
-        warnings.extend(doubts(packing, report, &imported.notes));
+        warnings.extend(state_warnings(packing, report, &imported.notes));
         warnings.extend(report.elasticity.not_jammed().map(ToString::to_string));
         warnings.extend(probe.and_then(one_sided));
         measured.warnings = warnings;

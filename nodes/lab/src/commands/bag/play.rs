@@ -15,7 +15,7 @@ Examples:
   grainlab bag play recordings/runs/demo-1-1 --rate 10 --start-offset 2.5
 
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
-publishes is left out and named: two writers would mix their messages.";
+publishes is left out with a message: two writers would mix their messages.";
 
 /// Time to discover the publishers, and for all subscriptions to be discovered after the first.
 const LOOK_AROUND: Duration = Duration::from_millis(700);

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_told_to_two_digits() {
+    fn errors_are_printed_with_two_digits() {
         for (value, text) in [(0.000_123_4, "0.00012"), (1.808, "1.8"), (23.7, "24"), (0.0, "0")] {
             assert_eq!(significant(value), text);
         }

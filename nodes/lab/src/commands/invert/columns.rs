@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_no_negative_numbers() {
+    fn negative_errors_are_refused() {
         let fault = state("p_pa,g12_pa,g12_sigma_pa", "5e4,1e8,-1e6").unwrap_err();
         assert!(fault.contains("g12_sigma_pa") && fault.contains("-1000000"), "{fault}");
     }

@@ -164,10 +164,10 @@ impl Board {
         )| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
-            let speaks = move |(q, score): &(InferredQuantity, Score)| {
+            let relevant = move |(q, score): &(InferredQuantity, Score)| {
                 score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
             };
-            InferredQuantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| {
+            InferredQuantity::ALL.into_iter().zip(scores).filter(relevant).map(move |(quantity, score)| {
                 Judged {
                     group: group.clone(),
                     model: way.model.name(),

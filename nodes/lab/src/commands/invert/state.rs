@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_said_of_the_grains_is_the_calibration_s() {
+    fn unknown_properties_of_grains_are_those_of_the_calibration() {
         let state = State { poisson: Some(0.3), ..State::at(Measured::exact(5e4)) };
         let material = state.material(&Calibration::PAPER).unwrap();
         assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));

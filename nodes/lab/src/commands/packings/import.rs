@@ -8,13 +8,13 @@ use std::path::PathBuf;
 
 /// Formats, for the help of a command.
 pub(crate) const FORMATS: &str = "\
-A file that cannot be read is named and the others are measured; the exit code is that of the worst file. Ctrl-C prints what
-is finished and ends with 130. Formats are told by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
+A file that cannot be read is reported and the others are measured; the exit code is the worst of all files. Ctrl-C prints
+the finished results and ends with 130. Formats are recognised by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
 (atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
-comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
-from positions, with Hertz normal forces and no tangential ones. The contact forces of a LAMMPS dump come from these lines,
-all of which are needed where there is friction (fx fy fz of granular pair styles is the normal force alone):
+comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
+from positions, with Hertz normal forces and without tangential ones. The contact forces of a LAMMPS dump need these lines,
+all of them with friction (fx fy fz of granular pair styles is only the normal force):
   compute pl all property/local patom1 patom2
   compute pf all pair/local dist fx fy fz p1 p2 p3
   dump forces all local 1 forces.dump c_pl[*] c_pf[*]

@@ -14,7 +14,7 @@ const RESTLESS: f64 = 0.01;
 const BELOW: f64 = 1e-3;
 
 /// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
-pub(crate) fn doubts(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
+pub(crate) fn state_warnings(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
     [
         restless(report),
         below_its_bound(report),
@@ -134,44 +134,45 @@ mod tests {
         analyze(packing, &Settings::default()).unwrap().report
     }
 
-    fn said(change: impl FnOnce(&mut Packing)) -> String {
+    fn warnings(change: impl FnOnce(&mut Packing)) -> String {
         let mut packing = lattice();
         change(&mut packing);
-        doubts(&packing, &report(&packing), &[]).join("; ")
+        state_warnings(&packing, &report(&packing), &[]).join("; ")
     }
 
     #[test]
-    fn nothing_is_doubted_of_a_packing_at_rest() {
-        assert_eq!(said(|_| ()), "");
+    fn a_packing_at_rest_has_no_warnings() {
+        assert_eq!(warnings(|_| ()), "");
     }
 
     #[test]
-    fn a_contact_that_is_missing_and_one_that_pulls_are_said() {
+    fn missing_and_tensile_contacts_are_reported() {
         assert!(
-            said(|p| _ = p.contacts.pop()).contains("1 contact(s) overlap by position but are not listed")
+            warnings(|p| _ = p.contacts.pop())
+                .contains("1 contact(s) overlap by position but are not listed")
         );
-        let pulls = said(|p| p.contacts[1].normal_force *= -1.0);
+        let pulls = warnings(|p| p.contacts[1].normal_force *= -1.0);
         assert!(pulls.contains("1 contact(s) pull") && pulls.contains("grains 5 and 5"), "{pulls}");
     }
 
     #[test]
-    fn rolling_springs_that_the_network_lacks_are_said() {
+    fn rolling_springs_that_the_network_lacks_are_reported() {
         let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
-        assert!(said(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
+        assert!(warnings(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
     }
 
     #[test]
-    fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_said() {
+    fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_reported() {
         let packing = lattice();
         let mut report = report(&packing);
         assert_eq!(report.unbalanced_force_ratio, Some(0.0));
         let Elasticity::Jammed(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
         stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
         report.unbalanced_force_ratio = Some(0.2);
-        let said = doubts(&packing, &report, &[]).join("; ");
+        let found = state_warnings(&packing, &report, &[]).join("; ");
         assert!(
-            said.contains("below its lower bound") && said.contains("2.00e-1 of the mean contact force"),
-            "{said}"
+            found.contains("below its lower bound") && found.contains("2.00e-1 of the mean contact force"),
+            "{found}"
         );
     }
 }
