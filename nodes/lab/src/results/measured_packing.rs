@@ -72,7 +72,16 @@ pub(crate) mod tests {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
             let tangential_force = Vec3::zeros();
-            Contact { i: 0, j: 0, image, overlap: 1e-8, normal, normal_force: 1e-3, tangential_force }
+            Contact {
+                i: 0,
+                j: 0,
+                image,
+                overlap: 1e-8,
+                normal,
+                normal_force: 1e-3,
+                tangential_force,
+                rolling_force: Vec3::zeros(),
+            }
         };
         Packing {
             step: 12,
