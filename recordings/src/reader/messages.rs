@@ -173,8 +173,8 @@ fn decode(
 ) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
     let content = if block.is_chunk {
-        let record =
-            Records::at(file.bytes(), block.offset as u64).ok_or_else(|| "it is an incomplete record".to_owned());
+        let record = Records::at(file.bytes(), block.offset as u64)
+            .ok_or_else(|| "it is an incomplete record".to_owned());
         match record.and_then(|r| chunk::content(&r)) {
             Ok(content) => content,
             Err(detail) => return damaged(detail),

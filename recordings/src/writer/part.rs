@@ -51,8 +51,7 @@ impl Part {
         let _ = file.try_lock();
         let clone = || file.try_clone().map_err(io("duplicate the handle"));
         let (handle, synced) = (clone()?, clone()?);
-        let sync =
-            DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
+        let sync = DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
         let mcap = options("")
             .chunk_size(Some(chunk_size))
             .create(BufWriter::with_capacity(64 << 10, file))
