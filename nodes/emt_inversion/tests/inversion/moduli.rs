@@ -304,7 +304,7 @@ fn an_axis_that_the_data_cannot_be_turned_to_leaves_them_undetermined() {
         e.warnings.join("; ")
     };
     let why = because(&s1_stiffness(), Axis::Found);
-    assert!(why.contains("name none"), "{why}");
+    assert!(why.contains("these data have none"), "{why}");
     let why = because(&s1(), Axis::Given(Vec3::x()));
     assert!(why.contains("(1.0000, 0.0000, 0.0000)"), "{why}");
     let e = corrected(&s1(), &Settings { axis: Axis::Given(-Vec3::z()), ..Settings::default() });

@@ -368,7 +368,7 @@ mod tests {
         assert_eq!(about("2,0,0").unwrap().moduli, Moduli::of_medium(&turned));
         assert_eq!(about("0,0,1").unwrap().moduli, full.moduli);
         assert_eq!(about(",,").unwrap().moduli, full.moduli);
-        assert!(about("0,0,0").unwrap_err().contains("no direction"));
+        assert!(about("0,0,0").unwrap_err().contains("not a direction"));
 
         // One half of the matrix suffices.
         let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();

@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn a_source_that_never_ends_a_line_is_given_up() {
         let mut lines = Lines::new(Box::new(std::io::repeat(0)), "zeros".into());
-        assert!(lines.piece().err().unwrap().to_string().contains("no table"));
+        assert!(lines.piece().err().unwrap().to_string().contains("not a table"));
         assert!(Lines::open(Path::new("/dev/zero")).err().unwrap().to_string().contains("device"));
     }
 }

@@ -24,6 +24,7 @@ Columns are found by these names, by those of dump_modify colname (patom1 patom2
 
 /// A flag takes precedence over a file and its sidecar.
 #[derive(Debug, clap::Args)]
+#[group(skip)]
 pub(crate) struct Args {
     /// Shear modulus of the grains, Pa
     #[arg(long, value_name = "PA")]
