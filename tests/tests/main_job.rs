@@ -164,7 +164,7 @@ fn the_same_nodes_run_by_hand_and_from_a_launch_file() {
     let ended = Process::start(&mut by_hand).ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
 
-    let file = launch.join("s2.launch.yaml");
+    let file = launch.join("demo.launch.yaml");
     let run =
         lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy(), "--seed", "3"]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);
