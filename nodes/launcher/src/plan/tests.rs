@@ -16,6 +16,7 @@ fn the_default_file_starts_one_of_each_node_on_the_demo() {
     let plans = file.nodes(&BTreeMap::new()).unwrap();
     let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
     assert_eq!(started, [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator]);
+    assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
 }
 
 #[test]
