@@ -2,14 +2,14 @@
 
 use crate::builtin_interfaces::Time;
 
-/// Stamp of simulated time 0, s: far from 1970, so that no viewer takes it for an unset one, and equal in every run, so
-/// that recorded messages are too.
+/// Stamp of simulated time 0, s: far from 1970, so that no viewer takes it for an unset stamp, and the same
+/// in every run, so that recorded messages are, too.
 pub const EPOCH_SECONDS: i32 = 1_000_000_000;
 
 const NANOS: f64 = 1e9;
 
-/// The stamp of a simulated time in seconds: 10⁹ s later, rounded to 1 ns. Times that a stamp cannot hold (more than
-/// 36 years, before the epoch, not a number) give the nearest one that it can, and not a number gives the epoch.
+/// The stamp of a simulated time in seconds: 10⁹ s later, rounded to 1 ns. Times outside the range of a stamp
+/// (more than 36 years, or before the epoch) give the nearest one in it; NaN gives the epoch.
 ///
 /// ```
 /// let t = grainlab_msgs::stamp(0.25);

@@ -1,4 +1,5 @@
-//! serde for fixed arrays longer than 32, which it does not know by itself: a tuple, so that no length is written.
+//! serde for fixed arrays longer than 32, which it does not support: as a tuple, so that no length is
+//! written.
 
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;

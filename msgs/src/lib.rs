@@ -1,14 +1,14 @@
-//! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and the
-//! boundary to the kernels' types.
+//! The messages of the laboratory: generated ROS 2 types, schema texts, type hashes, the topic contract and
+//! the conversion to and from the types of the kernels.
 //!
-//! - [`msg`] and the packages of standard messages beside it: types generated from the message files, ours in `msg/`,
-//!   those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message file:
-//!   `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
-//! - `message`: what every type knows about itself, and [`TypeInfo`], the same as a value
-//! - `cdr`: bytes on the wire
-//! - [`topics`]: the one table of topics, types and QoS
+//! - [`msg`] and the packages of standard messages: types generated from the message files, those of this
+//!   project in `msg/`, those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message
+//!   file: `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
+//! - `message`: name, hash and schema of a type; [`TypeInfo`]: the same as a value
+//! - `cdr`: serialization
+//! - [`topics`]: the table of topics, types and QoS
 //! - `clock`: simulated time as a ROS stamp
-//! - [`boundary`]: messages to and from the kernels' types; everything received is checked here, once
+//! - [`boundary`]: conversion to and from the types of the kernels; everything received is checked here, once
 
 pub mod boundary;
 mod cdr;

@@ -1,4 +1,4 @@
-//! What every message type knows about itself.
+//! Name, hash and schema of a message type.
 
 use serde::{Serialize, de::DeserializeOwned};
 
@@ -12,11 +12,11 @@ pub trait Message: Serialize + DeserializeOwned + Send + 'static {
     const TYPE: &'static str;
     /// Type hash (REP-2016), `RIHS01_` and 64 hexadecimal digits.
     const HASH: &'static str;
-    /// Schema text as rosbag2 writes it: the message file, then every message file it needs.
+    /// Schema text as rosbag2 writes it: the message file, then every message file that it depends on.
     const DEFINITION: &'static str;
 }
 
-/// What a [`Message`] knows, as a value: for programs that handle types by name.
+/// The constants of a [`Message`] as a value: for programs that handle types by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeInfo {
     /// [`Message::PACKAGE`].
@@ -32,7 +32,7 @@ pub struct TypeInfo {
 }
 
 impl TypeInfo {
-    /// Of the type `T`.
+    /// The information of the type `T`.
     pub const fn of<T: Message>() -> Self {
         Self {
             package: T::PACKAGE,
@@ -44,7 +44,7 @@ impl TypeInfo {
     }
 }
 
-/// Puts a schema text together from message files: rosbag2 separates them by 80 equals signs.
+/// Assembles a schema text from message files: rosbag2 separates them by 80 equals signs.
 macro_rules! definition {
     ($root:literal $(, $name:literal => $path:literal)* $(,)?) => {
         concat!(

@@ -1,21 +1,23 @@
-//! What a topic is.
+//! The description of a topic.
 
 use crate::message::TypeInfo;
 
 /// One row of the contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Topic {
-    /// Name: ours are relative, so that a namespace applies to them; the standard ones are absolute.
+    /// Name: those of this project are relative, so that a namespace applies to them; the standard ones are
+    /// absolute.
     pub name: &'static str,
     /// Type, schema text and hash.
     pub info: TypeInfo,
-    /// What the writer offers.
+    /// The QoS that the writer offers.
     pub qos: Qos,
-    /// Node that writes it.
+    /// Node that publishes it.
     pub writer: &'static str,
-    /// Whether every recorded byte is a function of scene and seed: no wall clock, no counter of a process.
+    /// Whether every recorded byte is a function of scene and seed: without a wall clock or a counter of a
+    /// process.
     pub reproducible: bool,
-    /// What it carries, in a line.
+    /// Its content in one line.
     pub summary: &'static str,
 }
 
@@ -31,26 +33,28 @@ pub struct Qos {
 }
 
 impl Qos {
-    /// Streams of which nothing may be lost.
+    /// Streams without losses.
     pub const STREAM: Self = Self { reliable: true, depth: 1000, transient_local: false };
-    /// States of which the latest is what counts.
+    /// States of which only the latest matters.
     pub const LATCHED: Self = Self { reliable: true, depth: 1, transient_local: true };
-    /// States of which the latest is several messages: a late reader gets as many as make a whole one.
+    /// States of several messages: a late reader gets as many as form a complete one.
     pub const LATCHED_SET: Self = Self { reliable: true, depth: 128, transient_local: true };
-    /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it all the same.
+    /// For `/clock`: reliable, so that a recorder gets every tick; ROS 2's best-effort readers match it, too.
     pub const CLOCK: Self = Self { reliable: true, depth: 10, transient_local: false };
-    /// For parts of what is too large for one sample: nothing is repeated by the bus, because the readers ask for what is
-    /// missing, and a dead reader then holds nothing up. The depth is what a writer may be asked for at once.
+    /// For parts of messages too large for one sample: the bus repeats nothing, because readers request
+    /// missing parts, so that a crashed reader does not block the writer. The depth is the number of parts
+    /// that may be in transit at once.
     pub const PARTS: Self = Self { reliable: false, depth: 32, transient_local: false };
     /// ROS 2's for `/rosout`.
     pub const ROSOUT: Self = Self { reliable: true, depth: 1000, transient_local: true };
 
-    /// The profile as rosbag2 writes it into a channel's `offered_qos_profiles` and, as a string, into metadata.yaml: a
-    /// list with one map, numbers for words, so that every distribution reads it. No newline at the end.
+    /// The profile as rosbag2 writes it into a channel's `offered_qos_profiles` and, as a string, into
+    /// metadata.yaml: a list with one map, with numbers instead of words, which every distribution reads. No
+    /// newline at the end.
     pub fn offered_qos_profiles(&self) -> String {
         let reliability = if self.reliable { 1 } else { 2 };
         let durability = if self.transient_local { 1 } else { 2 };
-        // Seconds and nanoseconds of what ROS 2 means by infinite: 2^63 - 1 ns.
+        // Seconds and nanoseconds of the infinite duration of ROS 2: 2^63 - 1 ns.
         let infinite = "\n    sec: 9223372036\n    nsec: 854775807";
         format!(
             "- history: 1\n  depth: {depth}\n  reliability: {reliability}\n  durability: {durability}\n  \
@@ -62,7 +66,7 @@ impl Qos {
 }
 
 impl Topic {
-    /// The name a recording shows without namespace: `/stress`.
+    /// Its name in a recording without namespace: `/stress`.
     pub fn absolute_name(&self) -> String {
         format!("/{}", self.name.trim_start_matches('/'))
     }

@@ -1,12 +1,12 @@
-//! The contract: every topic of the laboratory, its type, its QoS and who writes it. Nothing else names a topic.
+//! The contract: every topic with its type, QoS and writer. Topics are named only here.
 
 use crate::message::TypeInfo;
 use crate::topic::{Qos, Topic};
 use crate::{diagnostic_msgs, msg, rcl_interfaces, rosgraph_msgs, tf2_msgs};
 
 impl Topic {
-    /// The row of a topic, by its name with or without the leading slash. A namespace in front of one of our names does
-    /// not hide it; the standard topics have none.
+    /// The row of a topic, by its name with or without the leading slash. Names of this project may have a
+    /// namespace; the standard topics have none.
     ///
     /// ```
     /// use grainlab_msgs::Topic;
@@ -21,13 +21,14 @@ impl Topic {
         })
     }
 
-    /// Whether it only carries another topic's messages in parts: it is never recorded, what it carries is.
+    /// Whether it carries only parts of another topic's messages: it is never recorded, but the whole
+    /// messages are.
     pub fn is_transport(&self) -> bool {
         self.info == PACKING_CHUNK.info || self.info == PACKING_CREDIT.info
     }
 }
 
-/// The servo's question: one request of the lockstep.
+/// Requests to the servo.
 pub const STRESS: Topic = Topic {
     name: "stress",
     info: TypeInfo::of::<msg::Stress>(),
@@ -37,7 +38,7 @@ pub const STRESS: Topic = Topic {
     summary: "one request of the lockstep: stress, setpoints, clamps, tangent stiffness",
 };
 
-/// The servo's answer.
+/// Answers of the servo.
 pub const STRAIN_RATE: Topic = Topic {
     name: "strain_rate",
     info: TypeInfo::of::<msg::StrainRate>(),
@@ -57,7 +58,7 @@ pub const PACKING: Topic = Topic {
     summary: "the complete mechanical state: grains, contacts, loading path",
 };
 
-/// Parts of packings that are too large for one sample of [`PACKING`]. Transport: recorders write the whole.
+/// Parts of packings that are too large for one sample of [`PACKING`]. Recorders write the whole packing.
 pub const PACKING_CHUNK: Topic = Topic {
     name: "packing_chunk",
     info: TypeInfo::of::<msg::PackingChunk>(),
@@ -67,14 +68,14 @@ pub const PACKING_CHUNK: Topic = Topic {
     summary: "parts of a packing over 2 MB; never recorded, the whole packing is",
 };
 
-/// What each reader of packings has of the parts.
+/// The parts that each reader of packings has.
 pub const PACKING_CREDIT: Topic = Topic {
     name: "packing_credit",
     info: TypeInfo::of::<msg::PackingCredit>(),
     qos: Qos::PARTS,
     writer: "every reader of packings",
     reproducible: false,
-    summary: "which parts a reader has, and whether it takes more; never recorded",
+    summary: "the parts that a reader has, and whether it takes more; never recorded",
 };
 
 /// Structure of a packing.
@@ -94,7 +95,7 @@ pub const MODULI: Topic = Topic {
     qos: Qos::LATCHED,
     writer: "fabric_analyzer",
     reproducible: true,
-    summary: "stiffness and what an inversion needs beside it",
+    summary: "stiffness and the other inputs of an inversion",
 };
 
 /// Wave speeds, real or virtual.
@@ -107,27 +108,27 @@ pub const WAVE_SPEEDS: Topic = Topic {
     summary: "wave speeds by direction and polarisation; an instrument may write them, too",
 };
 
-/// Traces behind the wave speeds, a message a wave.
+/// Traces of the wave speeds, one message per wave.
 pub const WAVEFORM: Topic = Topic {
     name: "waveform",
     info: TypeInfo::of::<msg::Waveform>(),
     qos: Qos::LATCHED_SET,
     writer: "acoustic_probe",
     reproducible: true,
-    summary: "the traces behind the wave speeds, a message a wave",
+    summary: "the traces of the wave speeds, one message per wave",
 };
 
-/// What was inferred.
+/// Inferred microstructure.
 pub const MICROSTRUCTURE: Topic = Topic {
     name: "microstructure",
     info: TypeInfo::of::<msg::Microstructure>(),
     qos: Qos::LATCHED,
     writer: "emt_inversion",
     reproducible: true,
-    summary: "inferred microstructure, one estimate a model",
+    summary: "inferred microstructure, one estimate per model",
 };
 
-/// Where the run stands.
+/// Phase and progress of the run.
 pub const RUN_STATE: Topic = Topic {
     name: "run_state",
     info: TypeInfo::of::<msg::RunState>(),
@@ -137,7 +138,7 @@ pub const RUN_STATE: Topic = Topic {
     summary: "phase, progress, finished, step of the last packing",
 };
 
-/// Simulated time, for tools; nothing in the laboratory waits for it.
+/// Simulated time, for tools; no node of grainlab waits for it.
 pub const CLOCK: Topic = Topic {
     name: "/clock",
     info: TypeInfo::of::<rosgraph_msgs::Clock>(),
@@ -157,7 +158,7 @@ pub const ROSOUT: Topic = Topic {
     summary: "logs",
 };
 
-/// Health. Deeper than ROS 2's 10, so that a recording misses nothing.
+/// Health. Deeper than ROS 2's 10, so that a recording is complete.
 pub const DIAGNOSTICS: Topic = Topic {
     name: "/diagnostics",
     info: TypeInfo::of::<diagnostic_msgs::DiagnosticArray>(),

@@ -4,7 +4,7 @@ use crate::generated::TYPES;
 use crate::message::TypeInfo;
 
 impl TypeInfo {
-    /// The type with this full ROS name, if it is one of ours or of the standard ones that we use.
+    /// The type with this full ROS name, if it is a type of this project or a standard one in use.
     ///
     /// ```
     /// let clock = grainlab_msgs::TypeInfo::by_name("rosgraph_msgs/msg/Clock").unwrap();
@@ -14,7 +14,7 @@ impl TypeInfo {
         Self::all().iter().find(|t| t.type_name == type_name)
     }
 
-    /// Every type known here, sorted by name.
+    /// Every known type, sorted by name.
     pub const fn all() -> &'static [Self] {
         TYPES
     }

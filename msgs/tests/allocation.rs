@@ -1,4 +1,4 @@
-//! A length prefix is not taken at its word.
+//! Length prefixes are not trusted.
 
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Microstructure, Packing, Waveform};
@@ -10,11 +10,11 @@ struct Largest;
 
 static LARGEST: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: every call is passed on to the system's allocator unchanged.
+// SAFETY: every call is passed unchanged to the allocator of the system.
 unsafe impl GlobalAlloc for Largest {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         LARGEST.fetch_max(layout.size(), Relaxed);
-        // SAFETY: the caller's promises are the ones that `System` asks for.
+        // SAFETY: the caller guarantees the conditions of `System`.
         unsafe { System.alloc(layout) }
     }
 
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Largest {
 #[global_allocator]
 static ALLOCATOR: Largest = Largest;
 
-/// Every aligned word of a small message in turn says "four billion elements follow".
+/// Every aligned word of a small message in turn becomes a length of four billion elements.
 #[test]
 fn an_absurd_length_reserves_no_memory() {
     LARGEST.store(0, Relaxed);
@@ -41,7 +41,8 @@ fn an_absurd_length_reserves_no_memory() {
     absurd::<Microstructure>();
     absurd::<Waveform>();
     absurd::<DiagnosticArray>();
-    // The messages have some 300 bytes, and so do their errors' texts; a promise taken at its word would be gigabytes.
+    // The messages and the texts of their errors have some 300 bytes; memory for a false length would be
+    // gigabytes.
     let largest = LARGEST.load(Relaxed);
     assert!(largest < 100_000, "{largest} bytes in one piece");
 }

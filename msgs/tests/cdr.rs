@@ -1,4 +1,4 @@
-//! Decoding of whatever arrives.
+//! Decoding of arbitrary bytes.
 
 mod every_type;
 
@@ -12,7 +12,7 @@ use proptest::array::uniform9;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// Any bit pattern, so that infinities, subnormals and every NaN are among them.
+/// Any bit pattern, including infinities, subnormals and every NaN.
 fn any_f64() -> impl Strategy<Value = f64> {
     any::<u64>().prop_map(f64::from_bits)
 }
@@ -70,7 +70,7 @@ proptest! {
         for_every_type!(decode);
     }
 
-    /// Corruption of a good message gets further than noise does.
+    /// A corrupted valid message is decoded further than noise.
     #[test]
     fn corrupted_messages_never_panic(packing in any_packing(), at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let mut bytes = to_cdr(&packing);

@@ -1,4 +1,4 @@
-//! The checked-in types are what the message files say now.
+//! The checked-in types agree with the message files.
 
 #[path = "../examples/generate/generator/mod.rs"]
 mod generator;
@@ -33,7 +33,7 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// What tools outside do not read alike is refused: bounded arrays, wide strings, characters.
+/// Types that other tools read differently are refused: bounded arrays, wide strings, characters.
 #[test]
 fn what_tools_disagree_about_is_refused() {
     let folder = tempdir("refused");

@@ -1,5 +1,5 @@
-//! Every type against software that is not ours: `golden/make_golden.py` made schema texts, type hashes and CDR bytes
-//! with rosbags and mcap-ros2-support, and compared the standard types with those of ROS 2 Jazzy.
+//! Every type against independent software: `golden/make_golden.py` made schema texts, type hashes and CDR
+//! bytes with rosbags and mcap-ros2-support, and compared the standard types with those of ROS 2 Jazzy.
 
 mod every_type;
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The same nodes as `grainlab launch` starts, as plain processes, for people who script.
+# The same nodes as `grainlab launch` starts, as plain processes, for scripts.
 #
 #   nodes/launch/by_hand.sh [SCENE] [SEED] [DIRECTORY]
 #
@@ -11,7 +11,7 @@ scene=${1:-demo}
 seed=${2:--1}
 directory=${3:-}
 
-# One run: its processes ignore everybody else in the domain, and their recorder leaves everybody else out.
+# One run: its processes ignore all others in the domain, and the recorder leaves those out.
 export GRAINLAB_RUN="${GRAINLAB_RUN:-by_hand_$$}" GRAINLAB_RUN_ROOT=$$
 
 GRAINLAB_MEMBER=1 setsid "$grainlab" run recorder --ros-args -p scene:="$scene" -p seed:="$seed" ${directory:+-p output:="$directory"} &
@@ -26,7 +26,7 @@ GRAINLAB_MEMBER=5 setsid "$grainlab" run dem_simulator --ros-args -p scene:="$sc
     -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &
 simulator=$!
 
-# Each node is in a session of its own: Ctrl-C reaches this script alone, which ends them in their order.
+# Each node has its own session: Ctrl-C reaches only this script, which ends the nodes in order.
 trap 'kill -TERM $simulator 2>/dev/null || true' INT TERM
 code=0
 wait "$simulator" || code=$?

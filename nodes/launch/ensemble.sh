@@ -1,13 +1,13 @@
 #!/bin/sh
-# Prepares packings of one kind, measures them, and prints one line of CSV for each: what `grainlab calibrate` learns from
-# and `grainlab invert --table FILE --judge` is judged on.
+# Prepares packings of one kind, measures them, and prints one line of CSV for each, for `grainlab calibrate` and
+# `grainlab invert --table FILE --judge`.
 #
 #   nodes/launch/ensemble.sh SCENE "MU2 ..." FIRST_SEED LAST_SEED [RUNS] > measurements.csv
 #
 # SCENE is a scene whose friction takes each MU2 in turn, such as those in nodes/scenes/ensemble.
-# GRAINLAB names the binary (default: grainlab on the PATH). Runs land in RUNS (default: recordings/runs); one that is there
-# already, by the name of scene, mu2 and seed, is measured and not repeated, so an interrupted ensemble goes on: take another
-# folder for a scene that was edited.
+# GRAINLAB names the binary (default: grainlab on the PATH). Runs are written to RUNS (default: recordings/runs). A run that
+# exists there, by the name of scene, mu2 and seed, is measured and not repeated, so that an interrupted ensemble can be
+# continued: use another folder after editing a scene.
 set -eu
 grainlab=${GRAINLAB:-grainlab}
 [ $# -ge 4 ] || { sed -n '5p' "$0" | cut -c 5- >&2; exit 2; }
@@ -22,8 +22,8 @@ preparation=$(basename "$scene" .toml)
 columns=grains,phi,pressure_pa,k,z,eps,eps_stiffness,g_total,g_elastic,g_contact
 columns=$columns,g12_pa,g13_pa,theta_pa,ti_c11_pa,ti_c33_pa,ti_c13_pa,grain_shear_modulus_pa,poisson
 
-# The first run of this name that came to a good end; nothing if there is none. An interrupted one writes a summary, too,
-# and its last packing is not at rest.
+# The first successful run of this name, or nothing. An interrupted run also writes a summary, but its last packing is not
+# at rest.
 finished() {
     for summary in "$runs/$1"-*/summary.json; do
         if [ -f "$summary" ] && grep -q '^  "exit": 0,$' "$summary"; then
@@ -37,7 +37,7 @@ row=$(mktemp)
 trap 'rm -f "$row"' EXIT
 header=preparation,mu2,seed,$columns
 for mu2 in $frictions; do
-    # A name has no point: 0.05 becomes 005.
+    # A name must not contain a point: 0.05 becomes 005.
     name=${preparation}_$(printf %s "$mu2" | tr -d .)
     seed=$first
     while [ "$seed" -le "$last" ]; do

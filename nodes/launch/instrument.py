@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""An acoustic instrument of anybody's: sends one set of wave speeds, prints the microstructure that comes back.
+"""A third-party acoustic instrument: sends one set of wave speeds, prints the microstructure received.
 
-   pip install cyclonedds==11.0.1       # no ROS, and nothing of this project but its message files
+   pip install cyclonedds==11.0.1       # no ROS, and only the message files of this project
    ROS_DOMAIN_ID=77 instrument.py       # while `grainlab run emt_inversion` runs in the same domain
 
 With --json what was sent and what came back are printed whole. CYCLONEDDS_URI, if set, chooses the network; else it is this host alone.
@@ -23,7 +23,7 @@ from ros_messages import LATCHED, message  # noqa: E402
 WaveSpeeds, WaveSpeed = message("grainlab_msgs/msg/WaveSpeeds"), message("grainlab_msgs/msg/WaveSpeed")
 Microstructure, Vector3 = message("grainlab_msgs/msg/Microstructure"), message("geometry_msgs/msg/Vector3")
 
-# Glass beads under 50 kPa, axis upright: direction, particle motion, and speed in m/s, known to 0.3 %.
+# Glass beads under 50 kPa, axis vertical: direction, polarization, and speed in m/s, with an error of 0.3 %.
 UP, ACROSS, ASIDE, SLANTED = [Vector3(*v) for v in ((0., 0., 1.), (1., 0., 0.), (0., 1., 0.), (0.6, 0., 0.8))]
 HEARD = [(UP, UP, 437.2), (ACROSS, ACROSS, 425.0), (UP, ACROSS, 269.1), (ACROSS, UP, 270.3),
          (ACROSS, ASIDE, 264.9), (SLANTED, SLANTED, 433.0)]
@@ -41,7 +41,7 @@ def domain():
 
 
 class Instrument:
-    """A writer of wave speeds and a reader of what is inferred, once both have found the inversion."""
+    """A writer of wave speeds and a reader of the estimates, once both have discovered the inversion."""
 
     def __init__(self, seconds=20.0):
         self.participant = DomainParticipant(domain())

@@ -1,6 +1,6 @@
 #!/bin/sh
-# An instrument that is not ours, in front of our inversion: nodes/launch/instrument.py sends wave speeds by CycloneDDS and
-# prints the microstructure that comes back.
+# A third-party instrument with the inversion node: nodes/launch/instrument.py sends wave speeds by CycloneDDS and prints
+# the microstructure that it receives.
 #
 #   nodes/launch/instrument.sh [--json]
 #
@@ -10,7 +10,7 @@ set -eu
 export ROS_DOMAIN_ID="${ROS_DOMAIN_ID:-77}"
 setsid "${GRAINLAB:-grainlab}" run emt_inversion &
 inversion=$!
-# In a session of its own, Ctrl-C does not reach the node: it is ended here, whatever happens.
+# The node has its own session, which Ctrl-C does not reach: it is ended here in any case.
 trap 'kill -INT $inversion 2>/dev/null || true; wait $inversion 2>/dev/null || true' EXIT
 trap 'exit 130' INT TERM
 "${PYTHON:-python3}" "$(dirname "$0")/instrument.py" "$@"

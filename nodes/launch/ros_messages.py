@@ -1,4 +1,4 @@
-"""ROS 2 message files as types of CycloneDDS, read when they are asked for: they cannot say anything else than the files.
+"""ROS 2 message files as types of CycloneDDS, read on demand, so that they always agree with the files.
 
    WaveSpeeds = message("grainlab_msgs/msg/WaveSpeeds")
 
@@ -24,7 +24,7 @@ PRIMITIVES = {"string": str, "bool": bool, "byte": idl.uint8} | {
     for name in "int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64".split()
 }
 
-# What every topic of the contract but the lockstep's is: the latest is there for those who come later.
+# QoS of every topic of the contract but those of the lockstep: late readers receive the latest sample.
 LATCHED = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),
     Policy.Durability.TransientLocal,
@@ -53,7 +53,7 @@ def message(name):
 
 
 def kind(base, package, brackets, length):
-    """The type of a field, and what makes one of zeros."""
+    """The type of a field, and a constructor of its zero value."""
     if base in PRIMITIVES:
         element = PRIMITIVES[base]
         zero = element if element in (str, bool) else float if base.startswith("float") else int

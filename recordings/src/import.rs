@@ -1,10 +1,10 @@
-//! Packings from other sources: CSV with a JSON sidecar, LAMMPS dump and data files, text exports of YADE, and
-//! our own recordings.
+//! Packings from other sources: CSV with a JSON sidecar, LAMMPS dump and data files, text exports of YADE,
+//! and recordings of grainlab.
 //!
-//! The parsers take text; [`load`] and [`each`] take a path, decompress `.gz` and pick the parser by content. Whatever
-//! the source, the result is a validated [`grainlab_core::Packing`] in its conventions: contacts `i < j` by index,
-//! normal from `i` to the image of `j`, tangential force on `i`. Where a source does not list contacts they are found
-//! from positions, with Hertz normal forces and no tangential force.
+//! The parsers take text; [`load`] and [`each`] take a path, decompress `.gz` and select the parser by
+//! content. For every source, the result is a validated [`grainlab_core::Packing`] in its conventions:
+//! contacts `i < j` by index, normal from `i` to the image of `j`, tangential force on `i`. If a source does
+//! not list contacts, they are found from positions, with Hertz normal forces and without tangential forces.
 
 mod assemble;
 pub mod contacts;

@@ -1,7 +1,7 @@
 //! External files: regular files of bounded size.
 //!
-//! A device may never end, a pipe may never begin, and a few bytes of gzip may be gigabytes of text: none of them may
-//! exhaust the memory or block a command.
+//! A device may be endless, a pipe may block, and a few bytes of gzip may decompress to gigabytes: none of
+//! them may exhaust the memory or block a command.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -16,8 +16,7 @@ pub const SETTINGS: u64 = 1 << 20;
 /// Maximum size of tables and packings as text, bytes, decompressed.
 pub const TEXT: u64 = 4 << 30;
 
-/// Maximum compression ratio of a text. Numbers compress to a third; zeros to a
-/// thousandth.
+/// Maximum compression ratio of a text. Numbers compress to a third, zeros to a thousandth.
 const RATIO: u64 = 64;
 
 /// Decompressed size that is always accepted, bytes.
@@ -41,7 +40,7 @@ pub fn open(path: &Path) -> io::Result<(File, u64)> {
     } else {
         "a device"
     };
-    let problem = format!("it is {what}, not a file: write what comes from it to a file first");
+    let problem = format!("it is {what}, not a file: write its content to a file first");
     Err(io::Error::new(ErrorKind::InvalidInput, problem))
 }
 
@@ -52,14 +51,14 @@ pub fn open(path: &Path) -> io::Result<(File, u64)> {
 pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let (file, size) = open(path)?;
     let too_large = || {
-        let problem = format!("it has more than {most} bytes, which is more than any such file has");
+        let problem = format!("it has more than {most} bytes, the maximum for such files");
         io::Error::new(ErrorKind::FileTooLarge, problem)
     };
     if size > most {
         return Err(too_large());
     }
     let mut content = Vec::with_capacity(size as usize);
-    // The stated size may be wrong, as in /proc.
+    // The stated size may be wrong, for example in /proc.
     file.take(most + 1).read_to_end(&mut content)?;
     if content.len() as u64 > most { Err(too_large()) } else { Ok(content) }
 }
@@ -71,7 +70,7 @@ pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(bytes(path, most)?).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        io::Error::new(ErrorKind::InvalidData, format!("it is not text: byte {at} is no UTF-8"))
+        io::Error::new(ErrorKind::InvalidData, format!("it is not text: byte {at} is not UTF-8"))
     })
 }
 
@@ -95,7 +94,7 @@ pub fn gunzip(compressed: &[u8]) -> io::Result<Vec<u8>> {
     })?;
     if content.len() as u64 > most {
         let problem = format!(
-            "its {} compressed bytes are more than {most} bytes of text, which no table of numbers is: unpack it first",
+            "its {} compressed bytes decompress to more than {most} bytes, the maximum for a table: unpack it first",
             compressed.len()
         );
         return Err(io::Error::new(ErrorKind::FileTooLarge, problem));

@@ -1,8 +1,8 @@
 //! Counts of recorded, lost and repeated messages, per topic and per writer.
 //!
-//! Loss is found from RTPS sequence numbers, which count every message of one writer from 1: a missing number is
-//! a lost message, wherever it was lost. Messages that a writer sent after the last number received are known only
-//! to that writer, which reports its count when it ends ([`Ledger::report`]).
+//! Loss is found from RTPS sequence numbers, which count every message of one writer from 1: a missing number
+//! is a lost message, wherever it was lost. Messages that a writer sent after the last number received are
+//! known from its report at its end ([`Ledger::report`]).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -90,7 +90,7 @@ impl Ledger {
         }
     }
 
-    /// Notes that a writer reports `count` published messages in total. The largest report counts.
+    /// Records that a writer reports `count` published messages in total. The largest report counts.
     pub fn report(&mut self, topic: &str, guid: Guid, count: u64) {
         self.expect(topic);
         if let Some(writers) = self.topics.get_mut(topic) {
@@ -99,7 +99,7 @@ impl Ledger {
         }
     }
 
-    /// Notes the node of a writer.
+    /// Records the node of a writer.
     pub fn name(&mut self, guid: Guid, node: &str) {
         self.nodes.insert(guid, node.to_owned());
     }

@@ -1,4 +1,5 @@
-//! Recordings of runs: MCAP files in the conventions of rosbag2, written so that a crash loses half a second at most.
+//! Recordings of runs: MCAP files in the conventions of rosbag2, written so that a crash loses at most half a
+//! second.
 //!
 //! - `writer`: writes a run directory (`<name>_0.mcap` … and `metadata.yaml`), safe against crashes
 //! - `ledger`: counts of recorded, lost and repeated messages, per topic and per writer
@@ -9,7 +10,8 @@
 //! - [`export`]: packings to CSV and LAMMPS dump files
 //! - [`input`]: external files, regular and of bounded size; [`runs`]: run directories
 //!
-//! This crate does not use DDS: a thin shell passes samples to the writer and takes them from the player.
+//! This crate does not use DDS: the recorder and player nodes pass samples to the writer and take them from
+//! the player.
 
 mod bag_metadata;
 pub mod export;

@@ -1,4 +1,4 @@
-//! The schedule of a playback, without a clock or a socket of its own.
+//! The schedule of a playback, without a clock or a socket.
 //!
 //! The caller passes the time and sends what is due. Messages keep their order and their intervals in log
 //! time. If the caller falls behind, the whole schedule is delayed, so that topics stay in proportion, and
@@ -54,7 +54,7 @@ pub enum PlayError {
     /// Nothing is left to play.
     #[error("start offset {offset:?} is beyond the end: the recording lasts {length:?}")]
     BeyondEnd {
-        /// The offset asked for.
+        /// The offset set.
         offset: Duration,
         /// Length of the recording.
         length: Duration,

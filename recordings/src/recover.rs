@@ -1,9 +1,10 @@
 //! Completes the file of a recorder that was killed, so that every tool reads it.
 //!
-//! All readable messages are written again, one by one, with a proper end: bytes, log times, publish times and
-//! sequences of messages, schemas, channels with their metadata, attachments and metadata records are unchanged.
-//! Nothing is invented: a damaged chunk is left out and reported. The new file is written beside the old one, checked,
-//! and renamed to it; the old one is kept as `<name>.mcap.orig`. A directory gets a new `metadata.yaml`.
+//! All readable messages are written again, one by one, into a complete file: bytes, log times, publish times
+//! and sequences of messages, schemas, channels with their metadata, attachments and metadata records are
+//! unchanged. Nothing is added: a damaged chunk is left out and reported. The new file is written beside the
+//! old one, checked, and renamed to it; the old one is kept as `<name>.mcap.orig`. A directory gets a new
+//! `metadata.yaml`.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -37,14 +38,14 @@ pub struct RecoveredFile {
     pub path: PathBuf,
     /// Number of messages in the new file.
     pub messages: u64,
-    /// Path of the original file; `None` if nothing had to be done.
+    /// Path of the original file; `None` if it was complete.
     pub original: Option<PathBuf>,
     /// Parts that could not be read, and are not in the new file.
     pub unreadable: Vec<Warning>,
 }
 
 impl Recovery {
-    /// Whether anything had to be done.
+    /// Whether the file was incomplete.
     pub fn changed(&self) -> bool {
         self.metadata_written || self.files.iter().any(|f| f.original.is_some())
     }
@@ -67,7 +68,7 @@ pub enum RecoverError {
         /// The file.
         path: PathBuf,
     },
-    /// It has its proper end and is damaged: writing it again could only lose more.
+    /// It is complete but damaged: writing it again could only lose more.
     #[error(
         "{path} is complete but damaged ({first}): nothing was changed; its readable part can be used as it is, and `grainlab bag check` lists all damage"
     )]
@@ -97,8 +98,8 @@ pub enum RecoverError {
     },
 }
 
-/// Completes the file, or all files of the directory, that a killed recorder left without their end. A second call
-/// changes nothing.
+/// Completes the file, or all incomplete files of the directory, of a killed recorder. A second call changes
+/// nothing.
 ///
 /// # Errors
 /// If a recorder is writing it, a complete file is damaged, the file system fails, or there is no recording.
@@ -154,9 +155,9 @@ fn file(path: PathBuf) -> Result<RecoveredFile, RecoverError> {
     });
     let written = outcome.inspect_err(|_| _ = fs::remove_file(&new))?;
     drop(recording);
-    let original = keep(&path).map_err(io("keep the original beside it"))?;
-    fs::rename(&new, &path).map_err(io("put the new file in its place"))?;
-    sync_directory(&path).map_err(io("push the directory to the device"))?;
+    let original = keep(&path).map_err(io("keep the original"))?;
+    fs::rename(&new, &path).map_err(io("replace it by the new file"))?;
+    sync_directory(&path).map_err(io("sync the directory to the device"))?;
     Ok(RecoveredFile {
         path,
         messages: written.messages,
@@ -174,14 +175,14 @@ fn compare(old: &Recording, new: &Recording) -> Result<(), String> {
         match (a.next(), b.next()) {
             (None, None) => break,
             (Some(a), Some(b)) if a.says_the_same(&b) => {}
-            _ => return Err(format!("message {n} is another than in the original")),
+            _ => return Err(format!("message {n} differs from the original")),
         }
     }
     Ok(())
 }
 
-/// Keeps the original under another name: by a second link, so that a recording exists at any time; where the file
-/// system has no links, it is renamed.
+/// Keeps the original under another name: by a second link, so that a recording exists at any time. On a file
+/// system without links it is renamed.
 fn keep(path: &Path) -> io::Result<PathBuf> {
     for n in 0u32.. {
         let suffix = if n == 0 { ".orig".to_owned() } else { format!(".orig{n}") };

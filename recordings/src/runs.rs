@@ -1,4 +1,4 @@
-//! Run directories: one per run, never used twice.
+//! Run directories: one per run, never reused.
 
 use std::fs;
 use std::io;
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 /// Folder of the run directories, under the current folder.
 pub const RUNS: &str = "recordings/runs";
 
-/// Makes the next free directory `<root>/<scene>-<seed>-<n>`, n = 1, 2, …, and returns it. Two processes that
-/// call it at once get two directories.
+/// Creates the next free directory `<root>/<scene>-<seed>-<n>`, n = 1, 2, …, and returns it. Two processes
+/// that call it at the same time get two directories.
 ///
 /// # Errors
-/// If a directory cannot be made for another reason than that it exists.
+/// If a directory cannot be created for another reason than that it exists.
 pub fn create_run_directory(root: &Path, scene: &str, seed: u64) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     for n in 1u64.. {

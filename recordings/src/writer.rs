@@ -1,10 +1,10 @@
-//! Writes a run directory; a crash loses the open chunk at most.
+//! Writes a run directory; a crash loses at most the open chunk.
 //!
 //! The files follow rosbag2: profile `ros2`, schemas `ros2msg`, messages in CDR with their encapsulation
 //! header, QoS and type hash in the channel's metadata. Chunks are built in memory and written whole, with
-//! their CRC; a chunk that is not empty is closed after [`WriterOptions::flush_interval`] at the latest. So
-//! the data on disk are a valid prefix at any time, which the reader can read. A file is synced to the
-//! device about once a second from another thread.
+//! their CRC. A chunk that is not empty is closed after [`WriterOptions::flush_interval`] at the latest, so
+//! that the data on disk are a valid prefix at any time. Another thread syncs the file to the device about
+//! once a second.
 //!
 //! A long run is split into files `<name>_0.mcap`, `<name>_1.mcap` … as rosbag2 does, since the index of a file is kept
 //! in memory until its end. Each part declares all topics and holds the counts so far; log times increase over
@@ -47,7 +47,7 @@ pub struct Incoming<'a> {
     pub guid: Guid,
     /// RTPS sequence number, counted from 1 by each writer.
     pub sequence: i64,
-    /// Source time, ns since 1970, if the writer gave it.
+    /// Source time, ns since 1970, if known.
     pub source_time: Option<u64>,
     /// Time of arrival, ns since 1970.
     pub receive_time: u64,
@@ -63,7 +63,7 @@ pub enum Outcome {
         /// Log time, ns since 1970, strictly increasing over the recording.
         log_time: u64,
     },
-    /// It was recorded before: counted, not written again.
+    /// It was recorded before: counted, and not written again.
     Repeated,
 }
 
@@ -91,7 +91,7 @@ pub struct Finished {
 pub struct RunWriter {
     directory: PathBuf,
     name: String,
-    /// Of the file being written.
+    /// Name of the file being written.
     number: u64,
     file: PathBuf,
     options: WriterOptions,
@@ -122,8 +122,8 @@ pub struct RunWriter {
 const CHECK_EVERY: u64 = 1 << 20;
 
 impl RunWriter {
-    /// Begins `<directory>/<name>_0.mcap` with these topics; the directory is made if need be. For rosbag2,
-    /// `name` should be the directory's own name.
+    /// Begins `<directory>/<name>_0.mcap` with these topics; creates the directory if necessary. For rosbag2,
+    /// `name` should be that of the directory.
     ///
     /// # Errors
     /// If the file exists, space is short, or the file system fails.
@@ -136,12 +136,14 @@ impl RunWriter {
         Self::begin(directory, name, topics, options, 0, BagMetadata::default())
     }
 
-    /// Goes on with a run: begins `<directory>/<name>_<n>.mcap`, with the next number that is free. What is there
-    /// stays as it is; log times continue behind it, and `metadata.yaml` will name all files. The file of a recorder
-    /// that was killed should be [recovered](crate::recover()) before, or other tools cannot read the run.
+    /// Continues a run: begins `<directory>/<name>_<n>.mcap`, with the next free number. Existing files are
+    /// unchanged; log times continue after theirs, and `metadata.yaml` will list all files. The file of a
+    /// recorder that was killed should be [recovered](crate::recover()) before, or other tools cannot read
+    /// the run.
     ///
     /// # Errors
-    /// If a file of the run is being recorded, a topic contradicts one that is there, or as [`RunWriter::create`].
+    /// If a file of the run is being recorded, a topic contradicts an existing one, or as
+    /// [`RunWriter::create`].
     pub fn append(
         directory: &Path,
         name: &str,
@@ -168,9 +170,9 @@ impl RunWriter {
             let path = path.to_owned();
             move |source| WriteError::Io { path, action, source }
         };
-        fs::create_dir_all(directory).map_err(io(directory, "make the directory"))?;
+        fs::create_dir_all(directory).map_err(io(directory, "create the directory"))?;
         let file = part_path(directory, name, number);
-        let free = free_space(directory).map_err(io(directory, "ask for free space"))?;
+        let free = free_space(directory).map_err(io(directory, "query the free space"))?;
         if free < options.free_to_start {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
@@ -199,16 +201,16 @@ impl RunWriter {
         for topic in topics {
             writer.declare(topic)?;
         }
-        // Schemas are written once: were they lost with the first chunk, every later message would be an
-        // orphan.
+        // Schemas are written once: if they were lost with the first chunk, no later message could be
+        // decoded.
         writer.flush()?;
         Ok(writer)
     }
 
-    /// Declares a topic while the recording runs, and writes that down at once.
+    /// Declares a topic while the recording runs, and writes it to the file at once.
     ///
     /// # Errors
-    /// If the topic is known with another type, schema or QoS, or the file cannot be written.
+    /// If the topic exists with another type, schema or QoS, or the file cannot be written.
     pub fn add_topic(&mut self, topic: &TopicSpec) -> Result<(), WriteError> {
         self.declare(topic)?;
         self.flush()
@@ -231,12 +233,12 @@ impl RunWriter {
         Ok(())
     }
 
-    /// Records a sample. Its log time is the time of arrival, moved forward as far as it takes to be later
-    /// than the last one and not earlier than the source time's own; its `sequence` is the low half of the
-    /// RTPS sequence number.
+    /// Records a sample. Its log time is the time of arrival, increased if necessary to be later than the
+    /// last one and not earlier than the source time; its `sequence` is the low half of the RTPS sequence
+    /// number.
     ///
     /// # Errors
-    /// If the topic was not declared, the sample is no CDR, or the recording has ended (disk full, write
+    /// If the topic was not declared, the sample is not CDR, or the recording has ended (disk full, write
     /// failure).
     pub fn write(&mut self, topic: &str, sample: &Incoming<'_>) -> Result<Outcome, WriteError> {
         if !self.topics.contains(topic) {
@@ -274,12 +276,12 @@ impl RunWriter {
         Ok(Outcome::Recorded { log_time })
     }
 
-    /// Hands the open chunk to the system if its oldest message is older than the flush interval, and has the
-    /// file pushed to the device from time to time; begins the next file when this one is long enough. Cheap when there
-    /// is nothing to do.
+    /// Writes the open chunk if its oldest message is older than the flush interval, requests a sync of the
+    /// file to the device from time to time, and begins the next file when this one is long enough. Cheap if
+    /// there is nothing to do.
     ///
     /// # Errors
-    /// If the file cannot be written, or a push to the device failed.
+    /// If the file cannot be written, or a sync failed.
     pub fn tick(&mut self, now: Instant) -> Result<(), WriteError> {
         if self
             .pending
@@ -295,7 +297,7 @@ impl RunWriter {
             Some(source) => {
                 let error = WriteError::Io {
                     path: self.file.clone(),
-                    action: "push the recording to the device",
+                    action: "sync the recording to the device",
                     source,
                 };
                 self.ended = Some(error.to_string());
@@ -305,7 +307,7 @@ impl RunWriter {
         }
     }
 
-    /// Stores a file in the recording (scene, launch file, parameters) and writes it down at once.
+    /// Stores a file in the recording (scene, launch file, parameters) and writes it at once.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -328,12 +330,12 @@ impl RunWriter {
         self.metadata.insert(key.to_owned(), value.to_owned());
     }
 
-    /// The account so far.
+    /// The ledger so far.
     pub fn ledger(&self) -> &Ledger {
         &self.ledger
     }
 
-    /// The account, to enter reports and names of writers.
+    /// The ledger, to add reports and names of writers.
     pub fn ledger_mut(&mut self) -> &mut Ledger {
         &mut self.ledger
     }
@@ -343,9 +345,9 @@ impl RunWriter {
         &self.file
     }
 
-    /// Writes the account, the indexes and `metadata.yaml`, and returns when all of it is on the device.
-    /// After a disk that filled up this still works; after a write failure it says so, and what was written
-    /// before stays readable.
+    /// Writes the ledger, the indexes and `metadata.yaml`, and returns when all of it is on the device. It
+    /// also works on a disk that is full. After a write failure it returns the error, and the data written
+    /// before stay readable.
     ///
     /// # Errors
     /// If the recording cannot be completed. It then has no `metadata.yaml`.
@@ -357,7 +359,7 @@ impl RunWriter {
         self.close_part(if finished { "true" } else { "false" })?;
         self.bag.write(&self.directory).map_err(|source| WriteError::Io {
             path: self.file.clone(),
-            action: "write metadata.yaml beside it",
+            action: "write metadata.yaml",
             source,
         })?;
         let (start, end) = self.bounds.unwrap_or((0, 0));
@@ -372,7 +374,7 @@ impl RunWriter {
         })
     }
 
-    /// Completes the file being written, with the account so far.
+    /// Completes the file being written, with the ledger so far.
     fn close_part(&mut self, finished: &str) -> Result<(), WriteError> {
         let Some(part) = self.part.take() else {
             return Err(self.already_ended());
@@ -384,13 +386,14 @@ impl RunWriter {
         }
         let tallies = serde_json::to_string(&self.ledger.tallies()).map_err(|e| WriteError::Io {
             path: self.file.clone(),
-            action: "express the account",
+            action: "write the ledger as JSON",
             source: e.into(),
         })?;
         metadata.insert(LEDGER_KEY.into(), tallies);
         let closed = match part.close(Metadata { name: METADATA_RECORD.into(), metadata }) {
             Ok(closed) => closed,
-            // After a failed write the MCAP writer only says that it failed; the reason is the first error.
+            // After a failed write the MCAP writer only reports that it failed; the reason is the first
+            // error.
             Err(_) if self.ended.is_some() => return Err(self.already_ended()),
             Err(error) => return Err(error),
         };
@@ -432,7 +435,7 @@ impl RunWriter {
         self.unchecked = 0;
         let free = free_space(&self.directory).map_err(|source| WriteError::Io {
             path: self.directory.clone(),
-            action: "ask for free space",
+            action: "query the free space",
             source,
         })?;
         if free >= self.options.free_to_continue {
@@ -472,8 +475,7 @@ impl RunWriter {
 
 impl Drop for RunWriter {
     fn drop(&mut self) {
-        // No caller is left to take an error: the missing end of the file and of metadata.yaml tell it to
-        // every reader.
+        // No caller is left for an error; readers find the missing end of the file and of metadata.yaml.
         if self.part.is_some() {
             let _ = self.close(false);
         }

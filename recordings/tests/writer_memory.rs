@@ -1,4 +1,4 @@
-//! What a recorder that runs for hours keeps in memory.
+//! Memory of a recorder that runs for hours.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -17,11 +17,11 @@ fn add(bytes: usize) {
     PEAK.fetch_max(NOW.fetch_add(bytes, Relaxed) + bytes, Relaxed);
 }
 
-// SAFETY: every call is passed on to the system's allocator unchanged.
+// SAFETY: every call is passed unchanged to the allocator of the system.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         add(layout.size());
-        // SAFETY: the caller's promises are the ones that `System` asks for.
+        // SAFETY: the caller guarantees the conditions of `System`.
         unsafe { System.alloc(layout) }
     }
 
@@ -35,10 +35,10 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Chunks a second of a recorder at full speed, each with messages of every topic.
+/// Chunks per second of a recorder at full speed, each with messages of every topic.
 const CHUNKS_A_SECOND: f64 = 2.5;
 
-/// Records `hours` without waiting for them to pass; returns bytes in memory after each quarter of an hour.
+/// Records `hours` in simulated time; returns bytes in memory after each quarter of an hour.
 fn record(directory: &std::path::Path, options: WriterOptions, hours: f64) -> Vec<usize> {
     let topics: Vec<&Topic> = TOPICS.iter().filter(|t| !t.is_transport()).take(12).collect();
     let specs: Vec<TopicSpec> =

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""LAMMPS, LIGGGHTS and YADE beside ours: one packing, one setting, in turns, stepping loops by each code's own clock.
+"""LAMMPS, LIGGGHTS, YADE and grainlab on one packing with one setting, in turns; each code times its stepping loop.
 
-Every repetition runs every code once, so that what else the machine does falls on all alike; ratios are taken within
-a repetition. Peers that are not installed are named and left out. README.md says how to install them and what the
-numbers mean. Status: 0 done, 1 a run or a check failed or nothing ran, 2 usage, 130 interrupted.
+Every repetition runs every code once, so that other load on the machine affects all codes; ratios are taken within a
+repetition. Codes that are not installed are reported and left out. README.md has their installation and the meaning of
+the numbers. Status: 0 done, 1 a run or a check failed or nothing ran, 2 usage, 130 interrupted.
 """
 
 import argparse
@@ -29,7 +29,7 @@ PACKING = Path(__file__).resolve().parents[1] / "golden" / "packings" / "packing
 
 def main() -> int:
     options = arguments()
-    # As an exception, so that children are ended and files removed on the way out.
+    # As an exception, so that children are ended and files removed at the end.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     with tempfile.TemporaryDirectory(prefix="compare_peers_") as directory:
         try:
@@ -63,7 +63,7 @@ def compare(options: argparse.Namespace, directory: Path) -> int:
     if options.out:
         options.out.write_text(result + "\n")
     print(result if options.format == "json" else table(comparison))
-    # Once more at the end, where they are not overlooked.
+    # Repeated at the end, where they are visible.
     for missing in comparison.missing:
         say(f"NOT RUN: {missing.name}: {missing.reason}")
     for text in sorted({str(check) for check in comparison.broken}):
@@ -76,7 +76,7 @@ def compare(options: argparse.Namespace, directory: Path) -> int:
 
 
 def table(comparison: Comparison) -> str:
-    """All of it for people."""
+    """The result as text."""
     before, after = (load(values) for values in (comparison.loads[0], comparison.loads[-1]))
     groups = "\n\n".join(group.table() for group in comparison.groups)
     checks = f"{len(comparison.checks)} checks of grains, contacts, pressure and list builds"
@@ -110,17 +110,17 @@ def arguments() -> argparse.Namespace:
         help="grains: the packing's times a cube (default 2000,16000,128000)")
     add("--threads", type=positives, default=[1, 2], metavar="T,…", help="cores for each code (default 1,2)")
     add("--reps", type=positive, default=3, help="repetitions (default 3)")
-    add("--seconds", type=seconds, default=1.5, help="aimed at for a timed loop on a free core, s (default 1.5)")
+    add("--seconds", type=seconds, default=1.5, help="approximate duration of a timed loop on an idle core, s (default 1.5)")
     add("--timeout", type=seconds, default=600.0, help="limit for one run, s (default 600)")
     add("--only", type=lambda text: text.split(","), default=[], metavar="TEXT,…",
-        help="the peers whose names hold one of these, for example 'history + servo,YADE'")
-    add("--grainlab", type=Path, help="our executable (default: the newest target/release/grainlab)")
-    add("--without-grainlab", action="store_true", help="the peers alone")
+        help="only codes whose names contain one of these, for example 'history + servo,YADE'")
+    add("--grainlab", type=Path, help="the grainlab executable (default: the newest target/release/grainlab)")
+    add("--without-grainlab", action="store_true", help="only the other codes")
     add("--lammps", type=Path, help="lmp (default: beside this Python, else on PATH)")
     add("--liggghts", type=Path, help="liggghts (default: on PATH)")
     add("--yade", type=Path, help="yade (default: on PATH)")
-    add("--format", choices=["table", "json"], default="table", help="of standard output (default table)")
-    add("--out", type=Path, help="a file for the JSON, whatever the format")
+    add("--format", choices=["table", "json"], default="table", help="format of standard output (default table)")
+    add("--out", type=Path, help="a file for the JSON, independent of the format")
     return parser.parse_args()
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Claims about the comparison itself. Needs no peer: python3 -m unittest discover tests/benches"""
+"""Tests of the comparison. They need no other code: python3 -m unittest discover tests/benches"""
 
 import json
 import os
@@ -41,7 +41,7 @@ class ThePacking(InTemporaryFolder):
     def test_has_the_contacts_and_the_pressure_that_its_maker_reported(self):
         found = Packing.read(PACKING).state(Setting())
         self.assertEqual(found.coordination, 2 * 5109 / 2000)
-        # LAMMPS' own value, ten digits.
+        # The value of LAMMPS, ten digits.
         self.assertAlmostEqual(found.pressure / 99984.47584, 1.0, delta=1e-9)
 
     def test_keeps_its_state_when_replicated_and_rewritten(self):
@@ -159,7 +159,7 @@ class Checks(unittest.TestCase):
 
 
 class TheCommand(InTemporaryFolder):
-    """The whole script with stand-ins for the codes: what it measures is not asked, only what it says of it."""
+    """The whole script with stubs for the codes: tests its output, not its measurements."""
 
     OURS = """#!{python}
 import json, sys
@@ -175,7 +175,7 @@ if "--help" not in sys.argv and "--version" not in sys.argv:
         ours.write_text(self.OURS.format(python=sys.executable, coordination=coordination))
         ours.chmod(0o755)
         command = [sys.executable, HERE / "compare_peers.py", "--sizes", "2000", "--threads", "1", *more]
-        # Neither a peer on PATH nor a build in the checkout.
+        # Neither another code on PATH nor a build in the checkout.
         environment = os.environ | {"PATH": str(self.folder)}
         return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
 

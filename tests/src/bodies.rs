@@ -1,16 +1,15 @@
-//! What a recording holds, topic by topic, repeats removed.
+//! The content of a recording, topic by topic, without repeats.
 
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
-/// The first six rows of the contract table that this version writes: what must not depend on timing.
+/// The first six rows of the contract table, written by this version: they must not depend on timing.
 pub const REPRODUCIBLE: [&str; 6] =
     ["/stress", "/strain_rate", "/packing", "/fabric", "/moduli", "/microstructure"];
 
-/// Distinct message bodies of one topic, in the order in which each first appears.
-///
-/// A request repeated because its answer was late, or a result published again by a restarted node, carries the same
-/// bytes; what is left is what was said, however often.
+/// Distinct message bodies of one topic, in the order of their first appearance. A request repeated because
+/// its answer was late, or a result published again by a restarted node, has the same bytes; one of them
+/// remains.
 pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     let recording = Recording::open(run).unwrap_or_else(|e| panic!("{}: {e}", run.display()));
     let messages = recording.messages(&Selection::topics([topic]));
@@ -19,7 +18,7 @@ pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     messages.map(|m| m.payload.to_vec()).filter(|b| seen.insert(b.clone())).collect()
 }
 
-/// Fails the test unless both runs say the same, byte for byte, on every reproducible topic.
+/// Fails the test unless both runs are equal, byte for byte, on every reproducible topic.
 pub fn assert_same(first: &Path, second: &Path) {
     for topic in REPRODUCIBLE {
         let (a, b) = (distinct(first, topic), distinct(second, topic));

@@ -1,5 +1,5 @@
-//! A process that is not of the run and says what the run says, otherwise: a second servo, an analyzer of another opinion,
-//! an old result that is still latched.
+//! A process outside the run that publishes forged messages on its topics: a second servo, an analyzer with
+//! other results, an old latched result.
 
 use grainlab_msgs::msg::{Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, from_cdr, topics};
@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// What is forged.
+/// The kind of forgery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forgery {
-    /// Every request is answered by another law, as a servo would: about the request.
+    /// Every request is answered by another law; the answer refers to the request like that of a servo.
     SecondServo,
     /// Every request is published again with other stress.
     Stress,
@@ -22,20 +22,20 @@ pub enum Forgery {
     Moduli,
     /// Coordination numbers of nine.
     Microstructure,
-    /// The run is said to be finished.
+    /// A run state: finished.
     Finished,
-    /// The run is said to have failed.
+    /// A run state: failed.
     Failed,
-    /// Answers to no request, before any is asked: all zero.
+    /// Answers without a request, before the first one: all zero.
     EarlyAnswer,
-    /// A microstructure of long ago, latched, of the very packing that the run will have.
+    /// A latched microstructure of a packing that the run has later.
     OldMicrostructure {
         /// Step of that packing.
         step: u64,
     },
 }
 
-/// All of them but the last.
+/// All of them except the last.
 pub const FORGERIES: [Forgery; 8] = [
     Forgery::SecondServo,
     Forgery::Stress,
@@ -47,7 +47,7 @@ pub const FORGERIES: [Forgery; 8] = [
     Forgery::EarlyAnswer,
 ];
 
-/// A forger at work, on a thread with a participant of its own; it leaves when it is dropped.
+/// A forger, on a thread with its own participant; it leaves when it is dropped.
 #[derive(Debug)]
 pub struct Forger {
     stop: Arc<AtomicBool>,
@@ -56,7 +56,7 @@ pub struct Forger {
 }
 
 impl Forger {
-    /// Begins to forge in this domain of loopback.
+    /// Starts the forger in this domain on loopback.
     pub fn start(domain: u16, forgery: Forgery) -> Self {
         let (stop, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         let (asked, count) = (Arc::clone(&stop), Arc::clone(&sent));
@@ -69,7 +69,7 @@ impl Forger {
         Self { stop, sent, thread: Some(thread) }
     }
 
-    /// Messages forged so far.
+    /// Number of messages forged so far.
     pub fn sent(&self) -> u64 {
         self.sent.load(Ordering::Relaxed)
     }
@@ -112,7 +112,7 @@ fn forge(bus: &mut DdsBus, forgery: Forgery, stop: &AtomicBool, sent: &AtomicU64
     let own = bus.participant();
     while !stop.load(Ordering::Relaxed) {
         if forgery == Forgery::EarlyAnswer {
-            // A late forgery is as harmless; flooding is another matter.
+            // The rate is limited: flooding is a different fault.
             let _ = typed.publish(bus, &StrainRate::default());
             count();
         }
@@ -133,7 +133,7 @@ fn subscribe(bus: &mut DdsBus, topic: &Topic) -> SubscriptionId {
     bus.subscribe(topic, Demand::best_effort(1000)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Another message than this one, and what it is said to be about.
+/// A message that differs from this one, and the sample that it refers to.
 fn forged(forgery: Forgery, sample: &Sample) -> Option<(Vec<u8>, Option<grainlab_node_kit::SampleId>)> {
     let info = &sample.info;
     let body = match forgery {

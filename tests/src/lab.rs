@@ -1,4 +1,4 @@
-//! The `grainlab` binary under test, in a folder and a DDS domain of its own.
+//! The `grainlab` binary under test, in a separate folder and DDS domain.
 
 use crate::process::{Ended, Process};
 use std::net::{Ipv4Addr, UdpSocket};
@@ -8,14 +8,14 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Longest time any one command of a test may take.
+/// Time limit of any command of a test.
 pub const LIMIT: Duration = Duration::from_secs(120);
 
 /// A laboratory: working folder and domain.
 #[derive(Debug)]
 pub struct Lab {
     folder: TempDir,
-    /// DDS domain that nobody else on this host uses.
+    /// DDS domain that no other process on this host uses.
     pub domain: u16,
 }
 
@@ -66,7 +66,7 @@ impl Lab {
         self.last_run()
     }
 
-    /// Waits until the run under way has recorded this many messages of `/stress`.
+    /// Waits until the current run has recorded this many messages of `/stress`.
     pub fn until_recorded(&self, messages: usize) {
         let recorded = || {
             let runs = std::fs::read_dir(self.folder().join("recordings/runs")).ok()?;
@@ -96,7 +96,7 @@ impl Default for Lab {
     }
 }
 
-/// The binary, beside the folder of the running test.
+/// The binary, in the target folder of the running test.
 pub fn grainlab() -> PathBuf {
     let test = std::env::current_exe().unwrap_or_else(|e| panic!("no path of this test: {e}"));
     let found = test.ancestors().skip(1).take(2).map(|d| d.join("grainlab")).find(|p| p.is_file());
@@ -111,7 +111,7 @@ pub fn golden(name: &str) -> PathBuf {
 /// A domain whose first participant's ports are free on loopback.
 fn free_domain() -> u16 {
     static NEXT: AtomicU16 = AtomicU16::new(0);
-    // Domains above 101 would reach into the ephemeral ports.
+    // Domains above 101 overlap with the ephemeral ports.
     let start = (std::process::id() % 97) as u16;
     for _ in 0..100 {
         let domain = 1 + (start + 13 * NEXT.fetch_add(1, Ordering::Relaxed)) % 100;

@@ -7,7 +7,7 @@ use grainlab_msgs::msg::Packing;
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 2e-8;
 
-/// A packing of `edge`³ grains (three or more a row) at a step.
+/// A packing of `edge`³ grains (three or more per row) at a step.
 pub fn lattice(edge: usize, step: u64) -> Packing {
     let spacing = DIAMETER - OVERLAP;
     let place = |[x, y, z]: [usize; 3]| (x * edge + y) * edge + z;
@@ -19,7 +19,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
             let mut other = here;
             other[axis] = (here[axis] + 1) % edge;
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
-            // From the grain of the lower index; across the face that is the other one.
+            // From the grain with the lower index; across the face that is the other one.
             let wraps = other[axis] == 0;
             (image[axis], normal[axis]) = if wraps { (-1, -1.0) } else { (0, 1.0) };
             let (i, j) = if wraps { (place(other), n) } else { (n, place(other)) };
@@ -32,6 +32,7 @@ pub fn lattice(edge: usize, step: u64) -> Packing {
                 normal,
                 normal_force,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }

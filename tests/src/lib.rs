@@ -1,11 +1,11 @@
 //! Tests of the whole laboratory: real processes, recordings, interoperation, the paper.
 //!
-//! - [`lab`]: the `grainlab` binary under test, in a folder and a DDS domain of its own
-//! - [`process`]: one process, never left behind
-//! - [`bodies`]: what a recording holds, topic by topic, repeats removed
-//! - [`forger`]: a process that is not of the run and says what the run says, otherwise
+//! - [`lab`]: the `grainlab` binary under test, in a separate folder and DDS domain
+//! - [`process`]: one process, killed when dropped
+//! - [`bodies`]: the content of a recording, topic by topic, without repeats
+//! - [`forger`]: a process outside the run that publishes forged messages
 //! - [`lattice`]: packings that need no simulation
-//! - [`python`]: the independent tools, where they are installed
+//! - [`python`]: the independent tools, if they are installed
 
 pub mod bodies;
 pub mod forger;

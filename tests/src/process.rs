@@ -1,4 +1,4 @@
-//! One process, never left behind.
+//! One process, killed when dropped.
 
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -53,7 +53,7 @@ impl Process {
         matches!(self.child.try_wait(), Ok(None))
     }
 
-    /// Waits for the end; past `limit` the process is killed and the test fails with its output.
+    /// Waits for the end; after `limit` the process is killed and the test fails with its output.
     pub fn ended(mut self, limit: Duration) -> Ended {
         let begin = Instant::now();
         let status: Option<ExitStatus> = loop {
@@ -86,11 +86,11 @@ impl Drop for Process {
 /// Sends `signal` to one process.
 pub fn send(pid: u32, signal: i32) {
     let Ok(pid) = i32::try_from(pid) else { return };
-    // SAFETY: kill takes two integers and touches no memory of ours.
+    // SAFETY: kill takes two integers and accesses no memory of this process.
     unsafe { libc::kill(pid, signal) };
 }
 
-/// Direct children of `pid` whose command line holds `words` in a row, by pid.
+/// Direct children of `pid` whose command line contains `words` in sequence, by pid.
 pub fn children(pid: u32, words: &str) -> Vec<u32> {
     let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
     let mut found: Vec<u32> = entries
@@ -104,7 +104,7 @@ pub fn children(pid: u32, words: &str) -> Vec<u32> {
 
 fn parent(pid: u32) -> Option<u32> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The command name, in brackets, may hold blanks.
+    // The command name, in brackets, may contain blanks.
     stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()
 }
 

@@ -1,11 +1,11 @@
-//! The independent tools, where they are installed.
+//! The independent tools, if they are installed.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A Python that has `module`. Without one the test is skipped, loudly; if `GRAINLAB_PYTHON` names a Python (as the
-/// project's checks do), the module must be there.
+/// A Python with `module`. Without one the test is skipped with a message; if `GRAINLAB_PYTHON` names a
+/// Python (as in the checks of the project), the module must exist.
 pub fn with(module: &str) -> Option<PathBuf> {
     let named = std::env::var_os("GRAINLAB_PYTHON").map(PathBuf::from);
     let python = named.clone().unwrap_or_else(|| "python3".into());
@@ -22,7 +22,7 @@ pub fn with(module: &str) -> Option<PathBuf> {
     None
 }
 
-/// Says that a test is skipped. Unlike `eprintln!`, the stream itself is not hidden by the test harness.
+/// Prints that a test is skipped. The test harness captures `eprintln!`, but not the stream itself.
 pub fn say_skipped(reason: &str) {
     let _ = writeln!(std::io::stderr(), "SKIPPED: {reason}");
 }

@@ -1,4 +1,4 @@
-//! A run that measures its packings twice: by their contact network, and by waves.
+//! A run that measures its packings twice: by their contact network and by waves.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use system_tests::bodies::distinct;
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{children, send};
 
-/// One run with a probe that errs by 0.3 %, as `grainlab launch acoustic` has it.
+/// One run with a probe whose speeds have an error of 0.3 %, as in `grainlab launch acoustic`.
 static RUN: LazyLock<(Lab, PathBuf)> = LazyLock::new(|| {
     let lab = Lab::new();
     let run = lab.launch(&golden("scenes/tiny.toml"), &["acoustic"]);
@@ -19,7 +19,7 @@ fn summary(run: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(run.join("summary.json")).unwrap()).unwrap()
 }
 
-/// Bodies of a topic in an order of their own: which kind of data is inverted first is a matter of timing.
+/// Bodies of a topic, sorted: the order in which the kinds of data are inverted depends on timing.
 fn bodies(run: &Path, topic: &str) -> Vec<Vec<u8>> {
     let mut bodies = distinct(run, topic);
     bodies.sort_unstable();
@@ -58,15 +58,16 @@ fn both_kinds_of_data_are_recorded_inverted_and_agree() {
             (&acoustic["method"], &acoustic["axis"]),
             (&"dispersion".into(), &vec![0.0, 0.0, 1.0].into())
         );
-        // Rattlers do not move with a wave.
+        // Rattlers do not move with a wave, so that the density is lower.
         let [density, bulk] = ["density", "density_bulk"].map(|key| number(&acoustic[key]));
         assert!(density > 0.8 * bulk && density < bulk, "{density} of {bulk}");
-        // 80 grains are 12 % off any medium isotropic about an axis: two ways to average over azimuths differ by what is left.
+        // 80 grains differ by 12 % from any medium isotropic about an axis, so that two averages over
+        // azimuths differ, too.
         for modulus in ["g12_pa", "g13_pa", "theta_pa"] {
             let [network, heard] = [&state[modulus], &acoustic[modulus]].map(number);
             assert!((heard / network - 1.0).abs() < 0.03, "{modulus}: {network}, heard {heard}");
         }
-        // The error stated is 0.3 % of the speed, of which the one reported is off by as much.
+        // The stated error is 0.3 % of the speed, and the reported speed has an error of this size.
         for speed in acoustic["speeds"].as_array().unwrap() {
             assert!(number(&speed["stddev"]) >= 0.00295 * number(&speed["speed"]), "{speed}");
         }
@@ -101,13 +102,13 @@ fn recorded_wave_speeds_played_into_a_fresh_inversion_give_the_recorded_bytes() 
 }
 
 #[test]
-fn the_death_of_the_probe_changes_no_byte() {
+fn killing_the_probe_changes_no_byte() {
     let (_, quiet) = &*RUN;
     let lab = Lab::new();
     let scene = golden("scenes/tiny.toml");
     let launcher = lab.start(&["launch", "acoustic", "--scene", &scene.to_string_lossy()]);
     let begin = Instant::now();
-    // Once it is under way, and before its first packing.
+    // After the start of the run, and before its first packing.
     lab.until_recorded(20);
     let probe = loop {
         if let [probe] = children(launcher.pid(), "run acoustic_probe").as_slice() {
@@ -129,7 +130,7 @@ fn the_death_of_the_probe_changes_no_byte() {
 }
 
 #[test]
-fn grainlab_probe_says_of_a_recording_what_the_live_probe_said() {
+fn grainlab_probe_of_a_recording_gives_the_results_of_the_live_probe() {
     let (lab, run) = &*RUN;
     let out = lab.folder().join("offline");
     let ended = lab.run(&[

@@ -1,4 +1,4 @@
-//! Bad input of every kind: a clear message, the right exit code, no panic, nothing lost.
+//! Invalid input of every kind: a clear message, the right exit code, no panic, no loss.
 
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::Ended;
@@ -77,7 +77,7 @@ fn a_truncated_recording_is_read_as_far_as_it_goes_with_exit_code_3() {
     let name = format!("{}_0.mcap", run.file_name().unwrap().to_string_lossy());
     let bytes = std::fs::read(run.join(&name)).unwrap();
     let cut = lab.folder().join("cut.mcap");
-    // Summary, footer and the last chunks are gone; the packings stand before them.
+    // Summary, footer and the last chunks are missing; the packings precede them.
     std::fs::write(&cut, &bytes[..bytes.len() * 96 / 100]).unwrap();
     let cut = cut.to_string_lossy();
     let ended = refused(&lab, &["analyze", &cut, "--format", "json"], 3, &["cut.mcap"]);
@@ -91,7 +91,7 @@ fn by_hand_a_second_simulator_on_the_same_topic_is_refused() {
     let lab = Lab::new();
     let parameter = format!("scene:={}", golden("scenes/tiny.toml").display());
     let by_hand = ["run", "dem_simulator", "--ros-args", "-p", &parameter];
-    // Both wait for a servo: the one with the larger GUID gives way.
+    // Both wait for a servo: the one with the larger GUID ends.
     let (mut first, mut second) = (lab.start(&by_hand), lab.start(&by_hand));
     let begin = std::time::Instant::now();
     while first.runs() && second.runs() {
@@ -133,7 +133,7 @@ fn a_refused_launch_leaves_no_folder() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_at_once() {
+fn paths_that_are_not_files_are_refused_at_once() {
     let lab = Lab::new();
     let pipe = lab.folder().join("pipe");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -163,7 +163,7 @@ fn a_cell_a_billion_times_as_long_as_wide_is_measured_or_refused_in_little_memor
         std::fs::write(&path, text).unwrap();
         let path = path.to_string_lossy();
         let flags = ["--shear-modulus", "29e9", "--poisson", ".2", "--friction", ".1", "--density", "2500"];
-        // A quarter of a gigabyte is what the process itself takes; the boxes of before took twenty.
+        // The process needs a quarter of a gigabyte; an earlier search needed twenty.
         let limited = format!("ulimit -v 1500000; exec \"$0\" analyze {path} {}", flags.join(" "));
         let output = std::process::Command::new("bash")
             .args(["-c", &limited])

@@ -1,4 +1,4 @@
-//! An instrument that shares no code with ours, but the message files: CycloneDDS, from Python.
+//! An instrument that has only the message files in common with grainlab: CycloneDDS, from Python.
 
 use grainlab_emt_inversion::{Settings, microstructure_of_speeds};
 use grainlab_msgs::msg::{Microstructure, WaveSpeeds};
@@ -15,7 +15,7 @@ fn here(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// A program of the peer's, in the domain of the laboratory and on loopback.
+/// A program of the instrument, in the domain of the laboratory and on loopback.
 fn peer(lab: &Lab, command: &mut Command) -> Ended {
     let ended = Process::start(
         command
@@ -31,7 +31,7 @@ fn peer(lab: &Lab, command: &mut Command) -> Ended {
     ended
 }
 
-/// What the inversion answers to a message that the peer says it sent.
+/// The answer of the inversion to a message that the instrument has sent.
 fn expected(sent: &Value) -> Microstructure {
     let sent: WaveSpeeds =
         serde_json::from_value(sent.clone()).expect("the fields of our message, all of them");
@@ -44,7 +44,7 @@ fn received(message: &Value) -> Microstructure {
 }
 
 #[test]
-fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_mean() {
+fn an_instrument_of_another_vendor_receives_every_digit_of_its_microstructure() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
     let script = here("../nodes/launch/instrument.sh");
@@ -56,7 +56,7 @@ fn an_instrument_of_another_vendor_is_told_every_digit_of_what_its_wave_speeds_m
     let answer = received(&whole["received"]);
     assert_eq!(answer, expected(&whole["sent"]));
     assert_eq!((answer.source.as_str(), answer.estimates.len()), ("wave_speeds", emt_models()));
-    // For people, a line a model, with the same numbers.
+    // As text, one line per model, with the same numbers.
     let printed = run(&[]).stdout;
     for estimate in &answer.estimates {
         let line = printed.lines().find(|l| l.split_whitespace().next() == Some(&estimate.model));
@@ -100,7 +100,7 @@ fn emt_models() -> usize {
 }
 
 #[test]
-fn what_a_broken_instrument_sends_is_refused_by_name_and_counted_and_the_next_good_message_answered() {
+fn invalid_messages_of_an_instrument_are_refused_by_name_and_counted_and_the_next_valid_one_is_answered() {
     let Some(python) = python::with("cyclonedds") else { return };
     let lab = Lab::new();
     let mut node = lab.start(&["run", "emt_inversion"]);

@@ -1,4 +1,4 @@
-//! The laboratory needs nothing but loopback, uses nothing but loopback, and hears nothing but loopback.
+//! The laboratory needs only loopback, sends only to loopback, and receives only from loopback.
 
 use std::net::UdpSocket;
 use std::process::Command;
@@ -7,8 +7,8 @@ use system_tests::lab::{LIMIT, Lab, golden, grainlab};
 use system_tests::process::{Ended, Process};
 use system_tests::python;
 
-/// Runs a shell script in a network namespace of its own, with the binary as `$0`, the small scene as `$1` and this test
-/// executable as `$2`; `None`, loudly, where there is no right to make one.
+/// Runs a shell script in a separate network namespace, with the binary as `$0`, the small scene as `$1` and
+/// this test executable as `$2`; `None`, with a message, without the right to create one.
 fn in_namespace(lab: &Lab, script: &str) -> Option<Ended> {
     let can = Command::new("unshare").args(["-n", "ip", "link"]).output().is_ok_and(|o| o.status.success());
     if !can {
@@ -58,8 +58,9 @@ fn no_packet_leaves_loopback_although_another_interface_has_the_default_route() 
     );
 }
 
-/// Another host, by the name of its interface here, that sends to every port of domain 0; prints the counters of this
-/// namespace and the memory of a node before and after. `RANGE` is the node's, `LO` a setting of loopback.
+/// Another host, by the name of its interface on this host, that sends to every port of domain 0. Prints the
+/// counters of this namespace and the memory of a node before and after. `RANGE` is the discovery range of
+/// the node, `LO` a setting of loopback.
 const SPRAYED: &str = "
     ip link set lo up $LO
     unshare -n sleep 600 & peer=$!
@@ -80,7 +81,7 @@ const SPRAYED: &str = "
     count
     kill -0 $node";
 
-/// Datagrams that reached a socket, that reached none, and growth of the node in MB.
+/// Datagrams that reached a socket, that reached none, and memory growth of the node in MB.
 fn sprayed(range: &str, lo: &str) -> Option<[u64; 3]> {
     let lab = Lab::new();
     let ended = in_namespace(&lab, &format!("RANGE={range} LO='{lo}' node=; {SPRAYED}"))?;
@@ -100,7 +101,8 @@ fn sprayed(range: &str, lo: &str) -> Option<[u64; 3]> {
 fn nothing_from_another_host_reaches_a_node_that_stays_on_this_one() {
     for lo in ["multicast off", "multicast on"] {
         let Some([reached, refused, grown]) = sprayed("LOCALHOST", lo) else { return };
-        // Half of them go to the group, which this host has not joined there, and are not counted.
+        // Half of them are sent to the multicast group, which this host has not joined there, and are not
+        // counted.
         assert!(refused > SPRAYS / 4, "only {refused} datagrams came, loopback {lo}");
         assert!(reached < 100, "{reached} datagrams of {SPRAYS} reached a socket, loopback {lo}");
         assert!(grown < 10, "the node grew by {grown} MB, loopback {lo}");
@@ -108,7 +110,7 @@ fn nothing_from_another_host_reaches_a_node_that_stays_on_this_one() {
 }
 
 #[test]
-fn a_flood_from_another_host_does_not_take_the_memory_of_a_node_that_listens_to_it() {
+fn a_flood_from_another_host_does_not_exhaust_the_memory_of_a_node_that_receives_it() {
     let Some([reached, _, grown]) = sprayed("SUBNET", "multicast off") else { return };
     assert!(reached > SPRAYS / 200, "only {reached} datagrams of {SPRAYS} came");
     assert!(grown < 60, "the node grew by {grown} MB");
@@ -161,7 +163,7 @@ fn spray() {
             if i % 2 == 0 { 7400 + [0, 1, 10, 11][i as usize / 2 % 4] } else { 7400 + (i / 2 % 250) as u16 };
         for packet in packets(i) {
             for host in ["192.0.2.1", "239.255.0.1"] {
-                // Refusals of earlier ones are reported here.
+                // Errors of earlier sends are reported here.
                 let _ = socket.send_to(&packet, (host, port));
             }
         }

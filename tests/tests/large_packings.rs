@@ -11,7 +11,7 @@ use system_tests::lattice::lattice;
 const PACKINGS: u64 = 30;
 const WRITER: Guid = Guid([7; 16]);
 
-/// A recording of [`PACKINGS`] packings, each of this body but for its step.
+/// A recording of [`PACKINGS`] packings, equal except for their step.
 fn record(directory: &Path, edge: usize) -> Vec<Vec<u8>> {
     let topic = topics::PACKING;
     let spec = TopicSpec::of_contract(&topic, &topic.absolute_name());
@@ -73,13 +73,13 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_are_analysed_and_recorde
 }
 
 #[test]
-fn an_analyzer_that_is_killed_and_started_again_gets_the_latest_large_packing_and_makes_the_same_bytes() {
+fn a_restarted_analyzer_gets_the_latest_large_packing_and_makes_the_same_bytes() {
     let lab = Lab::new();
     let (source, out) = (lab.folder().join("large"), lab.folder().join("again"));
     record(&source, 26);
     let recorder = lab.start(&["bag", "record", "-a", "-o", &out.to_string_lossy()]);
     let killed = lab.start(&["run", "fabric_analyzer"]);
-    // One packing a tenth of a second; the second analyzer comes while the player is still there.
+    // One packing every tenth of a second; the second analyzer joins while the player is still running.
     let player = lab.start(&["bag", "play", &source.to_string_lossy(), "--min-subscribers", "2"]);
     let until = |count: usize| {
         let begin = Instant::now();
@@ -105,7 +105,7 @@ fn an_analyzer_that_is_killed_and_started_again_gets_the_latest_large_packing_an
         let ended = node.ended(LIMIT);
         assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
     }
-    // Every packing is the same lattice: two analyzers differ in nothing but the step.
+    // Every packing is the same lattice: the results differ only in the step.
     let fabrics = recorded(&out, "/fabric").into_iter().map(|body| from_cdr::<Fabric>(&body).unwrap());
     let distinct: std::collections::BTreeSet<Vec<u8>> =
         fabrics.map(|fabric| to_cdr(&Fabric { source_step: 0, ..fabric })).collect();

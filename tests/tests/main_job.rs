@@ -1,4 +1,4 @@
-//! The main job as a newcomer sees it: every node a process, a table, a recording that others can read.
+//! The default command: every node is a process, with a table and a recording that other tools read.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -79,7 +79,7 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
     assert_eq!(states.len(), 2, "the scene publishes two packings");
     let last = &states[1];
     let number = |key: &str| last[key].as_f64().unwrap_or_else(|| panic!("{key} in {last}"));
-    // The servo lands every component on target before anything is measured.
+    // The servo brings every component to its target before the measurement.
     for (i, s) in last["stress_pa"].as_array().unwrap().iter().enumerate() {
         let target = if i < 3 { 50e3 } else { 0.0 };
         assert!((s.as_f64().unwrap() - target).abs() <= 50.0, "stress component {i} is {s}");
@@ -108,7 +108,7 @@ fn a_launch_runs_one_process_a_node_and_records_every_message() {
 }
 
 #[test]
-fn launches_without_a_domain_take_one_each_lose_nothing_and_end_with_a_screenful() {
+fn launches_without_a_domain_take_one_each_lose_nothing_and_print_one_screen() {
     let labs = [Lab::new(), Lab::new()];
     let scene = golden("scenes/tiny.toml");
     let start = |lab: &Lab| {
@@ -164,7 +164,7 @@ fn the_same_nodes_run_by_hand_and_from_a_launch_file() {
     let ended = Process::start(&mut by_hand).ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
 
-    let file = launch.join("s2.launch.yaml");
+    let file = launch.join("demo.launch.yaml");
     let run =
         lab.run(&["launch", &file.to_string_lossy(), "--scene", &scene.to_string_lossy(), "--seed", "3"]);
     assert_eq!(run.code, Some(0), "{}\n{}", run.stdout, run.stderr);

@@ -1,4 +1,4 @@
-//! The message files, as independent libraries read them.
+//! The message files read by independent libraries.
 
 use std::path::Path;
 use system_tests::python;

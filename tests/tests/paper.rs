@@ -1,4 +1,4 @@
-//! The paper and an independent code, by the commands a user types.
+//! The paper and an independent code, by the commands of the README.
 
 use serde_json::Value;
 use system_tests::lab::{Lab, golden};

@@ -1,4 +1,4 @@
-//! Recorders that were killed at any moment: what they left is finished, and every tool reads it.
+//! Recorders that were killed at any moment: their files are completed, and every tool reads them.
 
 use std::path::Path;
 use std::time::Duration;
@@ -18,7 +18,7 @@ fn said(run: &Path) -> Vec<Said> {
         .collect()
 }
 
-/// Kills the recorder of a run after `delay` from its first moment; false if that was before it had a file.
+/// Kills the recorder of a run `delay` after its start; false if it had no file yet.
 fn killed_after(lab: &Lab, delay: Duration) -> bool {
     let scene = golden("scenes/endless.toml");
     let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
@@ -63,7 +63,7 @@ fn the_recording_of_a_recorder_killed_at_any_moment_is_finished_and_loses_no_mes
         assert_eq!(report["warnings"], serde_json::json!([]), "{delay:?}: {}", check.stdout);
         assert_eq!(report["messages"].as_u64(), Some(before.len() as u64));
         if let Some(python) = &python {
-            // rosbags has nothing to open in a recording without a message.
+            // rosbags opens no recording without a message.
             let output = python::tool(python, "check_mcap.py", &[&path]);
             let text = String::from_utf8_lossy(&output.stdout).into_owned();
             assert!(output.status.success() || before.is_empty(), "{delay:?}: {text}");

@@ -1,11 +1,11 @@
-//! A run is a pure function of scene and seed, whatever dies on the way.
+//! A run is a pure function of scene and seed, in spite of crashes.
 
 use std::time::{Duration, Instant};
 use system_tests::bodies::{assert_same, distinct};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{children, send};
 
-/// The small scene with more grains and a slower start, by the contact law: long enough for five deaths.
+/// The small scene with more grains and a slower start, by the contact law: long enough for five crashes.
 fn longer_scene(lab: &Lab) -> std::path::PathBuf {
     let text = std::fs::read_to_string(golden("scenes/tiny.toml")).unwrap();
     let path = lab.folder().join("longer.toml");
@@ -27,7 +27,7 @@ fn two_runs_of_one_scene_and_seed_are_byte_identical_and_another_seed_is_not() {
 }
 
 #[test]
-fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
+fn killing_simulator_servo_analyzer_and_inversion_changes_no_byte() {
     let (quiet, deadly) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&longer_scene(&quiet), &[]);
 
@@ -47,7 +47,7 @@ fn deaths_of_simulator_servo_analyzer_and_inversion_change_no_byte() {
     while let Some(node) = victims.first() {
         assert!(launcher.runs(), "the run ended with {victims:?} still to be killed");
         assert!(begin.elapsed() < LIMIT, "{victims:?} never appeared");
-        // Long enough for a servo just started to be found and to answer.
+        // Long enough for a restarted servo to be discovered and to answer.
         let due = last_kill.elapsed() > Duration::from_millis(500);
         if let (true, [child]) = (due, children(pid, &format!("run {node}")).as_slice()) {
             send(*child, libc::SIGKILL);
@@ -84,17 +84,17 @@ fn a_run_that_was_interrupted_is_resumed_to_the_same_bytes() {
         }
         let ended = launcher.ended(LIMIT);
         if node == "run dem_simulator" {
-            // The launcher resumes it by itself.
+            // The launcher resumes it automatically.
             assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
         } else {
             assert_ne!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
-            // Processes whose launcher was killed finish by themselves.
+            // Processes whose launcher was killed end by themselves.
             std::thread::sleep(Duration::from_secs(3));
             let resumed = broken.run(&["launch", "--resume", &run.to_string_lossy()]);
             assert_eq!(resumed.code, Some(0), "{node}\n{}\n{}", resumed.stdout, resumed.stderr);
         }
         if node == "launch" {
-            // The simulator saved where it stood when its launcher was gone: one packing more.
+            // The simulator saved its state when its launcher had ended: one packing more.
             for topic in ["/stress", "/strain_rate"] {
                 assert!(distinct(&expected, topic) == distinct(&run, topic), "{topic}");
             }

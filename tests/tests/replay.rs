@@ -1,4 +1,4 @@
-//! A recording played into fresh nodes, and read without any, says the same as the live run.
+//! A recording played into fresh nodes, and one read without nodes, have the results of the live run.
 
 use serde_json::Value;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
         "2",
     ]);
     assert_eq!(played.code, Some(0), "{}\n{}", played.stdout, played.stderr);
-    // Results are handed to the file at once, so it can be read while it grows.
+    // Results are written to the file at once, so that it can be read while it grows.
     let begin = Instant::now();
     while distinct(&out, "/microstructure").len() < 2 {
         assert!(begin.elapsed() < LIMIT, "the last packing was not inverted");
@@ -43,7 +43,7 @@ fn a_recording_played_into_fresh_nodes_gives_the_recorded_bytes() {
     }
 }
 
-/// The bodies of the analyzer node and those that `analyze` records are compared whole.
+/// The bodies of the analyzer node and those recorded by `analyze` are compared whole.
 fn assert_same_results(one: &Path, other: &Path) {
     for topic in ["/fabric", "/moduli"] {
         let (a, b) = (distinct(one, topic), distinct(other, topic));
@@ -110,7 +110,7 @@ fn a_live_analysis_ends_with_a_signal_and_what_it_measured() {
     for (arguments, code) in [(&["analyze", "--live"][..], 0), (&["analyze", "--live", "--count", "1"], 130)]
     {
         let analyze = lab.start(&[arguments, &["--format", "json"]].concat());
-        // Until the handlers are there, a signal ends the process in the system's way.
+        // Before the handlers are installed, a signal has its default action.
         std::thread::sleep(Duration::from_secs(2));
         analyze.signal(libc::SIGINT);
         let ended = analyze.ended(LIMIT);
@@ -153,7 +153,8 @@ fn play_skips_and_names_what_a_live_node_publishes() {
     let live = lab.launch(&golden("scenes/tiny.toml"), &[]);
     let other = Lab::new();
     let analyzer = other.start(&["run", "fabric_analyzer"]);
-    // Nothing tells from outside that the analyzer has advertised; discovery takes 0.2 s on a quiet machine.
+    // The advertisement of the analyzer is not visible from outside; discovery takes 0.2 s on an idle
+    // machine.
     std::thread::sleep(Duration::from_secs(3));
     let played =
         other.run(&["bag", "play", &live.to_string_lossy(), "--topics", "packing", "moduli", "--rate", "50"]);

@@ -24,7 +24,7 @@ fn a_process_that_is_stopped_for_a_while_changes_no_byte_and_is_named() {
             assert!(begin.elapsed() < LIMIT, "{node} never appeared");
             std::thread::sleep(Duration::from_millis(5));
         };
-        // Some in the midst of their start, some at work.
+        // Some during their start, some during the run.
         std::thread::sleep(Duration::from_millis(100 * number as u64));
         send(pid, libc::SIGSTOP);
         std::thread::sleep(Duration::from_millis(1500));
@@ -64,7 +64,7 @@ fn a_stopped_listener_that_is_not_of_the_run_does_not_hold_it_up() {
     let launcher = lab.start(&["launch", "--scene", &scene.to_string_lossy()]);
     std::thread::sleep(Duration::from_millis(500));
     listener.signal(libc::SIGSTOP);
-    // Well below the lease after which DDS gives a participant up.
+    // Well below the lease after which DDS drops a participant.
     let ended = launcher.ended(Duration::from_secs(30));
     listener.signal(libc::SIGCONT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);

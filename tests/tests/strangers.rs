@@ -1,4 +1,4 @@
-//! Who is not of a run changes no byte of it, no exit code, and is named.
+//! Processes outside a run change none of its bytes and no exit code, and are named.
 
 use serde_json::Value;
 use std::path::Path;
@@ -7,7 +7,7 @@ use system_tests::bodies::assert_same;
 use system_tests::forger::{FORGERIES, Forger, Forgery};
 use system_tests::lab::{LIMIT, Lab, golden};
 
-/// Time in which a process that starts finds those that are there.
+/// Time in which a starting process discovers the running ones.
 const DISCOVERY: Duration = Duration::from_millis(600);
 
 fn strangers(run: &Path) -> Vec<Value> {
@@ -17,7 +17,7 @@ fn strangers(run: &Path) -> Vec<Value> {
     summary["strangers"].as_array().unwrap().clone()
 }
 
-/// Messages of strangers that the recorder left out.
+/// Number of messages from outside the run that the recorder left out.
 fn ignored(run: &Path) -> u64 {
     let counts =
         |s: &Value| s["ignored"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum::<u64>();
@@ -25,7 +25,7 @@ fn ignored(run: &Path) -> u64 {
 }
 
 #[test]
-fn whatever_a_stranger_forges_a_launched_run_comes_to_the_same_bytes_and_names_it() {
+fn a_launched_run_gives_the_same_bytes_under_forged_messages_and_names_the_stranger() {
     let scene = golden("scenes/tiny.toml");
     let quiet = Lab::new();
     let expected = quiet.launch(&scene, &[]);
@@ -63,7 +63,7 @@ fn an_old_result_that_is_latched_does_not_end_a_run_early() {
 }
 
 #[test]
-fn an_inversion_that_was_there_before_the_run_costs_nothing() {
+fn an_inversion_started_before_the_run_changes_nothing() {
     let scene = golden("scenes/tiny.toml");
     let (quiet, lab) = (Lab::new(), Lab::new());
     let expected = quiet.launch(&scene, &[]);
@@ -85,7 +85,7 @@ fn an_inversion_that_was_there_before_the_run_costs_nothing() {
 }
 
 #[test]
-fn two_labs_in_one_domain_each_come_to_their_own_bytes() {
+fn two_labs_in_one_domain_give_the_bytes_of_each_alone() {
     let scene = golden("scenes/tiny.toml");
     let path = scene.to_string_lossy();
     let shared = Lab::new();
@@ -144,7 +144,7 @@ fn by_hand_a_second_inversion_is_an_error_that_names_it_and_a_forged_result_is_l
             "exit_when_finished:=true",
         ];
         let simulator = lab.start(&simulator);
-        // Once the run is under way, as the forger of answers has to be: before, two servos are an error.
+        // After the start of the run, like the forger of answers: before it, two servos are an error.
         std::thread::sleep(DISCOVERY);
         let forger = forgery.map(|f| Forger::start(lab.domain, f));
         let ended = simulator.ended(LIMIT);

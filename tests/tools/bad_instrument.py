@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a broken instrument sends to the inversion, and what becomes of it: one JSON object on standard output.
+"""Invalid messages of an instrument to the inversion, and the results: one JSON object on standard output.
 
-   bad_instrument.py        with ROS_DOMAIN_ID as the inversion has it
+   bad_instrument.py        with the ROS_DOMAIN_ID of the inversion
 
-good: sent and received before; nameless: the same without an axis; refused: how many messages the inversion says it refused,
-after six bad ones; again: received after them.
+good: sent and received before; nameless: the same without an axis; refused: the number of messages that the inversion reports as
+refused, after six invalid ones; again: received after them.
 """
 import json
 import sys
@@ -35,7 +35,7 @@ class Torn(IdlStruct, typename=TYPE):
 @dataclass
 @final
 class Endless(IdlStruct, typename=TYPE):
-    """Has a string that is said to be 4 GB long."""
+    """Has a string with a stated length of 4 GB."""
     sec: uint32 = 0
     nanosec: uint32 = 0
     length: uint32 = 0xFFFFFFF0
@@ -52,7 +52,7 @@ def bad():
 
 
 def send_as(kind, sample):
-    """From a participant of its own: in one participant a topic has one type."""
+    """From a separate participant: in one participant a topic has one type."""
     participant = DomainParticipant(lab.domain())
     topic = lab.Topic(participant, "rt/wave_speeds", kind, qos=LATCHED)
     writer = lab.DataWriter(participant, topic, qos=LATCHED)

@@ -12,7 +12,7 @@ patch=$root/nodes/vendor/rustdds.patch
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# The crate as cargo gets and verifies it: a manifest of its own, so without our [patch].
+# The crate as downloaded and verified by cargo: a separate manifest, so that the [patch] of the workspace does not apply.
 mkdir -p "$work/scratch/src"
 cat > "$work/scratch/Cargo.toml" <<MANIFEST
 [package]
@@ -32,7 +32,7 @@ grep -q "\"$commit\"" "$published/.cargo_vcs_info.json" || {
     exit 1
 }
 
-# What is vendored of it: the library, not its examples, tests and tools.
+# The vendored part: the library, not its examples, tests and tools.
 mkdir "$work/a" "$work/b"
 for part in Cargo.toml LICENSE.md README.md SECURITY.md rustfmt.toml src; do
     cp -R "$published/$part" "$work/a/$part"
@@ -46,7 +46,7 @@ for part in "$vendored"/* "$vendored"/.[!.]*; do
 done
 
 if [ "${1-}" = --update ]; then
-    # Times would make every patch another one.
+    # Times would make every patch different.
     (cd "$work" && diff -ruN a b) | sed -E 's/^((---|\+\+\+) [^\t]+)\t.*/\1/; /^diff -ruN /d' > "$patch" || true
     echo "$patch: $(grep -c '^+[^+]' "$patch") lines added, $(grep -c '^-[^-]' "$patch") removed"
 fi

@@ -1,4 +1,4 @@
-//! The checks themselves.
+//! The checks.
 
 use super::error::BoundaryError;
 use crate::geometry_msgs::Vector3;
@@ -10,10 +10,10 @@ use grainlab_core::{SymTensor, Vec3};
 /// Names of the components in Voigt order.
 pub(super) const VOIGT: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
-/// Frame of every header of ours.
+/// Frame of every header.
 const FRAME: &str = "cell";
 
-/// Checks fields of the message it names.
+/// Checks the fields of one message.
 #[derive(Clone, Copy)]
 pub(super) struct Check(pub(super) &'static str);
 
@@ -43,7 +43,8 @@ impl Check {
         self.that((0.0..=1.0).contains(&value), field, value, "between 0 and 1")
     }
 
-    /// What may be missing: an array of one entry, or of none. The entry must pass `check`, which gets its field.
+    /// A part that may be missing: an array of one entry or of none. The entry must pass `check`, which gets
+    /// its field.
     pub(super) fn optional<T, U>(
         self,
         field: &str,
@@ -69,7 +70,7 @@ impl Check {
         self.optional(field, entries, |field, v| self.positive(field, *v))
     }
 
-    /// A quantity for which 0 stands for unknown.
+    /// A quantity with 0 for unknown.
     pub(super) fn known(self, field: &str, value: f64) -> Checked<Option<f64>> {
         Ok(Some(self.not_negative(field, value)?).filter(|v| *v > 0.0))
     }
@@ -145,7 +146,7 @@ impl Check {
         })
     }
 
-    /// As many numbers as stated; `None` if there are none.
+    /// An array of the stated length; `None` if it is empty.
     pub(super) fn array<const ENTRIES: usize>(
         self,
         field: &str,
@@ -158,7 +159,7 @@ impl Check {
         Ok(values.try_into().ok())
     }
 
-    /// A covariance, row-major; `None` if it is not known.
+    /// A covariance, row-major; `None` if it is unknown.
     pub(super) fn covariance<const ENTRIES: usize>(
         self,
         field: &str,
@@ -173,7 +174,7 @@ impl Check {
             for j in 0..i {
                 let (lower, upper) = (c[side * i + j], c[side * j + i]);
                 let bound = (variance(i) * variance(j)).sqrt();
-                // 1e-9: rounding of whoever made it, far below any uncertainty of an uncertainty.
+                // 1e-9: rounding by the sender, far below any uncertainty of an uncertainty.
                 let good = (lower - upper).abs() <= 1e-9 * bound && lower.abs() <= bound * (1.0 + 1e-9);
                 let name = format!("{field}[{}]", side * i + j);
                 self.that(good, &name, lower, "symmetric and at most 1 as a correlation")?;
@@ -182,7 +183,7 @@ impl Check {
         Ok(Some(c))
     }
 
-    /// The one of `allowed` that `word` is; `listed` is all of them in words.
+    /// The entry of `allowed` that equals `word`; `listed` is the list of all of them as text.
     pub(super) fn word(
         self,
         field: &'static str,
@@ -213,7 +214,7 @@ pub(super) fn vector_message(v: &Vec3) -> Vector3 {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// What may be missing, as messages have it.
+/// A part that may be missing, as an array.
 pub(super) fn one_or_none<T>(value: Option<T>) -> Vec<T> {
     value.into_iter().collect()
 }

@@ -1,4 +1,4 @@
-//! `ContactStatistics`: how many contacts there are, and what they carry.
+//! `ContactStatistics`: numbers of contacts, and their forces.
 
 use super::check::{Check, one_or_none};
 use super::error::BoundaryError;
@@ -26,7 +26,7 @@ pub(super) fn contact_statistics_message(c: &ContactStatistics) -> msg::ContactS
     }
 }
 
-/// Those of the field `contacts` of a message.
+/// The content of the field `contacts` of a message.
 pub(super) fn contact_statistics(
     check: Check,
     m: &msg::ContactStatistics,
@@ -74,7 +74,7 @@ fn mobilised_friction(
     Ok(MobilisedFriction { mean: check.share("contacts.friction.mean", m.mean)?, histogram: m.histogram })
 }
 
-/// A histogram holds every contact once.
+/// A histogram contains every contact once.
 pub(super) fn every_contact(
     check: Check,
     field: &str,

@@ -1,4 +1,4 @@
-//! `ElasticStiffness`: the stiffness of a packing, its bounds, and how it was found.
+//! `ElasticStiffness`: the stiffness of a packing, its bounds, and details of the solve.
 
 use super::check::{Check, one_or_none};
 use super::error::BoundaryError;
@@ -27,7 +27,7 @@ pub(super) fn elastic_stiffness_message(s: &ElasticStiffness) -> msg::ElasticSti
     }
 }
 
-/// That of the field `stiffness` of a message.
+/// The content of the field `stiffness` of a message.
 pub(super) fn elastic_stiffness(
     check: Check,
     m: &msg::ElasticStiffness,

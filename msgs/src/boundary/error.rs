@@ -1,6 +1,6 @@
 //! Why messages are refused.
 
-/// Why a message, or what should become one, is refused.
+/// Why a message, or the data for one, is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoundaryError {
     /// A number is not finite or out of its range.
@@ -15,7 +15,7 @@ pub enum BoundaryError {
         /// What is required.
         requirement: &'static str,
     },
-    /// A code that is none of the message's constants.
+    /// A code that is not one of the constants of the message.
     #[error("{message}.{field} = {value} is refused: it must be one of {allowed}")]
     Code {
         /// Name of the message.
@@ -27,7 +27,7 @@ pub enum BoundaryError {
         /// The constants.
         allowed: &'static str,
     },
-    /// A word that is none of those agreed on.
+    /// A word that is not one of the allowed ones.
     #[error("{message}.{field} = {value:?} is refused: it must be one of {allowed}")]
     Word {
         /// Name of the message.
@@ -36,7 +36,7 @@ pub enum BoundaryError {
         field: &'static str,
         /// The word found.
         value: String,
-        /// Those agreed on.
+        /// The allowed words.
         allowed: &'static str,
     },
     /// The contact law is unknown, or its parameters are invalid.
@@ -49,14 +49,14 @@ pub enum BoundaryError {
         message: &'static str,
         /// Name of the field.
         field: String,
-        /// Entries it has.
+        /// Number of entries found.
         found: usize,
-        /// Entries it must have.
+        /// Number of entries required.
         expected: usize,
-        /// Why.
+        /// The reason for this number.
         reason: &'static str,
     },
-    /// Numbers that make no packing.
+    /// The numbers are not a valid packing.
     #[error("Packing is refused: {0}")]
     Packing(#[from] grainlab_core::PackingError),
 }

@@ -1,37 +1,35 @@
-//! `Estimate`: what one model infers.
+//! `Estimate`: the result of one model.
 
 use super::check::Check;
 use super::error::BoundaryError;
 use crate::msg::Estimate;
-
-/// The quantities of the microstructure, in the order of every array.
-pub const QUANTITIES: [&str; 5] = ["k", "k_hat", "z", "eps", "eps_stiffness"];
+use grainlab_core::results::InferredQuantity;
 
 /// The data, in the order of every row of [`Inferred::information`].
 pub const DATA: [&str; 9] =
     ["G12", "G13", "Theta", "C11", "C33", "C13", "pressure", "gamma/Delta", "solid fraction"];
 
-/// What one model inferred, checked.
+/// The checked result of one model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateReading {
     /// Name of the model.
     pub model: String,
     /// Name of the calibration.
     pub calibration: String,
-    /// How it went.
+    /// Status of the inversion.
     pub status: EstimateStatus,
-    /// The strain ratio γ/Δ that the model was fed with; `None` if it takes none.
+    /// The strain ratio γ/Δ that the model used; `None` if it uses none.
     pub strain_ratio: Option<StrainRatio>,
     /// The values; `None` unless the status is `Ok` or `Extrapolated`.
     pub inferred: Option<Inferred>,
-    /// For a reader.
+    /// Notes.
     pub warnings: Vec<String>,
 }
 
-/// How an inversion went.
+/// Status of an inversion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EstimateStatus {
-    /// Inside the range the model was made for.
+    /// Inside the range of the model.
     Ok,
     /// A solution outside that range.
     Extrapolated,
@@ -41,31 +39,32 @@ pub enum EstimateStatus {
     Failed,
 }
 
-/// A strain ratio γ/Δ, and where it is from.
+/// A strain ratio γ/Δ with its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainRatio {
     /// γ/Δ, dimensionless.
     pub value: f64,
-    /// `total`, `elastic` or `contact`: which of the three measured ones; `given`; `zero`: not known, taken as 0.
+    /// `total`, `elastic` or `contact`: one of the three measured ones; `given`; `zero`: unknown, taken as 0.
     pub source: &'static str,
 }
 
-/// Inferred values; arrays have the order of [`QUANTITIES`].
+/// Inferred values; arrays have the order of [`InferredQuantity::ALL`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inferred {
-    /// The values, at least one of them known; `None` is undetermined or no part of the model.
+    /// The values, at least one of them known; `None`: undetermined, or not part of the model.
     pub values: [Option<f64>; 5],
-    /// Covariance from data and model, row-major; 0 where a value is not known.
+    /// Covariance from data and model, row-major; 0 for unknown values.
     pub covariance: Option<[f64; 25]>,
-    /// The part of it that the model leaves out.
+    /// Its part due to the model.
     pub covariance_model: Option<[f64; 25]>,
     /// Credible intervals.
     pub interval: Option<Interval>,
-    /// Misfit of more data than unknowns; `None` if there are as many.
+    /// Misfit if there are more data than unknowns; else `None`.
     pub misfit: Option<Misfit>,
-    /// How much more one combination suffers from errors of the data than another, 1 or more.
+    /// Condition number, 1 or more: how much the effects of errors of the data differ between combinations.
     pub condition_number: Option<f64>,
-    /// Share of each of [`DATA`] in the variance of each quantity that the data cause; a row sums to 1.
+    /// Contribution of each of [`DATA`] to the variance of each quantity from the data; the sum of a row is
+    /// 1.
     pub information: [Option<[f64; 9]>; 5],
 }
 
@@ -74,16 +73,16 @@ pub struct Inferred {
 pub struct Interval {
     /// Probability inside each, between 0 and 1.
     pub level: f64,
-    /// Low and high of each quantity that is known.
+    /// Low and high of each known quantity.
     pub bounds: [Option<[f64; 2]>; 5],
 }
 
-/// How far more data than unknowns are from any structure.
+/// Misfit of the data about the best structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
     /// Weighted sum of squares, by errors of data and model.
     pub chi_square: f64,
-    /// Data less unknowns, 1 or more.
+    /// Number of data minus number of unknowns, 1 or more.
     pub degrees_of_freedom: u32,
 }
 
@@ -143,7 +142,7 @@ fn inferred(m: &Estimate) -> Result<Inferred, BoundaryError> {
 fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
     let mut values = [None; 5];
     for (i, value) in [&m.k, &m.k_hat, &m.z, &m.eps, &m.eps_stiffness].into_iter().enumerate() {
-        values[i] = CHECK.optional_finite(QUANTITIES[i], value)?;
+        values[i] = CHECK.optional_finite(InferredQuantity::ALL[i].name(), value)?;
     }
     let any = values.iter().any(Option::is_some);
     CHECK.that(
@@ -155,7 +154,7 @@ fn values(m: &Estimate) -> Result<[Option<f64>; 5], BoundaryError> {
     Ok(values)
 }
 
-/// What an unknown quantity must have of everything that belongs to it.
+/// The value of every entry that belongs to an unknown quantity.
 const NOTHING: &str = "0, because its quantity is not known";
 
 fn covariance(
@@ -227,7 +226,7 @@ fn information(m: &Estimate, known: &[bool; 5]) -> Result<[Option<[f64; 9]>; 5],
         let shares: [f64; 9] = std::array::from_fn(|j| m.information[start + j]);
         if let Some(j) = shares.iter().position(|s| *s != 0.0) {
             CHECK.that(known[i], &format!("information[{}]", start + j), shares[j], NOTHING)?;
-            // Parts of correlated data may be large and cancel; their rounding then shows in the sum.
+            // Contributions of correlated data may be large and cancel, so that rounding affects the sum.
             let slack = 1e-6 * shares.iter().map(|s| s.abs()).sum::<f64>();
             let (sum, name) =
                 (shares.iter().sum::<f64>(), format!("sum of information[{start}..{}]", start + 9));

@@ -13,20 +13,20 @@ use grainlab_core::results::{
 
 const CHECK: Check = Check("Fabric");
 
-/// What a `Fabric` message holds, checked.
+/// The checked content of a `Fabric` message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FabricReading {
     /// Contacts and the forces they carry.
     pub contacts: ContactStatistics,
     /// Orientation of the contacts.
     pub fabric: Fabric,
-    /// Which forces and which contacts carry the stress.
+    /// Parts of the stress by force and by network.
     pub stress_decomposition: StressDecomposition,
     /// The three ratios γ/Δ.
     pub strain_ratios: StrainRatios,
 }
 
-/// The message of the structure of a packing; `header` is that of the packing measured.
+/// The message with the structure of a packing; `header` is that of the measured packing.
 pub fn fabric_message(header: Header, report: &PackingReport) -> Result<msg::Fabric, BoundaryError> {
     let f = &report.fabric;
     let message = msg::Fabric {

@@ -1,4 +1,4 @@
-//! `Microstructure`: what was inferred.
+//! `Microstructure`: the inferred microstructure.
 
 use super::check::Check;
 use super::error::BoundaryError;
@@ -6,16 +6,16 @@ use super::estimate::EstimateReading;
 use crate::builtin_interfaces::Time;
 use crate::msg::Microstructure;
 
-/// What was inferred from one set of data, checked.
+/// The checked estimates from one set of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MicrostructureReading {
     /// Stamp of the data.
     pub stamp: Time,
-    /// Step of the packing the data came from.
+    /// Step of the packing of the data.
     pub source_step: u64,
-    /// Topic the data came from.
+    /// Topic of the data.
     pub source: String,
-    /// One estimate a model.
+    /// One estimate per model.
     pub estimates: Vec<EstimateReading>,
 }
 

@@ -1,6 +1,7 @@
-//! Messages to and from the kernels' types. A decoded message is not a state: everything received is checked here,
-//! once, and what fails is refused with an error that names field, value and requirement. What goes out passes the same
-//! checks, so that no node publishes what another would refuse.
+//! Conversion between messages and types of the kernels. A decoded message is not yet valid: everything
+//! received is checked here, once. An invalid message is refused with an error that names field, value and
+//! requirement. Published messages pass the same checks, so that no node publishes a message that another one
+//! refuses.
 
 mod check;
 mod contact_statistics;
@@ -19,9 +20,7 @@ mod wave_speeds;
 mod waveform;
 
 pub use error::BoundaryError;
-pub use estimate::{
-    DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, QUANTITIES, StrainRatio,
-};
+pub use estimate::{DATA, EstimateReading, EstimateStatus, Inferred, Interval, Misfit, StrainRatio};
 pub use fabric::{FabricReading, fabric_message};
 pub use microstructure::MicrostructureReading;
 pub use moduli::{ModuliReading, moduli_message};

@@ -1,4 +1,4 @@
-//! `Moduli`: elastic moduli, and what an inversion needs beside them.
+//! `Moduli`: elastic moduli, and the other inputs of an inversion.
 
 use super::check::{Check, strain_ratios_message, vector_message};
 use super::elastic_stiffness::{elastic_stiffness, elastic_stiffness_message};
@@ -10,12 +10,12 @@ use grainlab_core::{Material, Vec3};
 
 const CHECK: Check = Check("Moduli");
 
-/// Moduli as an inversion takes them: checked, and with `None` for what the sender did not know.
+/// Checked moduli for an inversion, with `None` for values unknown to the sender.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModuliReading {
     /// Number of grains.
     pub grains: Option<u32>,
-    /// Reference axis h, unit, which g12, g13, the covariance and γ/Δ are about; e3 if the sender named none. The stiffness
+    /// Reference axis h, unit, of g12, g13, the covariance and γ/Δ; e3 if the sender gave none. The stiffness
     /// is in the frame of the cell.
     pub reference_axis: Vec3,
     /// Shear modulus in the plane of isotropy, Pa.
@@ -30,7 +30,7 @@ pub struct ModuliReading {
     pub pressure: f64,
     /// Solid fraction φ.
     pub solid_fraction: Option<f64>,
-    /// Unit axis of symmetry found.
+    /// Unit axis of symmetry that was found.
     pub axis: Option<Vec3>,
     /// The three ratios γ/Δ.
     pub strain_ratios: StrainRatios,
@@ -40,8 +40,9 @@ pub struct ModuliReading {
     pub stiffness: Option<ElasticStiffness>,
 }
 
-/// The message of the stiffness of a packing, moduli about the reference axis of its fabric; `header` is that of the packing.
-/// The covariance of G12, G13 and Θ is left unknown: it is to say how packings of one kind differ, and one packing does not.
+/// The message with the stiffness of a packing, with moduli about the reference axis of its fabric; `header`
+/// is that of the packing. The covariance of G12, G13 and Θ is left unknown: it describes the scatter between
+/// packings of one kind, which one packing does not show.
 pub fn moduli_message(
     header: Header,
     report: &PackingReport,

@@ -9,10 +9,11 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
 const CHECK: Check = Check("Packing");
 
-/// The message of a packing, bit for bit. `scene` names the scene, `run_state` is what only a resumed run needs. The
-/// packing is taken to be a validated one.
+/// The message of a packing, bit for bit. `scene` names the scene, `run_state` is needed only by a resumed
+/// run. The packing must be validated.
 pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> msg::Packing {
     let contacts = &packing.contacts;
+    let rolling = contacts.iter().filter(|_| packing.law.rolling.is_some());
     msg::Packing {
         header: packing_header(packing),
         step: packing.step,
@@ -30,6 +31,7 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
         contact_normal: interleaved(contacts.iter().map(|c| &c.normal)),
         contact_normal_force: contacts.iter().map(|c| c.normal_force).collect(),
         contact_tangential_force: interleaved(contacts.iter().map(|c| &c.tangential_force)),
+        contact_rolling_force: interleaved(rolling.map(|c| &c.rolling_force)),
         shear_modulus: packing.material.shear_modulus,
         poisson_ratio: packing.material.poisson_ratio,
         density: packing.material.density,
@@ -42,7 +44,7 @@ pub fn packing_message(packing: &Packing, scene: &str, run_state: Vec<u8>) -> ms
     }
 }
 
-/// The header of that message, and so of all that is measured on it.
+/// The header of that message, and of all its measurements.
 pub fn packing_header(packing: &Packing) -> Header {
     header(stamp(packing.time))
 }
@@ -63,6 +65,7 @@ impl TryFrom<&msg::Packing> for Packing {
                 requirement: "the volume of a right-handed cell, finite and more than 0",
             });
         };
+        let law = ContactLaw::new(&m.contact_law, &m.contact_law_parameters)?;
         let packing = Packing {
             step: m.step,
             time: m.time,
@@ -70,16 +73,16 @@ impl TryFrom<&msg::Packing> for Packing {
             deformation: Mat3::from_row_slice(&m.deformation),
             ids: m.id.clone(),
             radii: m.radius.clone(),
-            positions: triples("position", &m.position, m.radius.len(), THREE_A_GRAIN)?,
-            velocities: triples("velocity", &m.velocity, m.radius.len(), THREE_A_GRAIN)?,
-            spins: triples("angular_velocity", &m.angular_velocity, m.radius.len(), THREE_A_GRAIN)?,
-            contacts: contacts(m)?,
+            positions: triples("position", &m.position, m.radius.len(), THREE_PER_GRAIN)?,
+            velocities: triples("velocity", &m.velocity, m.radius.len(), THREE_PER_GRAIN)?,
+            spins: triples("angular_velocity", &m.angular_velocity, m.radius.len(), THREE_PER_GRAIN)?,
+            contacts: contacts(m, law.rolling.is_some())?,
             material: Material {
                 shear_modulus: m.shear_modulus,
                 poisson_ratio: m.poisson_ratio,
                 density: m.density,
             },
-            law: ContactLaw::new(&m.contact_law, &m.contact_law_parameters)?,
+            law,
             friction: m.friction,
             time_step: m.time_step,
         };
@@ -87,19 +90,26 @@ impl TryFrom<&msg::Packing> for Packing {
     }
 }
 
-const THREE_A_GRAIN: &str = "three a grain, as many grains as radii";
-const ONE_A_CONTACT: &str = "one a contact, as many contacts as overlaps";
-const TWO_A_CONTACT: &str = "two a contact, as many contacts as overlaps";
-const THREE_A_CONTACT: &str = "three a contact, as many contacts as overlaps";
+const THREE_PER_GRAIN: &str = "three per grain, as many grains as radii";
+const ONE_PER_CONTACT: &str = "one per contact, as many contacts as overlaps";
+const TWO_PER_CONTACT: &str = "two per contact, as many contacts as overlaps";
+const THREE_PER_CONTACT: &str = "three per contact, as many contacts as overlaps";
+const NO_ROLLING: &str = "none, because the contact law has no resistance to rolling";
 
-fn contacts(m: &msg::Packing) -> Result<Vec<Contact>, BoundaryError> {
+fn contacts(m: &msg::Packing, resists_rolling: bool) -> Result<Vec<Contact>, BoundaryError> {
     let count = m.contact_overlap.len();
-    CHECK.length("contact_pair", m.contact_pair.len(), 2 * count, TWO_A_CONTACT)?;
-    CHECK.length("contact_image", m.contact_image.len(), 3 * count, THREE_A_CONTACT)?;
-    CHECK.length("contact_normal_force", m.contact_normal_force.len(), count, ONE_A_CONTACT)?;
-    let normals = triples("contact_normal", &m.contact_normal, count, THREE_A_CONTACT)?;
+    CHECK.length("contact_pair", m.contact_pair.len(), 2 * count, TWO_PER_CONTACT)?;
+    CHECK.length("contact_image", m.contact_image.len(), 3 * count, THREE_PER_CONTACT)?;
+    CHECK.length("contact_normal_force", m.contact_normal_force.len(), count, ONE_PER_CONTACT)?;
+    let normals = triples("contact_normal", &m.contact_normal, count, THREE_PER_CONTACT)?;
     let tangential =
-        triples("contact_tangential_force", &m.contact_tangential_force, count, THREE_A_CONTACT)?;
+        triples("contact_tangential_force", &m.contact_tangential_force, count, THREE_PER_CONTACT)?;
+    let rolling = if resists_rolling {
+        triples("contact_rolling_force", &m.contact_rolling_force, count, THREE_PER_CONTACT)?
+    } else {
+        CHECK.length("contact_rolling_force", m.contact_rolling_force.len(), 0, NO_ROLLING)?;
+        vec![Vec3::zeros(); count]
+    };
     let contact = |c: usize| Contact {
         i: m.contact_pair[2 * c],
         j: m.contact_pair[2 * c + 1],
@@ -108,6 +118,7 @@ fn contacts(m: &msg::Packing) -> Result<Vec<Contact>, BoundaryError> {
         normal: normals[c],
         normal_force: m.contact_normal_force[c],
         tangential_force: tangential[c],
+        rolling_force: rolling[c],
     };
     Ok((0..count).map(contact).collect())
 }

@@ -1,4 +1,4 @@
-//! `RunState`: where the run stands.
+//! `RunState`: phase and progress of the run.
 
 use super::check::Check;
 use super::error::BoundaryError;
@@ -7,23 +7,23 @@ use crate::msg::RunState;
 
 const CHECK: Check = Check("RunState");
 
-/// Whether a run goes on.
+/// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunStatus {
     /// Under way.
     Running,
     /// The loading path is done.
     Finished,
-    /// It ended early; the message says why.
+    /// It ended early; the message has the reason.
     Failed,
 }
 
-/// Where the run stands, checked.
+/// The checked state of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunStateReading {
     /// 10⁹ s + simulated time.
     pub stamp: Time,
-    /// Whether the run goes on.
+    /// Status of the run.
     pub status: RunStatus,
     /// Index into the loading path.
     pub phase: u32,
@@ -37,7 +37,7 @@ pub struct RunStateReading {
     pub last_packing_step: Option<u64>,
     /// Packings published so far.
     pub packings: u32,
-    /// For a reader.
+    /// A note for the user.
     pub message: String,
 }
 

@@ -10,13 +10,13 @@ const CHECK: Check = Check("StrainRate");
 /// The answer to one request. Voigt order xx, yy, zz, yz, xz, xy, tensor components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainRateAnswer {
-    /// Stamp of the request answered.
+    /// Stamp of the request.
     pub stamp: Time,
-    /// Sequence of the request answered.
+    /// Sequence number of the request.
     pub sequence: u64,
     /// Strain rate, 1/s, positive in extension.
     pub rate: [f64; 6],
-    /// Which components met the rate limit.
+    /// For each component, whether it was limited to the rate limit.
     pub saturated: [bool; 6],
 }
 

@@ -8,7 +8,7 @@ use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 
 const CHECK: Check = Check("Stress");
 
-/// One request of the lockstep: everything a servo needs to answer. Voigt order xx, yy, zz, yz, xz, xy, tensor
+/// One request of the lockstep, with all data for the servo. Voigt order xx, yy, zz, yz, xz, xy, tensor
 /// components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressRequest {
@@ -30,7 +30,7 @@ pub struct StressRequest {
     pub rate: [f64; 6],
     /// Largest magnitude of a component of the answer, 1/s. 0 or more.
     pub rate_limit: f64,
-    /// How a stress error becomes a strain rate.
+    /// Control law.
     pub law: ServoLaw,
     /// Affine tangent stiffness of the present contacts, Pa: C_iiii (xx, yy, zz) and C_ijij (yz, xz, xy).
     pub tangent: [f64; 6],

@@ -1,4 +1,4 @@
-//! `StressDecomposition`: which forces and which contacts carry the stress.
+//! `StressDecomposition`: parts of the stress by force and by network.
 
 use super::check::{Check, one_or_none, tensor_message};
 use super::error::BoundaryError;
@@ -30,7 +30,7 @@ fn network_message(n: &SubNetwork) -> msg::SubNetwork {
     }
 }
 
-/// That of the field `stress` of a message about a packing of so many contacts.
+/// The content of the field `stress` of a message about a packing with this number of contacts.
 pub(super) fn stress_decomposition(
     check: Check,
     m: &msg::StressDecomposition,

@@ -1,4 +1,4 @@
-//! `WaveSpeeds`: what an acoustic instrument, real or virtual, hands to an inversion.
+//! `WaveSpeeds`: the results of an acoustic instrument, real or virtual.
 
 use super::check::{Check, vector_message};
 use super::error::BoundaryError;
@@ -10,7 +10,7 @@ use grainlab_core::{MeasuredWave, Vec3, WaveMethod, WaveSpeed};
 
 const CHECK: Check = Check("WaveSpeeds");
 
-/// A method as messages have it.
+/// A method with its code in messages.
 pub(super) const fn code(method: WaveMethod) -> u8 {
     match method {
         WaveMethod::FirstArrival => msg::WaveSpeed::METHOD_FIRST_ARRIVAL,
@@ -21,7 +21,7 @@ pub(super) const fn code(method: WaveMethod) -> u8 {
     }
 }
 
-/// Wave speeds as an inversion takes them: checked, and with `None` for what the sender did not know.
+/// Checked wave speeds for an inversion, with `None` for values unknown to the sender.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveSpeedsReading {
     /// Stamp of the source.
@@ -42,20 +42,21 @@ pub struct WaveSpeedsReading {
     pub grain_shear_modulus: f64,
     /// Poisson ratio of the grains, in [0, 0.5].
     pub grain_poisson_ratio: f64,
-    /// The speeds, in the order of the message. There may be none.
+    /// The speeds, in the order of the message; may be empty.
     pub speeds: Vec<MeasuredWave>,
-    /// What a reader should know; empty if there is nothing to say.
+    /// Notes; may be empty.
     pub warnings: Vec<String>,
 }
 
 impl WaveSpeedsReading {
-    /// The speeds without how they were measured, as the kernels take them.
+    /// Direction, polarization and speed, as used by the kernels.
     pub fn measured(&self) -> Vec<WaveSpeed> {
         self.speeds.iter().map(|s| s.wave).collect()
     }
 }
 
-/// The message of what was measured; `header` is that of the packing probed, and stands for the reading's stamp.
+/// The message of a measurement; `header` is that of the measured packing, and replaces the stamp of the
+/// reading.
 pub fn wave_speeds_message(
     header: Header,
     found: &WaveSpeedsReading,
@@ -128,13 +129,13 @@ fn speed(index: usize, s: &msg::WaveSpeed) -> Result<MeasuredWave, BoundaryError
     })
 }
 
-/// A unit vector that must be known.
+/// A unit vector that must not be unknown.
 pub(super) fn unit(check: Check, field: &str, vector: &Vector3) -> Result<Vec3, BoundaryError> {
     let known = check.direction(field, vector)?;
     known.map_or_else(|| check.that(false, &format!("|{field}|"), 0.0, "1").map(|_| Vec3::zeros()), Ok)
 }
 
-/// The method that a message means.
+/// The method of a code.
 pub(super) fn method(check: Check, field: &str, number: u8) -> Result<WaveMethod, BoundaryError> {
     WaveMethod::ALL.into_iter().find(|m| code(*m) == number).ok_or_else(|| {
         let known = "0 (first arrival), 1 (cross correlation), 2 (peak), 3 (standing wave), 4 (dispersion)";

@@ -10,18 +10,18 @@ use grainlab_core::{Vec3, WaveMethod};
 
 const CHECK: Check = Check("Waveform");
 
-/// What the samples are of, and their unit.
+/// The quantity of the samples, and its unit.
 const QUANTITY: &str = "velocity";
 const UNIT: &str = "m/s";
 
-/// Traces as a reader takes them: checked.
+/// Checked traces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveformReading {
     /// Stamp of the source.
     pub stamp: Time,
     /// Step of the packing probed; `None` if it is not from a simulation.
     pub source_step: Option<u64>,
-    /// What they are evaluated for.
+    /// Method of their evaluation.
     pub method: WaveMethod,
     /// Unit direction of propagation.
     pub direction: Vec3,
@@ -29,7 +29,7 @@ pub struct WaveformReading {
     pub polarization: Vec3,
     /// Dominant frequency sent, Hz, more than 0.
     pub frequency: f64,
-    /// Samples a second, Hz, more than 0.
+    /// Sampling rate, Hz, more than 0.
     pub sample_rate: f64,
     /// Time of the first sample after the trigger, s.
     pub start: f64,
@@ -48,7 +48,8 @@ pub struct TraceReading {
     pub samples: Vec<f32>,
 }
 
-/// The message of the traces of one wave; `header` is that of the packing probed, and stands for the reading's stamp.
+/// The message with the traces of one wave; `header` is that of the measured packing, and replaces the stamp
+/// of the reading.
 pub fn waveform_message(header: Header, found: &WaveformReading) -> Result<msg::Waveform, BoundaryError> {
     let each = found.channels.first().map_or(0, |c| c.samples.len());
     if let Some(other) = found.channels.iter().find(|c| c.samples.len() != each) {

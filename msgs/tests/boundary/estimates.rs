@@ -1,14 +1,13 @@
 use super::refuses;
-use grainlab_msgs::boundary::{
-    EstimateStatus, Interval, MicrostructureReading, Misfit, QUANTITIES, StrainRatio,
-};
+use grainlab_core::results::InferredQuantity;
+use grainlab_msgs::boundary::{EstimateStatus, Interval, MicrostructureReading, Misfit, StrainRatio};
 use grainlab_msgs::msg::{Estimate, Microstructure};
 use grainlab_msgs::{from_cdr, to_cdr};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
 
-/// A model that speaks of k, k̂ and ε, and has no word on the other two.
+/// A model that infers k, k̂ and ε, and not the other two.
 fn estimate() -> Estimate {
     let mut e = Estimate {
         model: "ratio".into(),
@@ -33,7 +32,7 @@ fn estimate() -> Estimate {
         e.covariance_model[at] = 0.5 * variance;
     }
     (e.covariance[1], e.covariance[5]) = (0.004, 0.004);
-    // ε: G12 and G13 share it, and what they have in common takes some of it away again.
+    // ε: contributions of G12 and G13, reduced by their correlation.
     (e.information[27], e.information[28], e.information[29]) = (0.75, 0.5, -0.25);
     e
 }
@@ -48,7 +47,7 @@ fn read(estimate: Estimate) -> grainlab_msgs::boundary::EstimateReading {
 }
 
 #[test]
-fn an_estimate_is_read_with_none_for_what_the_model_has_no_word_on() {
+fn an_estimate_has_none_where_the_model_gives_no_value() {
     let e = read(estimate());
     assert_eq!((e.model.as_str(), e.calibration.as_str(), e.status), ("ratio", "paper", EstimateStatus::Ok));
     assert_eq!(e.strain_ratio, Some(StrainRatio { value: -0.0623, source: "total" }));
@@ -87,7 +86,10 @@ fn each_quantity_is_read_from_its_own_field() {
         assert_eq!(found.values.to_vec(), expected);
         field(&mut e)[0] = NAN;
         let refused = MicrostructureReading::try_from(&message(vec![e])).unwrap_err().to_string();
-        assert_eq!(refused, format!("Estimate.{} = NaN is refused: it must be finite", QUANTITIES[i]));
+        assert_eq!(
+            refused,
+            format!("Estimate.{} = NaN is refused: it must be finite", InferredQuantity::ALL[i].name())
+        );
     }
 }
 

@@ -133,9 +133,9 @@ fn a_rate_that_is_not_finite_is_refused_with_its_component() {
     );
 }
 
-/// What no reader would take is not written either.
+/// Messages that readers refuse are not written.
 #[test]
-fn nothing_that_would_be_refused_goes_out() {
+fn invalid_messages_are_not_published() {
     let mut request = StressRequest::try_from(&stress()).unwrap();
     request.stress.zz = NAN;
     assert!(Stress::try_from(&request).unwrap_err().to_string().starts_with("Stress.stress.zz = NaN"));

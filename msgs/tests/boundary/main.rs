@@ -1,4 +1,5 @@
-//! The trust boundary: what is good crosses it unchanged both ways, what is not is refused by name.
+//! The conversion at the boundary: valid data are unchanged in both directions, invalid data are refused by
+//! name.
 
 mod estimates;
 mod lockstep;
@@ -10,10 +11,10 @@ mod waveform;
 
 use grainlab_msgs::boundary::BoundaryError;
 
-/// A message, a fault put into it, and how the refusal must begin.
+/// A valid message, a change that makes it invalid, and the start of the error.
 type Fault<M> = (fn(&mut M), &'static str);
 
-/// Each fault, put into a good message, is refused with the text given.
+/// Each change of a valid message is refused with the given text.
 fn refuses<M: Clone, T>(good: &M, faults: &[Fault<M>], convert: impl Fn(&M) -> Result<T, BoundaryError>) {
     assert!(convert(good).is_ok(), "the message to be spoilt is good");
     for (fault, text) in faults {

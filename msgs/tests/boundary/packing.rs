@@ -1,4 +1,5 @@
 use super::refuses;
+use grainlab_core::contact::{ContactLaw, RollingResistance};
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{from_cdr, msg, to_cdr};
@@ -29,13 +30,13 @@ fn matrix() -> impl Strategy<Value = Mat3> {
         .prop_filter("regular", |m| m.determinant() > 0.05)
 }
 
-/// Every contact of these spheres with images up to two cells away, with a share of Hertz's force.
+/// Every contact of these spheres with images up to two cells away, with a fraction of Hertz's force.
 fn contacts(
     cell: &Cell,
     material: &Material,
     grains: &[(f64, Vec3)],
     share: f64,
-    tangential_force: Vec3,
+    [tangential_force, rolling_force]: [Vec3; 2],
 ) -> Vec<Contact> {
     let mut found = Vec::new();
     for (i, j) in (0..grains.len()).flat_map(|i| (i..grains.len()).map(move |j| (i, j))) {
@@ -47,11 +48,24 @@ fn contacts(
                 let radius = grainlab_core::effective_radius(grains[i].0, grains[j].0);
                 let normal_force = share * material.normal_force(radius, overlap);
                 let (normal, (i, j)) = (branch.normalize(), (i as u32, j as u32));
-                found.push(Contact { i, j, image, overlap, normal, normal_force, tangential_force });
+                found.push(Contact {
+                    i,
+                    j,
+                    image,
+                    overlap,
+                    normal,
+                    normal_force,
+                    tangential_force,
+                    rolling_force,
+                });
             }
         }
     }
     found
+}
+
+fn rolling() -> ContactLaw {
+    ContactLaw::default().with_rolling(RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 })
 }
 
 prop_compose! {
@@ -61,21 +75,25 @@ prop_compose! {
         (cell, deformation) in (matrix(), matrix()),
         (shear_modulus, poisson_ratio, density) in (positive(), 0.0..=0.5f64, positive()),
         friction in prop_oneof![Just(INF), Just(0.0), positive()],
-        (first, share, tangential_force) in (any::<u32>(), -1.0..50.0f64, vector()),
+        (first, share, forces) in (any::<u32>(), -1.0..50.0f64, [vector(), vector()]),
+        resists_rolling in any::<bool>(),
     ) -> Packing {
-        // A cell that is large enough for five of the largest.
+        // A cell that is large enough for the five largest spheres.
         let cell = Cell::new(matrix_of(&cell)).unwrap();
         let material = Material { shear_modulus, poisson_ratio, density };
         let spheres: Vec<(f64, Vec3)> = grains.iter().map(|g| (g.0, g.1)).collect();
         Packing {
             step, time, time_step, deformation, friction, cell, material,
-            law: Default::default(),
+            law: if resists_rolling { rolling() } else { ContactLaw::default() },
             ids: (0..grains.len() as u32).map(|k| first.wrapping_add(k)).collect(),
             radii: grains.iter().map(|g| g.0).collect(),
             positions: grains.iter().map(|g| g.1).collect(),
             velocities: grains.iter().map(|g| g.2).collect(),
             spins: grains.iter().map(|g| g.3).collect(),
-            contacts: contacts(&cell, &material, &spheres, share, tangential_force),
+            contacts: contacts(
+                &cell, &material, &spheres, share,
+                [forces[0], if resists_rolling { forces[1] } else { Vec3::zeros() }],
+            ),
         }
     }
 }
@@ -94,7 +112,7 @@ proptest! {
         let received: msg::Packing = from_cdr(&bytes).unwrap();
         let back = Packing::try_from(&received).unwrap();
         prop_assert_eq!(&back, &packing);
-        // Equality takes -0 for 0; bytes do not.
+        // Equality does not distinguish -0 from 0; bytes do.
         prop_assert_eq!(to_cdr(&packing_message(&back, &received.scene, received.run_state.clone())), bytes);
     }
 
@@ -132,6 +150,7 @@ fn pair() -> msg::Packing {
             normal: -Vec3::z(),
             normal_force: 1.0,
             tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
         }],
         material: Material::GLASS,
         law: Default::default(),
@@ -240,6 +259,14 @@ fn each_array_of_the_wrong_length_is_refused_by_name() {
             (
                 |m| drop_last(&mut m.contact_overlap),
                 "Packing.contact_pair has 2 entries and is refused: it must have 0",
+            ),
+            (
+                |m| m.contact_rolling_force.push(0.0),
+                "Packing.contact_rolling_force has 1 entries and is refused: it must have 0",
+            ),
+            (
+                |m| m.contact_law_parameters = vec![1e4, 0.0, 0.1],
+                "Packing.contact_rolling_force has 0 entries and is refused: it must have 3",
             ),
             (|m| m.radius.push(0.1), "Packing.position has 6 entries and is refused: it must have 9"),
         ],

@@ -35,7 +35,7 @@ pub(crate) fn report() -> PackingReport {
     }
 }
 
-/// What of a report a `Fabric` message holds.
+/// The part of a report in a `Fabric` message.
 pub(crate) fn fabric_of(report: &PackingReport) -> FabricReading {
     FabricReading {
         contacts: report.contacts,
@@ -93,7 +93,7 @@ fn moduli_cross_the_wire_and_back() {
     }
 }
 
-/// Without an axis in the message everything is about e3.
+/// Without an axis in the message all quantities are about e3.
 #[test]
 fn moduli_are_about_the_reference_axis_of_the_fabric_which_the_message_carries() {
     let sent = moduli_sent();
@@ -114,7 +114,7 @@ fn an_inversion_reads_what_the_analysis_measured() {
     let sent = moduli_message(header(), &upright, &stiffness()).unwrap();
     let r = ModuliReading::try_from(&sent).unwrap();
     assert_eq!(r.reference_axis, Vec3::z());
-    // The projection of a stiffness that is transversely isotropic is exact up to rounding.
+    // The projection of a transversely isotropic stiffness is exact up to rounding.
     for (read, measured) in [
         (r.g12.unwrap(), 140e6),
         (r.g13.unwrap(), 150e6),
@@ -128,9 +128,9 @@ fn an_inversion_reads_what_the_analysis_measured() {
     assert_eq!((sent.source_step, &sent.header), (7, &header()));
 }
 
-/// An instrument knows two or three moduli, pressure and the glass; what it leaves out is not known.
+/// An instrument measures two or three moduli, pressure and the material; all other fields are unknown.
 #[test]
-fn what_an_instrument_does_not_know_is_none() {
+fn fields_unknown_to_an_instrument_are_none() {
     let message = msg::Moduli {
         covariance: vec![4e12, 1e12, 0.0, 1e12, 4e12, 0.0, 0.0, 0.0, 9e12],
         g12: vec![140e6],

@@ -1,4 +1,4 @@
-//! The structure of a packing, as a `Fabric` message has it.
+//! The structure of a packing in a `Fabric` message.
 
 use super::refuses;
 use super::results::{fabric_of, header, report};
@@ -18,7 +18,7 @@ fn tensor(seed: f64) -> SymTensor {
     SymTensor::from_voigt(std::array::from_fn(|k| seed + 0.125 * k as f64))
 }
 
-// Every field differs from every other, so that none is mistaken for another.
+// All fields have different values, so that a mix-up is detected.
 
 pub(crate) fn contacts() -> ContactStatistics {
     let mut forces = ForceStatistics {
@@ -94,7 +94,7 @@ pub(crate) fn stress_decomposition() -> StressDecomposition {
     }
 }
 
-/// What is not known arrives as not known.
+/// Unknown quantities stay unknown.
 #[test]
 fn a_structure_without_forces_or_fits_crosses_the_wire_and_back() {
     let mut r = report();
@@ -108,7 +108,7 @@ fn a_structure_without_forces_or_fits_crosses_the_wire_and_back() {
         FabricReading::try_from(&from_cdr::<msg::Fabric>(&to_cdr(&sent)).unwrap()).unwrap()
     };
     assert_eq!(cross(&r), fabric_of(&r));
-    // The ratio fitted to the contacts and the fit it comes from are one and the same.
+    // The ratio fitted to the contacts is that of the fit.
     r.strain_ratios.contact = Some(0.02);
     for g_stddev in [Some(0.009), None] {
         r.fabric.orientation.overlap_fit = Some(OverlapAnisotropyFit { g: 0.02, g_stddev });

@@ -87,7 +87,7 @@ fn zeros_of_an_instrument_are_unknown() {
 }
 
 #[test]
-fn every_method_has_its_code_and_its_word() {
+fn every_method_has_a_code_and_a_name() {
     for (code, word) in
         ["first_arrival", "cross_correlation", "peak", "standing_wave", "dispersion"].iter().enumerate()
     {

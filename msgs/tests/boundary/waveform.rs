@@ -28,7 +28,7 @@ fn sent() -> msg::Waveform {
 }
 
 #[test]
-fn a_reader_hears_every_channel_as_it_was_sent() {
+fn every_channel_arrives_as_it_was_sent() {
     let received: msg::Waveform = from_cdr(&to_cdr(&sent())).unwrap();
     assert_eq!(WaveformReading::try_from(&received).unwrap(), heard());
     assert_eq!((received.quantity.as_str(), received.unit.as_str()), ("velocity", "m/s"));

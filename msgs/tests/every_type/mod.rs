@@ -1,4 +1,4 @@
-//! A list of every type, for tests that go through them all; `golden.rs` proves it complete.
+//! A list of every type, for tests over all of them; `golden.rs` checks that it is complete.
 
 /// Calls the macro `$check` with each type.
 macro_rules! for_every_type {

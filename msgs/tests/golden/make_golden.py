@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes messages.json: for every message type its schema text, its type hash and two messages (filled and empty) as
-values and as CDR bytes of both byte orders, all made by software that is not ours. Run it after a change of a message file:
+values and as CDR bytes of both byte orders, all made by independent software. Run it after a change of a message file:
 
     pip install rosbags==0.11.9 mcap-ros2-support==0.6.0
     python make_golden.py

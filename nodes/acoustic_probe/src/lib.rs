@@ -1,11 +1,11 @@
 //! The acoustic node: sends waves through packings and publishes their speeds.
 //!
-//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
-//! - [`measure()`]: the whole work, a pure function of one message; [`messages`]: its second half
+//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`measure()`]: the work of the node, a pure function of one message; [`messages`]: its second half
 //! - [`AcousticProbe`]: the node; [`Probe`]: what it publishes
 //!
-//! What is published is what an instrument could know: speeds, density, pressure, solid fraction and the material of the
-//! grains. Nothing that was counted in the packing is among it.
+//! It publishes only what an instrument can measure: speeds, density, pressure, solid fraction and the
+//! material of the grains. No quantity counted in the packing is included.
 
 mod measure;
 mod node;

@@ -1,4 +1,4 @@
-//! From one `Packing` to one `WaveSpeeds` and the `Waveform`s behind it.
+//! From one `Packing` to one `WaveSpeeds` and its `Waveform`s.
 
 use crate::Settings;
 use grainlab_acoustics::{AcousticsError, Measurement, Trace};
@@ -10,52 +10,52 @@ use grainlab_msgs::boundary::{
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
 
-/// What is published about one packing.
+/// The messages published for one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// Its wave speeds.
     pub wave_speeds: msg::WaveSpeeds,
-    /// The traces behind them, one message a wave; none behind a dispersion.
+    /// The recorded traces, one message per wave; empty for dispersion.
     pub waveforms: Vec<msg::Waveform>,
 }
 
 /// Why a packing has no wave speeds.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
-    /// The bytes are no message.
+    /// The message cannot be decoded.
     #[error("a packing cannot be decoded: {0}")]
     Undecodable(#[from] DecodeError),
-    /// The message is not a packing.
+    /// The message is not a valid packing.
     #[error(transparent)]
     Refused(BoundaryError),
-    /// Nothing carries a wave. Not a fault: sound does not cross a gas of grains.
+    /// No wave propagates. Not a fault: a gas of grains does not transmit sound.
     #[error("packing of step {step} has no wave speeds: {reason}")]
     NotJammed {
-        /// Its step.
+        /// Step of the packing.
         step: u64,
-        /// What it lacks.
+        /// The reason.
         reason: NotJammed,
     },
     /// The measurement failed.
     #[error("wave speeds of the packing of step {step} are not measured: {reason}")]
     Acoustics {
-        /// Its step.
+        /// Step of the packing.
         step: u64,
-        /// What went wrong.
+        /// The reason.
         reason: AcousticsError,
     },
-    /// What was measured is nothing that a reader would accept.
+    /// The result is not a valid message.
     #[error("wave speeds of the packing of step {step} are measured, but cannot be published: {reason}")]
     Result {
-        /// Its step.
+        /// Step of the packing.
         step: u64,
-        /// What a reader would object to.
+        /// The reason.
         reason: BoundaryError,
     },
 }
 
 impl MeasureError {
-    /// Step of the packing that was read and has no wave speeds.
+    /// Step of a packing that was read and has no wave speeds.
     pub fn step(&self) -> Option<u64> {
         match self {
             Self::Undecodable(_) | Self::Refused(_) => None,
@@ -66,7 +66,7 @@ impl MeasureError {
     }
 }
 
-/// Measures one packing. Header and step are copied; nothing but the two arguments enters.
+/// Measures one packing. Header and step are copied. The result depends only on the two arguments.
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
@@ -77,7 +77,7 @@ pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, 
     messages(&message.header, &packing, &found).map_err(|reason| MeasureError::Result { step, reason })
 }
 
-/// The messages about a packing that has been measured; `header` is that of the packing's own message.
+/// The messages for a measured packing; `header` is that of the message of the packing.
 pub fn messages(header: &Header, packing: &Packing, found: &Measurement) -> Result<Measured, BoundaryError> {
     let source_step = Some(packing.step).filter(|step| *step > 0);
     let reading = WaveSpeedsReading {

@@ -7,16 +7,16 @@ use grainlab_node_kit::{
     Bus, BusError, Declined, Health, Measure, PackingNode, Publisher, SampleId, Tally, Words, step_or_none,
 };
 
-/// Key of the diagnostics under which the step of the last packing without wave speeds stands.
+/// Key of the diagnostics with the step of the last packing without wave speeds.
 pub const DECLINED_STEP: &str = "declined_step";
 
-/// Key of the diagnostics under which the step of the packing that is being measured stands.
+/// Key of the diagnostics with the step of the packing being measured.
 pub const MEASURING: &str = "measuring";
 
-/// The probe: measures every packing, one after the other, on a thread of its own.
+/// The probe: measures every packing, one after the other, on a worker thread.
 pub type AcousticProbe = PackingNode<Probe>;
 
-/// What is published about packings.
+/// The publishers.
 #[derive(Debug)]
 pub struct Probe {
     wave_speeds: Publisher<WaveSpeeds>,
@@ -47,7 +47,7 @@ impl Measure for Probe {
         measure(packing, settings)
     }
 
-    /// The traces first: a reader that has the speeds has the traces behind them.
+    /// The traces first, so that a reader that has the speeds also has the traces.
     fn publish(
         &mut self,
         bus: &mut dyn Bus,

@@ -1,4 +1,4 @@
-//! What can be set.
+//! The parameters of the node.
 
 use grainlab_acoustics::{Instrument, dispersion, time_of_flight};
 use grainlab_node_kit::{ParameterSpec, Range};
@@ -11,14 +11,14 @@ pub fn parameters() -> Vec<ParameterSpec> {
     all
 }
 
-/// Which waves.
+/// The set of waves.
 fn rays() -> Vec<ParameterSpec> {
     vec![
         ParameterSpec::new(
             "method",
             "dispersion",
             "how speeds are measured: dispersion (frequencies of long waves in the frozen contact network), standing_wave (the \
-             packing rings), or time of flight by first_arrival, cross_correlation or peak",
+             packing vibrates freely), or time of flight by first_arrival, cross_correlation or peak",
         )
         .within(Range::Choice(&[
             "dispersion",
@@ -30,21 +30,21 @@ fn rays() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "axis",
             "e3",
-            "axis of symmetry that the rays are sent about: e3, unknown, or a direction x,y,z of any length",
+            "axis of symmetry of the rays: e3, unknown, or a direction x,y,z of any length",
         ),
         ParameterSpec::new(
             "survey",
             "complete",
             "which rays are sent: complete (along the axis, and enough across and at 45 degrees to average over azimuths), \
-             three (one of each), everywhere (over the hemisphere; always, where the axis is unknown)",
+             three (one of each), everywhere (over the hemisphere; always used if the axis is unknown)",
         )
         .within(Range::Choice(&["complete", "three", "everywhere"])),
-        ParameterSpec::new("modes", "all", "which motions are sent along each ray: all, compression, shear")
+        ParameterSpec::new("modes", "all", "polarizations sent along each ray: all, compression, shear")
             .within(Range::Choice(&["all", "compression", "shear"])),
     ]
 }
 
-/// How they are sent.
+/// The methods.
 fn ways() -> Vec<ParameterSpec> {
     let dispersion = dispersion::Settings::default();
     let flight = time_of_flight::Settings::default();
@@ -56,13 +56,13 @@ fn ways() -> Vec<ParameterSpec> {
             "wavelengths of dispersion, mean grain diameters: three or more, each above 2",
         )
         .within(Range::Double { min: 2.000_001, max: 1e6 }),
-        ParameterSpec::new("tolerance", dispersion.tolerance, "relative error allowed to the squared frequencies of \
+        ParameterSpec::new("tolerance", dispersion.tolerance, "tolerance of the relative error of the squared frequencies of \
              dispersion, 1")
             .within(Range::Double { min: 1e-12, max: 1e-2 }),
         ParameterSpec::new(
             "max_iterations",
             i64::from(dispersion.max_iterations),
-            "iterations after which a mode of dispersion is given up",
+            "maximum number of iterations for a mode of dispersion",
         )
         .within(Range::Integer { min: 1, max: 10_000_000 }),
         ParameterSpec::new(
@@ -75,7 +75,7 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "frequencies",
             Vec::<f64>::new(),
-            "centre frequencies of time of flight, Hz; empty for those whose waves are some 20, 28 and 40 mean grain \
+            "centre frequencies of time of flight, Hz; empty for those of waves about 20, 28 and 40 mean grain \
              diameters long",
         )
         .within(Range::Positive),
@@ -84,24 +84,24 @@ fn ways() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "amplitude",
             0.0,
-            "peak strain that is sent, 1; 0 for 1e-9 (standing_wave) or 1e-8 (time of flight)",
+            "peak strain of the waves, 1; 0 for 1e-9 (standing_wave) or 1e-8 (time of flight)",
         )
         .within(strain),
         ParameterSpec::new(
             "wave_friction",
             -1.0,
-            "friction while waves pass (not of dispersion): -1 for that of the packing, whose contacts at the limit slide under any wave; inf \
-             for none that slides",
+            "friction while waves pass (not for dispersion): -1 for that of the packing, whose contacts at the limit slide under any wave; inf \
+             for no sliding",
         )
         .within(Range::Double { min: -1.0, max: f64::INFINITY }),
     ]
 }
 
-/// What stands between a wave and a number.
+/// Noise and errors of the instrument.
 fn instrument() -> Vec<ParameterSpec> {
     let d = Instrument::default();
     vec![
-        ParameterSpec::new("sample_rate", 0.0, "samples a second, Hz; 0 for forty a period")
+        ParameterSpec::new("sample_rate", 0.0, "sampling rate, Hz; 0 for forty samples per period")
             .within(Range::Double { min: 0.0, max: 1e12 }),
         ParameterSpec::new(
             "signal_to_noise",
@@ -120,7 +120,7 @@ fn instrument() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "speed_noise",
             d.speed_noise,
-            "relative standard deviation of every speed beyond all that, 1: alignment, lengths",
+            "additional relative standard deviation of every speed, 1: alignment, lengths",
         )
         .within(Range::Double { min: 0.0, max: 0.5 }),
         ParameterSpec::new("seed", d.seed as i64, "seed of all noise")

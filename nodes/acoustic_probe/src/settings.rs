@@ -1,4 +1,4 @@
-//! The parameters, typed.
+//! The values of the parameters.
 
 use grainlab_acoustics::time_of_flight::ArrivalPick;
 use grainlab_acoustics::{
@@ -7,19 +7,20 @@ use grainlab_acoustics::{
 use grainlab_core::Vec3;
 use grainlab_node_kit::Parameters;
 
-/// How a packing is measured.
+/// Settings of the measurement.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings(pub grainlab_acoustics::Settings);
 
-/// Parameters that each are in range and together make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
+/// Parameters whose values are in range but invalid. The process then ends with
+/// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    /// Not an axis.
+    /// The text is not an axis.
     #[error(
-        "parameter \"axis\" = {0:?} is no axis: e3, unknown, or three numbers x,y,z that are finite and not all zero"
+        "parameter \"axis\" = {0:?} is not an axis: e3, unknown, or three numbers x,y,z that are finite and not all zero"
     )]
     Axis(String),
-    /// Too few wavelengths for their law.
+    /// Too few wavelengths for the extrapolation.
     #[error(
         "parameter \"wavelengths\" has {0} entries: three or more are needed to extrapolate to long waves"
     )]
@@ -61,7 +62,7 @@ impl TryFrom<&Parameters> for Settings {
     }
 }
 
-/// A range keeps every one of them below what 32 bits hold.
+/// The range of every one of them ensures that it fits into 32 bits.
 fn count(parameters: &Parameters, name: &str) -> u32 {
     u32::try_from(parameters.get::<i64>(name)).unwrap_or(u32::MAX)
 }
@@ -120,7 +121,7 @@ fn axis(text: &str) -> Result<Option<Vec3>, SettingsError> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     let direction = numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(Vec3::from);
     let valid = direction.filter(|v| v.iter().all(|n| n.is_finite()) && v.amax() > 0.0);
-    // Scaled first: the square of a large component is no number any more.
+    // Scaled first: the square of a large component overflows.
     let unit = valid.map(|v| (v / v.amax()).normalize());
     unit.map(Some).ok_or_else(|| SettingsError::Axis(text.to_owned()))
 }

@@ -1,4 +1,4 @@
-//! `grainlab bench accuracy`: what each numerical setting costs and how wrong it is.
+//! `grainlab bench accuracy`: cost and error of each numerical setting.
 
 mod front;
 mod knobs;
@@ -23,9 +23,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const EXAMPLES: &str = "\
-Each knob is turned alone, on a scene run in this process from gas to packing at several seeds. The error of a setting is
+Each knob is varied alone, on a scene run in this process from gas to packing at several seeds. The error of a setting is
 the mean over the seeds of its difference, in k, eps, phi, G12 and Theta, from a converged run with every knob at its most
-careful value. Packings diverge from any perturbation: an error below two standard errors is not resolved, and said to be.
+accurate value. Packings diverge from any perturbation: an error below two standard errors is marked as not resolved.
 
 Examples:
   All knobs on a path of 200 grains, with a plot of the Pareto front (about 15 minutes of two cores):
@@ -33,29 +33,30 @@ Examples:
   Strain rate and damping on the demo, with more seeds:
     grainlab bench accuracy --scene demo --knobs strain_rate,damping --seeds 16";
 
-/// The scene that is run unless another is named.
+/// The default scene.
 const PRESS: &str = include_str!("accuracy/press.toml");
 
-/// Runs that take this many times the default's steps count as failed: twice what the slowest knob asks for.
+/// Runs with this many times the steps of the default count as failed: twice the number needed by the slowest
+/// setting.
 const PATIENCE: u64 = 8;
 
-/// What to turn, and how often.
+/// The settings to vary, and the number of seeds.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Scene to run: a name built in or a file; without one, a path of 200 grains to 50 kPa
+    /// Scene to run: a built-in name or a file; default: a path of 200 grains to 50 kPa
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
-    /// Seeds of each setting, counted up from the scene's
+    /// Seeds per setting, counted up from that of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     seeds: Option<u32>,
-    /// Knobs to turn; all without this flag
+    /// Knobs to vary [default: all]
     #[arg(long, value_enum, value_name = "KNOB", value_delimiter = ',')]
     knobs: Vec<Knob>,
-    /// Two seeds, one value a knob beside the default, a less careful reference: to try it out
+    /// Two seeds, one value per knob besides the default, and a less accurate reference, for a quick test
     #[arg(long)]
     quick: bool,
-    /// Runs at a time; each is timed by its own thread's CPU time
+    /// Number of parallel runs; each is timed by the CPU time of its own thread
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: u32,
     /// Folder for accuracy.json and accuracy.svg
@@ -80,7 +81,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         first.iter().map(|r| r.as_ref().map_or(u64::MAX, |o| PATIENCE * o.steps)).collect();
     let careful = converged(&scene, args.quick);
     let settings = settings(knobs, &scene, servoed(&first), args.quick);
-    // The default once more, so that it is timed among the others.
+    // The default once more, so that it is timed together with the others.
     let mut jobs = vec![(&careful, &unlimited), (&scene, &limits)];
     jobs.extend(settings.iter().filter(|s| !s.default).map(|s| (&s.scene, &limits)));
     let mut results = every_seed(&jobs, &seeds, threads, "settings").into_iter();
@@ -117,7 +118,7 @@ fn settings(knobs: &[Knob], scene: &Scene, servoed: Option<Servoed>, quick: bool
     let of = |knob: &Knob| {
         let settings = knob.settings(scene, servoed, quick);
         if settings.is_empty() {
-            say!("grainlab: the scene has nothing that {} would turn", knob.name());
+            say!("grainlab: the scene has no setting for the knob {}", knob.name());
         }
         settings
     };
@@ -128,8 +129,8 @@ fn servoed(sample: &Sample) -> Option<Servoed> {
     sample.iter().find_map(|r| r.as_ref().ok()?.servoed)
 }
 
-/// Runs each scene at every seed, each with its limits on steps; the outcomes by scene. Seed by seed, so that what else
-/// the machine does falls on all scenes alike.
+/// Runs each scene at every seed, with limits on the steps; returns the outcomes by scene. Seed by seed, so
+/// that other load on the machine affects all scenes alike.
 fn every_seed(scenes: &[(&Scene, &Vec<u64>)], seeds: &[u64], threads: usize, what: &str) -> Vec<Sample> {
     let job = |s: usize| {
         let (seed, at) = (seeds[s], s);
@@ -151,16 +152,16 @@ fn every_seed(scenes: &[(&Scene, &Vec<u64>)], seeds: &[u64], threads: usize, wha
     samples
 }
 
-/// Without a reference nothing can be said.
+/// Without a reference there is no result.
 fn no_reference(reference: &Sample, default: &Sample) -> Failure {
     let first = |sample: &Sample| sample.iter().find_map(|r| r.as_ref().err().cloned());
     let reason = match (first(default), first(reference)) {
-        (Some(reason), _) => format!("the scene as it stands: {reason}"),
+        (Some(reason), _) => format!("the unchanged scene: {reason}"),
         (None, Some(reason)) => format!("the converged run: {reason}"),
         (None, None) => "no run has a result".to_owned(),
     };
     Failure::new(
         Exit::PhysicsInvalid,
-        format!("fewer than two seeds ended, nothing to compare with: {reason}"),
+        format!("fewer than two seeds succeeded, so that there is no reference: {reason}"),
     )
 }

@@ -1,4 +1,4 @@
-//! `grainlab bench acoustics`: what wave speeds of a packing cost by each way to measure them, and how wrong they are.
+//! `grainlab bench acoustics`: cost and error of the wave speeds of a packing, by method.
 
 mod args;
 mod curves;

@@ -1,8 +1,8 @@
-//! The clock of a measurement on a shared machine.
+//! The clocks of a measurement on a shared machine.
 
 use grainlab_console::Failure;
 
-/// CPU time that the calling thread has used, s: what a run costs, whatever else the machine does meanwhile.
+/// CPU time that the calling thread has used, s: independent of other load on the machine.
 pub(super) fn thread_seconds() -> Result<f64, Failure> {
     seconds(libc::CLOCK_THREAD_CPUTIME_ID)
 }

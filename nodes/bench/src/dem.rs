@@ -1,4 +1,4 @@
-//! `grainlab bench dem`: how fast the particle engine steps.
+//! `grainlab bench dem`: speed of the particle engine.
 
 mod machine;
 mod peak;
@@ -17,25 +17,25 @@ use std::path::PathBuf;
 use stepping::{Case, Features, Loop, Packings};
 
 const EXAMPLES: &str = "\
-Grains of a packing at rest near 100 kPa, with 2.55 contacts a grain, are stepped with friction 0.1, damping 0.3 and a time
-step of 3e-8 s, and only the stepping is timed. Without --packing it is one of 2,000 grains made by LAMMPS, repeated along
-each axis for the larger sizes; without friction it would fall apart, so that the frictionless rows step the same grains
-pressed anew without it. Every repetition goes once through all cases; medians are reported.
+A packing at rest near 100 kPa, with 2.55 contacts per grain, is stepped with friction 0.1, damping 0.3 and a time step of
+3e-8 s; only the stepping is timed. The default packing has 2,000 grains and was made by LAMMPS; it is repeated along each
+axis for the larger sizes. Without friction it would collapse, so that the frictionless rows step the same grains compressed
+again without friction. Every repetition runs all cases once; medians are reported.
 
 Examples:
-  One core, one size, with the servo answering every step:
+  One core, one size, with the servo at every step:
     grainlab bench dem --grains 2000 --threads 1 --features coulomb --servo
-  What each instruction set gives:
+  Comparison of the instruction sets:
     grainlab bench dem --grains 16000 --threads 1 --simd scalar,avx2,avx512 --format json";
 
-/// What to step, and how often.
+/// The cases to time.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Packing to step: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
-    /// Sizes: cubes of the packing's own number of grains; without it 1, 2 and 4 copies along each axis
+    /// Sizes: the number of grains of the packing times cubes; default 1, 2 and 4 copies along each axis
     #[arg(long, value_name = "N", value_delimiter = ',')]
     grains: Vec<u64>,
     /// Numbers of threads
@@ -44,16 +44,17 @@ pub struct Args {
     /// Parts of the contact law
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Features::value_variants().to_vec())]
     features: Vec<Features>,
-    /// Take the stress and answer it with a strain rate after every step, towards the packing's pressure
+    /// Evaluate the stress and control the strain rate after every step, at the pressure of the packing
     #[arg(long)]
     servo: bool,
-    /// Solver steps of a repetition, after a tenth as many to warm up; without it as many as make 2e7 particle-steps
+    /// Solver steps per repetition, after a tenth as many for the warm-up; default: as many as make 2e7
+    /// particle-steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
     /// Instruction sets: best, scalar, avx2, avx512
     #[arg(long, value_name = "SET", value_delimiter = ',', default_value = "best", value_parser = instruction_set)]
     simd: Vec<Simd>,
-    /// Repetitions of every case
+    /// Repetitions per case
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repetitions: u32,
     /// How to print the result
@@ -77,7 +78,7 @@ struct Row {
     servo: bool,
     steps: u32,
     repetitions: usize,
-    /// By the wall clock.
+    /// By wall time.
     particle_steps_per_second: f64,
     /// By the CPU time of all threads.
     cpu_particle_steps_per_second: f64,
@@ -86,11 +87,12 @@ struct Row {
     coordination: f64,
     /// Mean stress at the end, Pa.
     pressure: f64,
-    /// Floating-point operations of the contact law on one contact, counted by running it.
+    /// Floating-point operations of the contact law per contact, counted by evaluating it.
     operations_per_contact: f64,
-    /// What the contacts need of what the cores in use could do of independent additions and multiplications.
+    /// Fraction of the peak of the cores in use, for independent additions and multiplications, that the
+    /// contact law reaches.
     share_of_peak: Option<f64>,
-    /// Memory that the engine holds; null where the system does not report it.
+    /// Memory of the engine; null if the system does not report it.
     bytes_per_grain: Option<f64>,
 }
 
@@ -160,7 +162,7 @@ fn row(packing: &Packing, case: &Case, loops: &[Loop], machine: &Machine) -> Row
         pressure: of(&|l| l.pressure),
         operations_per_contact: operations,
         share_of_peak: machine.peak(case.simd).map(share),
-        // The first engine finds the memory untouched; later ones take up what others left.
+        // The first engine allocates fresh memory; later ones reuse memory freed by others.
         bytes_per_grain: loops
             .iter()
             .filter_map(|l| l.bytes)

@@ -1,11 +1,13 @@
 //! `grainlab bench faults`: the laboratory under seeded faults.
 //!
-//! All processes of a run in one thread, on the bus in memory: messages are lost, doubled, late and out of order, processes
-//! crash, are stopped and are restarted, strangers forge every message, clocks jump. Each run has to come to the bytes of the
-//! undisturbed run, or to an error. A seed decides everything, so that a run that fails can be looked at again.
+//! All processes of a run in one thread, on the bus in memory: messages are lost, repeated, delayed and out
+//! of order, processes crash, are stopped and are restarted, strangers forge every message, clocks jump. Each
+//! run must end with the bytes of the undisturbed run, or with an error. A run depends only on its seed, so
+//! that a failure can be repeated.
 //!
-//! - `plan`: what a seed makes of a run; `laboratory`: the processes and who restarts them
-//! - `process`: one process; `recorder`: what is recorded; `stranger`, `forgery`: a process that is not part of the run, and what it forges
+//! - `plan`: the faults for a seed; `laboratory`: the processes and their restarts
+//! - `process`: one process; `recorder`: the recorded messages; `stranger`, `forgery`: a process that is not
+//!   part of the run, and its forged messages
 
 mod forgery;
 mod laboratory;
@@ -27,9 +29,9 @@ Examples:
   grainlab bench faults --seeds 1000
   grainlab bench faults --seed 4711 --seeds 1 --explain
 
-Exit 1 if a run came to other results without an error, or to no end.";
+Exit 1 if a run had different results without an error, or did not end.";
 
-/// How many runs, and which.
+/// The runs.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -39,7 +41,7 @@ pub struct Args {
     /// Seed of the first run; the next ones count up
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Say what happens in each run
+    /// Print the events of each run
     #[arg(long)]
     explain: bool,
     /// How to print the result
@@ -47,20 +49,20 @@ pub struct Args {
     format: Format,
 }
 
-/// A run that must not be.
+/// A run that violates the rule.
 #[derive(Debug, Serialize)]
 struct Fault {
     seed: u64,
     what: String,
 }
 
-/// What came of all runs.
+/// Results of all runs.
 #[derive(Debug, Default, Serialize)]
 struct Report {
     runs: u64,
     same: u64,
     errors: u64,
-    /// Faults that were done to the runs: crashes, stops, clock jumps, messages of strangers.
+    /// Numbers of faults: crashes, stops, clock jumps, forged messages.
     crashes: u64,
     stops: u64,
     jumps: u64,
@@ -108,7 +110,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
                     grainlab_console::say!("seed {seed}: {error}");
                 }
             }
-            Outcome::Stuck(what) => fail(format!("the run comes to no end: {what}")),
+            Outcome::Stuck(what) => fail(format!("the run does not end: {what}")),
         }
     }
     print(&match args.format {

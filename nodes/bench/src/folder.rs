@@ -1,9 +1,9 @@
-//! The folder that a report goes into.
+//! The folder of a report.
 
 use grainlab_console::{Failure, say};
 use std::path::Path;
 
-/// Makes the folder: before long computing, not after.
+/// Creates the folder: before long computations, not after.
 pub(super) fn ready(folder: Option<&Path>) -> Result<(), Failure> {
     let Some(folder) = folder else { return Ok(()) };
     std::fs::create_dir_all(folder).map_err(|e| Failure::failed(format!("{}: {e}", folder.display())))

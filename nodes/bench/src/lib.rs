@@ -1,9 +1,9 @@
-//! `grainlab bench`: speed on this machine, and what it is bought with.
+//! `grainlab bench`: cost and accuracy of the laboratory on this machine.
 //!
 //! A bench is one file with an `Args` and a `run`, and a variant of [`Command`].
 //!
 //! - `accuracy`, `acoustics`, `dem`, `faults`, `lockstep`, `stiffness`: the benches
-//! - `packing`: what is measured on; `cpu_time`: by which clock; `numbers`, `folder`: reports
+//! - `packing`: the packings to measure; `cpu_time`: the clocks; `numbers`, `folder`: reports
 
 mod accuracy;
 mod acoustics;
@@ -20,7 +20,7 @@ use clap::Subcommand;
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
-/// What to measure.
+/// The bench to run.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Time against error of every numerical setting, relative to a converged run, with the Pareto front.
@@ -29,9 +29,10 @@ pub enum Command {
     Acoustics(acoustics::Args),
     /// The particle engine: particle-steps per second by size, threads, instruction set and features.
     Dem(dem::Args),
-    /// Runs in which everything fails that may fail, each drawn from a seed: the same results, or an error.
+    /// Runs under all kinds of faults, each drawn from a seed: they end with the same results or with an
+    /// error.
     Faults(faults::Args),
-    /// One exchange of the lockstep between two processes, with a recorder attached, beside bare ros2-client.
+    /// One exchange of the lockstep between two processes, with a recorder, compared with bare ros2-client.
     Lockstep(lockstep::Args),
     /// The stiffness of a packing: time against error of every method and tolerance.
     Stiffness(stiffness::Args),
@@ -40,7 +41,7 @@ pub enum Command {
 /// Runs the command.
 ///
 /// # Errors
-/// With the exit code and what to tell the user.
+/// With the exit code and the message for the user.
 pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::Accuracy(args) => accuracy::run(args),

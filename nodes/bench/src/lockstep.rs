@@ -1,4 +1,4 @@
-//! `grainlab bench lockstep`: what one exchange costs.
+//! `grainlab bench lockstep`: duration of one exchange.
 
 mod role;
 mod round;
@@ -9,23 +9,23 @@ use role::Role;
 use serde::Serialize;
 
 const EXAMPLES: &str = "\
-One process asks with a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
-followed by one without the recorder (`alone`), and by one of the same two messages over bare ros2-client, also without, so
-that all see the same machine. How long an exchange takes depends on where the processes run: waking a process on another
-processor takes longer than on the same one. `taskset -c 0` puts all on one.
+One process sends a `stress`, another answers with a `strain_rate`, and a recorder writes both to MCAP. Each round is
+followed by one without the recorder (`alone`), and by one with the same two messages over bare ros2-client, also without
+a recorder, so that all run under the same load. The duration depends on the placement of the processes: waking a process on
+another processor takes longer than on the same one. `taskset -c 0` runs all on one processor.
 
 Examples:
   taskset -c 0 grainlab bench lockstep
   grainlab bench lockstep --rounds 5 --format json";
 
-/// How much to measure.
+/// The rounds to measure.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Rounds, each of the three kinds
+    /// Rounds of each of the three kinds
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
     rounds: u32,
-    /// Exchanges of a round
+    /// Exchanges per round
     #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(10..=1_000_000))]
     exchanges: u64,
     /// How to print the result
@@ -47,23 +47,23 @@ struct Microseconds {
 #[derive(Debug, Serialize)]
 struct Row {
     method: &'static str,
-    /// Number of the round; `null` for all of them together.
+    /// Number of the round; `null` for all rounds together.
     value: Option<u32>,
-    /// Grains take no part.
+    /// Null: there are no grains.
     grains: Option<u32>,
-    /// Duration of all exchanges of the row over our bus.
+    /// Duration of the exchanges of the row over the bus of grainlab.
     seconds: f64,
     error: NoError,
     exchanges: usize,
     microseconds: Microseconds,
-    /// Over our bus, without a recorder.
+    /// Over the bus of grainlab, without a recorder.
     alone_microseconds: Microseconds,
     bare_microseconds: Microseconds,
     /// Messages of the row that the recorder lost.
     lost: u64,
 }
 
-/// A duration has no reference to be wrong against.
+/// Null: a duration has no reference value.
 #[derive(Debug, Serialize)]
 struct NoError {}
 
@@ -114,7 +114,7 @@ fn row(value: Option<u32>, [ours, alone, bare]: [&[f64]; 3], lost: u64) -> Row {
     }
 }
 
-/// Nearest ranks; NaN without a measurement, which is printed as missing.
+/// Nearest ranks; NaN without a measurement, printed as missing.
 fn percentiles(micros: &[f64]) -> Microseconds {
     let mut sorted = micros.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -2,7 +2,7 @@
 
 use grainlab_console::fixed;
 
-/// Of at least one number.
+/// Median of at least one number.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -13,7 +13,7 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     }
 }
 
-/// A number for people: four digits that mean something.
+/// A number with four significant digits.
 pub(super) fn rounded(value: Option<f64>) -> String {
     let digits = value.map_or(0, |v| (3 - v.abs().max(1e-3).log10().floor() as i32).clamp(0, 6));
     fixed(value, digits as usize)

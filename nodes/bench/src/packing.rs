@@ -1,4 +1,4 @@
-//! What is measured on: a packing from a file or the one built in, repeated along each axis.
+//! The packing to measure: from a file or the built-in one, repeated along each axis.
 
 use flate2::read::GzDecoder;
 use grainlab_console::Failure;
@@ -7,10 +7,10 @@ use grainlab_recordings::import::{ImportOptions, lammps_data, load as load_file}
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// 2,000 glass spheres made by LAMMPS at 100 kPa, z = 5.11: see its README.
+/// 2,000 glass spheres from LAMMPS at 100 kPa, z = 5.11: see its README.
 const BUILT_IN: &[u8] = include_bytes!("../../../tests/golden/packings/packing_2000.data.gz");
 
-/// The first packing of the file, or the one built in. Glass where a file does not name the material.
+/// The first packing of the file, or the built-in one. Glass if a file does not contain the material.
 pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
     let glass = ImportOptions {
         shear_modulus: Some(Material::GLASS.shear_modulus),
@@ -26,11 +26,11 @@ pub(crate) fn load(path: Option<&Path>) -> Result<Packing, Failure> {
     };
     let known = load_file(path, &ImportOptions::default());
     let loaded = known.or_else(|_| load_file(path, &glass)).map_err(Failure::failed)?;
-    let none = || Failure::failed(format!("{}: holds no packing", path.display()));
+    let none = || Failure::failed(format!("{}: contains no packing", path.display()));
     Ok(loaded.packings.into_iter().next().ok_or_else(none)?.packing)
 }
 
-/// Every packing of every file, or the one built in.
+/// Every packing of every file, or the built-in one.
 pub(crate) fn load_all(paths: &[PathBuf]) -> Result<Vec<Packing>, Failure> {
     if paths.is_empty() {
         return Ok(vec![load(None)?]);
@@ -40,7 +40,7 @@ pub(crate) fn load_all(paths: &[PathBuf]) -> Result<Vec<Packing>, Failure> {
     Ok(loaded.into_iter().flat_map(|l| l.packings).map(|imported| imported.packing).collect())
 }
 
-/// Copies along each axis that give these sizes; 1, 2 and 4 if none is named.
+/// Copies along each axis for these sizes; default 1, 2 and 4.
 pub(crate) fn copies(grains: usize, wanted: &[u64]) -> Result<Vec<u32>, Failure> {
     if wanted.is_empty() {
         return Ok(vec![1, 2, 4]);

@@ -1,4 +1,4 @@
-//! `grainlab bench stiffness`: what all 21 elastic constants of a packing cost, and how wrong they are.
+//! `grainlab bench stiffness`: cost and error of all 21 elastic constants of a packing.
 
 mod args;
 mod measure;
@@ -42,7 +42,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Copies of the packing along each axis. Contacts are those of the overlaps.
+/// Copies of the packing along each axis. Contacts are computed from the overlaps.
 fn replicated(packing: &Packing, copies: u32) -> Result<Packing, Failure> {
     let (cell, centres) =
         repeated(packing, copies).ok_or_else(|| Failure::failed("the cell of the copies is invalid"))?;

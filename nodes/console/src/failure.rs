@@ -1,9 +1,9 @@
-//! How a command that could not do what was asked ends.
+//! Failures of a command.
 
 use grainlab_node_kit::Exit;
 use std::fmt;
 
-/// A message for stderr and the exit code that goes with it.
+/// A message for stderr and its exit code.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.
@@ -12,7 +12,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// Ends with `exit` and says why.
+    /// A failure with exit code `exit` and this message.
     pub fn new(exit: Exit, message: impl fmt::Display) -> Self {
         Self { exit, message: message.to_string() }
     }
@@ -34,7 +34,7 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The worse of two ends: a failure over lost data over a good end; an interruption over all.
+/// The worse of two results: a failure over lost data over success; an interruption over all.
 pub fn worse(a: Exit, b: Exit) -> Exit {
     let rank = |e: Exit| match e {
         Exit::Done => 0,

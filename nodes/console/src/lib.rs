@@ -1,9 +1,9 @@
 //! What the commands of the `grainlab` binary share.
 //!
-//! - [`Failure`], [`worse`]: how a command ends
-//! - [`Format`], [`Table`], [`print()`], [`say!`]: where its result goes, and in which form
+//! - [`Failure`], [`worse`]: the end of a command
+//! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
 //! - [`plot`]: plots as SVG
-//! - [`scenes`]: the scenes built in, and those in files
+//! - [`scenes`]: built-in scenes, and those in files
 //! - [`network`]: buses of tools, free domains
 
 mod failure;

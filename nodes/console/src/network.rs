@@ -7,7 +7,7 @@ use grainlab_node_kit::Signals;
 use grainlab_node_kit::{DdsBus, Identity, Names, Network, Scope};
 use std::net::{Ipv4Addr, UdpSocket};
 
-/// Joins the domain that the environment names as `name`; SIGINT and SIGTERM wake its waits.
+/// Joins the domain set in the environment as `name`; SIGINT and SIGTERM interrupt its waits.
 pub fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
     let network = Network::from_env().map_err(Failure::usage)?;
     let signals = Signals::install().map_err(Failure::failed)?;
@@ -16,7 +16,7 @@ pub fn tool_bus(name: &str) -> Result<DdsBus, Failure> {
     Ok(bus)
 }
 
-/// Joins a domain as `name`, as far as the environment lets it reach. It logs warnings to stderr.
+/// Joins a domain as `name`, with the discovery range of the environment. Logs warnings to stderr.
 pub fn bus_in(domain: u16, name: &str) -> Result<DdsBus, Failure> {
     bus_as(domain, name, Identity::from_env(Scope::Everyone))
 }
@@ -38,14 +38,14 @@ pub struct FreeDomain {
     _lock: UdpSocket,
 }
 
-/// Domains above 101 reach into the ephemeral ports.
+/// Domains above 101 overlap with the ephemeral ports.
 const DOMAINS: std::ops::RangeInclusive<u16> = 0..=101;
 
 /// Participants of a domain whose ports precede that of the lock.
 const PARTICIPANTS: u16 = 119;
 
 impl FreeDomain {
-    /// The first free domain, 0 (the one that ROS 2 tools use unless told otherwise) if it is.
+    /// The first free domain; 0 is the default of ROS 2 tools.
     pub fn take() -> Result<Self, Failure> {
         DOMAINS.into_iter().find_map(Self::try_take).ok_or_else(|| {
             Failure::failed(
@@ -56,9 +56,11 @@ impl FreeDomain {
 
     fn try_take(id: u16) -> Option<Self> {
         let bind = |offset: u16| UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + offset)).ok();
-        // The last port of the domain's range, which only its 120th participant would use, is the lock among launchers.
+        // The last port of the domain's range, which only its 120th participant would use, is the lock
+        // between launchers.
         let lock = bind(249)?;
-        // Unicast discovery of every participant there may be (RTPS 9.6.2.3): in use if there are any.
+        // A domain is in use if a port for unicast discovery of any possible participant (RTPS 9.6.2.3) is in
+        // use.
         (0..PARTICIPANTS).all(|n| bind(10 + 2 * n).is_some()).then_some(Self { id, _lock: lock })
     }
 }
@@ -76,7 +78,7 @@ mod tests {
     #[test]
     fn a_domain_with_any_participant_is_not_free() {
         let id = FreeDomain::take().unwrap().id;
-        // The sixth participant, the first five having gone.
+        // The sixth participant, after the first five have left.
         let _participant = UdpSocket::bind((Ipv4Addr::LOCALHOST, 7400 + 250 * id + 20)).unwrap();
         assert!(FreeDomain::try_take(id).is_none());
     }

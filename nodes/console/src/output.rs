@@ -5,10 +5,10 @@ use clap::ValueEnum;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// How a result is printed.
+/// The output format of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// For people.
+    /// A text table.
     #[default]
     Table,
     /// For programs; the keys are stable, undefined values are null.
@@ -25,7 +25,7 @@ macro_rules! say {
         let _ = writeln!(std::io::stderr(), $($text)*);
     }};
 }
-/// Writes `text` to stdout. A reader that has seen enough (`| head`) is no error.
+/// Writes `text` to stdout. A closed pipe (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -57,7 +57,7 @@ impl Table {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
-    /// The same with these columns alone, in this order; an unknown one comes back.
+    /// The same with only these columns, in this order; an unknown one is returned as the error.
     pub fn select(&self, columns: &[String]) -> Result<Self, String> {
         let header = self.rows.first().map_or(&[][..], Vec::as_slice);
         let at = |name: &String| header.iter().position(|h| h == name).ok_or_else(|| name.clone());
@@ -104,7 +104,7 @@ impl Table {
         text
     }
 
-    /// Comma-separated, quoted where need be (RFC 4180, but with bare newlines).
+    /// Comma-separated, quoted where necessary (RFC 4180, but with bare newlines).
     pub fn csv(&self) -> String {
         let mut text = CsvText::new();
         self.rows.iter().for_each(|row| text.row(row));
@@ -123,7 +123,7 @@ impl Default for CsvText {
 }
 
 impl CsvText {
-    /// No lines yet.
+    /// Without lines.
     pub fn new() -> Self {
         Self(csv::WriterBuilder::new().flexible(true).from_writer(Vec::new()))
     }
@@ -146,7 +146,7 @@ pub fn exact(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string())
 }
 
-/// A number with `digits` behind the point for people, `-` if there is none.
+/// A number with `digits` decimal places, `-` if there is none.
 pub fn fixed(value: Option<f64>, digits: usize) -> String {
     value.filter(|v| v.is_finite()).map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"))
 }
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(
             Table::new(["a", "b"]).without_empty_columns().text(),
             "a  b\n",
-            "no rows, nothing to judge by"
+            "without rows no column is left out"
         );
     }
 

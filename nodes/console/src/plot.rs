@@ -1,9 +1,9 @@
 //! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
 //! dark. Points can have tooltips.
 //!
-//! - [`Figure`]: what is drawn; [`Theme`]: on which paper
-//! - `axis`: from values to places, and the marks of an axis
-//! - `labels`: texts beside points, where there is room
+//! - [`Figure`]: the contents; [`Theme`]: the colours
+//! - `axis`: positions of values, and the tick marks of an axis
+//! - `labels`: texts beside points, if there is room
 //! - `draw`: the elements
 
 mod axis;
@@ -17,7 +17,7 @@ use axis::Range;
 use draw::{Drawing, Key};
 
 impl Figure {
-    /// The picture as SVG.
+    /// The plot as SVG.
     pub fn svg(&self, theme: Theme) -> String {
         let points = || self.series.iter().flat_map(|s| &s.points);
         let x = Range::of(points().flat_map(Point::across), self.x.scale, draw::HORIZONTAL);

@@ -1,4 +1,4 @@
-//! Scenes by name or path, with their bases and what is set beside them.
+//! Scenes by name or path, with their bases and overrides.
 
 use crate::failure::Failure;
 use crate::start;
@@ -11,22 +11,22 @@ use std::path::Path;
 /// A scene and its text.
 #[derive(Clone, Debug)]
 pub struct SceneText {
-    /// The text, which goes into the recording: whole without its bases, with the seed in force.
+    /// The text for the recording: complete without its bases, with the seed in force.
     pub text: String,
     /// The same, parsed.
     pub scene: Scene,
-    /// The packing that it starts from, if it does.
+    /// The packing that it starts from, if any.
     pub start: Option<Packing>,
 }
 
-/// The parameter of nodes that sets keys of the scene.
+/// The parameter of nodes for keys of the scene.
 pub fn set_parameter() -> ParameterSpec {
     let meaning = "keys of the scene to set, as in [grains.count=500, friction=0.2]";
     ParameterSpec::new("set", Vec::<String>::new(), meaning)
 }
 
-/// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` goes over the one that it
-/// names.
+/// The scene of a built-in name or of a file, changed by `sets` such as `grains.count=500`; `seed` replaces
+/// that of the scene.
 pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<SceneText, Failure> {
     let source = find(name_or_path, None).map_err(|f| match f.exit {
         Exit::Usage => f,
@@ -47,7 +47,7 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     let resolved = match &start {
         None => draft.resolve(),
         Some(found) => {
-            // The whole path: the scene is read again from the directory of its run.
+            // The whole path, because the scene is read again from the directory of its run.
             draft.start_at(&found.path.to_string_lossy(), found.step);
             draft.resolve_from(&found.packing)
         }
@@ -56,7 +56,7 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     Ok(SceneText { text: resolved.toml, scene: resolved.scene, start: start.map(|found| found.packing) })
 }
 
-/// A built-in scene or a file; one that is named in the file `from` is looked for beside it.
+/// A built-in scene or a file; one named in the file `from` is searched for beside it.
 fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
     if let Some(text) = built_in(name) {
         return Ok(Source { name: name.to_owned(), text: text.to_owned() });
@@ -68,7 +68,7 @@ fn find(name: &str, from: Option<&Path>) -> Result<Source, Failure> {
         return Err(Failure::usage(message));
     }
     let text = input::text(&path, input::SETTINGS).map_err(Failure::failed)?;
-    // The whole path tells two files apart, and one that is reached in two ways is one.
+    // The whole path identifies a file, also if it is reached in two ways.
     let name = path.canonicalize().unwrap_or(path);
     Ok(Source { name: name.to_string_lossy().into_owned(), text })
 }

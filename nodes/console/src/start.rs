@@ -7,7 +7,7 @@ use grainlab_scene::{Draft, StartFile};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// A packing from a file, and where exactly it is.
+/// A packing from a file, with its exact place.
 pub(crate) struct Start {
     pub(crate) packing: Packing,
     /// The whole path.
@@ -16,8 +16,8 @@ pub(crate) struct Start {
     pub(crate) step: u64,
 }
 
-/// Reads the packing that `file` names: that of its step, or the last one. What the file does not say is taken from the
-/// scene.
+/// Reads the packing named by `file`: that of its step, or the last one. Data that the file lacks are taken
+/// from the scene.
 pub(crate) fn read(draft: &Draft, file: &StartFile) -> Result<Start, Failure> {
     let folder = file.from.as_deref().map(Path::new).and_then(Path::parent).unwrap_or(Path::new(""));
     let path = folder.join(&file.path);
@@ -65,7 +65,7 @@ fn missing(error: &ImportError) -> Option<&[Setting]> {
     }
 }
 
-/// What the scene says of what the file does not.
+/// The values of the scene for data that the file lacks.
 fn of_scene(draft: &Draft, missing: &[Setting]) -> ImportOptions {
     let given = |setting, value: Option<f64>| value.filter(|_| missing.contains(&setting));
     ImportOptions {

@@ -4,14 +4,14 @@ use grainlab_node_kit::WriterId;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A running simulator with the larger GUID may have started at the same moment: it gets this long to end.
+/// A running simulator with the larger GUID may have started at the same moment: time for it to end.
 const GRACE: Duration = Duration::from_secs(2);
 
 /// A crashed process stays in the graph until its lease ends, within a minute. A writer that has published nothing for
 /// this long and is still in the graph has not crashed.
 const SILENCE: Duration = Duration::from_secs(75);
 
-/// Maximum number of other simulators that are remembered: one is enough to refuse a run.
+/// Maximum number of other simulators that are stored: one suffices to refuse a run.
 const KEPT: usize = 512;
 
 type Participant = [u8; 12];
@@ -22,7 +22,7 @@ type Participant = [u8; 12];
 pub(crate) struct DuplicateSimulators {
     own: Participant,
     seen: BTreeMap<Participant, Duration>,
-    heard: BTreeMap<Participant, Duration>,
+    running: BTreeMap<Participant, Duration>,
 }
 
 /// Whether a run may start.
@@ -30,7 +30,7 @@ pub(crate) struct DuplicateSimulators {
 pub(crate) enum Verdict {
     /// There is no other writer.
     Clear,
-    /// Whether this writer is a simulator is not known yet.
+    /// It is not yet determined whether this writer is a simulator.
     Wait(WriterId),
     /// Another simulator started earlier.
     Refuse(WriterId),
@@ -38,16 +38,16 @@ pub(crate) enum Verdict {
 
 impl DuplicateSimulators {
     pub(crate) fn new(own: Participant) -> Self {
-        Self { own, seen: BTreeMap::new(), heard: BTreeMap::new() }
+        Self { own, seen: BTreeMap::new(), running: BTreeMap::new() }
     }
 
-    /// Notes a `run_state` of this writer. True the first time for each other simulator.
-    pub(crate) fn hear(&mut self, writer: WriterId, now: Duration) -> bool {
+    /// Records a `run_state` of this writer. True the first time for each other simulator.
+    pub(crate) fn note_state(&mut self, writer: WriterId, now: Duration) -> bool {
         let participant = writer.participant();
-        if self.heard.len() >= KEPT {
+        if self.running.len() >= KEPT {
             return false;
         }
-        participant != self.own && self.heard.insert(participant, now).is_none()
+        participant != self.own && self.running.insert(participant, now).is_none()
     }
 
     /// Evaluates the other writers of `stress` that are in the graph.
@@ -56,12 +56,12 @@ impl DuplicateSimulators {
         for writer in foreign {
             let participant = writer.participant();
             let since = *self.seen.entry(participant).or_insert(now);
-            let patience = match self.heard.get(&participant) {
+            let time = match self.running.get(&participant) {
                 Some(_) if participant < self.own => Duration::ZERO,
                 Some(_) => GRACE,
                 None => SILENCE,
             };
-            if now.saturating_sub(since) >= patience {
+            if now.saturating_sub(since) >= time {
                 return Verdict::Refuse(*writer);
             }
             verdict = Verdict::Wait(*writer);
@@ -87,7 +87,7 @@ mod tests {
         let (small, large) = (writer(1), writer(2));
         let (mut first, mut second) =
             (DuplicateSimulators::new(small.participant()), DuplicateSimulators::new(large.participant()));
-        assert!(first.hear(large, SECOND) && second.hear(small, SECOND));
+        assert!(first.note_state(large, SECOND) && second.note_state(small, SECOND));
         assert_eq!(second.verdict(&[small], SECOND), Verdict::Refuse(small));
         assert_eq!(first.verdict(&[large], SECOND), Verdict::Wait(large));
         assert_eq!(first.verdict(&[], 2 * SECOND), Verdict::Clear, "the other one is gone");
@@ -97,24 +97,24 @@ mod tests {
     fn a_running_simulator_that_does_not_end_was_first() {
         let (small, large) = (writer(1), writer(2));
         let mut duplicates = DuplicateSimulators::new(small.participant());
-        duplicates.hear(large, SECOND);
+        duplicates.note_state(large, SECOND);
         assert_eq!(duplicates.verdict(&[large], SECOND), Verdict::Wait(large));
         assert_eq!(duplicates.verdict(&[large], SECOND + GRACE), Verdict::Refuse(large));
     }
 
     #[test]
     fn a_silent_writer_is_waited_for_until_its_lease_has_ended() {
-        let dead = writer(1);
+        let silent = writer(1);
         let mut duplicates = DuplicateSimulators::new(writer(2).participant());
-        assert_eq!(duplicates.verdict(&[dead], SECOND), Verdict::Wait(dead));
-        assert_eq!(duplicates.verdict(&[dead], 60 * SECOND), Verdict::Wait(dead));
+        assert_eq!(duplicates.verdict(&[silent], SECOND), Verdict::Wait(silent));
+        assert_eq!(duplicates.verdict(&[silent], 60 * SECOND), Verdict::Wait(silent));
         assert_eq!(duplicates.verdict(&[], 61 * SECOND), Verdict::Clear);
-        assert_eq!(duplicates.verdict(&[dead], SECOND + SILENCE), Verdict::Refuse(dead));
+        assert_eq!(duplicates.verdict(&[silent], SECOND + SILENCE), Verdict::Refuse(silent));
     }
 
     #[test]
     fn our_own_messages_are_not_those_of_a_duplicate() {
         let own = writer(1);
-        assert!(!DuplicateSimulators::new(own.participant()).hear(own, SECOND));
+        assert!(!DuplicateSimulators::new(own.participant()).note_state(own, SECOND));
     }
 }

@@ -40,10 +40,10 @@ impl DemSimulator {
                     continue;
                 }
             }
-            let heard = StrainRateAnswer::try_from(&message)
+            let answer = StrainRateAnswer::try_from(&message)
                 .map_err(|e| e.to_string())
-                .and_then(|answer| self.lockstep.hear(&answer).map_err(|e| e.to_string()));
-            match heard {
+                .and_then(|answer| self.lockstep.receive(&answer).map_err(|e| e.to_string()));
+            match answer {
                 Ok(AnswerKind::New) => {
                     if self.partner.stay_with(info.writer) {
                         log::info!("{} is now the servo", bus.describe(info.writer));
@@ -180,7 +180,8 @@ impl DemSimulator {
         if let Some(phase) = &advanced.ended {
             log::info!("phase {phase} ended at step {}", self.run.engine().steps());
             if let Some(energy) = &advanced.energy {
-                log::info!("energy balance of phase {phase}, J: {energy:?}");
+                let residual = energy.residual();
+                log::info!("energy balance of phase {phase}, J: {energy:?}, residual {residual:e}");
             }
             if !advanced.finished {
                 self.next_beat = now + BEAT;

@@ -84,14 +84,14 @@ impl Lockstep {
         self.resend_at = now + self.pause;
     }
 
-    /// Notes the time spent computing while the answer was in transit.
+    /// Records the time spent computing while the answer was in transit.
     pub(crate) fn computed(&mut self, time: Duration) {
         self.busy += time;
     }
 
     /// Receives an answer. It is accepted if sequence number and stamp are those of a current request and the rates are
     /// allowed by it.
-    pub(crate) fn hear(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
+    pub(crate) fn receive(&mut self, answer: &StrainRateAnswer) -> Result<AnswerKind, Violation> {
         let asked = |q: &&Question| (q.sequence, q.stamp) == (answer.sequence, answer.stamp);
         let Some(question) = self.questions.iter().find(asked) else {
             self.counts.stale += 1;
@@ -100,12 +100,12 @@ impl Lockstep {
         match self.answer {
             Some((known, rate)) if known == answer.sequence => {
                 let same = rate.map(f64::to_bits) == answer.rate.map(f64::to_bits);
-                let (count, heard) = match same {
+                let (count, kind) = match same {
                     true => (&mut self.counts.stale, AnswerKind::Stale),
                     false => (&mut self.counts.contradictions, AnswerKind::Contradicts),
                 };
                 *count += 1;
-                return Ok(heard);
+                return Ok(kind);
             }
             Some((known, _)) if known > answer.sequence => {
                 self.counts.stale += 1;
@@ -201,21 +201,21 @@ mod tests {
     fn only_the_answer_to_this_very_request_passes() {
         let mut lockstep = lockstep(Mode::Lockstep);
         for stale in [answer(6, 6), answer(8, 8), answer(7, 6)] {
-            assert_eq!(lockstep.hear(&stale), Ok(AnswerKind::Stale));
+            assert_eq!(lockstep.receive(&stale), Ok(AnswerKind::Stale));
             assert_eq!(lockstep.pass(MS), None, "{stale:?}");
         }
-        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::New));
         assert_eq!(lockstep.pass(MS), Some([7.0; 6]));
-        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::Stale));
+        assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::Stale));
         assert_eq!((lockstep.counts.stale, lockstep.counts.exchanges), (4, 1));
     }
 
     #[test]
-    fn an_answer_heard_before_the_first_request_is_no_answer_to_it() {
+    fn an_answer_received_before_the_first_request_is_ignored() {
         let mut lockstep = Lockstep::new(&Settings::default());
         let early =
             StrainRateAnswer { stamp: Time::default(), sequence: 0, rate: [0.0; 6], saturated: [false; 6] };
-        assert_eq!(lockstep.hear(&early), Ok(AnswerKind::Stale));
+        assert_eq!(lockstep.receive(&early), Ok(AnswerKind::Stale));
         lockstep.ask(Question { stamp: Time::default(), ..question(0) }, vec![0], MS);
         assert_eq!(lockstep.pass(MS), None);
     }
@@ -223,9 +223,9 @@ mod tests {
     #[test]
     fn another_rate_for_the_same_request_is_a_contradiction_and_changes_nothing() {
         let mut lockstep = lockstep(Mode::Lockstep);
-        assert_eq!(lockstep.hear(&answer(7, 7)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.receive(&answer(7, 7)), Ok(AnswerKind::New));
         let other = StrainRateAnswer { rate: [1.0; 6], ..answer(7, 7) };
-        assert_eq!(lockstep.hear(&other), Ok(AnswerKind::Contradicts));
+        assert_eq!(lockstep.receive(&other), Ok(AnswerKind::Contradicts));
         assert_eq!((lockstep.pass(MS), lockstep.counts.contradictions), (Some([7.0; 6]), 1));
     }
 
@@ -233,7 +233,7 @@ mod tests {
     fn an_answer_beyond_the_rate_limit_is_refused() {
         let mut lockstep = lockstep(Mode::Lockstep);
         let fast = StrainRateAnswer { rate: [101.0; 6], ..answer(7, 7) };
-        assert!(lockstep.hear(&fast).is_err());
+        assert!(lockstep.receive(&fast).is_err());
         assert_eq!(lockstep.pass(MS), None);
     }
 
@@ -257,7 +257,7 @@ mod tests {
         lockstep.ask(question(8), vec![8], MS);
         assert_eq!(lockstep.resend(100 * MS), Some([&[7][..], &[8]]), "with the request before it");
         lockstep.ask(question(9), vec![9], MS);
-        assert_eq!(lockstep.hear(&answer(9, 9)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.receive(&answer(9, 9)), Ok(AnswerKind::New));
         assert!((1..REFUSALS_ALLOWED).all(|_| !lockstep.refuse(MS)));
         assert!(lockstep.refuse(MS));
     }
@@ -267,9 +267,9 @@ mod tests {
         let mut lockstep = Lockstep::new(&Settings { mode: Mode::FreeRun { lag: 2 }, ..Settings::default() });
         (5..=7).for_each(|sequence| lockstep.ask(question(sequence), vec![], MS));
         assert_eq!(lockstep.pass(MS), None, "there is nothing to obey before the first answer");
-        assert_eq!(lockstep.hear(&answer(6, 6)), Ok(AnswerKind::New));
-        assert_eq!(lockstep.hear(&answer(5, 5)), Ok(AnswerKind::Stale));
-        assert_eq!(lockstep.hear(&answer(7, 6)), Ok(AnswerKind::Stale), "stamps are looked at there, too");
+        assert_eq!(lockstep.receive(&answer(6, 6)), Ok(AnswerKind::New));
+        assert_eq!(lockstep.receive(&answer(5, 5)), Ok(AnswerKind::Stale));
+        assert_eq!(lockstep.receive(&answer(7, 6)), Ok(AnswerKind::Stale), "stamps are looked at there, too");
         assert_eq!(lockstep.pass(MS), Some([6.0; 6]), "a late answer does not replace a newer one");
         for (sequence, passes) in [(8, true), (9, false)] {
             lockstep.ask(question(sequence), vec![], MS);

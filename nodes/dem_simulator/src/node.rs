@@ -73,7 +73,7 @@ pub struct DemSimulator {
     pub(crate) partner: Partner,
     /// The run after the next steps if the answer is the one that the law gives.
     pub(crate) speculative: Option<SpeculativeStep>,
-    /// Whether speculative steps are computed: not any more once a servo has answered otherwise.
+    /// Whether speculative steps are computed: switched off once the answer of a servo differs.
     pub(crate) speculates: bool,
     /// Answers that equal the one a speculative step was computed with.
     pub(crate) foreseen: u64,
@@ -186,7 +186,7 @@ impl DemSimulator {
         Ok(())
     }
 
-    /// Whether the log message of a run that waits is due.
+    /// Whether the log message of a waiting run is due.
     pub(crate) fn notice_due(&mut self, now: Duration) -> bool {
         let due = now >= self.next_notice;
         if due {
@@ -298,7 +298,7 @@ impl Node for DemSimulator {
         match self.stage {
             Stage::Starting => Ok(Exit::Interrupted),
             Stage::Running => {
-                self.save(bus, "interrupted; the last packing is where the run stands")?;
+                self.save(bus, "interrupted; the run can be resumed from the last packing")?;
                 Ok(Exit::Interrupted)
             }
             Stage::Finished => {

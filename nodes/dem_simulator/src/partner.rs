@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 /// Maximum number of other servos that are logged.
 const NAMED: usize = 64;
 
-/// The servo of the run: the first one that answered, until it is gone.
+/// The servo of the run: the first one that answered, until it leaves.
 #[derive(Debug)]
 pub(crate) struct Partner {
-    /// Our writer of requests.
+    /// The writer of requests of this process.
     stress: WriterId,
     current: Option<Participant>,
     named: BTreeSet<Participant>,
@@ -55,7 +55,7 @@ pub(crate) fn different(writers: &[WriterId]) -> Vec<WriterId> {
 }
 
 impl Partner {
-    /// For a simulator with this writer of stress.
+    /// For the simulator with this writer of stress.
     pub(crate) fn new(stress: WriterId) -> Self {
         Self { stress, current: None, named: BTreeSet::new(), ignored: 0 }
     }
@@ -65,23 +65,23 @@ impl Partner {
         if info.about.is_some_and(|asked| asked.writer != self.stress) {
             return AnswerSource::AnotherRun;
         }
-        let heard = info.writer.participant();
+        let sender = info.writer.participant();
         let Some(current) = self.current else { return AnswerSource::Successor };
-        if current == heard {
+        if current == sender {
             return AnswerSource::Ours;
         }
         let gone = || !present().iter().any(|w| w.participant() == current);
-        if same_member(&current, &heard) || gone() {
+        if same_member(&current, &sender) || gone() {
             return AnswerSource::Successor;
         }
         self.ignored += 1;
-        AnswerSource::Another { new: self.named.len() < NAMED && self.named.insert(heard) }
+        AnswerSource::Another { new: self.named.len() < NAMED && self.named.insert(sender) }
     }
 
-    /// Makes this the servo of the run; true if another one was before.
+    /// Makes this the servo of the run; true if it replaces another one.
     pub(crate) fn stay_with(&mut self, writer: WriterId) -> bool {
-        let heard = writer.participant();
-        self.current.replace(heard).is_some_and(|before| before != heard)
+        let sender = writer.participant();
+        self.current.replace(sender).is_some_and(|before| before != sender)
     }
 
     /// Number of ignored answers of other servos.

@@ -5,7 +5,7 @@ use grainlab_experiment::ServoRequest;
 use grainlab_msgs::builtin_interfaces::Time;
 use grainlab_msgs::stamp;
 
-/// Rounding that a servo in another language may add, relative.
+/// Relative rounding error that a servo in another language may add.
 const ROUNDING: f64 = 1e-9;
 
 /// The part of a request against which its answer is checked.
@@ -29,7 +29,7 @@ pub(crate) enum Violation {
 }
 
 impl Question {
-    /// Of a request.
+    /// The constraints of a request.
     pub(crate) fn of(request: &ServoRequest) -> Self {
         Self {
             sequence: request.sequence,

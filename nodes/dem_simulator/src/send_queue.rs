@@ -179,7 +179,7 @@ mod tests {
             Self { hub, bus, queue, stress, run_state, reader, packings, requests, states, received }
         }
 
-        /// The reader looks, and a millisecond passes.
+        /// The reader receives, and a millisecond passes.
         fn look(&mut self) {
             for (letter, subscription) in [("r", self.requests), ("s", self.states)] {
                 while let Some(sample) = self.reader.take(subscription).unwrap() {
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reader_that_died_does_not_keep_the_run_from_its_end() {
+    fn a_killed_reader_does_not_delay_the_end_of_a_run() {
         let mut bench = Bench::new();
         (0..100).for_each(|_| bench.look());
         let run_state = bench.run_state;
@@ -266,13 +266,13 @@ mod tests {
             assert!(bench.hub.now() - began < Duration::from_secs(10));
         }
         assert_eq!(bench.queue.packings().left_behind(), 1);
-        // Where there is no time for that, what waits is sent all the same.
+        // Without time left, queued messages are sent all the same.
         bench.queue.push_packing(body(3, 3 * BULK_LIMIT));
         bench.queue.push_state(run_state, body(4, 8));
         bench.queue.push_packing(body(5, 3 * BULK_LIMIT));
         bench.deliver();
         bench.queue.flush(&mut bench.bus).unwrap();
-        // It was only asleep.
+        // The reader was only paused.
         for _ in 0..500 {
             bench.deliver();
             bench.look();

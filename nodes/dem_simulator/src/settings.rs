@@ -81,10 +81,10 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "ahead",
             d.ahead,
-            "compute on with the answer that the servo's law gives while the answer is on its way, in lockstep and up to 4000 \
+            "continue with the answer predicted by the servo's law while the answer is in transit, in lockstep and up to 4000 \
              grains; results do not depend on it",
         ),
-        ParameterSpec::new("threads", 0_i64, "threads to compute with, 0 for as many as pay; results do not depend on it")
+        ParameterSpec::new("threads", 0_i64, "number of threads, 0 for as many as are efficient; results do not depend on it")
             .within(Range::Integer { min: 0, max: 1024 }),
         ParameterSpec::new("simd", "best", "instruction set to compute with; results do not depend on it")
             .within(Range::Choice(&["best", "scalar", "avx2", "avx512"])),
@@ -106,15 +106,15 @@ pub struct Settings {
     pub wait_for: Vec<Topic>,
     /// Readers that each topic of `wait_for` needs.
     pub min_readers: usize,
-    /// The same for `packing`, which more nodes read than the others; `None` for as many.
+    /// The same for `packing`, which has more readers than the others; `None`: as many.
     pub min_packing_readers: Option<usize>,
-    /// End when the loading path is done.
+    /// Whether the process ends when the loading path is done.
     pub exit_when_finished: bool,
-    /// Compute on with the answer that the servo's law gives while the answer is on its way.
+    /// Whether to continue with the answer predicted by the servo's law while the answer is in transit.
     pub ahead: bool,
-    /// Threads to compute with; `None` for as many as pay.
+    /// Number of threads; `None`: as many as are efficient.
     pub threads: Option<NonZeroUsize>,
-    /// Instruction set to compute with; `None` for the widest.
+    /// Instruction set; `None`: the widest.
     pub simd: Option<Simd>,
 }
 
@@ -127,8 +127,8 @@ impl Settings {
     }
 }
 
-/// Discovery on one host takes 0.2 s; three times that finds a simulator on a busy one. An exchange takes well below
-/// 1 ms; 20 ms is a whole time slice of a busy host more.
+/// Discovery on one host takes 0.2 s; three times that finds a simulator on a busy host. An exchange takes
+/// well below 1 ms; 20 ms allow for one time slice of a busy host.
 impl Default for Settings {
     fn default() -> Self {
         Self {

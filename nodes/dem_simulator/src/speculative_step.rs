@@ -1,9 +1,9 @@
 //! Computing while the answer is in transit.
 //!
-//! A servo is a pure function of one request, and its law is known to the simulator. So the simulator advances a copy
-//! of the run with the answer of the law. If the answer received is the same to the last bit, the copy becomes the run;
-//! if not, the copy is dropped and the run is advanced with the answer. Nothing of the copy is published before that:
-//! all messages are the same as without it.
+//! A servo is a pure function of one request, with a law that the simulator can evaluate. The simulator
+//! advances a copy of the run with the predicted answer. If the answer received is the same to the last bit,
+//! the copy becomes the run; if not, the copy is dropped and the run is advanced with the answer. Nothing of
+//! the copy is published before that: all messages are the same as without it.
 
 use grainlab_experiment::{ExperimentError, ServoRequest, Simulation, StepOutcome};
 use std::time::Duration;
@@ -24,8 +24,8 @@ pub(crate) struct SpeculativeStep {
 }
 
 impl SpeculativeStep {
-    /// Advances a copy of `run` with the answer of the law to `request`; `now` reads a clock. `None` if the law has no
-    /// answer.
+    /// Advances a copy of `run` with the predicted answer to `request`; `now` reads a clock. `None` if the
+    /// law has no answer.
     pub(crate) fn of(run: &Simulation, request: &ServoRequest, now: impl Fn() -> Duration) -> Option<Self> {
         let answer = grainlab_servo::control(&request.servo_input());
         let rate = answer.ok()?.rate;

@@ -22,7 +22,7 @@ impl DemSimulator {
             if predecessor(&info.writer.participant(), &self.participant) {
                 continue;
             }
-            if self.duplicates.hear(info.writer, now) && self.stage != Stage::Starting {
+            if self.duplicates.note_state(info.writer, now) && self.stage != Stage::Starting {
                 log::error!(
                     "a second simulator ({}) publishes on our topics; it should end by itself",
                     info.writer
@@ -63,7 +63,7 @@ impl DemSimulator {
             let both = format!("{} and {}", bus.describe(first), bus.describe(second));
             if looked > TWO_SERVOS {
                 let message = format!(
-                    "two writers of strain_rate: {both}. Which of them is the servo of this run cannot be told: stop one, or \
+                    "two writers of strain_rate: {both}. It is unknown which of them is the servo of this run: stop one, or \
                      give the processes of this run a run of their own (GRAINLAB_RUN=any_name for each of them)"
                 );
                 return Err(NodeError::new(Exit::Failure, message));
@@ -88,7 +88,7 @@ impl DemSimulator {
         self.go_on(bus, now)
     }
 
-    /// The first condition of the start that is not met yet.
+    /// The first condition of the start that is not met.
     fn missing(&self, bus: &dyn Bus) -> Option<String> {
         let of_all = self.settings.min_readers;
         for topic in &self.settings.wait_for {

@@ -1,14 +1,15 @@
-//! Which constants a model gets.
+//! The constants of each model.
 
 use crate::settings_error::SettingsError;
 use grainlab_emt::{Calibration, Model};
 
-/// Where the constants of the models come from.
+/// Source of the constants of the models.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CalibrationChoice {
-    /// To each model its own: the paper's for the paper's models, ours for those that need more.
+    /// Each model has its own default: the paper's constants for the paper's models, the built-in ones for
+    /// the others.
     Default,
-    /// One for all of them.
+    /// One calibration for all models.
     One(Box<Calibration>),
 }
 
@@ -32,7 +33,7 @@ impl CalibrationChoice {
         }
     }
 
-    /// The constants that `model` gets.
+    /// The constants of `model`.
     pub(crate) fn calibration_for(&self, model: &dyn Model) -> &Calibration {
         match self {
             Self::One(calibration) => calibration,

@@ -1,14 +1,12 @@
-//! From what a model says to an `Estimate`.
+//! From the result of a model to an `Estimate`.
 
 use crate::observed::{Observed, Unobservable};
-use grainlab_emt::{
-    CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Quantity, Status, StrainRatio,
-    StructureCovariance,
-};
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, INPUTS, Misfit, Model, Status, StrainRatio};
 use grainlab_msgs::boundary::EstimateReading;
 use grainlab_msgs::msg;
 
-/// The message of an estimate. What a reader would refuse is sent as a failure that says why.
+/// The message of an estimate. An invalid estimate is sent as a failure with the reason.
 pub(crate) fn estimate_message(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     let message = as_it_is(estimate, observed);
     match EstimateReading::try_from(&message) {
@@ -35,8 +33,8 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     };
     let misfit = both(observed.misfit, estimate.misfit);
     let covariance = known_covariance(estimate.covariance());
-    let bounds = Quantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
-    let shares = Quantity::ALL.map(|q| estimate.information(q));
+    let bounds = InferredQuantity::ALL.map(|q| covariance.and_then(|_| estimate.interval(q)));
+    let shares = InferredQuantity::ALL.map(|q| estimate.information(q));
     let (gamma_over_delta, gamma_over_delta_source) = gamma_fields(estimate.gamma);
     msg::Estimate {
         model: estimate.model.to_owned(),
@@ -68,13 +66,14 @@ fn as_it_is(estimate: &Estimate, observed: &Observed) -> msg::Estimate {
     }
 }
 
-/// What the model speaks of and the data do not determine, where they determine something.
+/// Quantities of the model that the data do not determine, if they determine any.
 fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
+    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
     (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }
 
-/// Misfit of data about moduli and of moduli about a structure: the squares and the freedoms add up.
+/// Misfit of the speeds about the moduli and of the moduli about the structure: squares and degrees of
+/// freedom add up.
 fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
     let nothing = Misfit { chi_square: 0.0, degrees_of_freedom: 0 };
     [of_data, of_moduli].into_iter().flatten().filter(|m| m.degrees_of_freedom > 0).fold(nothing, |sum, m| {
@@ -85,13 +84,13 @@ fn both(of_data: Option<Misfit>, of_moduli: Option<Misfit>) -> Misfit {
     })
 }
 
-/// A covariance of zeros says nothing.
-fn known_covariance(covariance: Option<StructureCovariance>) -> Option<StructureCovariance> {
+/// A covariance of zeros contains no information.
+fn known_covariance(covariance: Option<MicrostructureCovariance>) -> Option<MicrostructureCovariance> {
     covariance.filter(|c| c.amax() > 0.0)
 }
 
-fn entries(covariance: Option<StructureCovariance>) -> Vec<f64> {
-    let row_major = |c: StructureCovariance| c.transpose().iter().copied().collect();
+fn entries(covariance: Option<MicrostructureCovariance>) -> Vec<f64> {
+    let row_major = |c: MicrostructureCovariance| c.transpose().iter().copied().collect();
     covariance.map_or_else(Vec::new, row_major)
 }
 
@@ -99,7 +98,7 @@ fn gamma_fields(gamma: Option<StrainRatio>) -> (Vec<f64>, String) {
     (gamma.iter().map(|g| g.value).collect(), gamma.map_or("none", |g| g.source.name()).to_owned())
 }
 
-/// The message of a model that has no estimate.
+/// The message of a model without an estimate.
 pub(crate) fn failure(
     model: &dyn Model,
     calibration: &str,
@@ -111,7 +110,7 @@ pub(crate) fn failure(
     without_values(model, calibration, gamma, error.is_input_error(), reasons)
 }
 
-/// The message of a model that was never asked, because there was nothing to ask it.
+/// The message of a model that was not applied, because there were no moduli.
 pub(crate) fn unobserved(model: &dyn Model, calibration: &str, nothing: &Unobservable) -> msg::Estimate {
     without_values(model, calibration, StrainRatio::ZERO, nothing.is_input_error(), vec![nothing.to_string()])
 }

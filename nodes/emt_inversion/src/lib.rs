@@ -1,7 +1,8 @@
-//! The inversion node: turns moduli and wave speeds into microstructure.
+//! The inversion node: infers the microstructure from moduli and wave speeds.
 //!
-//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
-//! - [`microstructure_message`], [`microstructure_of_speeds`]: the whole work, pure functions of one message
+//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`microstructure_message`], [`microstructure_of_speeds`]: the work of the node, pure functions of one
+//!   message
 //! - [`EmtInversion`]: the node
 
 mod calibration;

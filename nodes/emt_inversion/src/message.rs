@@ -9,8 +9,9 @@ use grainlab_msgs::boundary::{BoundaryError, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{Topic, msg, topics};
 
-/// What the models infer from one set of moduli: one estimate a model, in the order of [`grainlab_emt::models`]. Header and step are
-/// copied; nothing but the two arguments enters. Moduli that cannot be ones are refused.
+/// The microstructure inferred from one set of moduli: one estimate per model, in the order of
+/// [`grainlab_emt::models`]. Header and step are copied. The result depends only on the two arguments.
+/// Invalid moduli are refused.
 pub fn microstructure_message(
     moduli: &msg::Moduli,
     settings: &Settings,
@@ -19,7 +20,7 @@ pub fn microstructure_message(
     Ok(microstructure(&moduli.header, moduli.source_step, &topics::MODULI, &observed, settings))
 }
 
-/// The same of one set of wave speeds.
+/// The same for one set of wave speeds.
 pub fn microstructure_of_speeds(
     speeds: &msg::WaveSpeeds,
     settings: &Settings,
@@ -49,7 +50,8 @@ fn microstructure(
     msg::Microstructure {
         header: header.clone(),
         source_step,
-        // The contract's name and not the resolved one: the bytes must not depend on a namespace or a remap.
+        // The name in the contract, not the resolved one: the bytes must not depend on a namespace or a
+        // remap.
         source: source.name.to_owned(),
         estimates: estimates.collect(),
     }

@@ -1,4 +1,4 @@
-//! Which models are asked.
+//! The models to apply.
 
 use crate::settings_error::SettingsError;
 use grainlab_emt::Model;
@@ -8,12 +8,12 @@ use grainlab_emt::Model;
 pub struct Models(Vec<&'static dyn Model>);
 
 impl Models {
-    /// Every model there is.
+    /// All models.
     pub fn all() -> Self {
         Self(grainlab_emt::models().to_vec())
     }
 
-    /// `all`, or names with commas between them, in any order.
+    /// `all`, or comma-separated names in any order.
     pub fn named(text: &str) -> Result<Self, SettingsError> {
         if text.trim() == "all" {
             return Ok(Self::all());
@@ -27,13 +27,13 @@ impl Models {
         Ok(Self(grainlab_emt::models().iter().copied().filter(|m| names.contains(&m.name())).collect()))
     }
 
-    /// One after the other.
+    /// The models, in order.
     pub fn iter(&self) -> impl Iterator<Item = &'static dyn Model> + '_ {
         self.0.iter().copied()
     }
 }
 
-/// By name: it is what tells models apart.
+/// Compares names, which identify the models.
 impl PartialEq for Models {
     fn eq(&self, other: &Self) -> bool {
         self.iter().map(Model::name).eq(other.iter().map(Model::name))

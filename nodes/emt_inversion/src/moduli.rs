@@ -1,4 +1,4 @@
-//! From `Moduli` to what a model takes.
+//! From `Moduli` to an observation.
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
@@ -6,13 +6,13 @@ use grainlab_core::{Mat3, Stiffness, Vec3};
 use grainlab_emt::{Conditions, Measured, Moduli, Modulus, Observation, StrainRatio};
 use grainlab_msgs::boundary::ModuliReading;
 
-/// Sine of the angle between axes below which they are one: rounding.
+/// Sine of the angle below which two axes are equal up to rounding.
 const ALONG: f64 = 1e-9;
 
-/// The moduli about the axis set, all of them where the full stiffness is known, with their errors and their state.
+/// The moduli about the axis set, with their errors and state; all of them if the full stiffness is known.
 ///
-/// Without errors in the data, each modulus measured gets the error of the settings; of a full stiffness these are five,
-/// and Θ follows from them.
+/// If the data have no errors, each measured modulus gets the error of the settings. A full stiffness has
+/// five measured moduli, and Θ follows from them.
 pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<Observed, Unobservable> {
     let stated = reading.reference_axis;
     let axis = match settings.axis {
@@ -23,7 +23,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     };
     let along_e3 = axis.xy().norm() < ALONG;
     let as_stated = axis.cross(&stated).norm() < ALONG;
-    // The scene's strain is symmetric about e3, and no other axis: from that one alone γ/Δ is known about another.
+    // The strain of the scene is symmetric about e3. γ/Δ about another axis follows only from that about e3.
     if !as_stated && stated.xy().norm() >= ALONG {
         return Err(Unobservable::OtherAxis { stated: stated.into(), asked: axis.into() });
     }
@@ -36,7 +36,7 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
         solid_fraction: reading.solid_fraction.map(Measured::exact),
         material: Some(reading.material),
     };
-    // The covariance of the message is that of the moduli about the axis stated.
+    // The covariance of the message refers to the moduli about the axis stated.
     let covariance = reading.covariance.filter(|_| as_stated).map(|c| Mat3::from_row_slice(&c));
     let observation = match &reading.stiffness {
         Some(stiffness) if along_e3 => Observation::of_stiffness(&stiffness.tensor, conditions),
@@ -55,7 +55,8 @@ pub(crate) fn of_moduli(reading: &ModuliReading, settings: &Settings) -> Result<
     })
 }
 
-/// γ/Δ about another axis than e3, of a strain that is symmetric about e3: less by the Legendre polynomial P₂.
+/// γ/Δ about an axis other than e3, for a strain that is symmetric about e3: multiplied by the Legendre
+/// polynomial P₂.
 fn about(axis: &Vec3, about_e3: StrainRatio) -> StrainRatio {
     StrainRatio { value: about_e3.value * (1.5 * axis.z * axis.z - 0.5), ..about_e3 }
 }
@@ -65,9 +66,11 @@ fn turned(stiffness: &Stiffness, axis: &Vec3, conditions: Conditions) -> Observa
     Observation { asymmetry: Some(t.residual), ..Observation::new(Moduli::of_medium(&t), conditions) }
 }
 
-/// With these errors of G12, G13 and Θ, Pa², and that of the settings for the other two of a full stiffness.
+/// With these errors of G12, G13 and Θ, Pa², and the error of the settings for the other two of a full
+/// stiffness.
 fn with_covariance(observation: Observation, paper: &Mat3, error: f64) -> Observation {
-    // Nothing is said of the errors of C11 and C33: taken as exact they would outweigh everything else. C13 follows.
+    // The errors of C11 and C33 are unknown: taken as exact, these would outweigh all other data. C13
+    // follows.
     let mut moduli = observation.moduli.without(Modulus::C13);
     if error == 0.0 {
         moduli = moduli.without(Modulus::C11).without(Modulus::C33);
@@ -135,7 +138,7 @@ mod tests {
         let c = with.covariance.unwrap();
         assert_eq!(c.fixed_view::<3, 3>(0, 0), paper);
         assert!((c[(3, 3)] / 3.6f64.powi(2) - 1.0).abs() < 1e-12 && (c[(4, 4)] / 16.0 - 1.0).abs() < 1e-12);
-        // C13 = (9 Θ − 4 C11 + 4 G12 − C33)/4, and its error theirs.
+        // C13 = (9 Θ − 4 C11 + 4 G12 − C33)/4, and its error follows from theirs.
         let variance = (81.0 * 16.0 + 16.0 * 3.6f64.powi(2) + 16.0 * 4.0 + 16.0) / 16.0;
         assert!((with.moduli.get(Modulus::C13).unwrap() - 70.0).abs() < 1e-12);
         assert!((c[(5, 5)] / variance - 1.0).abs() < 1e-12);
@@ -144,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn without_any_error_all_six_are_given_and_nothing_is_said_of_theirs() {
+    fn without_any_error_all_six_are_given_without_errors() {
         let observation = observation(None, 0.0);
         assert_eq!((observation.moduli.known().count(), observation.covariance), (6, None));
     }

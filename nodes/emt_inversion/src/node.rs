@@ -7,30 +7,30 @@ use grainlab_msgs::{Message, Topic, topics};
 use grainlab_node_kit::{Bus, BusError, Demand, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
-/// There is nothing to do between two sets of data.
+/// The node does nothing between two sets of data.
 const IDLE: Duration = Duration::from_secs(3600);
 
-/// Messages of one topic that may wait.
+/// Capacity of the queue of one topic.
 const BACKLOG: u32 = 64;
 
-/// One topic of data, and what is made of its messages.
+/// One topic of data, and the function that inverts its messages.
 #[derive(Debug)]
 struct Source<T> {
     messages: Subscription<T>,
     invert: fn(&T, &Settings) -> Result<Microstructure, BoundaryError>,
 }
 
-/// What became of the data so far.
+/// Counts of the data so far.
 #[derive(Debug, Default)]
 struct Tally {
     inverted: u64,
     without_solution: u64,
     last_step: Option<u64>,
-    /// What was wrong with the latest data, if something was.
+    /// The fault of the latest data, if any.
     trouble: Option<String>,
 }
 
-/// The inversion: every model's word on every set of data.
+/// The inversion: applies every model to every set of data.
 #[derive(Debug)]
 pub struct EmtInversion {
     settings: Settings,
@@ -41,7 +41,7 @@ pub struct EmtInversion {
 }
 
 impl EmtInversion {
-    /// Takes the latest data, where some are latched, and all after them.
+    /// Receives the latest latched data, if any, and all data after them.
     pub fn new(bus: &mut dyn Bus, settings: Settings) -> Result<Self, BusError> {
         Ok(Self {
             settings,
@@ -62,7 +62,7 @@ impl<T: Message> Source<T> {
         Ok(Self { messages: Subscription::subscribe(bus, topic, Demand::reliable(BACKLOG))?, invert })
     }
 
-    /// Answers everything that has come.
+    /// Inverts all received data.
     fn answer(
         &self,
         bus: &mut dyn Bus,
@@ -74,7 +74,7 @@ impl<T: Message> Source<T> {
             match (self.invert)(&data, settings) {
                 Ok(message) => match microstructure.publish_about(bus, &message, info.origin()) {
                     Ok(_) => tally.count(&message),
-                    // A reader is hundreds of results behind: it is as good as dead, and this node is not.
+                    // This reader is hundreds of results behind and counts as failed; the node continues.
                     Err(full @ BusError::Full { .. }) => tally.complain(full.to_string()),
                     Err(error) => return Err(error),
                 },

@@ -1,58 +1,58 @@
-//! What the models are asked with, wherever it is from.
+//! The input of the models, from moduli or from wave speeds.
 
 use grainlab_emt::christoffel::{AxisError, ChristoffelError};
 use grainlab_emt::{Misfit, Modulus, Observation};
 
-/// Moduli with their state, and what was seen on the way to them.
+/// Moduli with their state, and details of how they were obtained.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observed {
-    /// What the models take.
+    /// The input of the models.
     pub(crate) observation: Observation,
-    /// How far the data are from any moduli; `None` if they are as many.
+    /// Misfit of the data about the moduli; `None` without degrees of freedom.
     pub(crate) misfit: Option<Misfit>,
-    /// Whether that is further than their errors allow.
+    /// Whether the misfit exceeds the errors of the data.
     pub(crate) in_conflict: bool,
-    /// For a reader of every estimate.
+    /// Notes, added to every estimate.
     pub(crate) notes: Vec<String>,
 }
 
-/// Why data have no moduli about the axis asked for.
+/// Why data have no moduli about the axis set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Unobservable {
-    /// The axis is to come with the data, and did not.
-    #[error("the axis is to be the one found, and these data name none: set the parameter axis")]
+    /// The axis is to be that of the data, and the data have none.
+    #[error("the axis is to be that of the data, and these data have none: set the parameter axis")]
     NoAxis,
-    /// Moduli cannot be turned.
+    /// The moduli cannot be transformed to another axis.
     #[error(
-        "the moduli given are those about e3, and without the full stiffness they say nothing about the axis \
+        "the moduli given are those about e3, and without the full stiffness they do not determine those about \
          ({:.4}, {:.4}, {:.4})", axis[0], axis[1], axis[2]
     )]
     NoStiffness {
         /// The axis.
         axis: [f64; 3],
     },
-    /// Moduli, strain ratios and anisotropy are about one axis, and another is asked for.
+    /// Moduli, strain ratios and anisotropy refer to one axis, and another one is set.
     #[error(
-        "these moduli and their gamma/Delta are about ({:.4}, {:.4}, {:.4}), and the parameter axis asks for \
+        "these moduli and their gamma/Delta are about ({:.4}, {:.4}, {:.4}), and the parameter axis is \
          ({:.4}, {:.4}, {:.4}): give the analyzer that axis, or leave the parameter at stated",
         stated[0], stated[1], stated[2], asked[0], asked[1], asked[2]
     )]
     OtherAxis {
         /// The axis of the moduli.
         stated: [f64; 3],
-        /// The axis asked for.
+        /// The axis set.
         asked: [f64; 3],
     },
-    /// Wave speeds without a medium.
+    /// No medium has these wave speeds.
     #[error(transparent)]
     Speeds(#[from] ChristoffelError),
-    /// Wave speeds without an axis.
+    /// The wave speeds do not determine an axis.
     #[error("no axis was named, and none was found: {0}")]
     Axis(#[from] AxisError),
 }
 
 impl Unobservable {
-    /// Whether the data are too few, or are no data, rather than those of no medium.
+    /// Whether the data are too few or invalid, rather than inconsistent with every medium.
     pub(crate) fn is_input_error(&self) -> bool {
         match self {
             Unobservable::Speeds(error) | Unobservable::Axis(AxisError::Speeds(error)) => {
@@ -63,15 +63,15 @@ impl Unobservable {
     }
 }
 
-/// The moduli as they are.
+/// The moduli, unchanged.
 impl From<Observation> for Observed {
     fn from(observation: Observation) -> Self {
         Self { observation, misfit: None, in_conflict: false, notes: Vec::new() }
     }
 }
 
-/// The same with an independent relative error of every modulus measured; where these are the five of a medium, Θ follows
-/// from them.
+/// The same with an independent relative error of every measured modulus; if these are the five of a medium,
+/// Θ follows from them.
 pub(crate) fn with_error(observation: Observation, relative: f64) -> Observation {
     const BESIDE_THETA: [Modulus; 4] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G12];
     if relative == 0.0 {

@@ -1,4 +1,4 @@
-//! What can be set.
+//! The parameters of the node.
 
 use crate::calibration::CalibrationChoice;
 use crate::models::Models;
@@ -9,27 +9,27 @@ use grainlab_node_kit::{ParameterSpec, Parameters, Range};
 
 /// The parameters of the node.
 pub fn parameters() -> Vec<ParameterSpec> {
-    let error = "relative one-sigma error of each modulus where the data bring none, 1; 0 leaves the uncertainty of the \
+    let error = "relative one-sigma error of each modulus if the data have none, 1; 0 leaves the uncertainty of the \
                  estimates unknown";
     vec![
-        ParameterSpec::new("models", "all", "which models to ask: all, or names with commas between them"),
+        ParameterSpec::new("models", "all", "models to apply: all, or comma-separated names"),
         ParameterSpec::new(
             "calibration",
             "default",
-            "constants of the models: default (to each its own), or one for all of them: paper, grainlab, grainlab-z, or \
+            "constants of the models: default (that of each model), or one for all models: paper, grainlab, grainlab-z, or \
              a FILE.toml",
         ),
         ParameterSpec::new(
             "axis",
             "stated",
-            "axis of symmetry: stated (the one that the moduli are about; of wave speeds e3), e3, found (the one that the data \
-             name; of wave speeds that name none, the one that they tell), or a direction x,y,z of any length; moduli about \
-             another axis than e3 are taken about that one alone, those about e3 are turned where the full stiffness is known",
+            "axis of symmetry: stated (that of the moduli; for wave speeds e3), e3, found (that of the data; inferred from wave \
+             speeds without a stated axis), or a direction x,y,z of any length; moduli about \
+             an axis other than e3 are used only about that one, those about e3 are transformed if the full stiffness is known",
         ),
         ParameterSpec::new(
             "gamma_over_delta",
             "total",
-            "which measured strain ratio feeds the models; where it is not known, contact, else zero",
+            "measured strain ratio that the models use; if it is not known, contact, else zero",
         )
         .within(Range::Choice(&["total", "elastic", "contact", "zero"])),
         ParameterSpec::new("modulus_error", Settings::default().modulus_error, error)
@@ -37,38 +37,38 @@ pub fn parameters() -> Vec<ParameterSpec> {
     ]
 }
 
-/// The parameters, typed.
+/// The values of the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Which models are asked.
+    /// Models to apply.
     pub models: Models,
-    /// What constants they get.
+    /// Constants of the models.
     pub calibration: CalibrationChoice,
-    /// The axis that moduli are taken about.
+    /// Axis of the moduli.
     pub axis: Axis,
-    /// Which of the measured strain ratios γ/Δ feeds the models. The paper takes the total one, which is mostly plastic
-    /// history; the one fitted to the contacts is what its Eq. 10 stands for.
+    /// The measured strain ratio γ/Δ that the models use. The paper uses the total one, which is mostly
+    /// plastic history; Eq. 10 of the paper refers to the one fitted to the contacts.
     pub gamma: StrainRatioSource,
-    /// Relative one-sigma error, independent for each modulus measured, taken where the data bring no error. 0 leaves the
-    /// uncertainty of the estimates unknown.
+    /// Relative one-sigma error, independent for each measured modulus, if the data have no error. With 0 the
+    /// uncertainty of the estimates is unknown.
     pub modulus_error: f64,
 }
 
 /// An axis of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
-    /// The one that the moduli are about; of wave speeds e3.
+    /// The axis of the moduli; for wave speeds e3.
     Stated,
-    /// That of the scene.
+    /// The axis of the scene.
     E3,
-    /// The one that comes with the data; of wave speeds that come with none, the one that they tell.
+    /// The axis stated with the data; without one, the axis inferred from the wave speeds.
     Found,
     /// A unit vector in the frame of the cell.
     Given(Vec3),
 }
 
-/// One percent: what a good resonant or ultrasonic measurement of a modulus reaches, so that the one-sigma of an estimate
-/// reads "if these moduli had come from an instrument".
+/// One percent: the accuracy of a good resonant or ultrasonic measurement of a modulus, so that the
+/// uncertainty of an estimate is that for a laboratory measurement.
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -82,8 +82,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The parameters, typed. `read` gives the text of a file, or why there is none: a `calibration` that ends in `.toml` is
-    /// one.
+    /// The values of the parameters. `read` returns the text of a file, or the reason of a failure; a
+    /// `calibration` that ends in `.toml` is a file.
     pub fn new(
         parameters: &Parameters,
         read: impl FnOnce(&str) -> Result<String, String>,
@@ -120,7 +120,7 @@ fn axis(text: &str) -> Result<Axis, SettingsError> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     let direction = numbers.and_then(|n| <[f64; 3]>::try_from(n).ok()).map(Vec3::from);
     let valid = direction.filter(|v| v.iter().all(|n| n.is_finite()) && v.amax() > 0.0);
-    // Scaled first: the square of a large component is no number any more.
+    // Scaled first: the square of a large component overflows.
     let unit = valid.map(|v| (v / v.amax()).normalize());
     unit.map(Axis::Given).ok_or_else(|| SettingsError::Axis(text.to_owned()))
 }

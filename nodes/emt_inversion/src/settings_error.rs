@@ -2,13 +2,14 @@
 
 use grainlab_emt::CalibrationError;
 
-/// Parameters that are of their type and make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
+/// Parameters of the right type with invalid values. The process then ends with
+/// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// A model that does not exist.
     #[error("parameter \"models\": no model {name:?}; there are: {known}")]
     Model {
-        /// What was given.
+        /// The name given.
         name: String,
         /// The names of all models.
         known: String,
@@ -16,9 +17,9 @@ pub enum SettingsError {
     /// A calibration that does not exist.
     #[error("parameter \"calibration\": no calibration {name:?}; there are: {known}, or a FILE.toml")]
     Calibration {
-        /// What was given.
+        /// The name given.
         name: String,
-        /// What could have been.
+        /// The available names.
         known: String,
     },
     /// A calibration that cannot be read.
@@ -29,12 +30,12 @@ pub enum SettingsError {
     CalibrationFile {
         /// The path given.
         path: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
-    /// Not an axis.
+    /// The text is not an axis.
     #[error(
-        "parameter \"axis\" = {0:?} is no axis: stated, e3, found, or three numbers x,y,z that are finite and not all zero"
+        "parameter \"axis\" = {0:?} is not an axis: stated, e3, found, or three numbers x,y,z that are finite and not all zero"
     )]
     Axis(String),
 }

@@ -1,4 +1,4 @@
-//! From `WaveSpeeds` to what a model takes.
+//! From `WaveSpeeds` to an observation.
 
 use crate::observed::{Observed, Unobservable, with_error};
 use crate::settings::{Axis, Settings};
@@ -7,11 +7,11 @@ use grainlab_emt::christoffel::{self, AxisError, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Misfit, Modulus, StrainRatio};
 use grainlab_msgs::boundary::WaveSpeedsReading;
 
-/// Sine of the angle between the axis taken and the one named beyond which something is said: 6°.
+/// Sine of the angle between the axis used and the one stated beyond which there is a note: 6°.
 const APART: f64 = 0.1;
 
-/// The moduli that the speeds determine about the axis set, with the errors of speeds and density, or else that of the
-/// settings. γ/Δ is not among what an instrument knows.
+/// The moduli that the speeds determine about the axis set, with the errors of speeds and density, or else
+/// that of the settings. γ/Δ is unknown to an instrument.
 pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Result<Observed, Unobservable> {
     let speeds = reading.measured();
     let mut notes = Vec::new();
@@ -31,13 +31,13 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
         material: Some(Material {
             shear_modulus: reading.grain_shear_modulus,
             poisson_ratio: reading.grain_poisson_ratio,
-            // An instrument knows that of the sample; no model asks for that of a grain.
+            // An instrument measures the density of the sample; no model needs that of a grain.
             ..Material::GLASS
         }),
     };
     let fitted = christoffel::moduli_from_speeds(&speeds, density, Some(axis), conditions)?;
     notes.extend(notes_on(&fitted, speeds.len(), reading.axis, &axis));
-    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument says: {warning}")));
+    notes.extend(reading.warnings.iter().map(|warning| format!("the instrument reports: {warning}")));
     let other = other_axis(&fitted, &speeds, density, &axis);
     let in_conflict = fitted.conflict.is_some() || other.is_some();
     notes.extend(other);
@@ -50,7 +50,7 @@ pub(crate) fn of_speeds(reading: &WaveSpeedsReading, settings: &Settings) -> Res
     Ok(Observed { observation, misfit: misfit.filter(|m| m.degrees_of_freedom > 0), in_conflict, notes })
 }
 
-/// The axis that the speeds tell, and a note on it. Of a medium that looks isotropic e3 is as good as any.
+/// The axis inferred from the speeds, and a note on it. A medium that looks isotropic gets e3.
 fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobservable> {
     let (axis, note) = match christoffel::find_axis(speeds) {
         Ok(found) => {
@@ -71,8 +71,8 @@ fn found(speeds: &[WaveSpeed], notes: &mut Vec<String>) -> Result<Vec3, Unobserv
     Ok(axis)
 }
 
-/// A note on another axis about which speeds that depart from a medium scatter less than half as much: the axis taken is then
-/// the wrong one, and not the sample.
+/// A note on another axis about which speeds that depart from a medium scatter less than half as much: the
+/// departure is then due to the axis used, not to the sample.
 fn other_axis(fitted: &SpeedFit, speeds: &[WaveSpeed], density: Measured, taken: &Vec3) -> Option<String> {
     fitted.anisotropy_scatter?;
     let found = christoffel::find_axis(speeds).ok()?;
@@ -106,7 +106,7 @@ fn notes_on(fitted: &SpeedFit, speeds: usize, named: Option<Vec3>, taken: &Vec3)
         let (chi_square, freedom) = (fitted.chi_square.unwrap_or_default(), fitted.degrees_of_freedom);
         notes.push(format!(
             "the wave speeds contradict each other: chi-square {chi_square:.1} for {freedom} degrees of freedom, speeds[{worst}] \
-             is {sigma:.1} sigma from what the others say"
+             is {sigma:.1} sigma from the prediction by the others"
         ));
     }
     if !fitted.undetermined.is_empty() {

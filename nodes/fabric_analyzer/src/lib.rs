@@ -1,7 +1,7 @@
-//! The analyzer node: turns packings into fabric and moduli.
+//! The analyzer node: measures fabric and moduli of packings.
 //!
-//! - [`parameters`]: what can be set; [`Settings`]: the same, typed
-//! - [`measure()`]: the whole work, a pure function of one message; [`messages`]: its second half
+//! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
+//! - [`measure()`]: the work of the node, a pure function of one message; [`messages`]: its second half
 //! - [`FabricAnalyzer`]: the node; [`Analysis`]: what it publishes
 
 mod measure;

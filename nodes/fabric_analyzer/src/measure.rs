@@ -2,57 +2,62 @@
 
 use crate::Settings;
 use grainlab_core::Packing;
-use grainlab_core::results::{Elasticity, NotJammed, PackingReport};
+use grainlab_core::results::{Elasticity, LeftOut, NotJammed, PackingReport};
 use grainlab_micromechanics::{MicroError, analyze};
 use grainlab_msgs::boundary::{BoundaryError, fabric_message, moduli_message};
 use grainlab_msgs::std_msgs::Header;
 use grainlab_msgs::{DecodeError, msg};
 
-/// What is published about one packing.
+/// The messages published for one packing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// Its structure.
     pub fabric: msg::Fabric,
-    /// Its stiffness, or why it has none.
+    /// Its stiffness, or the reason why it has none.
     pub moduli: Result<msg::Moduli, NotJammed>,
+    /// What the stiffness leaves out of the contact law.
+    pub left_out: Option<LeftOut>,
 }
 
 /// Why a packing is not measured.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
-    /// The bytes are no message.
+    /// The message cannot be decoded.
     #[error("a packing cannot be decoded: {0}")]
     Undecodable(#[from] DecodeError),
-    /// The message is not a packing.
+    /// The message is not a valid packing.
     #[error(transparent)]
     Refused(BoundaryError),
     /// The measurement failed.
     #[error("packing of step {step} is not analysed: {reason}")]
     Analysis {
-        /// Its step.
+        /// Step of the packing.
         step: u64,
-        /// What went wrong.
+        /// The reason.
         reason: MicroError,
     },
-    /// What was measured is nothing that a reader would accept.
+    /// The result is not a valid message.
     #[error("packing of step {step} is analysed, but the result cannot be published: {reason}")]
     Result {
-        /// Its step.
+        /// Step of the packing.
         step: u64,
-        /// What a reader would object to.
+        /// The reason.
         reason: BoundaryError,
     },
 }
 
-/// Measures one packing. Header and step are copied; nothing but the two arguments enters.
+/// Measures one packing. Header and step are copied. The result depends only on the two arguments.
 pub fn measure(message: &msg::Packing, settings: &Settings) -> Result<Measured, MeasureError> {
     let packing = Packing::try_from(message).map_err(MeasureError::Refused)?;
     let step = packing.step;
     let found = analyze(&packing, &settings.0).map_err(|reason| MeasureError::Analysis { step, reason })?;
-    messages(&message.header, &found.report)
+    let stiffness = found.report.stiffness();
+    let left_out = stiffness.and_then(|stiffness| stiffness.method.leaves_out(&packing.law));
+    Ok(Measured { left_out, ..messages(&message.header, &found.report)? })
 }
 
-/// The messages about a packing that has been measured; `header` is that of the packing's own message.
+/// The messages for a measured packing; `header` is that of the message of the packing. The caller
+/// finds what the stiffness leaves out.
 pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, MeasureError> {
     let unfit = |reason| MeasureError::Result { step: report.step, reason };
     let fabric = fabric_message(header.clone(), report).map_err(unfit)?;
@@ -62,5 +67,5 @@ pub fn messages(header: &Header, report: &PackingReport) -> Result<Measured, Mea
             Ok(moduli_message(header.clone(), report, stiffness).map_err(unfit)?)
         }
     };
-    Ok(Measured { fabric, moduli })
+    Ok(Measured { fabric, moduli, left_out: None })
 }

@@ -7,10 +7,10 @@ use grainlab_node_kit::{
     Bus, BusError, Declined, Health, Measure, PackingNode, Publisher, SampleId, Tally, Words, step_or_none,
 };
 
-/// The analyzer: measures every packing, one after the other, on a thread of its own.
+/// The analyzer: measures every packing, one after the other, on a worker thread.
 pub type FabricAnalyzer = PackingNode<Analysis>;
 
-/// What is published about packings.
+/// The publishers.
 #[derive(Debug)]
 pub struct Analysis {
     fabric: Publisher<Fabric>,
@@ -48,6 +48,9 @@ impl Measure for Analysis {
         match &measured.moduli {
             Ok(moduli) => {
                 self.moduli.publish_about(bus, moduli, about)?;
+                if let Some(left_out) = measured.left_out {
+                    log::warn!("packing of step {step}: {left_out}");
+                }
                 let fabric = &measured.fabric;
                 let (k, z) = (fabric.contacts.coordination, fabric.contacts.mechanical_coordination);
                 log::info!(
@@ -57,7 +60,7 @@ impl Measure for Analysis {
                 );
             }
             Err(none) => {
-                log::warn!("packing of step {step} has a fabric and no moduli: {none}");
+                log::warn!("packing of step {step} has a fabric but no moduli: {none}");
                 tally.count_without_network(none.to_string());
             }
         }

@@ -1,4 +1,4 @@
-//! What can be set.
+//! The parameters of the node.
 
 use grainlab_core::Vec3;
 use grainlab_micromechanics::network::Springs;
@@ -19,13 +19,13 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ParameterSpec::new(
             "axis",
             axis,
-            "axis of eps, of the ratios gamma/Delta and of G12 and G13: x, y, z, of any length but zero; the messages carry it, the 36 entries of a stiffness stay in the cell's frame",
+            "axis of eps, of the ratios gamma/Delta and of G12 and G13: x, y, z, of any length above zero; messages include it; the 36 entries of a stiffness stay in the frame of the cell",
         )
         .within(Range::Double { min: -1e9, max: 1e9 }),
         ParameterSpec::new(
             "method",
             "network",
-            "how the stiffness is found: network (frozen), prestressed (the same of smooth grains, with the prestress \
+            "method of the stiffness: network (frozen), prestressed (the same for smooth grains, with the prestress \
              term), probe (small strains of the packing itself, a hundred times slower)",
         )
         .within(Range::Choice(&["network", "prestressed", "probe"])),
@@ -34,11 +34,12 @@ pub fn parameters() -> Vec<ParameterSpec> {
     ]
 }
 
-/// The parameters, typed: how a packing is measured.
+/// The values of the parameters: how a packing is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings(pub(crate) grainlab_micromechanics::Settings);
 
-/// Parameters that each are in range and together make no sense. The process then ends with [`grainlab_node_kit::Exit::Usage`].
+/// Parameters whose values are in range but invalid. The process then ends with
+/// [`grainlab_node_kit::Exit::Usage`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("parameter \"axis\" = {0:?} is not a direction: it must have three components that are not all zero")]
 pub struct SettingsError(pub Vec<f64>);

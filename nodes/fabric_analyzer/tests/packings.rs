@@ -1,4 +1,4 @@
-//! The analyzer node on the bus in memory, with a packing that can be reckoned by hand.
+//! The analyzer node on the bus in memory, with a packing of known properties.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
@@ -10,14 +10,24 @@ use grainlab_node_kit::{Bus, Demand, Hub, Level, Names, Node, Parameters, Publis
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 2e-8;
 
-/// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
+/// One grain per cell touching its own images: a simple cubic lattice, or grains apart if `overlap` is not
+/// positive.
 fn lattice(overlap: f64) -> grainlab_core::Packing {
     let cell = Cell::cube(DIAMETER - overlap).unwrap();
     let contact = |axis: usize| {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());
         (image[axis], normal[axis]) = (1, 1.0);
         let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
-        Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+        Contact {
+            i: 0,
+            j: 0,
+            image,
+            overlap,
+            normal,
+            normal_force,
+            tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
+        }
     };
     grainlab_core::Packing {
         step: 12,
@@ -158,7 +168,7 @@ fn the_method_asked_for_is_used_and_said() {
     let c44 = [network, probe].map(|s| s.stiffness[21]);
     assert!(c44[0] > 0.0 && (c44[1] / c44[0] - 1.0).abs() < 1e-2, "{c44:?}");
     assert!(network.stddev.iter().all(|s| *s > 0.0));
-    // Smooth grains on such a lattice slip past each other under the least pressure.
+    // Smooth grains on such a lattice slip past each other under any pressure.
     assert!(matches!(with("prestressed"), Err(MeasureError::Analysis { step: 12, .. })));
 }
 

@@ -1,4 +1,4 @@
-//! The command line, as typed.
+//! The command line.
 
 use crate::commands::{analyze, bag, calibrate, invert, launch, probe, run, scene};
 use clap::{Parser, Subcommand};
@@ -26,7 +26,7 @@ struct Cli {
 enum Command {
     /// Run a scene: every node as its own process, recorded, measured, inverted. The default.
     Launch(launch::Args),
-    /// List, show, check and begin scenes: what a run simulates.
+    /// List, show, check and create scenes: what a run simulates.
     #[command(subcommand)]
     Scene(scene::Command),
     /// Run one node as this process, with ROS 2 arguments.
@@ -34,15 +34,15 @@ enum Command {
     /// Record, play and inspect recordings.
     #[command(subcommand)]
     Bag(bag::Command),
-    /// Infer the microstructure from moduli: numbers in, coordination and anisotropy with uncertainty out.
+    /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
     Invert(invert::Args),
-    /// Learn the constants of the models from packings that were measured.
+    /// Learn the constants of the models from measured packings.
     Calibrate(calibrate::Args),
     /// Measure packings from files: structure, stress and the full stiffness.
     Analyze(analyze::Args),
-    /// Send waves through packings from files: their speeds, and the moduli they mean.
+    /// Send waves through packings from files: their speeds, and the moduli that follow.
     Probe(probe::Args),
-    /// Measure speed on this machine.
+    /// Measure cost and accuracy on this machine.
     #[command(subcommand)]
     Bench(bench::Command),
 }

@@ -1,9 +1,9 @@
 //! The `grainlab` binary: every node, the launcher and the tools as subcommands.
 //!
-//! - [`cli`]: the command line, as typed
-//! - [`commands`]: one module per command, which checks its arguments
-//! - [`results`]: what is printed and stored: states, inferences, tables
-//! - [`tape`]: a recording of what a node would publish
+//! - [`cli`]: the command line
+//! - [`commands`]: one module per command, with the checks of its arguments
+//! - [`results`]: results as text, JSON and CSV: states, inferences, tables
+//! - [`tape`]: a recording of the messages that a node would publish
 
 mod cli;
 mod commands;

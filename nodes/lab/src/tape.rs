@@ -1,4 +1,4 @@
-//! A recording of what a node would publish, made without the node.
+//! A recording of the messages that a node would publish, made without the node.
 
 use grainlab_console::Failure;
 use grainlab_msgs::std_msgs::Header;
@@ -6,14 +6,14 @@ use grainlab_msgs::{Message, Topic, to_cdr};
 use grainlab_recordings::{Guid, Incoming, RunWriter, SESSION_KEY, TopicSpec, WriterOptions};
 use std::path::Path;
 
-/// Writes messages. Their log times are their stamps, moved forward where that takes it: two recordings of the same
-/// packings are the same.
+/// Writes messages. Their log times are their stamps, increased where necessary to stay in order: two
+/// recordings of the same packings are equal.
 pub(crate) struct Tape {
     writer: RunWriter,
-    /// Stands for the writer, which no network has named.
+    /// A placeholder for the writer, since there is no network.
     guid: Guid,
     command: &'static str,
-    /// Messages of every topic so far.
+    /// Number of messages of every topic.
     counts: Vec<(Topic, i64)>,
 }
 
@@ -32,7 +32,7 @@ impl Tape {
         let mut writer =
             RunWriter::create(directory, &name, &specs, WriterOptions::default()).map_err(Failure::failed)?;
         writer.set_metadata("grainlab", env!("CARGO_PKG_VERSION"));
-        // The same messages make the same file, whatever the time of the day.
+        // The same messages give the same file at any time of day.
         writer.set_metadata(SESSION_KEY, command);
         let mut guid = Guid([b' '; 16]);
         let title = format!("grainlab {command}");

@@ -9,7 +9,7 @@ fn accuracy(arguments: &[&str]) -> Output {
     command.args(["bench", "accuracy"]).args(arguments).stdin(Stdio::null()).output().unwrap()
 }
 
-/// The tiny scene with half its grains, in a folder of its own.
+/// The tiny scene with half of its grains, in a separate folder.
 fn scene(name: &str) -> (PathBuf, String) {
     let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/golden/scenes/tiny.toml");
     let text = std::fs::read_to_string(golden).unwrap();
@@ -27,7 +27,7 @@ fn row<'a>(report: &'a Value, knob: &str, default: bool) -> &'a Value {
 }
 
 #[test]
-fn the_skin_changes_nothing_and_what_changes_something_is_told_with_its_standard_error() {
+fn the_skin_changes_nothing_and_other_changes_have_a_standard_error() {
     let (folder, scene) = scene("accuracy");
     let out = folder.join("out");
     let out = out.to_string_lossy();
@@ -39,7 +39,7 @@ fn the_skin_changes_nothing_and_what_changes_something_is_told_with_its_standard
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["rows"].as_array().unwrap().len(), 4);
 
-    // Results do not depend on neighbour lists: not a bit of any observable at any seed.
+    // Results do not depend on neighbour lists: observables are equal to the last bit at every seed.
     let skin = row(&report, "skin", false);
     let default = row(&report, "skin", true);
     for name in ["k", "eps", "phi", "g12", "theta"] {
@@ -50,7 +50,7 @@ fn the_skin_changes_nothing_and_what_changes_something_is_told_with_its_standard
     }
     assert_eq!(skin["steps"], default["steps"]);
 
-    // A longer time step is another packing in fewer steps.
+    // A longer time step gives another packing in fewer steps.
     let long = row(&report, "time_step", false);
     assert!(long["value"].as_f64().unwrap() > row(&report, "time_step", true)["value"].as_f64().unwrap());
     assert!(long["change_standard_error"]["eps"].as_f64().unwrap() > 0.0);
@@ -59,7 +59,7 @@ fn the_skin_changes_nothing_and_what_changes_something_is_told_with_its_standard
         for name in ["k", "eps", "phi", "g12", "theta"] {
             let (mean, error) = (&r["error"][name], &r["standard_error"][name]);
             let (mean, error) = (mean.as_f64().unwrap(), error.as_f64().unwrap());
-            // Two seeds leave one degree of freedom: 12.7 standard errors.
+            // Two seeds leave one degree of freedom: the interval is 12.7 standard errors.
             assert_eq!(r["resolved"][name], mean.abs() >= 12.706 * error, "{r}");
         }
     }
@@ -95,7 +95,7 @@ fn a_scene_that_fails_as_it_stands_gives_no_numbers_and_exit_code_4() {
     let (folder, scene) = scene("accuracy-fails");
     let text = std::fs::read_to_string(&scene).unwrap();
     let path = folder.join("late.toml");
-    // The relaxation cannot be over in a microsecond.
+    // The relaxation cannot end within a microsecond.
     std::fs::write(&path, text.replace("timeout = 0.02", "timeout = 1.0e-6")).unwrap();
     let output = accuracy(&["--quick", "--knobs", "skin", "--scene", &path.to_string_lossy()]);
     let err = String::from_utf8_lossy(&output.stderr);

@@ -1,4 +1,4 @@
-//! `grainlab analyze` of many files: order, bad ones among them, interruption.
+//! `grainlab analyze` of many files: order, invalid files, interruption.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
@@ -15,7 +15,7 @@ fn analyze() -> Command {
     command
 }
 
-/// A pair of grains `apart` in a unit cell, as a dump of as many frames as steps are named.
+/// A pair of grains `apart` in a unit cell, as a dump with one frame per step.
 fn dump(apart: f64, steps: &[u64]) -> String {
     let frame = |step: &u64| {
         format!(
@@ -37,14 +37,14 @@ fn one_bad_file_of_ten_loses_none_of_the_others_and_sets_the_exit_code() {
     for k in 0..10u64 {
         let path = folder.path().join(format!("{k}.dump"));
         let text = dump(0.19, &[100 * k, 100 * k + 1, 100 * k + 2]);
-        // The bad one ends in the middle of its second frame: its first one counts.
+        // The invalid one ends in the middle of its second frame: its first one counts.
         let text = if k == 4 { text[..text.len() / 2].to_owned() } else { text };
         std::fs::write(&path, text).unwrap();
         names.push(path);
     }
     let out = analyze().args(&names).args(GLASS).args(["--format", "json"]).output().unwrap();
     let err = String::from_utf8_lossy(&out.stderr).into_owned();
-    // Two grains have no network; a file that cannot be read is worse.
+    // Two grains have no network; a file that cannot be read has the worse exit code.
     assert_eq!(out.status.code(), Some(1), "{err}");
     assert!(err.contains("4.dump: line ") && err.lines().count() == 1, "{err}");
     let states: Value = serde_json::from_slice(&out.stdout).unwrap();
@@ -55,7 +55,7 @@ fn one_bad_file_of_ten_loses_none_of_the_others_and_sets_the_exit_code() {
 }
 
 #[test]
-fn what_the_file_does_not_say_is_asked_for_and_the_exit_code_is_that_of_usage() {
+fn missing_properties_of_a_file_are_listed_and_the_exit_code_is_that_of_usage() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.txt");
     std::fs::write(&path, "#format x_y_z_r\n0.1\t0\t0\t0.1\n0.29\t0\t0\t0.1\n").unwrap();
@@ -109,7 +109,7 @@ fn an_interrupted_analysis_prints_what_it_has() {
     while !text.contains("\"step\"") {
         assert_ne!(out.read_line(&mut text).unwrap(), 0, "{text}");
     }
-    // SAFETY: kill takes two integers and touches no memory of ours.
+    // SAFETY: kill takes two integers and accesses no memory of this process.
     unsafe { libc::kill(child.id() as i32, libc::SIGINT) };
     out.read_to_string(&mut text).unwrap();
     let ended = child.wait_with_output().unwrap();

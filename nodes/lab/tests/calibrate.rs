@@ -18,7 +18,7 @@ fn ensemble(name: &str) -> String {
     format!("{ENSEMBLES}/{name}.csv")
 }
 
-/// Words and numbers of a text, apart.
+/// Words and numbers of a text, separately.
 fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
     let tokens = text.split(|c: char| c.is_whitespace() || "[],=".contains(c)).filter(|t| !t.is_empty());
     let (numbers, words): (Vec<&str>, Vec<&str>) = tokens.partition(|t| t.parse::<f64>().is_ok());
@@ -26,7 +26,7 @@ fn words_and_numbers(text: &str) -> (Vec<String>, Vec<f64>) {
 }
 
 #[test]
-fn the_calibration_built_in_is_what_its_packings_teach() {
+fn the_built_in_calibration_is_learned_from_its_packings() {
     let (isotropic, anisotropic) = (ensemble("isotropic"), ensemble("anisotropic"));
     let tables =
         ["calibrate", "--isotropic", &isotropic, "--anisotropic", &anisotropic, "--name", "grainlab"];
@@ -39,7 +39,7 @@ fn the_calibration_built_in_is_what_its_packings_teach() {
     let largest = known.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     assert!(largest > 1e9, "the modulus of the grains is there");
     for (i, (found, expected)) in numbers.iter().zip(&known).enumerate() {
-        // Another processor rounds otherwise, and the minimum of a fit is flat.
+        // Rounding differs between processors, and the minimum of a fit is flat.
         assert!((found - expected).abs() <= 1e-4 * expected.abs() + 1e-9, "number {i}: {found} {expected}");
     }
 }
@@ -71,7 +71,7 @@ fn a_calibration_written_is_one_to_invert_with() {
 }
 
 #[test]
-fn packings_that_teach_nothing_are_refused_with_the_reason() {
+fn packings_that_determine_no_constants_are_refused_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let whole = std::fs::read_to_string(ensemble("isotropic")).unwrap();
     let head = |lines: usize| whole.lines().take(lines).collect::<Vec<_>>().join("\n");

@@ -1,4 +1,4 @@
-//! `grainlab bench dem`: what it reports, not how fast it is.
+//! `grainlab bench dem`: its report, not its speed.
 
 use serde_json::Value;
 use std::process::{Command, Output, Stdio};
@@ -27,10 +27,10 @@ fn every_case_has_a_row_and_the_packing_holds_together() {
         {
             assert!(row[key].as_f64().unwrap() > 0.0, "{key}: {row}");
         }
-        // 5109 contacts at 99,984 Pa; 55 steps of 3e-8 s at rest change next to nothing.
+        // 5109 contacts at 99,984 Pa; 55 steps of 3e-8 s at rest have almost no effect.
         assert!((row["coordination"].as_f64().unwrap() - 5.109).abs() < 0.02, "{row}");
         assert!((row["pressure"].as_f64().unwrap() / 99_984.5 - 1.0).abs() < 1e-2, "{row}");
-        // Neither threads nor the instruction set change what is computed.
+        // Results depend neither on threads nor on the instruction set.
         let same = |r: &&Value| r["features"] == row["features"];
         let first = rows.iter().find(same).unwrap();
         assert_eq!((&row["pressure"], &row["coordination"]), (&first["pressure"], &first["coordination"]));
@@ -62,7 +62,7 @@ fn without_friction_the_grains_are_pressed_anew_to_the_same_pressure() {
     assert_eq!(output.status.code(), Some(0), "{err}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let row = &report["rows"][0];
-    // Isostatic without friction: six contacts a grain that is held, of which some 2 % are none.
+    // Isostatic without friction: six contacts per non-rattler; some 2 % are rattlers.
     assert!(row["coordination"].as_f64().unwrap() > 5.5, "{row}");
     assert!((row["pressure"].as_f64().unwrap() / 1e5 - 1.0).abs() < 0.1, "{row}");
 }

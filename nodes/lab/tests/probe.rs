@@ -36,9 +36,9 @@ fn the_waves_of_a_packing_made_elsewhere_have_the_moduli_of_its_network() {
         assert!((ratio - 1.0).abs() < 0.01, "{modulus}: {ratio}");
     }
     let [density, bulk] = ["density", "density_bulk"].map(|key| number(&a[key]));
-    // 24 of 500 grains rattle, and more turn freely about two contacts.
+    // 24 of 500 grains are rattlers, and more rotate freely about two contacts.
     assert!(density < bulk * (1.0 - 24.0 / 500.0) && density > 0.9 * bulk, "{density} of {bulk}");
-    // Truth stands beside it, counted.
+    // The counted truth is in the same row.
     assert!((number(&state["k"]) - 5.108).abs() < 1e-9 && (number(&state["z"]) - 5.361).abs() < 1e-3);
 }
 
@@ -82,7 +82,7 @@ fn the_table_is_one_that_the_inversion_reads_and_judges() {
 }
 
 #[test]
-fn a_packing_that_carries_no_wave_says_so_and_ends_with_exit_code_4() {
+fn a_packing_that_carries_no_wave_is_reported_and_ends_with_exit_code_4() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pair.dump");
     let text = "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\n\
@@ -103,7 +103,7 @@ fn a_packing_that_carries_no_wave_says_so_and_ends_with_exit_code_4() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_the_name_of_its_flag() {
+fn invalid_flags_are_refused_by_name() {
     let file = reference();
     for (flags, word) in [
         (["--speed-noise", "2"], "speed_noise"),

@@ -1,4 +1,4 @@
-//! `grainlab bench stiffness`: what it reports, not how fast it is.
+//! `grainlab bench stiffness`: its report, not its speed.
 
 use serde_json::Value;
 use std::path::Path;
@@ -39,7 +39,7 @@ fn a_tighter_solve_takes_more_iterations_and_errs_less_and_affine_motion_errs_mo
     assert!(of("iterations")[2..5].is_sorted_by(|a, b| a < b), "{rows:?}");
     // Affine motion overestimates the shear moduli of such a packing by more than half.
     assert!(errors[0] > 0.3 && errors[4] < 1e-12 && errors[5] < 1e-12, "{rows:?}");
-    // A factorisation leaves little to refine.
+    // A factorisation leaves a small residual to refine.
     assert!(of("iterations")[5].unwrap() <= 3.0, "{rows:?}");
     assert!(of("seconds").iter().all(|s| s.unwrap() > 0.0));
 }
@@ -53,7 +53,7 @@ fn a_probe_of_a_small_strain_agrees_with_the_network_as_far_as_contacts_hold() {
 }
 
 #[test]
-fn copies_of_a_packing_are_said_to_be_copies_and_as_stiff_as_the_packing() {
+fn copies_of_a_packing_are_marked_as_copies_and_as_stiff_as_the_packing() {
     let rows =
         rows(&["--packing", &reference(), "--grains", "4000", "--tolerances", "1e-6", "--direct-up-to", "0"]);
     let told: Vec<_> = rows.iter().map(|r| (r["grains"].as_u64(), r["replicated"].as_bool())).collect();

@@ -1,4 +1,4 @@
-//! The binary as a user first meets it: help, usage errors, exit codes.
+//! The binary on the command line: help, usage errors, exit codes.
 
 use std::process::{Command, Output, Stdio};
 
@@ -128,7 +128,7 @@ fn moduli_that_no_packing_has_end_with_exit_code_4() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_closed_pipe_is_not_an_error() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_grainlab"));
     command.args(["invert", "--g12", "1e8", "--g13", "1e8", "--theta", "1.3e8", "--pressure", "5e4"]);
     let mut child = command.stdout(Stdio::piped()).spawn().unwrap();

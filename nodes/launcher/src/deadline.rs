@@ -1,7 +1,7 @@
 //! Time limits at the end of a run for its pending results.
 
-use super::patience::Patience;
 use super::pending_results::{ResultState, Source};
+use super::time_limit::TimeLimit;
 use crate::nodes::NodeKind;
 use grainlab_node_kit::Exit;
 use std::time::Duration;
@@ -15,22 +15,22 @@ const MODULI_WITHIN: Duration = Duration::from_secs(5);
 /// Time limit for the measurement of the last packing by a third-party program that measured others.
 const INSTRUMENT_WITHIN: Duration = Duration::from_secs(60);
 
-/// The result that is waited for, and its time limit.
+/// The pending result, and its time limit.
 pub(super) struct Deadline {
     pub(super) of: ResultState,
-    pub(super) patience: Patience,
+    pub(super) limit: TimeLimit,
     pub(super) exit: Exit,
     pub(super) message: String,
 }
 
 impl Deadline {
-    /// For a last packing that was published within a phase: it need not have anything to measure.
+    /// For a last packing that was published within a phase: it may have no results.
     pub(super) fn within_a_phase(standing: ResultState) -> Self {
         let whole = Self::of(standing);
         match standing {
             ResultState::Measured(_) => whole,
             ResultState::Open(_) => {
-                Self { patience: Patience::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
+                Self { limit: TimeLimit::new(INSTRUMENT_WITHIN), exit: Exit::Done, ..whole }
             }
             _ => Self { exit: Exit::Done, ..whole },
         }
@@ -58,11 +58,11 @@ impl Deadline {
             }
             ResultState::Complete => (Duration::ZERO, Exit::Done, String::new()),
         };
-        Self { of: standing, patience: Patience::new(time), exit, message }
+        Self { of: standing, limit: TimeLimit::new(time), exit, message }
     }
 }
 
-/// What a node did not find of a packing, and where it says why.
+/// The result that a node does not have for a packing, and the log with the reason.
 pub(super) fn nothing(source: Source) -> String {
     let data = match source {
         Source::Node(NodeKind::AcousticProbe) => "wave speeds",

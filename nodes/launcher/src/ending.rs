@@ -121,7 +121,7 @@ impl Supervisor {
         hurried
     }
 
-    /// Notes the end of a process and describes it.
+    /// Records the end of a process and describes it.
     pub(super) fn note_end(&mut self, ended: &Ended) -> String {
         use std::os::unix::process::ExitStatusExt;
         let child = &mut self.children[ended.index];

@@ -1,4 +1,4 @@
-//! The last packing of a recording: what a run goes on from.
+//! The last packing of a recording, from which a run is resumed.
 
 use grainlab_console::Failure;
 use grainlab_core::Packing;
@@ -6,17 +6,17 @@ use grainlab_msgs::{from_cdr, msg, topics};
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
 
-/// Packings that a recording holds, also while it is being written; 0 if it cannot be read.
+/// Number of packings in a recording, also while it is being written; 0 if it cannot be read.
 pub fn count(directory: &Path) -> u64 {
     let Ok(recording) = Recording::open(directory) else { return 0 };
     packings(&recording).map_or(0, |bodies| bodies.len() as u64)
 }
 
-/// The last packing, and the state of the run in it.
+/// The last packing, and its run state.
 pub fn read(directory: &Path) -> Result<(Packing, Vec<u8>), Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
     let recording = Recording::open(directory).map_err(|e| failed(&e))?;
-    let body = packings(&recording)?.pop().ok_or_else(|| failed(&"there is no packing to go on from"))?;
+    let body = packings(&recording)?.pop().ok_or_else(|| failed(&"there is no packing to resume from"))?;
     let message: msg::Packing = from_cdr(&body).map_err(|e| failed(&e))?;
     let packing = Packing::try_from(&message).map_err(|e| failed(&e))?;
     Ok((packing, message.run_state))

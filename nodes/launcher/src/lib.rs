@@ -2,9 +2,9 @@
 //!
 //! - `child`: one process, which ends with the launcher
 //! - `progress`: a line for each phase
-//! - `pending_results`: results of the last packing that are still to come; `deadline`: how long they may take
+//! - `pending_results`: results of the last packing that are still pending; `deadline`: their time limits
 //! - `watch`: the messages of the run
-//! - `stopped`: processes that are stopped by a signal; `patience`: a time limit that does not count those
+//! - `stopped`: processes stopped by a signal; `time_limit`: a time limit that does not count the time for which they are
 //! - `supervisor`: restarts, and ends of processes that end the run; `ending`: the order in which processes end
 //! - `nodes`: every node of ours, and how it is started; [`last_packing`]: what a simulator continues from
 //! - [`pipe`]: ends a node whose launcher was killed
@@ -14,18 +14,18 @@ mod deadline;
 mod ending;
 pub mod last_packing;
 mod nodes;
-mod patience;
 mod pending_results;
 pub mod pipe;
 mod plan;
 mod progress;
 mod stopped;
 mod supervisor;
+mod time_limit;
 mod watch;
 
 pub use nodes::{NodeKind, UnknownNode};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
-pub use supervisor::{Heard, Supervised, Supervisor};
+pub use supervisor::{Received, Supervised, Supervisor};
 
 use grainlab_node_kit::RunId;
 

@@ -1,6 +1,6 @@
-//! Every node: a kind for each, and all that differs between them outside their own crates.
+//! Every node: one variant each, and all differences between them outside their own crates.
 //!
-//! To add a node: its crate, a variant here with what the compiler then asks for, and the launch files that start it.
+//! To add a node: its crate, a variant here with all matches on it, and the launch files that start it.
 
 use crate::last_packing;
 use clap::ValueEnum;
@@ -37,7 +37,7 @@ pub enum NodeKind {
     Recorder,
 }
 
-/// A name that is none of a node's.
+/// An unknown name of a node.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no node {0:?}; there are: {known}", known = NodeKind::names())]
 pub struct UnknownNode(pub String);
@@ -48,7 +48,7 @@ impl NodeKind {
         Self::value_variants().iter().copied()
     }
 
-    /// Its name, unless `__node` gives another.
+    /// Its name, unless `__node` sets another one.
     pub fn name(self) -> &'static str {
         match self {
             Self::DemSimulator => "dem_simulator",
@@ -65,19 +65,19 @@ impl NodeKind {
         Self::all().map(Self::name).collect::<Vec<_>>().join(", ")
     }
 
-    /// What it does, in a line.
+    /// Its description in one line.
     pub fn summary(self) -> &'static str {
         match self {
-            Self::DemSimulator => "owns the run: publishes stress and packings, obeys strain rates",
-            Self::ServoController => "answers every stress with a strain rate",
-            Self::FabricAnalyzer => "turns packings into fabric and moduli",
-            Self::AcousticProbe => "sends waves through packings: turns them into wave speeds",
-            Self::EmtInversion => "turns moduli and wave speeds into microstructure",
+            Self::DemSimulator => "advances the run: publishes stress and packings, applies strain rates",
+            Self::ServoController => "returns a strain rate for every stress",
+            Self::FabricAnalyzer => "measures fabric and moduli of packings",
+            Self::AcousticProbe => "measures wave speeds of packings",
+            Self::EmtInversion => "infers the microstructure from moduli and wave speeds",
             Self::Recorder => "records every topic to MCAP",
         }
     }
 
-    /// What can be set.
+    /// Its parameters.
     pub fn parameters(self) -> Vec<ParameterSpec> {
         match self {
             Self::DemSimulator => simulator_parameters(),
@@ -89,8 +89,8 @@ impl NodeKind {
         }
     }
 
-    /// Whose samples it takes where it is started by hand: the lockstep and its record keep apart from launched runs; a node
-    /// that measures takes those of everyone.
+    /// The processes whose samples it accepts when it is started by hand: the lockstep and its recorder
+    /// ignore launched runs; a measuring node accepts all.
     fn scope(self) -> Scope {
         match self {
             Self::DemSimulator | Self::ServoController | Self::Recorder => Scope::OwnRun,
@@ -98,7 +98,7 @@ impl NodeKind {
         }
     }
 
-    /// What it is run with.
+    /// Its arguments.
     pub fn spec(self) -> NodeSpec {
         NodeSpec {
             name: self.name(),
@@ -108,8 +108,8 @@ impl NodeKind {
         }
     }
 
-    /// How many of it a run may have, as numbers and in words: two of those that one run has one of would contradict each
-    /// other.
+    /// Number of such nodes that a run may have, as a range and as text: a second one of a unique node would
+    /// contradict the first.
     pub fn per_run(self) -> (RangeInclusive<usize>, &'static str) {
         match self {
             Self::Recorder | Self::DemSimulator => (1..=1, "one"),
@@ -118,7 +118,7 @@ impl NodeKind {
         }
     }
 
-    /// The topic of the data that it measures, from each of which a microstructure is inferred.
+    /// The topic of its data, from each of which a microstructure is inferred.
     pub fn measures(self) -> Option<Topic> {
         match self {
             Self::FabricAnalyzer => Some(topics::MODULI),
@@ -127,7 +127,7 @@ impl NodeKind {
         }
     }
 
-    /// Makes the node on its bus. A recorder leaves what it finished in `recorded`.
+    /// Creates the node on its bus. A recorder leaves its finished recording in `recorded`.
     pub fn build(
         self,
         bus: &mut dyn Bus,
@@ -176,13 +176,13 @@ impl FromStr for NodeKind {
 
 fn simulator_parameters() -> Vec<ParameterSpec> {
     let mut all = vec![
-        ParameterSpec::new("scene", "demo", "what to simulate: a built-in scene or a file"),
+        ParameterSpec::new("scene", "demo", "scene to simulate: a built-in one or a file"),
         scenes::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of every random choice; -1: the one of the scene"),
         ParameterSpec::new(
             "resume",
             "",
-            "recording to go on from: the run continues from its last packing, to the same bytes; empty: from the beginning",
+            "recording to resume: the run continues from its last packing, to the same bytes; empty: from the beginning",
         ),
     ];
     all.extend(grainlab_dem_simulator::parameters());

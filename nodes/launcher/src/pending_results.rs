@@ -1,4 +1,5 @@
-//! The pending results of the last packing: one microstructure for every kind of data that the run's nodes measure.
+//! The pending results of the last packing: one microstructure for every kind of data measured by the nodes
+//! of the run.
 
 use super::plan::NodePlan;
 use crate::nodes::NodeKind;
@@ -6,12 +7,12 @@ use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Who measures.
+/// The source of data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// A node of ours.
+    /// A node of grainlab.
     Node(NodeKind),
-    /// The programs of a launch file that are not ours.
+    /// The third-party programs of a launch file.
     Instrument,
 }
 
@@ -29,7 +30,7 @@ impl fmt::Display for Source {
 struct Kind {
     /// Topic of the data: the `source` of a microstructure.
     topic: &'static str,
-    /// Who writes it.
+    /// Its source.
     source: Source,
     measured: BTreeSet<u64>,
     /// Step of the packing, and member number of the inversion.
@@ -49,11 +50,11 @@ impl Kind {
 pub(crate) enum ResultState {
     /// Every kind of data is inverted.
     Complete,
-    /// Nothing is to come any more, and this node found nothing to invert.
+    /// No more results are expected, and this node found no data to invert.
     Declined(Source),
-    /// This node measured a structure, and nothing that could be inverted has come.
+    /// This node measured a structure, and no data for an inversion have arrived.
     Bare(Source),
-    /// What is there is not inverted yet; this node measured it.
+    /// The data are not inverted yet; this node measured them.
     Measured(Source),
     /// This node has not measured it yet.
     Open(Source),
@@ -95,7 +96,7 @@ impl PendingResults {
 
     /// The data of this topic about the packing of `step` were published.
     pub(crate) fn measured(&mut self, topic: &str, step: u64) {
-        // Step 0 stands for no packing.
+        // Step 0 means no packing.
         let instrument = self.instruments && topic == topics::WAVE_SPEEDS.name && step > 0;
         if instrument && self.of_topic(topic).next().is_none() {
             self.kinds.push(Kind::new(topics::WAVE_SPEEDS.name, Source::Instrument));
@@ -131,7 +132,7 @@ impl PendingResults {
     /// The state of the results of the packing of `step`: that of the slowest one.
     pub(crate) fn state_of(&self, step: u64) -> ResultState {
         let inverted = |k: &Kind| k.inverted.range((step, 0)..=(step, u8::MAX)).count() >= self.inversions;
-        // A program that is gone sends nothing more.
+        // A program that has ended sends no more data.
         let never =
             |k: &Kind| k.source == Source::Instrument && !self.instruments && !k.measured.contains(&step);
         let owed = || self.kinds.iter().filter(|k| !inverted(k) && !never(k));

@@ -1,4 +1,4 @@
-//! Ends a node when its launcher is gone: its standard input is a pipe that only the launcher holds open.
+//! Ends a node when its launcher has ended: its standard input is a pipe that only the launcher holds open.
 //!
 //! The kernel's own mechanism (PR_SET_PDEATHSIG) sends one signal for each thread of a killed launcher, and the second
 //! one would end a recorder before its file is finished.
@@ -9,10 +9,10 @@ use std::time::Duration;
 /// Environment variable that a launcher sets for processes whose standard input is its pipe.
 pub const VARIABLE: &str = "GRAINLAB_LAUNCHER_PIPE";
 
-/// Time for an orderly end after the launcher is gone.
+/// Time for an orderly end after the launcher has ended.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Ends this process when the launcher that started it is gone: by SIGTERM, and after some time by exit.
+/// Ends this process when the launcher that started it has ended: by SIGTERM, and after some time by exit.
 pub fn watch() {
     if std::env::var_os(VARIABLE).is_none() {
         return;

@@ -1,10 +1,11 @@
-//! Launch files: the part of the YAML form of ROS 2 launch that starts processes: our nodes and other programs.
+//! Launch files: the part of the YAML form of ROS 2 launch that starts processes: grainlab nodes and other
+//! programs.
 
 use crate::nodes::{NodeKind, UnknownNode};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The launch files built in; the first is run without another.
+/// The built-in launch files; the first one is the default.
 pub const BUILT_IN: [(&str, &str); 2] = [
     ("demo", include_str!("../../launch/demo.launch.yaml")),
     ("acoustic", include_str!("../../launch/acoustic.launch.yaml")),
@@ -19,7 +20,7 @@ pub enum PlanError {
     /// A `grainlab` command that does not run a node, or no command.
     #[error("executable `{cmd}`: write `grainlab run NODE ...`, or a program with its arguments")]
     Command { cmd: String },
-    /// A node that there is not.
+    /// An unknown node.
     #[error("executable {name}: there is {unknown}")]
     Node { name: String, unknown: UnknownNode },
     /// A substitution other than `$(var NAME)`.
@@ -46,7 +47,7 @@ pub enum PlanError {
     /// A required node is missing, or a node occurs too often.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
     Count { node: NodeKind, count: usize, allowed: &'static str },
-    /// More than a run has places for.
+    /// More processes than a run may have.
     #[error("the launch file starts {count} processes; a run has at most {most}")]
     Many { count: usize, most: usize },
 }
@@ -90,9 +91,9 @@ const PLACES: usize = 254;
 pub struct NodePlan {
     /// Name of the process and of its log.
     pub name: String,
-    /// Which of our nodes; `None` for a program that is not ours.
+    /// The node of grainlab; `None` for a third-party program.
     pub node: Option<NodeKind>,
-    /// The program; of a node of ours, whatever `grainlab` this is.
+    /// The program; for a grainlab node, any `grainlab` means this binary.
     pub program: String,
     /// Its arguments; for a node: `run`, the node, its ROS arguments.
     pub arguments: Vec<String>,
@@ -101,7 +102,7 @@ pub struct NodePlan {
 }
 
 impl NodePlan {
-    /// Whether it is this node of ours.
+    /// Whether it is this node of grainlab.
     pub fn is(&self, node: NodeKind) -> bool {
         self.node == Some(node)
     }
@@ -109,7 +110,7 @@ impl NodePlan {
     /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
     pub fn do_not_look_around(&mut self) {
         if self.is(NodeKind::DemSimulator) {
-            // Behind `run NODE`: a value of the launch file comes later and wins.
+            // After `run NODE`: a later value from the launch file takes precedence.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
         }

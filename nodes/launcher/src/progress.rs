@@ -13,14 +13,14 @@ pub(crate) struct Progress {
     phases: usize,
     phase: Option<u32>,
     finished: bool,
-    said: Instant,
+    printed_at: Instant,
 }
 
 impl Progress {
     /// For a path with this many phases.
     pub(crate) fn new(phases: usize) -> Self {
         let now = Instant::now();
-        Self { begin: now, phases, phase: None, finished: false, said: now }
+        Self { begin: now, phases, phase: None, finished: false, printed_at: now }
     }
 
     /// Prints a line with the time.
@@ -30,8 +30,8 @@ impl Progress {
 
     /// Prints a line, at most once per interval.
     pub(crate) fn still(&mut self, text: &str) {
-        if self.said.elapsed() >= STILL {
-            self.said = Instant::now();
+        if self.printed_at.elapsed() >= STILL {
+            self.printed_at = Instant::now();
             self.say(text);
         }
     }
@@ -46,13 +46,13 @@ impl Progress {
             return;
         }
         if state.status == RunStatus::Failed
-            || (self.phase == Some(state.phase) && self.said.elapsed() < STILL)
+            || (self.phase == Some(state.phase) && self.printed_at.elapsed() < STILL)
         {
             return;
         }
-        let verb = if self.phase == Some(state.phase) { "goes on at" } else { "from" };
+        let verb = if self.phase == Some(state.phase) { "continues at" } else { "from" };
         self.phase = Some(state.phase);
-        self.said = Instant::now();
+        self.printed_at = Instant::now();
         let (number, of) = (state.phase + 1, self.phases);
         let left_out = if verb == "from" && !state.message.is_empty() {
             format!(", {}", state.message)

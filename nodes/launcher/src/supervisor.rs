@@ -3,11 +3,11 @@
 use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
-use super::patience::Patience;
 use super::pending_results::{PendingResults, ResultState, Source};
 use super::plan::NodePlan;
 use super::progress::Progress;
 use super::stopped::Stopped;
+use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
 use crate::nodes::NodeKind;
 use grainlab_console::{Failure, worse};
@@ -30,7 +30,7 @@ const RESTART_PAUSE: Duration = Duration::from_millis(100);
 /// Period of the checks of the processes.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// Time for a process that was stopped to catch up before the run ends, and how long the end waits for it.
+/// Time for a process that was stopped to catch up before the run ends, and the time limit of the end for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
 
@@ -40,12 +40,12 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(10);
 /// The message while the simulator has published nothing.
 const SEARCHING: &str = "its processes have not found each other";
 
-/// The node whose end is the end of the record.
+/// The recorder, whose end is the end of the record.
 const RECORDER: NodeKind = NodeKind::Recorder;
-/// The node that goes on from its last packing when it dies.
+/// The simulator, which continues from its last packing after a crash.
 const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 
-/// The last packing is being measured by the probe, or waits for it.
+/// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
 /// A run from its first process to its last.
@@ -60,7 +60,7 @@ pub struct Supervisor {
     pub(super) terminate: Signal,
     hangup: Signal,
     pub(super) progress: Progress,
-    /// The last packing is recorded within a phase: it need not have anything to measure.
+    /// The last packing was recorded within a phase: it may have no results.
     ends_within: bool,
     begun: bool,
     /// The step at which the run began or resumed.
@@ -74,7 +74,7 @@ pub struct Supervisor {
     probing: bool,
     pub(super) stopped: Stopped,
     /// Number of recorded packings at each crash of the simulator.
-    deaths: Vec<u64>,
+    crashes: Vec<u64>,
     /// A third-party program failed.
     foreign_failure: bool,
     /// Received results: steps of packings by topic.
@@ -93,12 +93,12 @@ pub struct Supervised {
     /// From the first start to the last end.
     pub wall: Duration,
     /// The received messages of the run, which the recording must contain.
-    pub heard: Heard,
+    pub received: Received,
 }
 
 /// The messages of the run that the launcher received.
 #[derive(Debug, Default)]
-pub struct Heard {
+pub struct Received {
     /// Packings, by the last run state; `None` if the path was not finished.
     pub packings: Option<u32>,
     /// Steps of the packings with a result, by topic.
@@ -137,7 +137,7 @@ impl Supervisor {
             pending,
             probing: false,
             stopped: Stopped::default(),
-            deaths: Vec::new(),
+            crashes: Vec::new(),
             foreign_failure: false,
             results: BTreeMap::new(),
             left: BTreeSet::new(),
@@ -183,8 +183,8 @@ impl Supervisor {
         }
         drop(watch);
         let packings = self.finished.as_ref().map(|state| state.packings);
-        let heard = Heard { packings, results: self.results };
-        Ok(Supervised { exit, children: self.children, wall: begin.elapsed(), heard })
+        let received = Received { packings, results: self.results };
+        Ok(Supervised { exit, children: self.children, wall: begin.elapsed(), received })
     }
 
     fn start_all(&mut self) -> Result<(), Failure> {
@@ -198,7 +198,7 @@ impl Supervisor {
     /// Follows the run until it is complete; the children still run then.
     async fn attend(&mut self, events: &mut UnboundedReceiver<Event>) -> Exit {
         let mut deadline: Option<Deadline> = None;
-        let mut beginning = Patience::new(BEGINS_WITHIN);
+        let mut beginning = TimeLimit::new(BEGINS_WITHIN);
         loop {
             // Events take precedence over time limits.
             tokio::select! {
@@ -220,13 +220,13 @@ impl Supervisor {
                 () = sleep(LOOK) => {
                     let suspended = self.look_for_stopped();
                     if let Some(late) = deadline.as_mut()
-                        && late.patience.is_over(suspended)
+                        && late.limit.is_over(suspended)
                     {
                         grainlab_console::say!("grainlab: {}", late.message);
                         return late.exit;
                     }
                     if !self.begun && beginning.is_over(suspended) {
-                        beginning = Patience::new(BEGINS_WITHIN);
+                        beginning = TimeLimit::new(BEGINS_WITHIN);
                         self.say_what_is_waited_for();
                     }
                     continue;
@@ -242,7 +242,7 @@ impl Supervisor {
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
-                    // Bursts through a long path take as long as they take; who is at work is waited for.
+                    // Bursts through a long path may take any time; the run waits for a probe that works.
                     let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
                         let of = if self.ends_within { Deadline::within_a_phase } else { Deadline::of };
@@ -258,8 +258,8 @@ impl Supervisor {
     async fn caught_up(&mut self) -> Exit {
         self.look_for_stopped();
         let behind = self.stopped.any_within(CATCHES_UP_WITHIN);
-        let mut catching_up = Patience::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });
-        let mut waiting = Patience::new(STOPPED_AT_MOST);
+        let mut catching_up = TimeLimit::new(if behind { CATCHES_UP_WITHIN } else { Duration::ZERO });
+        let mut waiting = TimeLimit::new(STOPPED_AT_MOST);
         loop {
             let suspended = self.look_for_stopped();
             if catching_up.is_over(suspended) || waiting.is_over(false) {
@@ -292,26 +292,26 @@ impl Supervisor {
             }
             Event::Open => {}
             Event::Structure(step) => {
-                self.heard(topics::FABRIC.name, step);
+                self.note_result(topics::FABRIC.name, step);
                 self.pending.structure(step);
             }
             Event::Measured(topic, step) => {
-                self.heard(topic, step);
+                self.note_result(topic, step);
                 self.pending.measured(topic, step);
             }
             Event::Declined(topic, step) => self.pending.declined(topic, step),
             Event::Probing(step) => {
                 self.probing = true;
                 if self.finished.is_some() {
-                    self.progress.still(&format!("waves are sent through the packing of step {step}"));
+                    self.progress.still(&format!("measuring waves through the packing of step {step}"));
                 }
             }
             Event::Microstructure { source, step, member } => {
-                self.heard(topics::MICROSTRUCTURE.name, step);
+                self.note_result(topics::MICROSTRUCTURE.name, step);
                 self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
                 self.progress.say(&match step {
-                    // Data of an external instrument belong to no packing of the run.
+                    // Data of an external instrument do not belong to a packing of the run.
                     0 => format!("the {data} of an instrument inverted"),
                     _ => format!("packing of step {step} measured and inverted, by its {data}"),
                 });
@@ -320,14 +320,14 @@ impl Supervisor {
                 grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
             }
             Event::Failed(message) => {
-                grainlab_console::say!("grainlab: the launcher lost the bus: {message}: the run ends");
+                grainlab_console::say!("grainlab: the launcher cannot use the bus: {message}; the run ends");
                 self.blind = true;
             }
         }
     }
 
-    /// Data of an external instrument belong to no packing of the run.
-    fn heard(&mut self, topic: &'static str, step: u64) {
+    /// Data of an external instrument do not belong to a packing of the run.
+    fn note_result(&mut self, topic: &'static str, step: u64) {
         if step > 0 {
             self.results.entry(topic).or_default().insert(step);
         }
@@ -342,12 +342,12 @@ impl Supervisor {
             ));
         }
         for name in changes.resumed {
-            self.progress.say(&format!("{name} goes on"));
+            self.progress.say(&format!("{name} continues"));
         }
         self.stopped.any()
     }
 
-    /// What the simulator waits for, from its log.
+    /// The condition that the simulator waits for, from its log.
     fn say_what_is_waited_for(&self) {
         let simulator = self.children.iter().find(|c| c.plan.is(SIMULATOR));
         let waits = simulator.and_then(|c| c.last_line_if(&self.logs, "waiting for"));
@@ -409,18 +409,18 @@ impl Supervisor {
     /// Restarts the simulator from the last recorded packing; see `--resume`.
     async fn resume(&mut self, index: usize, how: &str) -> Option<Exit> {
         let packings = crate::last_packing::count(&self.directory);
-        self.deaths.push(packings);
-        // Three attempts ended at the same packing: the next one would, too.
-        if self.deaths.iter().filter(|known| **known == packings).count() > 3 {
+        self.crashes.push(packings);
+        // Three attempts ended at the same packing: a fourth one would, too.
+        if self.crashes.iter().filter(|known| **known == packings).count() > 3 {
             grainlab_console::say!(
-                "grainlab: {SIMULATOR} {how}, for the fourth time behind packing {packings}: given up"
+                "grainlab: {SIMULATOR} {how}, for the fourth time after packing {packings}: not restarted"
             );
             self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
         self.children[index].quote_log(&self.logs);
         let from = if packings == 0 { "from the beginning" } else { "from the last packing recorded" };
-        self.progress.say(&format!("{SIMULATOR} {how}: the run goes on {from}"));
+        self.progress.say(&format!("{SIMULATOR} {how}: the run continues {from}"));
         self.children[index].resume_from = (packings > 0).then(|| self.directory.clone());
         self.finished = None;
         self.start_again(index).await
@@ -433,13 +433,13 @@ impl Supervisor {
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
             grainlab_console::say!(
-                "grainlab: {name} {how}, {recent} times within {} s: given up",
+                "grainlab: {name} {how}, {recent} times within {} s: not restarted",
                 RESTART_WINDOW.as_secs()
             );
             self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
-        self.progress.say(&format!("{name} {how}: started again"));
+        self.progress.say(&format!("{name} {how}: restarted"));
         self.start_again(index).await
     }
 

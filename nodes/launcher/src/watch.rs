@@ -131,7 +131,7 @@ impl Drop for Watch {
 }
 
 /// Subscriptions to the run's messages.
-struct Ears {
+struct RunSubscriptions {
     states: Subscription<RunState>,
     fabrics: Subscription<Fabric>,
     moduli: Subscription<Moduli>,
@@ -140,21 +140,21 @@ struct Ears {
     reports: Subscription<DiagnosticArray>,
 }
 
-impl Ears {
+impl RunSubscriptions {
     fn new(bus: &mut dyn Bus) -> Result<Self, BusError> {
         let demand = Demand::reliable(BACKLOG);
-        let heard = Demand::best_effort(BACKLOG);
+        let reports = Demand::best_effort(BACKLOG);
         Ok(Self {
             states: Subscription::subscribe(bus, &topics::RUN_STATE, demand)?,
             fabrics: Subscription::subscribe(bus, &topics::FABRIC, demand)?,
             moduli: Subscription::subscribe(bus, &topics::MODULI, demand)?,
             speeds: Subscription::subscribe(bus, &topics::WAVE_SPEEDS, demand)?,
             microstructures: Subscription::subscribe(bus, &topics::MICROSTRUCTURE, demand)?,
-            reports: Subscription::subscribe(bus, &topics::DIAGNOSTICS, heard)?,
+            reports: Subscription::subscribe(bus, &topics::DIAGNOSTICS, reports)?,
         })
     }
 
-    fn hear(&self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
+    fn receive(&self, bus: &mut dyn Bus, mut send: impl FnMut(Event)) -> Result<(), BusError> {
         while let Some((state, _)) = self.states.take_valid(bus)? {
             match RunStateReading::try_from(&state) {
                 Ok(reading) => send(Event::State(reading)),
@@ -196,12 +196,12 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
     let send = |event| {
         let _ = events.send(event);
     };
-    let ears = Ears::new(bus).map_err(|e| e.to_string())?;
+    let subscriptions = RunSubscriptions::new(bus).map_err(|e| e.to_string())?;
     send(Event::Open);
     let mut named = BTreeSet::new();
     let mut next_look = bus.now() + LOOK_AROUND;
     while !stop.load(Ordering::Relaxed) {
-        ears.hear(bus, send).map_err(|e| e.to_string())?;
+        subscriptions.receive(bus, send).map_err(|e| e.to_string())?;
         if bus.now() >= next_look {
             next_look = bus.now() + LOOK_AROUND;
             watchdog::check().map_err(|e| e.to_string())?;

@@ -1,7 +1,7 @@
-//! A flood of mutated and forged datagrams against whatever runs in a domain of this host's loopback.
+//! Sends mutated and forged datagrams to all processes in a domain on the loopback of this host.
 //!
-//! `cargo run --release -p grainlab_node_kit --example attack -- DOMAIN [COUNT]`, beside `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The
-//! mutated half needs the right to hear packets (root).
+//! `cargo run --release -p grainlab_node_kit --example attack -- DOMAIN [COUNT]`, beside
+//! `ROS_DOMAIN_ID=DOMAIN grainlab launch`. The mutated half needs the right to capture packets (root).
 
 #[path = "../tests/process/flood.rs"]
 mod flood;

@@ -78,15 +78,15 @@ impl Admission {
         &self.identity
     }
 
-    /// Notes a discovered participant and its process.
+    /// Records a discovered participant and its process.
     pub(crate) fn discovered(&mut self, participant: Participant, process: Process) {
-        // As many as discovery itself keeps; further ones stay unnamed.
+        // As many as discovery itself keeps; further ones have no name.
         if self.processes.len() < 16 * COUNTED || self.processes.contains_key(&participant) {
             self.processes.insert(participant, process);
         }
     }
 
-    /// Forgets a participant that left.
+    /// Removes a participant that left.
     pub(crate) fn lost(&mut self, participant: &Participant) {
         self.processes.remove(participant);
     }
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn by_hand_a_node_of_the_lockstep_ignores_launched_runs_and_a_tool_hears_everyone() {
+    fn by_hand_a_node_of_the_lockstep_ignores_launched_runs_and_a_tool_receives_from_all() {
         let launched = Identity::member_of(RunId::named("a"), 1).guid_prefix();
         let by_hand = Admission::new(HAND, HAND.guid_prefix());
         assert!(!by_hand.admits(&launched));

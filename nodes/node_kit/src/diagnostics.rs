@@ -27,8 +27,8 @@ pub struct Report {
     pub health: Health,
     /// The exit code of the process; only in its last report.
     pub exit: Option<Exit>,
-    /// The statistics of each of its writers. In the last report they are final and count that report itself, so
-    /// that a recording can be checked against them by RTPS sequence numbers.
+    /// The statistics of each of its writers. In the last report they are final and include that report
+    /// itself, so that a recording can be checked against them by RTPS sequence numbers.
     pub published: Vec<Published>,
     /// The number of samples its subscriptions took, one entry per topic.
     pub received: Vec<Received>,

@@ -10,7 +10,7 @@ use std::fmt;
 pub enum Exit {
     /// 0: success.
     Done = 0,
-    /// 1: something failed while it ran: a file, the network, another process.
+    /// 1: an error while it ran: a file, the network, another process.
     Failure = 1,
     /// 2: wrong usage: an unknown option, scene key or parameter, or a value out of range. Nothing was started.
     Usage = 2,

@@ -193,7 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_prefix_of_a_member_tells_run_and_place_and_differs_at_each_start() {
+    fn the_prefix_of_a_member_has_run_and_number_and_differs_at_each_start() {
         let run = RunId::fresh();
         let identity = Identity::member_of(run, 3);
         let (a, b) = (identity.guid_prefix(), identity.guid_prefix());

@@ -1,14 +1,15 @@
-//! What every process of the laboratory shares. This is the only crate that uses DDS.
+//! The common part of all processes. This is the only crate that uses DDS.
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types
 //! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long
 //!   computations
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
-//! - `identity`: the run of a process; `admission`: which samples a process accepts
+//! - `identity`: the run of a process; `admission`: the samples that a process accepts
 //! - `node`: a node as a state machine; `health`: its health; `run`: running it as a process
-//! - [`PackingNode`]: the template of nodes that turn packings into results
-//! - `diagnostics`: the heartbeat of a process; `peers`: which processes are alive; [`watchdog`]: whether DDS works
+//! - [`PackingNode`]: the template of nodes that measure packings
+//! - `diagnostics`: the heartbeat of a process; `peers`: liveliness of processes; [`watchdog`]: detects
+//!   failed DDS threads
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: stderr and `/rosout`

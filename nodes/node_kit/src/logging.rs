@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn libraries_speak_only_of_errors_unless_asked() {
+    fn libraries_log_only_errors_by_default() {
         let quiet = settings(LevelFilter::Debug, &[]);
         assert_eq!(quiet.level_of("grainlab_dem_simulator::run"), LevelFilter::Debug);
         assert_eq!(quiet.level_of("rustdds::rtps::reader"), LevelFilter::Error);

@@ -1,6 +1,6 @@
-//! The template of a node that turns packings into results: one packing after the other, on a thread of its own.
+//! The template of a node that measures packings: one packing after the other, on a worker thread.
 //!
-//! A node is a type that implements [`Measure`], and `PackingNode` of it.
+//! A node is a type that implements [`Measure`], wrapped in `PackingNode`.
 
 use crate::bulk::BulkSubscription;
 use crate::exit::Exit;
@@ -13,32 +13,32 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Packings that may wait while one is measured; megabytes each.
+/// Maximum number of queued packings while one is measured; megabytes each.
 const BACKLOG: u32 = 64;
 
-/// No step that a packing has.
+/// A step that no packing has.
 const UNKNOWN: u64 = u64::MAX;
 
-/// What a node measures of a packing, and what it reports: all that differs between such nodes. A value has the publishers
-/// of the results and the counts of its own.
+/// The measurement of a node and its reports: all differences between such nodes. A value contains the
+/// publishers of the results and its counters.
 pub trait Measure: Sized + 'static {
-    /// How packings are measured.
+    /// Settings of the measurement.
     type Settings: Send + 'static;
-    /// What is found of a packing.
+    /// Result of the measurement of a packing.
     type Found: Send + 'static;
-    /// Why nothing is found of a packing.
+    /// Why there is no result.
     type Error: std::error::Error + From<DecodeError> + Send + 'static;
 
-    /// Words of the diagnostics.
+    /// Texts of the diagnostics.
     const WORDS: Words;
 
     /// Advertises the topics of the results.
     fn advertise(bus: &mut dyn Bus) -> Result<Self, BusError>;
 
-    /// Measures one packing, on the thread of the worker: a pure function.
+    /// Measures one packing, on the worker thread: a pure function.
     fn measure(packing: &Packing, settings: &Self::Settings) -> Result<Self::Found, Self::Error>;
 
-    /// Publishes what was found of the packing that is the sample `about`, and counts it.
+    /// Publishes the result for the packing in the sample `about`, and counts it.
     fn publish(
         &mut self,
         bus: &mut dyn Bus,
@@ -47,19 +47,19 @@ pub trait Measure: Sized + 'static {
         tally: &mut Tally,
     ) -> Result<(), BusError>;
 
-    /// How it is counted that a packing has no result.
+    /// The counter for a packing without a result.
     fn decline(&mut self, error: &Self::Error) -> Declined;
 
-    /// The counts for the diagnostics, added to `health`.
+    /// The counters for the diagnostics, added to `health`.
     fn values(&self, tally: &Tally, health: Health) -> Health;
 }
 
-/// Words of the diagnostics.
+/// Texts of the diagnostics.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// Name of the worker's thread.
+    /// Name of the worker thread.
     pub thread: &'static str,
-    /// What is done with a packing, as in "measuring"; key of the step of the packing that is being measured.
+    /// The activity, as in "measuring"; key of the step of the packing being measured.
     pub activity: &'static str,
     /// Key of the duration of the latest measurement.
     pub seconds: &'static str,
@@ -68,15 +68,15 @@ pub struct Words {
 /// Why a packing has no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declined {
-    /// The message is not a packing.
+    /// The message is not a valid packing.
     Refused,
-    /// The packing has no contact network, which is no fault.
+    /// The packing has no contact network, which is not a fault.
     NoNetwork,
     /// The measurement failed.
     Failed,
 }
 
-/// What became of the packings so far.
+/// Counts of the packings so far.
 #[derive(Debug, Default)]
 pub struct Tally {
     /// Packings with a result.
@@ -87,12 +87,12 @@ pub struct Tally {
     pub failed: u64,
     /// Step of the last packing with a result.
     pub last_step: Option<u64>,
-    /// What was wrong with the latest packing, if something was.
+    /// The fault of the latest packing, if any.
     pub trouble: Option<String>,
 }
 
 impl Tally {
-    /// Counts the packing of `step`, of which there is a result.
+    /// Counts the packing of `step`, which has a result.
     pub fn count(&mut self, step: u64) {
         self.measured += 1;
         self.last_step = Some(step);
@@ -117,30 +117,30 @@ pub struct PackingNode<M: Measure> {
     packing: BulkSubscription,
     results: M,
     worker: Worker<Vec<u8>, Result<M::Found, M::Error>>,
-    /// The sample of the packing that is measured: what its results are about.
+    /// The sample of the packing being measured: its results refer to it.
     origin: SampleId,
-    /// Step of the packing that is measured, as soon as it is decoded.
+    /// Step of the packing being measured, once it is decoded.
     step: Arc<AtomicU64>,
     began: Duration,
     tally: Tally,
-    /// Duration of the latest measurement, s, and of the one under way at the latest step.
+    /// Duration of the latest measurement, s, and of the present one at the latest step.
     seconds: f64,
     under_way: f64,
 }
 
 impl<M: Measure> PackingNode<M> {
-    /// Takes the latest packing, where one is latched, and every one after it.
+    /// Receives the latest packing, if one is latched, and every one after it.
     ///
     /// # Errors
-    /// If a topic is refused, or the system has no thread left.
+    /// If a topic is refused, or the system cannot start a thread.
     pub fn new(bus: &mut dyn Bus, settings: M::Settings) -> Result<Self, NodeError> {
         Self::measuring(bus, move |packing| M::measure(packing, &settings))
     }
 
-    /// With another measurement than [`Measure::measure`].
+    /// With another measurement instead of [`Measure::measure`].
     ///
     /// # Errors
-    /// If a topic is refused, or the system has no thread left.
+    /// If a topic is refused, or the system cannot start a thread.
     pub fn measuring<F>(bus: &mut dyn Bus, measure: F) -> Result<Self, NodeError>
     where
         F: Fn(&Packing) -> Result<M::Found, M::Error> + Send + 'static,
@@ -171,7 +171,7 @@ impl<M: Measure> PackingNode<M> {
         self.seconds = bus.now().saturating_sub(self.began).as_secs_f64();
         match outcome {
             Ok(found) => match self.results.publish(bus, &found, self.origin, &mut self.tally) {
-                // A reader that is hundreds of results behind must not end this node.
+                // A reader that is hundreds of results behind must not stop this node.
                 Err(full @ BusError::Full { .. }) => {
                     log::error!("{full}");
                     self.tally.trouble = Some(full.to_string());
@@ -199,7 +199,7 @@ impl<M: Measure> PackingNode<M> {
 }
 
 impl<M: Measure> Node for PackingNode<M> {
-    /// One packing at most: the next one waits for the worker. Results come in the order of the packings.
+    /// At most one packing: the next one waits for the worker. Results are in the order of the packings.
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         self.packing.advance(bus)?;
         if !self.worker.is_busy()
@@ -235,7 +235,7 @@ impl<M: Measure> Node for PackingNode<M> {
             .with("waiting", self.packing.waiting())
     }
 
-    /// Leaves at once: what is being measured is measured again, with the same bytes, by the next process of this node.
+    /// Ends at once: the next process of this node measures the present packing again, with the same bytes.
     fn on_shutdown(&mut self, _: &mut dyn Bus) -> Result<Exit, NodeError> {
         let complete = !self.worker.is_busy() && self.packing.waiting() == 0;
         Ok(if complete { Exit::Done } else { Exit::Interrupted })

@@ -15,7 +15,7 @@ use std::time::Duration;
 /// The period of heartbeats is 1 s. A node that computes sends none, so silence alone does not prove a crash.
 pub const SILENCE: Duration = Duration::from_secs(5);
 
-/// Maximum number of peers; beyond it, the one silent for longest is forgotten.
+/// Maximum number of peers; beyond it, the one silent for longest is removed.
 const KEPT: usize = 512;
 
 /// Queue of heartbeats between two calls: one minute of all peers.
@@ -63,7 +63,7 @@ pub struct Peers {
 
 impl Peers {
     /// Processes one heartbeat and returns its reports.
-    pub fn hear(&mut self, message: &DiagnosticArray, info: &SampleInfo, now: Duration) -> Vec<Report> {
+    pub fn receive(&mut self, message: &DiagnosticArray, info: &SampleInfo, now: Duration) -> Vec<Report> {
         let reports = Report::from_message(message);
         for report in &reports {
             let participant = info.writer.participant();
@@ -114,16 +114,17 @@ impl PeerWatch {
         Ok(Self { subscription, peers: Peers::default() })
     }
 
-    /// Processes the heartbeats since the last call, and passes each sample's origin and report on.
+    /// Processes the heartbeats since the last call, and passes the origin and report of each sample to the
+    /// caller.
     pub fn update(
         &mut self,
         bus: &mut dyn Bus,
-        mut heard: impl FnMut(&SampleInfo, &Report),
+        mut each: impl FnMut(&SampleInfo, &Report),
     ) -> Result<(), BusError> {
         while let Some((message, info)) = self.subscription.take_valid(bus)? {
             let now = bus.now();
-            for report in self.peers.hear(&message, &info, now) {
-                heard(&info, &report);
+            for report in self.peers.receive(&message, &info, now) {
+                each(&info, &report);
             }
         }
         Ok(())
@@ -161,12 +162,12 @@ mod tests {
     fn a_peer_is_alive_then_silent_then_left() {
         let mut peers = Peers::default();
         let (message, info) = beat(1, None);
-        peers.hear(&message, &info, Duration::from_secs(10));
+        peers.receive(&message, &info, Duration::from_secs(10));
         let life = |peers: &Peers, at| peers.find("/servo").map(|p| p.liveliness(Duration::from_secs(at)));
         assert_eq!(life(&peers, 15), Some(Liveliness::Alive));
         assert_eq!(life(&peers, 16), Some(Liveliness::Silent(Duration::from_secs(6))));
         let (message, info) = beat(1, Some(Exit::Done));
-        peers.hear(&message, &info, Duration::from_secs(20));
+        peers.receive(&message, &info, Duration::from_secs(20));
         assert_eq!(life(&peers, 100), Some(Liveliness::Left(Exit::Done)));
     }
 
@@ -175,7 +176,7 @@ mod tests {
         let mut peers = Peers::default();
         for (pid, at) in [(9, 1), (3, 8)] {
             let (message, info) = beat(pid, None);
-            peers.hear(&message, &info, Duration::from_secs(at));
+            peers.receive(&message, &info, Duration::from_secs(at));
         }
         assert_eq!(peers.iter().count(), 2);
         assert_eq!(peers.find("/servo").map(|p| p.report.pid), Some(3));

@@ -60,7 +60,7 @@ where
 {
     Logger::install(spec.name, args);
     watchdog::watch_dds_threads();
-    // A panic of a node is a bug, but it ends as every other failure does: with exit 1 and a last report.
+    // A panic of a node is a bug, but it ends like every other failure: with exit 1 and a last report.
     catch_unwind(AssertUnwindSafe(|| run_process(spec, args, build))).unwrap_or_else(|_| {
         log::error!("{} panicked (see above); this is a bug", spec.name);
         Exit::Failure

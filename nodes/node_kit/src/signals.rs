@@ -1,4 +1,4 @@
-//! SIGINT, SIGTERM and SIGHUP: the first asks the node to end, the second ends the process at once.
+//! SIGINT, SIGTERM and SIGHUP: the first signal stops the node, the second ends the process at once.
 
 use crate::exit::Exit;
 use rustdds::mio1::net::UnixStream;
@@ -17,7 +17,7 @@ pub struct Signals {
 
 /// Whether the process was started with this signal ignored.
 fn is_ignored(signal: i32) -> bool {
-    // SAFETY: with a null action, `sigaction` only writes the current one into our memory.
+    // SAFETY: with a null action, `sigaction` only writes the current one into `present`.
     unsafe {
         let mut present: libc::sigaction = std::mem::zeroed();
         libc::sigaction(signal, std::ptr::null(), &mut present) == 0 && present.sa_sigaction == libc::SIG_IGN

@@ -50,7 +50,7 @@ pub enum TakeError {
     /// A sample does not decode as the type. It is counted as refused; the next call takes the sample after it.
     #[error("sample {} of writer {} refused: {reason}", info.sequence, info.writer)]
     Decode {
-        /// Which sample.
+        /// The sample.
         info: SampleInfo,
         /// The error of decoding.
         reason: DecodeError,

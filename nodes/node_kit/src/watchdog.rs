@@ -1,8 +1,9 @@
-//! Detects failed DDS threads: a process that runs and receives nothing is worse than one that ended.
+//! Detects failed DDS threads, without which a process runs but receives nothing.
 //!
-//! There are two checks: a hook notes a panic in one of RustDDS's threads, and once a second the process counts those
-//! threads in `/proc/self/task` and compares with its open participants. Its own heartbeat would be a better check, but
-//! a participant discovers itself only where multicast reaches it.
+//! There are two checks: a hook records a panic in one of RustDDS's threads, and once a second the process
+//! counts those threads in `/proc/self/task` and compares the number with that of its open participants.
+//! Receiving its own heartbeat would be a better check, but a participant discovers itself only if multicast
+//! reaches it.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -36,7 +37,7 @@ impl Drop for OpenParticipant {
     }
 }
 
-/// Notes panics of RustDDS's threads from now on, for the whole process. The usual message is printed, too.
+/// Records panics of RustDDS's threads from now on, for the whole process. The usual message is printed, too.
 pub fn watch_dds_threads() {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -96,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thread_that_is_gone_is_missed_from_the_first_look_on() {
+    fn an_ended_thread_is_reported_at_the_first_check() {
         assert_eq!(judge(2, Some(2)), Ok(()));
         assert_eq!(judge(2, None), Ok(()), "no count is no evidence");
         assert_eq!(judge(2, Some(1)), Err(DdsFailure::Ended { started: 2, left: 1 }));

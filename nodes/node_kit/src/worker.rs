@@ -1,12 +1,12 @@
-//! Computations that take longer than a node may leave its bus.
+//! Computations that take longer than a node may leave its bus unattended.
 
 use crate::bus::{Bus, Caller};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Does one job at a time. If another thread can wake the bus, the job runs on a thread of its own, so that the node
-/// keeps publishing heartbeats. On the bus in memory, where time is virtual and results must not depend on real time, a
-/// job is done at once.
+/// Runs one job at a time. If another thread can wake the bus, the job runs on a worker thread, so that the
+/// node keeps publishing heartbeats. On the bus in memory, where time is virtual and results must not depend
+/// on real time, a job runs at once.
 ///
 /// [`Worker::result`] resumes a panic of the job. Dropping a worker does not stop its job: the
 /// thread ends with the job, or with the process.
@@ -101,7 +101,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_panic_of_a_job_is_the_nodes() {
+    fn a_panic_of_a_job_resumes_in_the_node() {
         let (called, calls) = channel();
         let caller = Caller(Arc::new(move || called.send(()).unwrap()));
         let mut worker = Worker::threaded(caller, "worker", |job: i32| {

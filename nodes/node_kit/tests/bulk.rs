@@ -50,7 +50,7 @@ fn reader(hub: &Hub, name: &str) -> Reader {
     Reader { bus, subscription, samples: Vec::new() }
 }
 
-/// Lets everybody look, then a millisecond pass; whether nothing is under way.
+/// Lets all nodes receive, then a millisecond pass; returns whether no message is in transit.
 fn tick(hub: &Hub, writer: &mut Writer, readers: &mut [Reader]) -> bool {
     let idle = writer.publisher.advance(&mut writer.bus).unwrap();
     for reader in readers {
@@ -184,7 +184,7 @@ fn a_reader_with_much_to_take_holds_large_messages_back_and_loses_none() {
     let mut writer = writer(&hub);
     let bodies: Vec<Vec<u8>> = (1..=5).map(|n| body(n, 30 << 20)).collect();
     let mut published = 0;
-    // It looks, but takes nothing.
+    // It receives, but takes nothing.
     for _ in 0..5_000 {
         slow.subscription.advance(&mut slow.bus).unwrap();
         match writer.publisher.publish(&mut writer.bus, &bodies[published]) {

@@ -1,4 +1,4 @@
-//! Large messages over DDS, on loopback, in a domain of their own.
+//! Large messages over DDS, on loopback, in a separate domain.
 
 use grainlab_msgs::msg::Packing;
 use grainlab_msgs::{from_cdr, to_cdr, topics};
@@ -15,7 +15,7 @@ fn open(network: Network, node: &str) -> DdsBus {
     DdsBus::open(network, Names::in_namespace(node, "/lab").unwrap()).unwrap()
 }
 
-/// As long as a packing of `grains` grains at z 5, and incompressible.
+/// A body as long as a packing of `grains` grains with z = 5, and incompressible.
 fn packing(grains: usize) -> Packing {
     let contacts = grains * 5 / 2;
     let mut state = 1_u64;

@@ -1,4 +1,4 @@
-//! The bus over DDS: two participants in one process, on loopback, in a domain of their own.
+//! The bus over DDS: two participants in one process, on loopback, in a separate domain.
 
 use grainlab_msgs::msg::{RunState, StrainRate};
 use grainlab_msgs::{Topic, topics};
@@ -6,7 +6,7 @@ use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
 use std::time::{Duration, Instant};
 
-/// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
+/// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn claim() -> ClaimedDomain {
@@ -130,7 +130,7 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
         publisher.publish(&mut a, &rate(n)).unwrap();
     }
     assert!(a.flush(PATIENCE));
-    // The node of b computes: it does not look at its bus while a lingers and leaves.
+    // The node of b computes: it does not use its bus while a lingers and leaves.
     std::thread::sleep(Duration::from_millis(300));
     drop(a);
     let left = Instant::now();
@@ -142,7 +142,7 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
         }
         b.writers(subscription.id()) == 0
     });
-    // A crashed peer stays for up to 50 s; this one said goodbye.
+    // A crashed peer stays for up to 50 s; this one left in order.
     assert!(left.elapsed() < Duration::from_secs(5));
     assert_eq!(got, 50, "what was received before the writer left is still delivered");
     assert!(b.foreign_writers(&topics::STRAIN_RATE).is_empty());
@@ -175,7 +175,7 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
     let start = Instant::now();
     assert_eq!(b.wait(PATIENCE), Wake::Data);
     assert!(start.elapsed() < Duration::from_secs(5));
-    // A spinning wait would burn its 200 ms; a blocking one needs a few wakeups of the threads below.
+    // A spinning wait would use 200 ms of CPU time; a blocking one needs a few wakeups of the threads below.
     assert!(cpu_time() - cpu < Duration::from_millis(100));
     assert_eq!(b.wait(PATIENCE), Wake::Data, "untaken data is reported again");
     assert!(subscription.take(&mut b).unwrap().is_some());
@@ -294,7 +294,7 @@ fn cpu_time() -> Duration {
 }
 
 #[test]
-fn a_process_hears_what_it_says_itself_once_whatever_it_asks_for() {
+fn a_process_receives_its_own_messages_once_for_any_demand() {
     let claimed = claim();
     let (mut bus, mut peer) = (open(claimed.network(), "recorder"), open(claimed.network(), "peer"));
     let strong =
@@ -302,7 +302,7 @@ fn a_process_hears_what_it_says_itself_once_whatever_it_asks_for() {
     let weak =
         Subscription::<RunState>::subscribe(&mut bus, &topics::RUN_STATE, Demand::best_effort(100)).unwrap();
     let publisher = Publisher::<RunState>::advertise(&mut bus, &topics::RUN_STATE).unwrap();
-    // Long enough for the network's own echo, where there is one, to come, too.
+    // Long enough for a multicast copy of the own samples, if any, to arrive, too.
     let there =
         Subscription::<RunState>::subscribe(&mut peer, &topics::RUN_STATE, Demand::reliable(100)).unwrap();
     until(&mut bus, "match", |b| b.readers(publisher.id()) == 1);

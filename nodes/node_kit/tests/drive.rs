@@ -11,7 +11,7 @@ use std::time::Duration;
 
 const TICK: Duration = Duration::from_millis(100);
 
-/// Publishes each tick until something happens.
+/// Publishes each tick until it is stopped or fails.
 struct Ticker {
     publisher: Publisher<RunState>,
     ticks: u64,
@@ -52,7 +52,7 @@ struct Heard {
     states: i64,
 }
 
-/// Runs a ticker to its end beside a silent observer.
+/// Runs a ticker to its end with a passive observer.
 fn run(then: fn(u64) -> Result<Next, NodeError>, interrupt: bool) -> (Exit, Ticker, Heard) {
     let hub = Hub::new(5);
     let mut bus = hub.bus(Names::in_namespace("ticker", "/lab").unwrap());
@@ -88,7 +88,7 @@ fn after(ticks: u64, limit: u64, end: Result<Next, NodeError>) -> Result<Next, N
 
 #[test]
 fn health_is_reported_each_second_and_the_last_report_counts_itself() {
-    // Ticks at 0.0, 0.1, … 3.4 s: heartbeats after 1, 2 and 3 s, then the last words.
+    // Ticks at 0.0, 0.1, … 3.4 s: heartbeats after 1, 2 and 3 s, then the last report.
     let (exit, node, heard) = run(|ticks| after(ticks, 35, Ok(Next::Finished(Exit::DataLoss))), false);
     assert_eq!((exit, node.ticks), (Exit::DataLoss, 35));
     assert!(node.peers_heard >= 3);
@@ -115,7 +115,7 @@ fn an_error_ends_the_node_with_its_own_exit_code() {
 }
 
 #[test]
-fn an_interrupted_node_says_how_complete_it_is() {
+fn an_interrupted_node_reports_how_complete_it_is() {
     let (exit, node, _) = run(|_| Ok(Next::Wait(TICK)), true);
     assert_eq!((exit, node.ticks), (Exit::Interrupted, 1));
 }

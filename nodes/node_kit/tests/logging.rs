@@ -1,4 +1,4 @@
-//! Log lines on `/rosout`. Alone in its process: there is one logger in each.
+//! Log lines on `/rosout`. The only test in its process, which has one logger.
 
 use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;

@@ -1,4 +1,4 @@
-//! Many nodes on one host: more than the 12 ports that announcements are sent to one by one.
+//! Many nodes on one host: more than the 12 ports to which announcements are sent by unicast.
 
 use grainlab_msgs::topics;
 use grainlab_node_kit::ClaimedDomain;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 const NODES: usize = 24;
 
-/// Far above what it takes on a quiet machine.
+/// Far above the time needed on an idle machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 #[test]

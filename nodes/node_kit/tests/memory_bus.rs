@@ -1,4 +1,4 @@
-//! The bus in memory has the semantics of the DDS bus, with faults that a seed decides.
+//! The bus in memory has the semantics of the DDS bus, with seeded faults.
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
@@ -120,7 +120,7 @@ fn waiting_passes_virtual_time_to_the_next_arrival_or_the_timeout() {
     assert_eq!(b.wait(MS), Wake::Timeout, "a signal is reported once");
 }
 
-/// Asks and repeats, as the simulator does.
+/// Sends requests and repeats them, like the simulator.
 struct Asker {
     publisher: Publisher<Stress>,
     subscription: Subscription<StrainRate>,
@@ -149,7 +149,7 @@ impl Node for Asker {
     }
 }
 
-/// Answers each question, as the servo does.
+/// Answers each request, like the servo.
 struct Answerer {
     publisher: Publisher<StrainRate>,
     subscription: Subscription<Stress>,

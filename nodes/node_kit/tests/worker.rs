@@ -1,5 +1,5 @@
-//! Work beside the run loop: a node that works lives on. One test over DDS: the watchdog counts the DDS threads of the
-//! whole process.
+//! A job on a worker thread: the node keeps its heartbeat. One test over DDS: the watchdog counts the DDS
+//! threads of the whole process.
 
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::RunState;

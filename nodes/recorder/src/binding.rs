@@ -1,4 +1,4 @@
-//! Finds the messages of a run whose processes were started by hand and share no run id.
+//! Selects the messages of a run whose processes were started by hand and have no common run id.
 //!
 //! The run is that of the first simulator that publishes. Its id is the participant of that simulator: answers and
 //! results refer to its samples (see `SampleInfo::about`).
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_gone_has_a_successor() {
+    fn a_writer_that_left_is_replaced() {
         let alone = |_: &Topic| vec![WriterId([2; 16]), WriterId([4; 16])];
         let mut binding = Binding::default();
         let mut takes = |topic, who, about| binding.takes(&topic, &info(who, about), alone);
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(
             takes(topics::STRAIN_RATE, 3, Some(1)),
             Ok(()),
-            "an answer to the first one is of this run, too"
+            "an answer to the first one belongs to this run, too"
         );
         assert_eq!(takes(topics::STRAIN_RATE, 4, Some(2)), Ok(()), "and so is its successor's");
     }

@@ -1,10 +1,10 @@
 //! The recorder node: every sample of every topic into one recording.
 //!
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
-//! - `binding`: whose messages belong to a run by hand; [`repeats`]: messages that say what was recorded already
-//! - [`strangers`]: who was on the bus beside the run, and who wrote which result
-//! - [`Recorder`]: the node; [`ResultSlot`]: where it leaves what it finished
-//! - [`tallies`]: what was lost, and the counts for people
+//! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
+//! - [`strangers`]: processes on the bus that are not part of the run, and the writers of the results
+//! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
+//! - [`tallies`]: losses, and the table of counts
 
 mod binding;
 mod node;

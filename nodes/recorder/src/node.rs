@@ -20,8 +20,9 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS keeps as many
-/// of each topic, also after they were taken, so that a topic of few or long messages gets less.
+/// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS
+/// keeps as many of each topic, also after they were taken, so that a topic with few or long messages gets
+/// fewer.
 fn backlog(topic: &Topic) -> u32 {
     match topic.name {
         name if [topics::STRESS.name, topics::STRAIN_RATE.name].contains(&name) => 20_000,
@@ -40,8 +41,8 @@ const OLD_ENOUGH: Duration = Duration::from_secs(1);
 /// A recorder without a step for this long was stopped by a signal, or its disk was slow.
 const STALLED: Duration = Duration::from_secs(2);
 
-/// How long an ending recorder waits for reported messages that it lacks, and how long for a pause of messages, unless
-/// every process has sent its last report.
+/// Time limits for an ending recorder to receive reported messages that it lacks, and for a pause of
+/// messages, unless every process has sent its last report.
 const LAST_CALL: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_millis(200);
 
@@ -108,7 +109,7 @@ struct Company {
 }
 
 impl Company {
-    fn hear(&mut self, writer: WriterId) {
+    fn note_writer(&mut self, writer: WriterId) {
         self.heard.insert(writer.participant());
     }
 
@@ -211,7 +212,7 @@ impl Recorder {
                     writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
                     continue;
                 }
-                self.company.hear(sample.info.writer);
+                self.company.note_writer(sample.info.writer);
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
@@ -324,11 +325,11 @@ fn lost(error: &dyn std::fmt::Display) -> NodeError {
 /// Passes the counts of a report to the recording, with the node's name; true for the last report of a process.
 fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &Sample) -> bool {
     let Ok(message) = from_cdr::<DiagnosticArray>(&sample.body) else { return false };
-    let mut goodbye = false;
+    let mut is_last_report = false;
     for report in Report::from_message(&message) {
         // A replayed report refers to writers that do not exist.
         let own = |p: &&Published| p.writer.participant() == sample.info.writer.participant();
-        goodbye |= report.is_final() && report.published.iter().any(|p| own(&p));
+        is_last_report |= report.is_final() && report.published.iter().any(|p| own(&p));
         for published in report.published.iter().filter(own) {
             let guid = Guid(published.writer.0);
             writer.ledger_mut().name(guid, &report.node);
@@ -338,7 +339,7 @@ fn enter_reports(writer: &mut RunWriter, recorded: &BTreeSet<String>, sample: &S
             }
         }
     }
-    goodbye
+    is_last_report
 }
 
 impl Node for Recorder {
@@ -389,15 +390,15 @@ impl Node for Recorder {
         }
         if self.stalled && missing > 0 && !self.whole_run {
             log::error!(
-                "{missing} processes left without a last report, and the recorder was stopped for a while: how many of their \
-                 messages are missing is not known"
+                "{missing} processes left without a last report, and the recorder was stopped for a while: the number of their \
+                 missing messages is not known"
             );
             return Ok(Exit::DataLoss);
         }
         let seconds = self.binding.as_ref().map_or(0, |b| b.seconds().len());
         if seconds > 0 || self.contradictions > 0 {
             log::error!(
-                "two processes wrote what one should: which of them is right cannot be told. Start the processes of a run \
+                "two processes wrote results of one run: it is unknown which of them is right. Start the processes of a run \
                  with a run of their own (GRAINLAB_RUN=any_name for each of them)"
             );
             return Ok(Exit::Failure);
@@ -411,11 +412,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everyone_has_left_when_each_that_was_heard_or_is_there_said_goodbye() {
+    fn everyone_has_left_after_the_last_report_of_each() {
         let writer = |who| WriterId([who; 16]);
         let mut company = Company { own: Some([1; 12]), ..Company::default() };
         assert!(company.all_left(&[writer(1)]), "there is nobody but the recorder");
-        company.hear(writer(2));
+        company.note_writer(writer(2));
         assert!(!company.all_left(&[]), "gone without a word: it may have been killed");
         assert_eq!((company.missing(&[]), company.missing(&[writer(2)])), (1, 0));
         company.left.insert([2; 12]);

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn two_authors_may_say_the_same_and_a_heartbeat_is_always_new() {
+    fn two_writers_may_send_the_same_and_a_heartbeat_is_always_new() {
         let mut repeats = Repeats::default();
         let body = [0, 1, 0, 0, 7];
         let new = [1, 2, 1].map(|author| repeats.enter(&topics::MICROSTRUCTURE, author, &body));

@@ -18,7 +18,7 @@ pub struct Settings {
     pub topics: Vec<Topic>,
     /// The scene of the run, attached to the recording.
     pub scene: Option<SceneText>,
-    /// One run is recorded, from its first message on: messages missing at its beginning count as lost, too, and
+    /// One run is recorded, from its first message: messages missing at its start count as lost, and
     /// repetitions are recorded once.
     pub whole_run: bool,
     /// Continues the existing recording, in its next file.
@@ -45,7 +45,7 @@ pub fn parameters() -> Vec<ParameterSpec> {
         ),
         scenes::set_parameter(),
         ParameterSpec::new("seed", -1_i64, "seed of the run; -1: the one of the scene"),
-        ParameterSpec::new("append", false, "go on with the recording in output, in its next file"),
+        ParameterSpec::new("append", false, "continue the recording in output, in its next file"),
     ]
 }
 

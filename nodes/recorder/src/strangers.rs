@@ -1,4 +1,4 @@
-//! Who was on the bus beside the run, and who wrote which result.
+//! Processes on the bus that are not part of the run, and the writers of the results.
 
 use grainlab_node_kit::Stranger;
 use grainlab_node_kit::member_of;
@@ -6,10 +6,10 @@ use grainlab_recordings::{Guid, METADATA_RECORD, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Key of the metadata record of a recording under which the processes beside the run stand.
+/// Key of the metadata record of a recording with the processes that are not part of the run.
 pub const STRANGERS: &str = "strangers";
 
-/// Key of the metadata record of a recording under which the writers of the results stand.
+/// Key of the metadata record of a recording with the writers of the results.
 pub const AUTHORS: &str = "authors";
 
 /// A process whose messages were left out of a run.
@@ -17,13 +17,14 @@ pub const AUTHORS: &str = "authors";
 pub struct StrangerView {
     /// Its process, or its DDS participant.
     pub who: String,
-    /// The run that it says it belongs to.
+    /// The run that it claims to belong to.
     pub run: Option<String>,
     /// Messages left out, by topic.
     pub ignored: BTreeMap<String, u64>,
 }
 
-/// The name under which a stranger is counted: `run ID` for every process of another launched run, else the process itself.
+/// The name under which a stranger is counted: `run ID` for all processes of another launched run, else the
+/// process.
 pub fn name(stranger: &Stranger) -> String {
     match stranger.run {
         Some(run) if member_of(&stranger.participant) != 0 => format!("run {run}"),
@@ -31,7 +32,7 @@ pub fn name(stranger: &Stranger) -> String {
     }
 }
 
-/// For a recording, and for `summary.json`: one for each process, and one for each other run.
+/// For a recording and for `summary.json`: one entry for each process, and one for each other run.
 pub fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
     let mut views: BTreeMap<String, StrangerView> = BTreeMap::new();
     for stranger in strangers {
@@ -47,14 +48,15 @@ pub fn grouped(strangers: impl Iterator<Item = Stranger>) -> Vec<StrangerView> {
 }
 
 impl StrangerView {
-    /// For people.
+    /// As text.
     pub fn line(&self) -> String {
         let counts: Vec<String> = self.ignored.iter().map(|(topic, n)| format!("{n} on {topic}")).collect();
         format!("not of this run and left out: {}: {}", self.who, counts.join(", "))
     }
 }
 
-/// Who wrote each result: log times and writers, by topic. A message in a recording does not say its writer.
+/// Writers of the results: log times and writers, by topic. A message in a recording does not contain its
+/// writer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Authors(BTreeMap<String, Vec<(u64, String)>>);
 
@@ -72,12 +74,12 @@ impl Authors {
     }
 }
 
-/// Who a recording says was beside its run.
+/// The strangers in a recording.
 pub fn strangers(recording: &Recording) -> Vec<StrangerView> {
     read(recording, STRANGERS).unwrap_or_default()
 }
 
-/// Who a recording says wrote which result.
+/// The writers of the results in a recording.
 pub fn authors(recording: &Recording) -> Authors {
     read(recording, AUTHORS).unwrap_or_default()
 }

@@ -3,16 +3,16 @@
 use grainlab_msgs::boundary::{BoundaryError, StrainRateAnswer, StressRequest};
 use grainlab_msgs::msg;
 
-/// Why a stress is not answered.
+/// Why there is no answer to a stress.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
-    /// The message is not a valid request, or the answer would not be valid.
+    /// The message is not a valid request, or its answer would not be valid.
     #[error(transparent)]
     Boundary(#[from] BoundaryError),
     /// The control law refuses the request.
     #[error("request {sequence} is not answered: {reason}")]
     Servo {
-        /// Its sequence number.
+        /// Sequence number of the request.
         sequence: u64,
         /// The reason.
         reason: grainlab_servo::ServoError,

@@ -1,8 +1,7 @@
-//! The servo node: answers every stress with a strain rate.
+//! The servo node: returns a strain rate for every stress.
 //!
-//! - [`answer`]: the work of the node, a pure function of one message: the same stress gets the same answer, so that a
-//!   servo
-//!   can be restarted in the middle of a run
+//! - [`answer`]: the work of the node, a pure function of one message: the same stress always gets the same
+//!   answer, so that a servo can be restarted in the middle of a run
 //! - [`ServoController`]: the node
 //! - [`parameters`]: the parameters of the node; [`Settings`]: their values, typed
 

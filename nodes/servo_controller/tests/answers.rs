@@ -34,7 +34,7 @@ fn question(sequence: u64) -> Stress {
     .unwrap()
 }
 
-/// A simulator that only asks.
+/// A simulator that only sends requests.
 struct Asker {
     bus: MemoryBus,
     stress: Publisher<Stress>,
@@ -61,7 +61,7 @@ fn an_answer_carries_header_and_sequence_of_its_question() {
     stress.header.frame_id = "another".into();
     let answered = answer(&stress).unwrap();
     assert_eq!((&answered.header, answered.sequence), (&stress.header, 7));
-    // One division apart from exact.
+    // Exact up to one division.
     assert!((answered.rate[2] + 0.5).abs() < 1e-15 && answered.rate[0] == 0.0);
 }
 
@@ -86,7 +86,7 @@ fn the_same_question_has_the_same_answer_from_any_servo_in_any_order() {
 }
 
 #[test]
-fn what_cannot_be_answered_is_counted_and_the_node_lives() {
+fn requests_that_cannot_be_answered_are_counted_and_the_node_continues() {
     let hub = Hub::new(1);
     let mut asker = Asker::new(&hub);
     let mut bus = hub.bus(Names::new("servo_controller").unwrap());
@@ -95,7 +95,7 @@ fn what_cannot_be_answered_is_counted_and_the_node_lives() {
         stress: grainlab_msgs::msg::SymmetricTensor { zz: f64::NAN, ..Default::default() },
         ..question(1)
     };
-    // The law would overshoot: a response time of 0.1 ms asked every 0.3 ms.
+    // The law would overshoot: a response time of 0.1 ms with requests every 0.3 ms.
     let unstable = Stress { control_interval: 3e-4, ..question(2) };
     assert!(matches!(answer(&not_finite), Err(Refusal::Boundary(_))));
     assert!(matches!(answer(&unstable), Err(Refusal::Servo { sequence: 2, .. })));

@@ -21,12 +21,22 @@ pub fn csv(packing: &Packing) -> String {
         }
         text.push('\n');
     }
-    text.push_str("# contacts: i,j,nx,ny,nz,delta,fn,ftx,fty,ftz (n from j to i; force on i = fn*n+ft)\n");
+    let resists_rolling = packing.law.rolling.is_some();
+    let rolling = if resists_rolling { ",frx,fry,frz" } else { "" };
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "# contacts: i,j,nx,ny,nz,delta,fn,ftx,fty,ftz{rolling} (n from j to i; force on i = fn*n+ft)"
+    );
     for c in &packing.contacts {
         let (i, j) = (packing.ids[c.i as usize], packing.ids[c.j as usize]);
         let (n, t) = (-c.normal, &c.tangential_force);
         let _ = write!(text, "c,{i},{j}");
         for value in [n.x, n.y, n.z, c.overlap, c.normal_force, t.x, t.y, t.z] {
+            let _ = write!(text, ",{value:e}");
+        }
+        let rolling = c.rolling_force.iter().filter(|_| resists_rolling);
+        for value in rolling {
             let _ = write!(text, ",{value:e}");
         }
         text.push('\n');

@@ -41,6 +41,8 @@ pub(super) struct ListedContact {
     pub(super) overlap: Option<f64>,
     /// On the first grain, N.
     pub(super) force: ListedForce,
+    /// Elastic rolling force, N; the same seen from either grain.
+    pub(super) rolling: Vec3,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +62,7 @@ pub(super) struct State {
     /// s.
     pub(super) time: f64,
     pub(super) deformation: Mat3,
-    /// s; 0 if the packing was not made by a simulation of ours.
+    /// s; 0 if the packing is not from a grainlab simulation.
     pub(super) time_step: f64,
 }
 
@@ -91,7 +93,7 @@ impl GrainTable {
         Ok(())
     }
 
-    /// Notes the number of digits of the coordinates.
+    /// Records the number of digits of the coordinates.
     pub(super) fn printed(&mut self, coordinates: [&str; 3]) {
         self.digits = coordinates.into_iter().map(digits).fold(self.digits, u32::max);
     }
@@ -196,8 +198,8 @@ pub(super) fn packing(
     Ok(Imported { header: packing_header(&packing), packing, step: state.step, source, notes })
 }
 
-/// A warning if the rounding of printed positions changes overlaps noticeably. Programs print six digits at
-/// least; fewer were typed, and count as exact.
+/// A warning if the rounding of printed positions changes overlaps noticeably. Programs print at least six
+/// digits; fewer were typed by hand, and count as exact.
 fn too_few_digits(digits: u32, packing: &Packing) -> Option<String> {
     let overlaps = packing.contacts.iter().map(|c| c.overlap);
     let mean = overlaps.sum::<f64>() / packing.contacts.len() as f64;
@@ -212,7 +214,7 @@ fn too_few_digits(digits: u32, packing: &Packing) -> Option<String> {
     })
 }
 
-/// The contact in our convention, checked against the positions.
+/// The contact in the convention of grainlab, checked against the positions.
 fn listed_contact(
     p: &Packing,
     index: &BTreeMap<u32, usize>,
@@ -220,7 +222,7 @@ fn listed_contact(
 ) -> Result<Contact, ImportError> {
     let find = |id: u32| index.get(&id).copied().ok_or(ImportError::UnknownId { line: c.line, id });
     let (first, second) = (find(c.ids.0)?, find(c.ids.1)?);
-    // The file's first grain is our i unless its index is the larger one; then all signs change.
+    // The first grain of the file becomes i unless its index is the larger one; then all signs change.
     let swapped = first > second;
     let (i, j) = if swapped { (second, first) } else { (first, second) };
     let side = if swapped { -1.0 } else { 1.0 };
@@ -279,10 +281,11 @@ fn listed_contact(
         return Err(contradiction("tangential force along the normal (N)", along, 0.0));
     }
     let (i, j) = (i as u32, j as u32);
-    Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force })
+    Ok(Contact { i, j, image, overlap, normal, normal_force, tangential_force, rolling_force: c.rolling })
 }
 
-/// Warns if listed forces are not those of the contact law: the measured stiffness would be that of other contacts.
+/// Warns if listed forces are not those of the contact law: the stiffness would be that of different
+/// contacts.
 fn other_law(packing: &Packing, listed: &[Contact]) -> Option<String> {
     let force = |c: &Contact| {
         packing.law.normal_force(&packing.material, packing.effective_radius(c), c.overlap.max(0.0))

@@ -1,5 +1,5 @@
-//! Finds contacts from positions, in time and memory proportional to the number of grains, whatever the
-//! shape of the cell.
+//! Finds contacts from positions, in time and memory proportional to the number of grains, for any shape of
+//! the cell.
 
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Contact, Vec3};
@@ -70,6 +70,7 @@ pub fn find(
                 normal: branch / distance,
                 normal_force: normal_force(r_eff, overlap),
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
             Ok(())
         })?;

@@ -4,7 +4,8 @@
 //!
 //! - `p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz`, a grain;
 //! - `c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz`, a contact of the grains with ids `i` and `j`: unit vector n from
-//!   `j` to `i`, full overlap, and the force on `i`, fn·n + ft.
+//!   `j` to `i`, full overlap, and the force on `i`, fn·n + ft; with `,frx,fry,frz` after it, the elastic rolling force of
+//!   a contact law with resistance to rolling.
 //!
 //! Lines that start with `#` are comments. Without contact rows, contacts are found from positions.
 //!
@@ -71,11 +72,16 @@ fn grain(line: &Line<'_>, fields: &[&str], grains: &mut GrainTable) -> Result<f6
 }
 
 fn contact(line: &Line<'_>, fields: &[&str]) -> Result<ListedContact, ImportError> {
-    let [i, j, nx, ny, nz, delta, normal, ftx, fty, ftz] = *fields else {
-        let n = fields.len();
-        return Err(
-            line.error(format!("c is followed by i,j,nx,ny,nz,delta,fn,ftx,fty,ftz: 10 fields, not {n}"))
-        );
+    let wrong = || {
+        let expected = "i,j,nx,ny,nz,delta,fn,ftx,fty,ftz, or these and frx,fry,frz: 10 or 13 fields";
+        line.error(format!("c is followed by {expected}, not {}", fields.len()))
+    };
+    let (&[i, j, nx, ny, nz, delta, normal, ftx, fty, ftz], rest) =
+        fields.split_first_chunk().ok_or_else(wrong)?;
+    let rolling = match *rest {
+        [] => Vec3::zeros(),
+        [x, y, z] => line.vector("fr", [x, y, z])?,
+        _ => return Err(wrong()),
     };
     let tangential: Vec3 = line.vector("ft", [ftx, fty, ftz])?;
     Ok(ListedContact {
@@ -84,5 +90,6 @@ fn contact(line: &Line<'_>, fields: &[&str]) -> Result<ListedContact, ImportErro
         normal: Some(line.vector("n", [nx, ny, nz])?),
         overlap: Some(line.finite("delta", delta)?),
         force: ListedForce::Split { normal: line.finite("fn", normal)?, tangential },
+        rolling,
     })
 }

@@ -32,7 +32,7 @@ pub enum ImportError {
     },
     /// The format of the file is unknown.
     #[error(
-        "line {line}, {first}, is of no known format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
+        "line {line}, {first}, has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
     )]
     UnknownFormat {
         /// Its first line that is not empty, counted from 1.
@@ -49,7 +49,7 @@ pub enum ImportError {
         problem: String,
     },
     /// The file, its sidecar and the options lack these quantities.
-    #[error("the file does not say {}", list(.0))]
+    #[error("the file lacks {}", list(.0))]
     Missing(Vec<Setting>),
     /// The sidecar is invalid.
     #[error("sidecar: {0}")]
@@ -113,7 +113,7 @@ pub enum ImportError {
     FarImage(u32, u32),
     /// Contact forces without tangential ones, of a packing with friction.
     #[error(
-        "contact forces all point along their contacts, with a friction of {friction}: of granular pair styles LAMMPS gives \
+        "contact forces all point along their contacts, with a friction of {friction}: for granular pair styles LAMMPS gives \
          the normal force alone as fx fy fz. Add the tangential force, p1 p2 p3: compute pl all property/local patom1 patom2, \
          compute pf all pair/local dist fx fy fz p1 p2 p3, dump forces all local 1 forces.dump c_pl[*] c_pf[*], dump_modify \
          forces format float %.17g; or give --friction 0 if there is none"
@@ -146,12 +146,12 @@ pub enum ImportError {
     },
     /// The grains lie in so small a part of the cell that contacts cannot be found in a useful time.
     #[error(
-        "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to look at): check the cell, or list the contacts in the file"
+        "the grains lie in a tiny part of the cell ({together} of them in one box of the search, {pairs:.1e} pairs to check): check the cell, or list the contacts in the file"
     )]
     Clustered {
-        /// Most grains in one box.
+        /// Largest number of grains in one box.
         together: usize,
-        /// Pairs to look at.
+        /// Number of pairs to check.
         pairs: f64,
     },
     /// The packing is invalid.

@@ -8,7 +8,7 @@ use grainlab_msgs::std_msgs::Header;
 pub struct Imported {
     /// The packing.
     pub packing: Packing,
-    /// The header of its message: the recorded one, or the one that a message of it would have.
+    /// The header of its message: the recorded one, or that of an equivalent message.
     pub header: Header,
     /// Solver step of the state; 0 if unknown.
     pub step: u64,

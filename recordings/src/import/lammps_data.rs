@@ -1,4 +1,4 @@
-//! LAMMPS data files of `atom_style sphere`, as `write_data` makes them.
+//! LAMMPS data files of `atom_style sphere`, as written by `write_data`.
 //!
 //! It reads the box, `Atoms` (id, type, diameter, density, x, y, z; image flags are ignored) and
 //! `Velocities` (id, v, ω), in SI units. Contacts are found from positions.

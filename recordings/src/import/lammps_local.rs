@@ -10,10 +10,10 @@
 //! dump_modify forces format float %.17g
 //! ```
 //!
-//! By default the dump names its columns as above. Columns that `dump_modify colname` has
-//! called `patom1 patom2 fx fy fz p1 p2 p3` are found by these names, and any others by
-//! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which LAMMPS
-//! lists as long as they are neighbours, have no force and are left out.
+//! By default the columns have the names above. Columns renamed by `dump_modify colname` to `patom1 patom2 fx
+//! fy fz p1 p2 p3` are found by these names, and others by
+//! [`ImportOptions::contact_columns`](super::ImportOptions::contact_columns). Pairs that do not touch, which
+//! LAMMPS lists as long as they are neighbours, have no force and are left out.
 
 use super::assemble::{ListedContact, ListedForce};
 use super::error::ImportError;
@@ -25,10 +25,11 @@ const BY_NUMBER: [&str; 8] =
     ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]", "c_pf[5]", "c_pf[6]", "c_pf[7]"];
 const BY_NAME: [&str; 8] = ["patom1", "patom2", "fx", "fy", "fz", "p1", "p2", "p3"];
 
-/// Columns without which there is no force.
+/// Columns that are required for forces.
 const LEAST: usize = 5;
 
-/// Tangential forces up to this share of the force are rounding of its direction: 17 digits leave less, 6 more.
+/// Tangential forces up to this fraction of the force are rounding of its direction: 17 digits leave less, 6
+/// more.
 const CENTRAL: f64 = 1e-9;
 
 /// The content of a dump.
@@ -82,6 +83,7 @@ pub(super) fn contacts(text: &str, chosen: &[String]) -> Result<Local, ImportErr
                 continue;
             }
             local.contacts.push(ListedContact {
+                rolling: Vec3::zeros(),
                 line: line.number,
                 ids: (line.id("first grain", field(0)?)?, line.id("second grain", field(1)?)?),
                 normal: None,
@@ -135,7 +137,7 @@ fn find(names: &[&str], chosen: &[String]) -> Result<Vec<usize>, String> {
     for wanted in [BY_NAME, BY_NUMBER] {
         let places: Vec<usize> = wanted.iter().map_while(|name| place(name)).collect();
         if places.len() >= LEAST {
-            // Part of the three components is not a force.
+            // A subset of the three components is not a force.
             let whole = places.len() == wanted.len();
             return Ok(places[..if whole { wanted.len() } else { LEAST }].to_vec());
         }

@@ -101,7 +101,7 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
         return unsupported("a VTK file", FROM_YADE);
     }
     if begins("<?xml") || begins("<boost_serialization") {
-        return unsupported("XML (a simulation that YADE saved?)", FROM_YADE);
+        return unsupported("XML (a saved simulation of YADE?)", FROM_YADE);
     }
     if begins("LIGGGHTS Description") {
         let reason = "it has radii for diameters and no periodic cell: export with format id_x_y_z_r_matId";
@@ -128,13 +128,14 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
 const FROM_YADE: &str =
     "from YADE, export with textExt, or with the script of `grainlab analyze --yade-script`";
 
-/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line may be anything.
+/// Number of first lines that must contain the number of atoms of a LAMMPS data file; its first line is
+/// arbitrary.
 const HEADER: usize = 20;
 
 const MCAP: &[u8] = b"\x89MCAP0\r\n";
 
 fn by_name(extension: &str, stem: &str) -> Option<Format> {
-    // LAMMPS users name files dump.x and data.x as often as x.dump and x.data.
+    // LAMMPS users name files dump.x and data.x as well as x.dump and x.data.
     match (extension, stem) {
         ("csv", _) => Some(Format::Csv),
         ("dump" | "lammpstrj", _) | (_, "dump") => Some(Format::Dump),
@@ -163,15 +164,15 @@ pub fn text(path: &Path) -> Result<String, ImportError> {
         bytes = input::gunzip(&bytes).map_err(io)?;
     }
     if [&b"BZh"[..], b"\xfd7zXZ", b"\x28\xb5\x2f\xfd", b"PK\x03\x04"].iter().any(|m| bytes.starts_with(m)) {
-        let problem = "it is compressed otherwise than by gzip: unpack it first";
+        let problem = "it is not compressed by gzip: unpack it first";
         return Err(refuse(io::ErrorKind::InvalidData, problem.to_owned()));
     }
     let mut text = String::from_utf8(bytes).map_err(|e| {
         let (good, e) = (e.utf8_error().valid_up_to(), e);
         let line = e.as_bytes()[..good].iter().filter(|b| **b == b'\n').count() + 1;
-        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is no UTF-8)"))
+        refuse(io::ErrorKind::InvalidData, format!("line {line}: it is not text (byte {good} is not UTF-8)"))
     })?;
-    // Windows programs put a byte order mark in front.
+    // Some Windows programs write a byte order mark first.
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
     }

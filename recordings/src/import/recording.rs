@@ -1,4 +1,4 @@
-//! Packings of our own recordings.
+//! Packings of recordings.
 
 use std::ops::ControlFlow;
 

@@ -21,7 +21,7 @@ pub struct ImportOptions {
     pub friction: Option<f64>,
     /// Contact law; Hertz–Mindlin if not given.
     pub law: Option<ContactLaw>,
-    /// Radius of every grain, m, for files that have none.
+    /// Radius of every grain, m, for files without radii.
     pub radius: Option<f64>,
     /// Topic of a recording; `packing` if not given.
     pub topic: Option<String>,

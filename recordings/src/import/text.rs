@@ -22,7 +22,7 @@ impl<'a> Line<'a> {
 
     /// The number in `field`; `name` is its name in errors.
     pub(super) fn number<T: std::str::FromStr>(&self, name: &str, field: &str) -> Result<T, ImportError> {
-        let problem = || format!("{name} is {}, not a number of its kind", shown(field));
+        let problem = || format!("{name} is {}, not a valid number", shown(field));
         field.trim().parse().map_err(|_| self.error(problem()))
     }
 
@@ -54,7 +54,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     text.lines().enumerate().map(|(k, text)| Line { number: k + 1, text })
 }
 
-/// Maximum number of characters of a field in an error: a line of a file that is not a table may have megabytes.
+/// Maximum number of characters of a field in an error: a line of an arbitrary file may have megabytes.
 const SHOWN: usize = 40;
 
 /// `text` in quotation marks, truncated.

@@ -1,16 +1,16 @@
 //! Text exports of YADE: `export.text` and `export.textExt`.
 //!
-//! The first line names the format: `x_y_z_r`, `x_y_z_r_matId`, `id_x_y_z_r_matId`, and `x_y_z_r_attrs`
-//! with the columns in its comment (`vx vy vz`, `wx wy wz` are velocities, others are ignored). The
-//! file holds no cell unless a comment gives it, as three edges or as the nine numbers of `O.cell.hSize`:
+//! The first line names the format: `x_y_z_r`, `x_y_z_r_matId`, `id_x_y_z_r_matId`, and `x_y_z_r_attrs` with
+//! the columns in its comment (`vx vy vz`, `wx wy wz` are velocities, others are ignored). The file contains
+//! no cell unless it is in the comment, as three edges or as the nine numbers of `O.cell.hSize`:
 //!
 //! ```python
 //! export.textExt('grains.txt', 'id_x_y_z_r_matId', comment='cell ' + str(O.cell.hSize))
 //! ```
 //!
 //! Material and friction are given by options. Contacts are found from positions, and YADE prints six digits:
-//! [`EXPORTER`] is a script for YADE that writes everything, contact forces included, as
-//! [our CSV](crate::import::csv).
+//! [`EXPORTER`] is a script for YADE that writes all data, including contact forces, as
+//! [CSV](crate::import::csv).
 
 use grainlab_core::{Mat3, Vec3};
 

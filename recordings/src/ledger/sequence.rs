@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 /// hostile writer, which must not exhaust the memory.
 const MOST_GAPS: usize = 4096;
 
-/// The received numbers of 1, 2, 3 …, kept as the missing ranges. If there are too many of these, the
-/// lowest is forgotten: its numbers stay missing, and count as redelivered if they arrive later.
+/// The received numbers of 1, 2, 3 …, kept as the missing ranges. If there are too many of these, the lowest
+/// is dropped: its numbers stay missing, and count as redelivered if they arrive later.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     /// Highest received number; 0 before the first.

@@ -14,7 +14,8 @@ pub struct TopicTally {
     pub recorded: u64,
     /// Published but not recorded.
     pub lost: u64,
-    /// Published again with the bytes of a recorded message, as a request without an answer is; not recorded again.
+    /// Published again with the bytes of a recorded message, for example a request without an answer; not
+    /// recorded again.
     pub repeated: u64,
     /// Deliveries of a message that was received before; not counted as published.
     #[serde(default)]

@@ -41,7 +41,7 @@ fn a_message_that_arrives_twice_is_counted_apart_and_not_as_published() {
 #[test]
 fn what_a_writer_sent_before_and_after_is_known_from_its_report_and_its_numbers() {
     let mut ledger = Ledger::default();
-    // Two messages before the recorder was there, one lost at the end.
+    // Two messages before the recorder joined, one lost at the end.
     for n in [3, 4, 5] {
         ledger.enter("/packing", A, n);
     }
@@ -51,7 +51,7 @@ fn what_a_writer_sent_before_and_after_is_known_from_its_report_and_its_numbers(
     let t = only(&ledger);
     assert_eq!((t.published, t.recorded, t.lost), (6, 3, 3));
     assert_eq!((t.writers[0].first, t.writers[0].last, t.writers[0].reported), (Some(3), Some(5), Some(6)));
-    // A report that arrives late and low changes nothing.
+    // A late report with a smaller number changes nothing.
     ledger.report("/packing", A, 2);
     assert_eq!(only(&ledger).published, 6);
 }
@@ -72,7 +72,7 @@ fn writers_are_accounted_apart_and_a_silent_topic_appears() {
 }
 
 #[test]
-fn a_writer_of_which_nothing_came_is_all_loss() {
+fn all_messages_of_a_writer_without_received_ones_are_lost() {
     let mut ledger = Ledger::default();
     ledger.report("/stress", A, 40);
     let t = only(&ledger);
@@ -106,6 +106,6 @@ fn extreme_numbers_and_a_million_gaps_neither_overflow_nor_fill_the_memory() {
     let t = only(&ledger);
     assert_eq!((t.recorded, t.lost), (999_999, 999_999));
     assert!(ledger.topics["/stress"][&A].sequence.gaps().count() <= 4096);
-    // The lowest gaps are forgotten: what comes late to them counts as delivered again, not as a message.
+    // The lowest gaps were dropped: their numbers, if received later, count as redelivered.
     assert!(!ledger.enter("/stress", A, 1) && ledger.enter("/stress", A, 2 * 999_999 - 1));
 }

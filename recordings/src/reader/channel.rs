@@ -1,6 +1,6 @@
 //! Topics of a recording.
 
-/// What a recording says about one topic.
+/// The description of one topic in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelInfo {
     /// Absolute name, `/stress`.
@@ -20,7 +20,7 @@ pub struct ChannelInfo {
 }
 
 impl ChannelInfo {
-    /// Whether the recorded QoS is transient local: whoever joins late gets the last message.
+    /// Whether the recorded QoS is transient local: late readers get the last message.
     pub fn is_latched(&self) -> bool {
         // rosbag2 writes an integer up to version 8 of its metadata, a word from version 9 on.
         self.qos.lines().any(|line| {

@@ -1,4 +1,4 @@
-//! Content of a chunk: decompressed, and checked against its size and checksum before anything of it is used.
+//! Content of a chunk: decompressed, and checked against its size and checksum before it is used.
 
 use std::io::Read;
 
@@ -6,25 +6,25 @@ use mcap::records::{ChunkHeader, Record};
 
 use super::records::RawRecord;
 
-/// A chunk of any recorder is smaller than this, or holds one large message that does not compress so well.
+/// A smaller chunk is accepted with any compression ratio.
 const SMALL: u64 = 64 << 20;
 
-/// Beyond [`SMALL`], uncompressed bytes that a byte of the file may stand for.
+/// Maximum compression ratio above [`SMALL`].
 const RATIO: u64 = 64;
 
-/// No chunk is larger.
+/// Maximum size of a chunk.
 const LARGEST: u64 = 1 << 30;
 
-/// Logarithm of the window of zstd that is given memory for.
+/// Logarithm of the largest window of zstd for which memory is allocated.
 const WINDOW: u32 = 26;
 
-/// Uncompressed bytes that a chunk may have of which `compressed` lie in the file: what it claims is not believed,
-/// since a few bytes can claim to be a gigabyte, and can be one.
+/// Maximum uncompressed size of a chunk with `compressed` bytes in the file. The stated size is not trusted,
+/// since a few bytes can state, or decompress to, a gigabyte.
 pub(super) fn limit(compressed: usize) -> u64 {
     (compressed as u64).saturating_mul(RATIO).clamp(SMALL, LARGEST)
 }
 
-/// The records of a chunk, as bytes to walk over; or what is wrong with the chunk.
+/// The records of a chunk, as bytes to iterate over; or the error of the chunk.
 pub(super) fn content(record: &RawRecord<'_>) -> Result<Vec<u8>, String> {
     match record.parse()? {
         Record::Chunk { header, data } => decompress(&header, &data),
@@ -37,12 +37,12 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
     let most = limit(data.len());
     if size > most {
         return Err(format!(
-            "it claims {size} uncompressed bytes; of {} compressed ones, at most {most} are believed",
+            "its stated size is {size} bytes; for {} compressed ones, at most {most} are accepted",
             data.len()
         ));
     }
     let mut content = Vec::with_capacity(size.min(4 << 20) as usize);
-    // One byte more than claimed is asked for, so that a longer stream shows.
+    // One byte more than stated is read, to detect a longer stream.
     let read = match header.compression.as_str() {
         "" => {
             content.extend_from_slice(data);
@@ -62,7 +62,7 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
     if content.len() as u64 != size {
         return Err(format!("it decompresses to {} bytes or more, not to {size}", content.len()));
     }
-    // 0 stands for "not computed".
+    // 0 means "not computed".
     let crc = crc32fast::hash(&content);
     if header.uncompressed_crc != 0 && crc != header.uncompressed_crc {
         return Err(format!("its checksum is {crc:08x}, not {:08x}", header.uncompressed_crc));

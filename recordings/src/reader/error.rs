@@ -1,4 +1,4 @@
-//! What is wrong with a recording: errors that leave nothing to read, and warnings that name what is missing.
+//! Errors that leave nothing to read, and warnings about missing parts.
 
 use std::fmt;
 use std::io;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-/// Why there is nothing to read.
+/// Why a recording cannot be read at all.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The path cannot be read.
@@ -14,11 +14,11 @@ pub enum ReadError {
     Io {
         /// The path.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
     /// A directory without a recording.
-    #[error("{path} holds no .mcap file: name a run directory or an MCAP file")]
+    #[error("{path} contains no .mcap file: give a run directory or an MCAP file")]
     Empty {
         /// The directory.
         path: PathBuf,
@@ -36,23 +36,23 @@ pub enum ReadError {
     NoSuchTopic {
         /// The recording.
         path: PathBuf,
-        /// The topic asked for.
+        /// The topic requested.
         topic: String,
-        /// The topics there are.
+        /// The existing topics.
         known: String,
     },
 }
 
-/// Something that could not be read, or contradicts something else; the rest of the recording is used.
+/// A part that could not be read, or that contradicts another; the rest of the recording is used.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Warning {
     /// The file.
     pub path: PathBuf,
-    /// Byte of the file at which the trouble starts.
+    /// Byte of the file at which the fault starts.
     pub offset: u64,
-    /// What it is.
+    /// Kind of the fault.
     pub kind: WarningKind,
-    /// What was found there.
+    /// Details.
     pub detail: String,
 }
 
@@ -60,9 +60,9 @@ pub struct Warning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WarningKind {
-    /// The recording was cut off here: the recorder was killed or is still at work.
+    /// The recording is truncated here: the recorder was killed or is still running.
     Truncated,
-    /// The messages are all there, but the index is damaged or missing and was rebuilt.
+    /// All messages are readable, but the index is damaged or missing and was rebuilt.
     NoIndex,
     /// A chunk is damaged and was left out.
     DamagedChunk,
@@ -70,9 +70,9 @@ pub enum WarningKind {
     DamagedRecord,
     /// Messages whose channel was lost were left out.
     Orphans,
-    /// A file that `metadata.yaml` names is missing.
+    /// A file listed in `metadata.yaml` is missing.
     MissingFile,
-    /// A file that `metadata.yaml` does not name belongs to the recording.
+    /// A file not listed in `metadata.yaml` belongs to the recording.
     Unlisted,
     /// The index contradicts the messages, or the checksum of the whole file fails.
     Inconsistent,
@@ -83,7 +83,7 @@ impl fmt::Display for Warning {
         let (path, at, detail) = (self.path.display(), self.offset, &self.detail);
         match self.kind {
             WarningKind::Truncated => {
-                write!(f, "{path} is truncated: {detail}; what stands before byte {at} is used")
+                write!(f, "{path} is truncated: {detail}; the part before byte {at} is used")
             }
             WarningKind::NoIndex => write!(f, "{path}: the index is damaged ({detail}); it was rebuilt"),
             WarningKind::DamagedChunk => write!(f, "{path}: the chunk at byte {at} is left out: {detail}"),

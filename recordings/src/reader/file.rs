@@ -39,8 +39,8 @@ impl OpenFile {
         if size == 0 {
             return Err(ReadError::NotMcap { path: path.to_owned(), bytes: 0 });
         }
-        // SAFETY: the mapping is read-only; that nobody shortens the file meanwhile is asked of the user
-        // (module text).
+        // SAFETY: the mapping is read-only; the user must ensure that no process shortens the file meanwhile
+        // (see the module).
         let map = unsafe { Mmap::map(&file) }.map_err(io)?;
         Self::new(path, Bytes::Mapped(map), warnings)
     }
@@ -115,11 +115,11 @@ impl OpenFile {
     }
 
     fn record(&self, entry: &Entry) -> Result<Record<'_>, String> {
-        Records::at(self.bytes(), entry.offset).ok_or("there is no whole record")?.parse()
+        Records::at(self.bytes(), entry.offset).ok_or("the record is incomplete")?.parse()
     }
 
     fn damaged(&self, entry: &Entry, detail: Option<String>) -> Warning {
-        let detail = detail.unwrap_or_else(|| "it is not what the index says".into());
+        let detail = detail.unwrap_or_else(|| "it differs from the index".into());
         let detail = format!("{} cannot be read: {detail}", entry.name);
         self.warning(usize::try_from(entry.offset).unwrap_or(usize::MAX), WarningKind::DamagedRecord, detail)
     }

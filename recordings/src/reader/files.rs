@@ -1,4 +1,4 @@
-//! Which files a recording consists of.
+//! The files of a recording.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use crate::input;
 
 use super::error::{ReadError, Warning, WarningKind};
 
-/// A `metadata.yaml` is smaller: bytes.
+/// Maximum size of a `metadata.yaml`, bytes.
 const METADATA: u64 = 16 << 20;
 
 #[derive(Deserialize)]
@@ -23,7 +23,7 @@ struct Information {
     relative_file_paths: Vec<String>,
 }
 
-/// The file itself, or those of a directory in order.
+/// The file, or those of a directory in order.
 pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Result<Vec<PathBuf>, ReadError> {
     let io = |source| ReadError::Io { path: path.to_owned(), source };
     if !fs::metadata(path).map_err(io)?.is_dir() {
@@ -39,7 +39,7 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
             warnings.insert(Warning { path: file, offset: 0, kind: WarningKind::MissingFile, detail });
         }
     }
-    // Without metadata.yaml (the recorder was killed), or with a useless one: what is there.
+    // Without a valid metadata.yaml (the recorder was killed): the existing files.
     let stems: BTreeSet<String> = files.iter().filter_map(|f| part(f)).map(|(stem, _)| stem).collect();
     let nothing_listed = files.is_empty();
     for entry in fs::read_dir(path).map_err(io)? {
@@ -50,7 +50,7 @@ pub(super) fn of_recording(path: &Path, warnings: &mut BTreeSet<Warning>) -> Res
         if nothing_listed {
             files.push(file);
         } else if part(&file).is_some_and(|(stem, _)| stems.contains(&stem)) {
-            // The run went on after metadata.yaml was written, and its recorder was killed.
+            // The run continued after metadata.yaml was written, and its recorder was killed.
             let detail = "metadata.yaml does not name it, but its name is that of a part".to_owned();
             warnings.insert(Warning { path: file.clone(), offset: 0, kind: WarningKind::Unlisted, detail });
             files.push(file);
@@ -66,7 +66,7 @@ fn listed(directory: &Path) -> Vec<String> {
     let text = input::text(&directory.join("metadata.yaml"), METADATA).unwrap_or_default();
     let names =
         serde_saphyr::from_str::<BagFile>(&text).map(|b| b.rosbag2_bagfile_information.relative_file_paths);
-    // A name that leads out of the directory is not one of its parts.
+    // A name that points out of the directory is not one of its parts.
     let inside = |name: &String| Path::new(name).components().count() == 1 && !name.starts_with('.');
     names.unwrap_or_default().into_iter().filter(inside).collect()
 }

@@ -1,22 +1,22 @@
-//! How much of a recording is in memory.
+//! The amount of a recording in memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// Content of chunks that may be in memory at once, whatever the size of the recording, bytes.
+/// Contents of chunks that may be in memory at once for a recording of any size, bytes.
 const LEAST: u64 = 256 << 20;
 
-/// Beyond [`LEAST`], bytes in memory for each byte of the recording.
+/// Above [`LEAST`], bytes in memory per byte of the recording.
 const RATIO: u64 = 64;
 
-/// Counts the contents that are in memory because messages of theirs are still to be given, or in use. Chunks of
-/// true recordings follow each other in time and compress some times; only forged ones need more than is allowed.
+/// Counts the contents in memory whose messages are still in use or to be returned. Chunks of real recordings
+/// follow each other in time and have moderate compression; only forged ones exceed the limit.
 pub(super) struct Held {
     bytes: Arc<AtomicU64>,
     most: u64,
 }
 
-/// Content of a chunk; several messages share it.
+/// Content of a chunk, shared by several messages.
 pub(super) struct Content {
     bytes: Vec<u8>,
     held: Arc<AtomicU64>,

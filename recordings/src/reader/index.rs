@@ -1,4 +1,4 @@
-//! What lies where in a file: taken from its summary, or found by walking over all of it.
+//! Positions of the parts of a file: from its summary, or by reading all of it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::chunk;
 use super::error::{Warning, WarningKind};
 use super::records::{FRAME, RawRecord, Records};
 
-/// A run of messages: a chunk, or messages that lie in the file without one.
+/// A block of messages: a chunk, or messages outside chunks.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) offset: usize,
@@ -21,12 +21,12 @@ pub(super) struct Block {
     /// Log time of its first and last message, ns since 1970.
     pub(super) start: u64,
     pub(super) end: u64,
-    /// Channels that have messages in it; `None` if that is not known.
+    /// Channels with messages in it; `None` if unknown.
     pub(super) channels: Option<BTreeSet<u16>>,
     pub(super) is_chunk: bool,
 }
 
-/// Where a metadata record or an attachment lies.
+/// Position of a metadata record or an attachment.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub(super) offset: u64,
@@ -45,13 +45,13 @@ pub(super) struct Index {
     /// Messages by channel.
     pub(super) counts: BTreeMap<u16, u64>,
     pub(super) compressions: BTreeSet<String>,
-    /// Whether the file has its proper end.
+    /// Whether the file is complete.
     pub(super) complete: bool,
     schemas: BTreeMap<u16, (SchemaHeader, String)>,
 }
 
 impl Index {
-    /// Of a file that starts with the MCAP magic.
+    /// The index of a file that starts with the MCAP magic.
     pub(super) fn build(path: &Path, bytes: &[u8], warnings: &mut BTreeSet<Warning>) -> Self {
         let mut index = match Self::from_summary(bytes) {
             Ok(index) => index,
@@ -88,7 +88,7 @@ impl Index {
                         return Err(format!("the chunk index points at byte {offset}, outside the data"));
                     }
                     index.compressions.insert(c.compression);
-                    // A chunk without a message (schemas and channels) has no times either.
+                    // A chunk without messages (schemas and channels) has no times, either.
                     let channels: BTreeSet<u16> = c.message_index_offsets.into_keys().collect();
                     let indexed = c.message_index_length > 0 || !channels.is_empty();
                     if indexed || c.message_end_time > 0 {
@@ -137,13 +137,13 @@ impl Index {
         let end = stop.unwrap_or(MAGIC.len());
         let detail = match bytes.len().saturating_sub(end) {
             0 => "its end record is missing".to_owned(),
-            left => format!("its last {left} bytes are no whole record"),
+            left => format!("its last {left} bytes are an incomplete record"),
         };
         scan.warn(end, WarningKind::Truncated, detail);
         scan.index
     }
 
-    /// Takes in a schema or a channel; other records pass.
+    /// Adds a schema or a channel; other records are ignored.
     fn declare(&mut self, record: Record<'_>) -> Result<(), String> {
         match record {
             Record::Schema { header, data } => {
@@ -165,7 +165,7 @@ impl Index {
             id => match self.schemas.get(&id) {
                 Some((header, text)) => (header.name.clone(), header.encoding.clone(), text.clone()),
                 None => {
-                    return Err(format!("channel {} names schema {id}, which is not there", channel.topic));
+                    return Err(format!("channel {} names schema {id}, which is missing", channel.topic));
                 }
             },
         };
@@ -182,7 +182,7 @@ impl Index {
     }
 }
 
-/// The footer and where it stands, if the file ends as it should.
+/// The footer and its position, if the file is complete.
 fn footer(bytes: &[u8]) -> Result<(Footer, usize), String> {
     const FOOTER: usize = FRAME + 20;
     let at = bytes
@@ -195,7 +195,7 @@ fn footer(bytes: &[u8]) -> Result<(Footer, usize), String> {
     }
 }
 
-/// A walk over a whole file, which decodes each chunk once to learn what is in it.
+/// Reads a whole file, and decodes each chunk once to index it.
 struct Scan<'a> {
     index: Index,
     path: &'a Path,
@@ -261,7 +261,7 @@ impl Scan<'_> {
         for inner in Records::new(&content, 0) {
             let parsed = match inner {
                 Ok(inner) => inner.parse(),
-                Err(at) => Err(format!("byte {at} of its content starts no whole record")),
+                Err(at) => Err(format!("an incomplete record starts at byte {at} of its content")),
             };
             let outcome = parsed.and_then(|parsed| match parsed {
                 Record::Message { header, .. } => {

@@ -9,8 +9,7 @@ use super::error::Warning;
 use super::recording::Recording;
 use crate::ledger::TopicTally;
 
-/// Overview of a recording; its `Display` is the table for people, its `Serialize` the stable form for
-/// programs.
+/// Overview of a recording; its `Display` is a text table, its `Serialize` the stable form for programs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Info {
     /// The recording.
@@ -19,7 +18,7 @@ pub struct Info {
     pub files: Vec<String>,
     /// Size of all files, bytes.
     pub bytes: u64,
-    /// Whether every file has its proper end.
+    /// Whether every file is complete.
     pub complete: bool,
     /// Profile in the header; `ros2`.
     pub profile: String,
@@ -27,7 +26,7 @@ pub struct Info {
     pub library: String,
     /// Compressions of the chunks; `none` for uncompressed.
     pub compression: Vec<String>,
-    /// Chunks that hold messages.
+    /// Chunks with messages.
     pub chunks: u64,
     /// First log time, ns since 1970; `None` without messages.
     pub start_ns: Option<u64>,
@@ -43,7 +42,7 @@ pub struct Info {
     pub attachments: Vec<String>,
     /// Names of the metadata records.
     pub metadata: Vec<String>,
-    /// What could not be read so far.
+    /// Parts that could not be read so far.
     pub warnings: Vec<Warning>,
 }
 
@@ -57,13 +56,13 @@ pub struct TopicInfo {
     pub ros_type: String,
     /// Messages in the recording.
     pub messages: u64,
-    /// Whether the last message is kept for whoever joins late.
+    /// Whether late readers get the last message.
     pub latched: bool,
-    /// Messages published, if the recorder's account is there.
+    /// Messages published, if there is a ledger.
     pub published: Option<u64>,
-    /// Messages lost, if the recorder's account is there.
+    /// Messages lost, if there is a ledger.
     pub lost: Option<u64>,
-    /// Repeated deliveries, if the recorder's account is there.
+    /// Repeated deliveries, if there is a ledger.
     pub repeated: Option<u64>,
 }
 

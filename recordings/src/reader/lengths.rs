@@ -1,21 +1,21 @@
-//! Lengths within a record, held against the bytes that there are: `mcap::parse_record` allocates what a text or
-//! a map claims before it looks for it.
+//! Checks lengths within a record against the available bytes: `mcap::parse_record` allocates the stated
+//! length of a text or a map before it reads it.
 
 use mcap::records::op;
 
 /// A part of a record.
 enum Part {
-    /// So many bytes.
+    /// A fixed number of bytes.
     Fixed(usize),
-    /// A length of four bytes and so many bytes of text.
+    /// A length of four bytes and that many bytes of text.
     Text,
-    /// A length of four bytes and so many bytes of entries of fixed size.
+    /// A length of four bytes and that many bytes of entries of fixed size.
     Entries,
-    /// A length of four bytes and so many bytes of pairs of texts.
+    /// A length of four bytes and that many bytes of pairs of texts.
     Texts,
-    /// A length of four bytes and so many bytes of content.
+    /// A length of four bytes and that many bytes of content.
     Content,
-    /// A length of eight bytes and so many bytes of content.
+    /// A length of eight bytes and that many bytes of content.
     LongContent,
 }
 
@@ -42,8 +42,8 @@ fn layout(opcode: u8) -> &'static [Part] {
     }
 }
 
-/// Whether everything that the record claims to hold lies within its body. More than that may lie there: the
-/// format lets later versions add parts at the end.
+/// Whether all stated parts of the record lie within its body. More bytes may follow: the format lets later
+/// versions append parts.
 pub(super) fn fit(opcode: u8, body: &[u8]) -> bool {
     let mut rest = body;
     layout(opcode).iter().all(|part| take(&mut rest, part).is_some())
@@ -70,7 +70,7 @@ fn take(rest: &mut &[u8], part: &Part) -> Option<()> {
     Some(())
 }
 
-/// What a length of four bytes covers.
+/// The bytes covered by a length of four bytes.
 fn short<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let (length, behind) = rest.split_first_chunk::<4>()?;
     let (inside, behind) = behind.split_at_checked(u32::from_le_bytes(*length) as usize)?;

@@ -5,7 +5,7 @@ use super::held::Content;
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
-/// Bytes of a message, shared with the chunk they lie in.
+/// Bytes of a message, shared with its chunk.
 #[derive(Clone)]
 pub struct Payload {
     pub(super) chunk: Arc<Content>,
@@ -31,7 +31,7 @@ impl std::fmt::Debug for Payload {
 pub struct Message {
     /// Its topic.
     pub channel: Arc<ChannelInfo>,
-    /// Low half of its RTPS sequence number in recordings of ours, 0 in those of rosbag2.
+    /// Low half of its RTPS sequence number in recordings of grainlab, 0 in those of rosbag2.
     pub sequence: u32,
     /// Time of arrival, ns since 1970.
     pub log_time: u64,

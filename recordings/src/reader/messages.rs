@@ -173,8 +173,8 @@ fn decode(
 ) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
     let content = if block.is_chunk {
-        let record =
-            Records::at(file.bytes(), block.offset as u64).ok_or_else(|| "it is no whole record".to_owned());
+        let record = Records::at(file.bytes(), block.offset as u64)
+            .ok_or_else(|| "it is an incomplete record".to_owned());
         match record.and_then(|r| chunk::content(&r)) {
             Ok(content) => content,
             Err(detail) => return damaged(detail),
@@ -188,10 +188,10 @@ fn decode(
         let record = match record {
             Ok(record) if record.opcode == op::MESSAGE => record,
             Ok(_) => continue,
-            Err(at) => return damaged(format!("byte {at} of its content starts no whole record")),
+            Err(at) => return damaged(format!("an incomplete record starts at byte {at} of its content")),
         };
         let Some((header, range)) = record.message() else {
-            damaged(format!("the message at byte {} of its content has no whole header", record.offset));
+            damaged(format!("the message at byte {} of its content has an incomplete header", record.offset));
             continue;
         };
         match file.index.channels.get(&header.channel_id) {

@@ -20,11 +20,11 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens an MCAP file, or a run directory: the files that its `metadata.yaml` lists, else all that it
-    /// holds.
+    /// Opens an MCAP file, or a run directory: the files listed in its `metadata.yaml`, else all MCAP files
+    /// in it.
     ///
     /// # Errors
-    /// If nothing is there, or it is not MCAP. A damaged recording is not an error: see
+    /// If there is no file, or it is not MCAP. A damaged recording is not an error: see
     /// [`Recording::warnings`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut warnings = BTreeSet::new();
@@ -114,13 +114,14 @@ impl Recording {
         self.files.iter().flat_map(|f| f.index.metadata.iter().map(|m| m.name.clone())).collect()
     }
 
-    /// The ledger of the recorders, if our recorder finished the recording: that of several recorders one after the
-    /// other, and of the files of each, as one. [`Recording::unaccounted`] lists the files that it does not cover.
+    /// The ledger of the recorders, if a grainlab recorder finished the recording: that of several recorders
+    /// one after the other, and of the files of each, as one. [`Recording::unaccounted`] lists the files that
+    /// it does not cover.
     pub fn ledger(&self) -> Option<Vec<TopicTally>> {
         let mut sessions = BTreeMap::new();
         for (order, file) in self.files.iter().enumerate() {
             if let Some((session, tallies)) = self.account(file) {
-                // The ledger of a recorder's last file covers those before.
+                // The ledger of a recorder's last file covers its earlier files.
                 let order = sessions.remove(&session).map_or(order, |(first, _)| first);
                 sessions.insert(session, (order, tallies));
             }

@@ -170,7 +170,7 @@ impl Found {
                     }
                 }
                 Err(at) => {
-                    let detail = format!("byte {at} of its content starts no whole record");
+                    let detail = format!("an incomplete record starts at byte {at} of its content");
                     warn(file.warning(chunk.offset, WarningKind::DamagedChunk, detail));
                 }
             }
@@ -194,7 +194,7 @@ impl Found {
         // Within a file the messages of several publishers may come in any order (rosbag2 allows it); files follow
         // each other.
         if self.last_of_file.is_none() && header.log_time < self.last {
-            let detail = "it begins before the file before it ends".to_owned();
+            let detail = "it begins before the end of the previous file".to_owned();
             warn(file.warning(at, WarningKind::Inconsistent, detail));
         }
         self.last_of_file = Some(self.last_of_file.map_or(header.log_time, |t| t.max(header.log_time)));
@@ -208,7 +208,7 @@ fn against_index(
     warn: &mut dyn FnMut(Warning),
 ) {
     for block in file.index.blocks.iter().filter(|b| b.is_chunk && !chunks.contains(&b.offset)) {
-        let detail = "the index says that a chunk starts here; none does".to_owned();
+        let detail = "the index has a chunk here, but there is none".to_owned();
         warn(file.warning(block.offset, WarningKind::Inconsistent, detail));
     }
     counts.retain(|channel, _| file.index.channels.contains_key(channel));

@@ -76,7 +76,7 @@ impl Walk {
         }
         let left = bytes.len() - end;
         if left > 0 {
-            let detail = format!("its last {left} bytes are no whole record");
+            let detail = format!("its last {left} bytes are an incomplete record");
             take(Walked::Unreadable(self.file.warning(end, WarningKind::Truncated, detail)));
         }
     }
@@ -85,7 +85,7 @@ impl Walk {
         for inner in Records::new(content, 0) {
             let parsed = match inner {
                 Ok(inner) => inner.parse(),
-                Err(at) => Err(format!("byte {at} of its content starts no whole record")),
+                Err(at) => Err(format!("an incomplete record starts at byte {at} of its content")),
             };
             let walked = match parsed {
                 Ok(record) => Walked::Record(record),

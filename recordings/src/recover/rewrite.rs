@@ -1,4 +1,4 @@
-//! Writes the readable part of a file again, with a proper end.
+//! Writes the readable part of a file again, as a complete file.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

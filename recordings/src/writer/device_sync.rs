@@ -13,7 +13,7 @@ pub(super) struct DeviceSync {
     failures: Receiver<io::Error>,
     thread: Option<JoinHandle<()>>,
     last: Option<Instant>,
-    /// Whether something was written since the last request.
+    /// Whether data were written since the last request.
     unsynced: bool,
 }
 
@@ -24,7 +24,7 @@ impl DeviceSync {
         let work = move || {
             while inbox.recv().is_ok() {
                 if let Err(e) = file.sync_data() {
-                    // The first error matters; a full mailbox holds it already.
+                    // The first error matters; a full mailbox contains it already.
                     let _ = report.try_send(e);
                 }
             }

@@ -20,14 +20,14 @@ pub enum WriteError {
         /// The file it writes.
         path: PathBuf,
     },
-    /// Not enough space to begin or to go on.
+    /// Not enough space to begin or to continue.
     #[error(
         "{path}: only {free} bytes are free on this file system and {needed} are needed; the recording was {state}: free space and run again"
     )]
     NoSpace {
         /// The recording.
         path: PathBuf,
-        /// Bytes free.
+        /// Free bytes.
         free: u64,
         /// Bytes that must be free.
         needed: u64,
@@ -63,7 +63,7 @@ pub enum WriteError {
     /// A sample is too short to be CDR.
     #[error("message {sequence} on {topic} has {bytes} bytes: CDR starts with a 4-byte encapsulation header")]
     NotCdr {
-        /// Topic it came on.
+        /// Its topic.
         topic: String,
         /// Its RTPS sequence number.
         sequence: i64,

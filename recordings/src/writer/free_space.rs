@@ -12,7 +12,7 @@ use std::path::Path;
 pub(crate) fn free_space(path: &Path) -> io::Result<u64> {
     let name = CString::new(path.as_os_str().as_bytes())?;
     let mut answer = std::mem::MaybeUninit::<libc::statvfs>::uninit();
-    // SAFETY: `name` ends in NUL and outlives the call; `answer` has room for what is written.
+    // SAFETY: `name` ends in NUL and outlives the call; `answer` is large enough for the result.
     let status = unsafe { libc::statvfs(name.as_ptr(), answer.as_mut_ptr()) };
     if status != 0 {
         return Err(io::Error::last_os_error());

@@ -7,15 +7,14 @@ use std::time::Duration;
 pub struct WriterOptions {
     /// Uncompressed bytes after which a chunk is closed.
     pub chunk_size: u64,
-    /// Age of the oldest message at which an open chunk is closed and written.
-    /// [`RunWriter::tick`](super::RunWriter::tick) must be called often enough for the sum to stay below what a crash
-    /// may cost.
+    /// Age of the oldest message at which an open chunk is closed and written. The sum of this and of the
+    /// interval between calls of [`RunWriter::tick`](super::RunWriter::tick) is what a crash may lose.
     pub flush_interval: Duration,
     /// Time between two syncs to the device.
     pub sync_interval: Duration,
     /// Bytes of a file after which the next one is begun.
     pub split_bytes: u64,
-    /// Age of a file at which the next one is begun: its index grows in memory, by some 6 MB an hour.
+    /// Age of a file at which the next one is begun: its index grows in memory by some 6 MB per hour.
     pub split_after: Duration,
     /// Bytes that must be free to begin.
     pub free_to_start: u64,

@@ -1,4 +1,4 @@
-//! One MCAP file that is being written.
+//! One MCAP file being written.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -47,12 +47,11 @@ impl Part {
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => return Err(WriteError::Exists { path }),
             other => other.map_err(io("create the file"))?,
         };
-        // Without locks in the file system there is nothing to respect.
+        // A file system without locks cannot report another recorder.
         let _ = file.try_lock();
         let clone = || file.try_clone().map_err(io("duplicate the handle"));
         let (handle, synced) = (clone()?, clone()?);
-        let sync =
-            DeviceSync::start(synced).map_err(io("start the thread that pushes data to the device"))?;
+        let sync = DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
         let mcap = options("")
             .chunk_size(Some(chunk_size))
             .create(BufWriter::with_capacity(64 << 10, file))
@@ -94,7 +93,7 @@ impl Part {
         publish_time: u64,
         payload: &[u8],
     ) -> Result<(), McapError> {
-        // Topics are declared in every part before anything is written.
+        // Topics are declared in every part before any message is written.
         let channel_id = self.channels.get(topic).copied().unwrap_or(0);
         let header = MessageHeader { channel_id, sequence, log_time, publish_time };
         self.mcap.write_to_known_channel(&header, payload)?;
@@ -124,7 +123,7 @@ impl Part {
             let path = path.clone();
             move |source| WriteError::Io { path, action, source }
         };
-        self.mcap.write_metadata(&metadata).map_err(format("write the account"))?;
+        self.mcap.write_metadata(&metadata).map_err(format("write the ledger"))?;
         self.mcap.finish().map_err(format("write the index"))?;
         let handle = self
             .mcap
@@ -132,8 +131,8 @@ impl Part {
             .into_inner()
             .map_err(|e| io("write the end of the file")(e.into_error()))?;
         self.sync.stop();
-        handle.sync_all().map_err(io("push the recording to the device"))?;
-        let bytes = handle.metadata().map_err(io("ask for the size"))?.len();
+        handle.sync_all().map_err(io("sync the recording to the device"))?;
+        let bytes = handle.metadata().map_err(io("query the size"))?.len();
         let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let count = FileCount { name, bounds: self.bounds, messages: self.messages };
         Ok(Closed { path, bytes, count })

@@ -4,7 +4,7 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
 use grainlab_recordings::import::contacts::{SearchError, find};
 use proptest::prelude::*;
 
-/// Every pair, every image within four cells: slow and plain.
+/// Every pair, every image within four cells: slow and simple.
 fn all_pairs(cell: &Cell, x: &[Vec3], r: &[f64]) -> Vec<(u32, u32, [i8; 3])> {
     let mut found = Vec::new();
     for i in 0..x.len() {
@@ -37,7 +37,7 @@ proptest! {
         let cell = Cell::new(Mat3::new(1.0, a, b, c, 1.0, d, e, f, 1.0) * size);
         prop_assume!(cell.is_some());
         let cell = cell.unwrap();
-        // Where the widths are tiny, more than four cells would have to be searched by the plain method.
+        // For tiny widths, the simple method would have to search more than four cells.
         prop_assume!((0..3).all(|k| cell.width(k) > 0.55));
         let x: Vec<Vec3> = grains.iter().map(|(f, _)| cell.matrix() * Vec3::from(*f)).collect();
         let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
@@ -50,7 +50,7 @@ proptest! {
     }
 }
 
-/// Every pair within the nearest images that can matter along each edge.
+/// Every pair within the nearest relevant images along each edge.
 fn all_pairs_within(cell: &Cell, x: &[Vec3], r: &[f64], images: [i8; 3]) -> Vec<(u32, u32, [i8; 3])> {
     let mut found = Vec::new();
     let [na, nb, nc] = images;
@@ -85,7 +85,7 @@ proptest! {
         grains in proptest::collection::vec((proptest::array::uniform3(0.0f64..1.0), 0.1f64..0.4), 1..25),
     ) {
         let mut edges = lengths.map(|e| 10f64.powf(e));
-        // One edge at least is of the size of a few grains, so that there are contacts.
+        // At least one edge has the size of a few grains, so that there are contacts.
         edges[near] = edges[near].min(3.0);
         let cell = Cell::new(Mat3::new(
             edges[0], tilt[0] * edges[0].min(edges[1]), tilt[1] * edges[0].min(edges[2]),
@@ -96,7 +96,7 @@ proptest! {
         let cell = cell.unwrap();
         let narrowest = (0..3).map(|k| cell.width(k)).fold(f64::INFINITY, f64::min);
         prop_assume!(narrowest > 0.08);
-        // All within a few diameters of each other, wherever that is in the cell.
+        // All within a few diameters of each other, anywhere in the cell.
         let x: Vec<Vec3> = grains.iter().map(|(f, _)| Vec3::from(*f) * 2.0).collect();
         let r: Vec<f64> = grains.iter().map(|(_, r)| *r).collect();
         let images = std::array::from_fn(|k| ((3.5 + 0.8) / cell.width(k)).ceil().min(60.0) as i8 + 1);

@@ -1,4 +1,4 @@
-//! Damaged and foreign files: read as far as possible, named, never a panic.
+//! Damaged and foreign files: read as far as possible, with named faults, never a panic.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ fn every_truncation_gives_the_messages_before_it() {
         let expected = [WarningKind::Truncated, WarningKind::NoIndex];
         assert!(warnings.len() == 1 && expected.contains(&warnings[0]), "cut at {cut}: {warnings:?}");
     }
-    // With only the index cut off, no message is missing.
+    // If only the index is cut off, no message is missing.
     assert_eq!(last, whole.len());
 }
 
@@ -45,7 +45,7 @@ fn a_flipped_bit_in_a_chunk_costs_that_chunk_and_is_named() {
         let mut copy = bytes.clone();
         copy[at] ^= 1 << (at % 8);
         let (found, warnings) = read(&copy);
-        // Nothing false comes through: what is found is what was written, in order, with one run missing.
+        // No false message is returned: the messages are those written, in order, with one gap.
         let missing = whole.len() - found.len();
         let head = found.iter().zip(&whole).take_while(|(a, b)| a == b).count();
         assert_eq!(found[head..], whole[head + missing..], "bit flipped at {at}");
@@ -80,7 +80,7 @@ fn a_truncated_file_with_a_flipped_bit_still_reads() {
 }
 
 #[test]
-fn files_that_are_no_recordings_are_refused_with_a_reason() {
+fn files_that_are_not_recordings_are_refused_with_a_reason() {
     let root = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| {
         let path = root.path().join(name);
@@ -101,10 +101,10 @@ fn files_that_are_no_recordings_are_refused_with_a_reason() {
 }
 
 #[test]
-fn lengths_that_lie_do_not_exhaust_memory() {
+fn false_lengths_do_not_exhaust_memory() {
     let root = tempfile::tempdir().unwrap();
     let (_, bytes) = run_in(&root, 100);
-    // Every eight bytes in turn become a huge length; reading must stay quick and small.
+    // Every eight bytes in turn become a huge length; reading must stay fast and need little memory.
     for at in (8..bytes.len().min(4000)).step_by(5).chain((bytes.len() - 2000..bytes.len() - 8).step_by(5)) {
         let mut copy = bytes.clone();
         copy[at..at + 8].copy_from_slice(&(u64::MAX / 3).to_le_bytes());
@@ -121,7 +121,7 @@ fn a_topic_that_is_not_there_is_answered_with_those_that_are() {
     assert!(error.contains("/stress,") && error.contains("stresses"), "{error}");
 }
 
-/// A file of `chunks` chunks of the same time, each one message of `bytes` zeros.
+/// A file of `chunks` chunks at the same time, each with one message of `bytes` zeros.
 fn bomb(chunks: u32, bytes: usize) -> Vec<u8> {
     let mut writer = mcap::WriteOptions::new()
         .compression_threads(0)
@@ -146,12 +146,12 @@ fn bomb(chunks: u32, bytes: usize) -> Vec<u8> {
 }
 
 #[test]
-fn a_chunk_of_a_few_bytes_is_not_believed_to_be_a_hundred_megabytes() {
+fn a_small_chunk_with_a_stated_size_of_a_hundred_megabytes_is_refused() {
     let bytes = bomb(1, 100 << 20);
     assert!(bytes.len() < 20_000, "{}", bytes.len());
     let (found, warnings) = read(&bytes);
     assert!(found.is_empty() && warnings == [WarningKind::DamagedChunk], "{warnings:?}");
-    // Of one that is within bounds, and of recordings of any size, everything is read.
+    // Within the limits, recordings of any size are read completely.
     let (found, warnings) = read(&bomb(2, 20 << 20));
     assert_eq!((found.len(), warnings), (4, vec![]));
 }
@@ -162,7 +162,7 @@ fn chunks_that_claim_the_same_time_are_not_all_in_memory_together() {
     let mut held = Vec::new();
     let mut messages = recording.messages(&Selection::default()).unwrap();
     held.extend(messages.by_ref().take(1));
-    // Twenty of sixty megabytes begin at one time; a quarter of a gigabyte is read at once.
+    // Twenty chunks of sixty megabytes begin at one time; a quarter of a gigabyte may be in memory at once.
     let large: usize = held.iter().chain(messages.collect::<Vec<_>>().iter()).map(|m| m.payload.len()).sum();
     assert!(large <= 320 << 20, "{large}");
     assert!(recording.warnings().iter().all(|w| w.kind == WarningKind::DamagedChunk));

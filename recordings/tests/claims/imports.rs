@@ -1,4 +1,4 @@
-//! Text of other programs: read by the rules, refused with line and reason.
+//! Files of other programs: read by the rules of their formats, refused with line and reason.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn pair(contact: &str) -> Result<grainlab_recordings::import::Imported, ImportEr
 
 #[test]
 fn a_listed_contact_is_turned_to_our_convention() {
-    // Grain 2 lies at x = −0.05 of the next cell: overlap 0.05, direction from j = 1 to i = 2 is −x, across
+    // Grain 2 is at x = −0.05 of the next cell: overlap 0.05; the direction from j = 1 to i = 2 is −x, across
     // the boundary.
     let p = pair("c,2,1,-1,0,0,0.05,3,0,0.5,0").unwrap().packing;
     let c = p.contacts[0];
@@ -45,7 +45,7 @@ fn forces_of_another_contact_law_are_noted() {
     let notes = |force: f64| pair(&format!("c,1,2,1,0,0,0.05,{force},0,0,0")).unwrap().notes.concat();
     let found = csv::packing(PAIR, None, &in_cube(1.0)).unwrap().packing.contacts[0].normal_force;
     assert!(!notes(found).contains("Hertz"));
-    // A linear spring, a forgotten unit.
+    // A linear spring, a wrong unit.
     assert!(notes(1.1 * found).contains("differ from the contact law by 10.0 %"), "{}", notes(1.1 * found));
 }
 
@@ -68,7 +68,7 @@ fn malformed_rows_are_named_by_line() {
     for (row, expected) in [
         ("x,1", "p or c"),
         ("p,3,1,2", "12 fields, not 3"),
-        ("c,1,2", "10 fields, not 2"),
+        ("c,1,2", "10 or 13 fields, not 2"),
         ("p,-3,0,0,0,1,1,0,0,0,0,0,0", "id is -3"),
         ("p,3,0,zero,0,1,1,0,0,0,0,0,0", "position is \"zero\""),
         ("p,3,0.5,nan,0,0.1,1,0,0,0,0,0,0", "line 3: position is not finite"),
@@ -109,7 +109,7 @@ fn a_bad_sidecar_is_named() {
     assert!(matches!(flat, Err(ImportError::Cell(_))));
 }
 
-/// In the form that `write_data` gives.
+/// In the form written by `write_data`.
 const DATA: &str = "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 100000, units = si
 
 3 atoms
@@ -233,7 +233,7 @@ fn what_a_dump_must_not_be_is_refused() {
     }
     assert!(matches!(lammps_dump::packings("", &glass()), Err(ImportError::Empty)));
     for cut in (0..DUMP.len()).step_by(7) {
-        // Never a panic; a cut frame is an error, not a smaller packing.
+        // Never a panic; a truncated frame is an error, not a smaller packing.
         if let Ok(frames) = lammps_dump::packings(&DUMP[..cut], &glass()) {
             assert!(frames.iter().all(|f| f.packing.grains() == 2), "cut at {cut}");
         }
@@ -247,7 +247,7 @@ fn contact_forces_of_a_dump_local_are_taken() {
         ITEM: ENTRIES index c_pl[1] c_pl[2] c_pf[1] c_pf[2] c_pf[3] c_pf[4]\n1 2 1 0.2 -4 0.5 0\n";
     let options = ImportOptions { contact_forces: Some(local.into()), ..glass() };
     let p = lammps_dump::packings(frame, &options).unwrap().remove(0).packing;
-    // The force on 2 is −4 along x: 2 lies at smaller x than 1, across the boundary, and is pushed away.
+    // The force on 2 is −4 along x: across the boundary, 2 is at smaller x than 1, and is repelled.
     let c = p.contacts[0];
     assert_eq!((c.i, c.j, c.image, c.normal_force), (0, 1, [-1, 0, 0], 4.0));
     assert!((c.tangential_force - Vec3::new(0.0, -0.5, 0.0)).norm() < 1e-15);
@@ -255,7 +255,7 @@ fn contact_forces_of_a_dump_local_are_taken() {
 }
 
 #[test]
-fn the_format_is_told_by_name_and_then_by_content() {
+fn the_format_is_recognised_by_name_and_then_by_content() {
     let root = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         let path = root.path().join(name);

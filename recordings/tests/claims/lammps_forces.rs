@@ -1,4 +1,4 @@
-//! Contact forces as LAMMPS dumps them, of a packing that LAMMPS made (`tests/golden/lammps/make.in`).
+//! Contact forces dumped by LAMMPS, for a packing from LAMMPS (`tests/golden/lammps/make.in`).
 
 use grainlab_core::stress::stress;
 use grainlab_core::{Packing, Vec3};
@@ -75,7 +75,7 @@ fn columns_are_found_by_the_names_given_too() {
     assert!(problem(&options(other, &columns[..4])).contains("five or eight"), "four columns");
 }
 
-/// They are all that `compute pair/local dist fx fy fz` gives of a granular pair style.
+/// These are all forces of a granular pair style from `compute pair/local dist fx fy fz`.
 #[test]
 fn normal_forces_alone_are_refused_where_friction_acts_and_the_columns_are_named() {
     let central = ["c_pl[1]", "c_pl[2]", "c_pf[2]", "c_pf[3]", "c_pf[4]"];

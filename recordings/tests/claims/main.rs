@@ -1,4 +1,4 @@
-//! Claims about recordings and imports, tested on whole files.
+//! Tests of recordings and imports on whole files.
 
 mod contact_search;
 mod damage;

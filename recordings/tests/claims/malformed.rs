@@ -49,7 +49,7 @@ fn in_cube(edge: f64) -> ImportOptions {
 }
 
 #[test]
-fn the_content_tells_the_format_whatever_the_name_says() {
+fn the_content_determines_the_format_for_any_name() {
     let folder = Folder::new();
     for (text, source) in ALL.into_iter().zip(["CSV", "YADE", "data file", "dump"]) {
         for name in ["a.txt", "a.csv", "a.dump", "data.a", "a.sphere", "a"] {
@@ -183,7 +183,7 @@ fn an_empty_file_is_refused_under_every_name() {
             assert!(error.to_string().contains("it contains no packing"), "{name}: {error}");
         }
     }
-    // Comments and headers alone are no packing either.
+    // Comments and headers alone are not a packing, either.
     for text in ["# particles\n", "#format x_y_z_r\n"] {
         assert!(folder.refusal(text, &in_cube(1.0)).contains("no packing"));
     }
@@ -201,7 +201,7 @@ fn a_line_of_many_megabytes_is_refused_with_a_short_message() {
 }
 
 #[test]
-fn a_compressed_file_that_is_cut_off_or_of_another_kind_says_so() {
+fn a_truncated_or_wrong_compressed_file_is_refused_with_the_reason() {
     let folder = Folder::new();
     let mut packed = GzEncoder::new(Vec::new(), Compression::default());
     packed.write_all(CSV.repeat(100).as_bytes()).unwrap();

@@ -1,4 +1,4 @@
-//! The player says the right message at the right time.
+//! The player sends the right message at the right time.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ fn recording() -> Recording {
     Recording::from_bytes("r.mcap", bytes).unwrap()
 }
 
-/// Plays to the end, sleeping exactly as told; gives topic, sequence and time of each message.
+/// Plays to the end, sleeping exactly as requested; returns topic, sequence and time of each message.
 fn play(player: &mut Player<'_>) -> Vec<(String, u32, Duration)> {
     let (mut now, mut sent) = (Duration::from_secs(1000), Vec::new());
     let start = now;
@@ -38,7 +38,7 @@ fn messages_come_at_their_recorded_distances() {
         assert_eq!(sent.len(), 500);
         for (k, (_, sequence, time)) in sent.iter().enumerate() {
             assert_eq!(*sequence, k as u32 + 1);
-            // Waits are told in whole nanoseconds.
+            // Waits are whole nanoseconds.
             assert!((time.as_secs_f64() * 1e3 - k as f64 * step).abs() < 1e-3, "{sequence} at {time:?}");
         }
         assert_eq!(player.slipped(), Duration::ZERO);
@@ -65,7 +65,7 @@ fn a_late_caller_delays_all_topics_alike() {
     let recording = recording();
     let mut player = Player::new(&recording, &PlayOptions::default()).unwrap();
     assert!(matches!(player.poll(Duration::ZERO), Play::Send(_)));
-    // 150 ms pass where 1 ms should: the next message is sent at once, the one after it 1 ms later.
+    // 150 ms pass instead of 1 ms: the next message is sent at once, the one after it 1 ms later.
     assert!(matches!(player.poll(150 * MS), Play::Send(m) if m.sequence == 2));
     assert!(matches!(player.poll(150 * MS), Play::Wait(time) if time == MS));
     assert_eq!(player.slipped(), 149 * MS);

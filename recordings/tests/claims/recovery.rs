@@ -1,4 +1,4 @@
-//! A recording that was cut off gets its proper end, and loses nothing that could be read.
+//! A truncated recording is completed without loss of readable messages.
 
 use std::fs;
 use std::path::Path;
@@ -17,12 +17,12 @@ fn said(path: &Path) -> Vec<Said> {
         .collect()
 }
 
-/// Where the last file is attached, behind all messages and before the account and the index.
+/// Position of the last attachment, after all messages and before the ledger and the index.
 fn before_the_end(bytes: &[u8]) -> usize {
     bytes.windows(8).position(|w| w == b"late.txt").unwrap()
 }
 
-/// A run directory whose recorder was killed: the file ends at `cut`, and there is no metadata.yaml.
+/// A run directory whose recorder was killed: the file ends at `cut`, without metadata.yaml.
 fn killed(root: &Path, bytes: &[u8], cut: usize) -> std::path::PathBuf {
     let directory = root.join(format!("cut-{cut}"));
     fs::create_dir(&directory).unwrap();
@@ -49,7 +49,7 @@ fn a_file_cut_anywhere_keeps_every_message_that_could_be_read() {
         assert_eq!(recording.metadata(METADATA_RECORD).unwrap()["recovered"], "true");
         let original = done.files[0].original.clone().unwrap();
         assert_eq!(fs::read(original).unwrap(), &bytes[..cut]);
-        // Again: nothing is to be done, and no byte changes.
+        // The second call changes no byte.
         let file = directory.join(format!("cut-{cut}_0.mcap"));
         let recovered = fs::read(&file).unwrap();
         let again = recover(&directory).unwrap();
@@ -109,7 +109,7 @@ fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
     let root = tempfile::tempdir().unwrap();
     let (directory, bytes) = run_in(&root, 200);
     let first = said(&directory);
-    // The first recorder was killed after 200 messages and before its end.
+    // The first recorder was killed after 200 messages, before its end.
     fs::remove_file(directory.join("metadata.yaml")).unwrap();
     fs::write(directory.join("demo-7-1_0.mcap"), &bytes[..before_the_end(&bytes)]).unwrap();
     recover(&directory).unwrap();
@@ -121,7 +121,7 @@ fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
         let held = RunWriter::append(&directory, "demo-7-1", &contract(), options()).err().unwrap();
         assert!(held.to_string().contains("is being recorded"), "{held}");
         for n in 1..=50 {
-            // The clock went back: log times still increase.
+            // The clock was set back: log times still increase.
             run.write("/stress", &sample(SIMULATOR, 1000 * session + n, START, &stress(n as u64))).unwrap();
         }
         assert_eq!(run.finish().unwrap().messages, 50);
@@ -139,7 +139,7 @@ fn a_resumed_run_goes_on_in_the_next_file_behind_the_last_log_time() {
     let counts: Vec<u64> =
         bag["files"].as_array().unwrap().iter().map(|f| f["message_count"].as_u64().unwrap()).collect();
     assert_eq!(counts, [kept.len() as u64, 50, 50]);
-    // Both accounts are one; of the first recorder, which was killed, there is none.
+    // Both ledgers are combined; the first recorder, which was killed, has none.
     let ledger = recording.ledger().unwrap();
     assert_eq!(ledger.iter().find(|t| t.name == "/stress").unwrap().recorded, 100);
     assert_eq!(recording.unaccounted(), [directory.join("demo-7-1_0.mcap")]);

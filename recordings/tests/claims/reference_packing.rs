@@ -1,4 +1,4 @@
-//! A packing made by LAMMPS: read, it gives LAMMPS's numbers.
+//! A packing from LAMMPS: its import has the numbers of LAMMPS.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ fn it_has_its_grains_contacts_and_solid_fraction() {
     assert_eq!(known["n_contacts"], 1277);
     assert!((p.solid_fraction() / known["phi"].as_f64().unwrap() - 1.0).abs() < 1e-14);
     assert_eq!((p.friction, p.material.shear_modulus, p.material.poisson_ratio), (0.1, 29.0e9, 0.2));
-    // No contact is missing from the list or too many, and masses agree with the density.
+    // The list has exactly the contacts found from positions, and masses agree with the density.
     assert_eq!(imported.notes, [""; 0]);
 }
 
@@ -38,9 +38,8 @@ fn stress_from_contacts_is_that_of_the_sidecar() {
     let known = &sidecar()["stress_from_contacts"];
     let scale = s.tensor.mean();
     for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
-        // The sidecar's tensor is not symmetric in its last digits; ours is its symmetric part. LAMMPS's
-        // positions and ours carry the same 17 digits, so 1e-9 of the pressure leaves room for summation
-        // only.
+        // The tensor of the sidecar is not symmetric in its last digits; ours is its symmetric part.
+        // Positions have the same 17 digits in both, so that 1e-9 of the pressure only allows for summation.
         let expected = 0.5 * (known[r][c].as_f64().unwrap() + known[c][r].as_f64().unwrap());
         assert!((s.tensor.matrix()[(r, c)] - expected).abs() < 1e-9 * scale, "({r}, {c})");
     }
@@ -59,20 +58,20 @@ fn normal_forces_are_hertz_of_the_positions() {
         let hertz = p.material.normal_force(r_eff, overlap);
         worst = worst.max((c.normal_force - hertz).abs() / mean);
         assert!((c.normal_force - hertz).abs() < 1e-9 * mean, "{c:?}");
-        // LAMMPS turns the tangential force with an error of 3e-11 of the mean normal force.
+        // LAMMPS rotates the tangential force with an error of 3e-11 of the mean normal force.
         assert!(c.tangential_force.dot(&c.normal).abs() < 1e-10 * mean);
-        // Coulomb's law holds on the preparation's friction to LAMMPS's own rounding.
+        // Coulomb's law holds with the friction of the preparation, to the rounding of LAMMPS.
         assert!(c.tangential_force.norm() <= p.friction * c.normal_force * (1.0 + 1e-9));
     }
-    // The sidecar's own measure, which is also relative to the mean force: grains that just touch (overlap
-    // 1e-14 m) are pressed by what is left of the contact damping, a percent of next to nothing.
+    // The measure of the sidecar is also relative to the mean force: grains that barely touch (overlap 1e-14
+    // m) have a force from the remaining contact damping.
     let known = sidecar()["max_rel_dev_fn_vs_hertz_positions"].as_f64().unwrap();
     assert!((worst / known - 1.0).abs() < 1e-3, "{worst:e} {known:e}");
 }
 
 #[test]
 fn forces_balance_on_every_grain() {
-    // Signs of normals and tangential forces, and images, are all right or this fails by orders of magnitude.
+    // With a wrong sign of normals or tangential forces, or a wrong image, this fails by orders of magnitude.
     let p = reference().packing;
     let mut net = vec![grainlab_core::Vec3::zeros(); p.grains()];
     let mut mean = 0.0;
@@ -95,7 +94,7 @@ fn contacts_found_from_positions_are_those_listed() {
     assert_eq!(found.len(), p.contacts.len());
     for (a, b) in found.iter().zip(&p.contacts) {
         assert_eq!((a.i, a.j, a.image), (b.i, b.j, b.image));
-        // Overlaps are 2.5e-4 of a diameter and positions are exact to 1e-16 of a cell.
+        // Overlaps are 2.5e-4 of a diameter, and positions are exact to 1e-16 of a cell.
         assert!((a.overlap - b.overlap).abs() < 1e-17 && (a.normal - b.normal).norm() < 1e-12);
     }
 }

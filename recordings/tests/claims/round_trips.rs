@@ -1,7 +1,7 @@
-//! What is exported comes back.
+//! Exported packings are read back unchanged.
 
-use grainlab_core::contact::{ContactLaw, Linear};
-use grainlab_core::{Cell, Mat3, Packing};
+use grainlab_core::contact::{ContactLaw, Linear, RollingResistance, SpringLaw};
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::{Topic, to_cdr, topics};
 use grainlab_recordings::import::{ImportOptions, csv, lammps_dump, load};
@@ -10,15 +10,20 @@ use grainlab_recordings::{RunWriter, TopicSpec, export};
 use crate::reference_packing::reference;
 use crate::support::{SIMULATOR, START, options, sample};
 
-/// The reference with everything that it leaves at a default set to something else.
+/// The reference packing with other values for all its defaults.
 fn rich() -> Packing {
     let mut p = reference().packing;
     (p.step, p.time, p.time_step, p.friction) = (123_456, 0.1 + 0.2, 3e-8, f64::INFINITY);
-    p.law = ContactLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
+    let springs = SpringLaw::Linear(Linear { normal_stiffness: 1.5e8, stiffness_ratio: 0.4 });
+    let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    p.law = ContactLaw::of(springs).with_rolling(rolling);
     let forces: Vec<f64> = (p.contacts.iter())
         .map(|c| p.law.normal_force(&p.material, p.effective_radius(c), c.overlap))
         .collect();
     p.contacts.iter_mut().zip(forces).for_each(|(c, force)| c.normal_force = force);
+    for (k, c) in p.contacts.iter_mut().enumerate() {
+        c.rolling_force = c.normal.cross(&Vec3::x()) / (k as f64 + 7.0);
+    }
     p.deformation = Mat3::new(0.99, 1e-3, 0.0, 0.0, 0.98, -2e-4, 1e-9, 0.0, 0.97);
     for (k, spin) in p.spins.iter_mut().enumerate() {
         spin.x = 1.0 / (k as f64 + 3.0);
@@ -50,7 +55,7 @@ fn a_recorded_packing_comes_back_bit_for_bit() {
     let loaded = load(&directory, &ImportOptions::default()).unwrap();
     assert_eq!(loaded.packings.iter().map(|i| i.step).collect::<Vec<_>>(), [10, 20]);
     assert_eq!(loaded.packings[0].packing, Packing { step: 10, ..p.clone() });
-    // Cut off in the last chunk, the first packing is still there and the loss is named.
+    // Truncated in the last chunk, the file still has the first packing, and the loss is reported.
     let file = directory.join("r_0.mcap");
     let bytes = std::fs::read(&file).unwrap();
     std::fs::write(&file, &bytes[..bytes.len() * 6 / 10]).unwrap();
@@ -87,7 +92,7 @@ fn a_dump_brings_back_grains_and_network_in_straight_and_tilted_cells() {
             (back.step, &back.ids, &back.positions, &back.spins),
             (p.step, &p.ids, &p.positions, &p.spins)
         );
-        // The box is written as bounds of the tilted cell, which costs a rounding.
+        // The box is written as bounds of the tilted cell, which adds one rounding.
         assert!((back.cell.matrix() - p.cell.matrix()).amax() < 1e-18);
         // Mass and radius give the density to rounding.
         assert!((back.material.density / material.density - 1.0).abs() < 1e-14);

@@ -1,4 +1,4 @@
-//! A small run, as a recorder would write it.
+//! A small run, written like by a recorder.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! What goes in comes out.
+//! Written data are read back unchanged.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -63,7 +63,7 @@ fn attachments_metadata_channels_and_the_account_come_back() {
 }
 
 #[test]
-fn a_time_range_cuts_where_it_says() {
+fn a_time_range_includes_its_start_and_excludes_its_end() {
     let root = tempfile::tempdir().unwrap();
     let (directory, _) = run_in(&root, 300);
     let recording = Recording::open(&directory).unwrap();
@@ -91,7 +91,7 @@ fn arrival_times_that_stand_still_or_go_back_give_increasing_log_times() {
 }
 
 #[test]
-fn repeats_are_counted_and_not_written_and_two_writers_are_told_apart() {
+fn repeats_are_counted_and_not_written_and_two_writers_are_separate() {
     let root = tempfile::tempdir().unwrap();
     let directory = root.path().join("r");
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
@@ -124,7 +124,7 @@ fn what_the_recorder_cannot_take_is_refused_by_name() {
     run.add_topic(&other).unwrap();
     other.ros_type = "x/msg/Y".into();
     assert!(matches!(run.add_topic(&other), Err(WriteError::ConflictingTopic(_))));
-    // None of this ended the recording.
+    // None of these errors ended the recording.
     run.write("/clock", &sample(SIMULATOR, 1, START, &body)).unwrap();
     assert_eq!(run.finish().unwrap().messages, 1);
     let again = RunWriter::create(&directory, "r", &contract(), options());
@@ -168,7 +168,7 @@ fn a_quiet_topic_is_on_disk_after_the_flush_interval() {
 }
 
 #[test]
-fn a_dropped_writer_leaves_a_whole_file_that_says_so() {
+fn a_dropped_writer_leaves_a_complete_file_marked_as_unfinished() {
     let root = tempfile::tempdir().unwrap();
     let directory = root.path().join("r");
     let mut run = RunWriter::create(&directory, "r", &contract(), options()).unwrap();
@@ -203,7 +203,7 @@ fn metadata_yaml_agrees_with_the_file() {
     for topic in bag["topics_with_message_count"].as_array().unwrap() {
         let metadata = &topic["topic_metadata"];
         let channel = recording.channel(metadata["name"].as_str().unwrap()).unwrap();
-        // Where these differ, readers of rosbag2 recordings find no message of the topic.
+        // If these differ, readers of rosbag2 recordings find no message of the topic.
         assert_eq!(metadata["offered_qos_profiles"].as_str(), Some(channel.qos.as_str()));
         assert_eq!(metadata["type_description_hash"].as_str(), Some(channel.type_hash.as_str()));
     }

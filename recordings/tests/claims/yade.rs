@@ -1,4 +1,4 @@
-//! Exports of YADE, in its own formats and by our script: all of one packing that YADE made and measured
+//! Exports of YADE, in its formats and by the export script: all of one packing prepared and measured by YADE
 //! (`tests/golden/yade/make.py`).
 
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ fn the_script_for_yade_writes_contacts_and_forces_that_give_yades_own_stress() {
         serde_json::from_slice(&std::fs::read(golden("stress.json")).unwrap()).unwrap();
     let found = stress(p).tensor;
     for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
-        // At rest; positive in tension, as YADE has it.
+        // At rest; positive in tension, the convention of YADE.
         let expected = -0.5 * (known[r][c] + known[c][r]);
         assert!((found.matrix()[(r, c)] - expected).abs() < 1e-6 * found.mean(), "({r}, {c})");
     }

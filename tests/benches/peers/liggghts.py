@@ -1,4 +1,4 @@
-"""LIGGGHTS-PUBLIC: a distribution's package, with Open MPI."""
+"""LIGGGHTS-PUBLIC: the package of a distribution, with Open MPI."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ NAME = "LIGGGHTS"
 INSTALL = "apt install liggghts openmpi-bin"
 INPUT = Path(__file__).resolve().parent.parent / "inputs" / "in.liggghts"
 RATE = 5.0e6
-"""Particle-steps/s about expected on a core."""
+"""Expected particle-steps/s on a core."""
 
 # Gives the input the id of the process that reads it: the shell becomes that process.
 WITH_PID = ["sh", "-c", 'exec "$0" "$@" -var pid $$']
@@ -79,7 +79,7 @@ class Liggghts:
             grains=loop["grains"],
             steps=loop["steps"],
             wall_s=loop["wall_s"],
-            # Only the first rank runs shell commands; the others wait for it busily, so theirs is the same.
+            # Only the first rank runs shell commands; the others spin while waiting, so that their CPU time is the same.
             cpu_s=cpu_seconds(clock) * ranks,
             start=state(text, "start"),
             end=state(text, "end"),
@@ -91,7 +91,7 @@ def cpu_seconds(clock: Path) -> float:
     """CPU time between the two /proc/PID/stat lines of a file, s, to a hundredth."""
     try:
         lines = clock.read_text().splitlines()
-        # Fields 14 and 15 (user, system), counted after the name in parentheses, which may hold blanks.
+        # Fields 14 and 15 (user, system), counted after the name in parentheses, which may contain blanks.
         ticks = [sum(map(int, line.rsplit(")", 1)[1].split()[11:13])) for line in lines]
         first, last = ticks
     except (OSError, ValueError, IndexError) as error:

@@ -1,4 +1,4 @@
-"""What one run of one code gave."""
+"""The result of one run of one code."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ class Measurement:
     grains: int
     steps: int
     wall_s: float
-    """By the code's own clock."""
+    """By the clock of the code."""
     cpu_s: Optional[float]
     """Of all ranks and threads together."""
     start: Optional[State] = None
@@ -31,7 +31,7 @@ class Measurement:
 
     @property
     def cpu_rate(self) -> Optional[float]:
-        """Particle-steps per CPU second of all ranks and threads: what a busy machine leaves comparable."""
+        """Particle-steps per CPU second of all ranks and threads: comparable on a busy machine."""
         return self.grains * self.steps / self.cpu_s if self.cpu_s else None
 
 
@@ -68,9 +68,9 @@ class Case:
 
     name: str
     servo: bool
-    """Stress taken and sides driven at every step."""
+    """Whether the stress is evaluated and the sides move at every step."""
     nominal_rate: float
-    """Particle-steps per second about expected, from which the number of steps follows."""
+    """Expected particle-steps per second, from which the number of steps follows."""
     run: Callable[[Job], Measurement]
     ours: bool = False
 

@@ -14,15 +14,15 @@ Vector = tuple[float, float, float]
 
 
 class PackingError(Exception):
-    """A packing that cannot be used: says which file, which line and why."""
+    """A packing that cannot be used, with file, line and reason."""
 
 
 @dataclass(frozen=True)
 class State:
-    """Of a packing: what every code must agree on before it steps."""
+    """State of a packing that must agree between all codes before the first step."""
 
     pressure: Optional[float]
-    """Pa; nothing where a code does not say it."""
+    """Pa; None if a code does not print it."""
     coordination: float
     """2 contacts / grains, all grains."""
 
@@ -101,9 +101,9 @@ class Packing:
                 file.write(f"{k} 1 {2 * self.radius!r} {self.density!r} {x!r} {y!r} {z!r}\n")
 
     def state(self, setting: Setting) -> State:
-        """Pressure of the Hertz forces that the positions alone imply, and coordination.
+        """Pressure of the Hertz forces computed from the positions, and coordination.
 
-        Independent of every code compared: p = sum of F |x_j - x_i| / (3 V) with F = (4/3) E* sqrt(R*) overlap^(3/2).
+        Independent of every compared code: p = sum of F |x_j - x_i| / (3 V) with F = (4/3) E* sqrt(R*) overlap^(3/2).
         Tangential forces do not enter the pressure of spheres.
         """
         diameter = 2.0 * self.radius

@@ -1,4 +1,4 @@
-"""A child process: its text, a time limit, and nothing of it left behind."""
+"""A child process with its output, a time limit, and an end of its whole group."""
 
 import os
 import signal
@@ -7,11 +7,11 @@ from pathlib import Path
 
 
 class RunFailed(Exception):
-    """A code that could not be run or did not say what it should: says which and shows its last words."""
+    """A code that could not be run or printed no result, with its last output."""
 
 
 def loopback_only(threads: int) -> dict[str, str]:
-    """The environment of a child: no display, one OpenMP thread unless told, MPI through shared memory.
+    """The environment of a child: no display, one OpenMP thread unless `threads` is larger, MPI through shared memory.
 
     UCX_TLS keeps MPICH's ranks, and the OMPI_ variables keep Open MPI's, from opening network sockets;
     with ess_singleton_isolated a process without mpirun starts no daemon.
@@ -27,7 +27,7 @@ def loopback_only(threads: int) -> dict[str, str]:
         "OMPI_MCA_oob_tcp_if_include": "lo",
         "OMPI_MCA_plm": "isolated",
         "OMPI_MCA_ess_singleton_isolated": "1",
-        # Else Open MPI's hardware detection asks ten X servers for their GPUs.
+        # Otherwise the hardware detection of Open MPI queries ten X servers for their GPUs.
         "HWLOC_COMPONENTS": "-gl,linux,stop",
     }
     if os.geteuid() == 0:
@@ -38,7 +38,7 @@ def loopback_only(threads: int) -> dict[str, str]:
 def run(command: list, directory: Path, environment: dict[str, str], timeout: float) -> str:
     """Runs `command` in `directory` to its end and returns its standard output; RunFailed if it fails or is late.
 
-    The child leads a process group; whatever happens here, interrupts included, the group is ended and reaped.
+    The child leads a process group; the group is ended and reaped in any case, also on interrupts.
     """
     command = [str(word) for word in command]
     try:
@@ -69,18 +69,18 @@ def run(command: list, directory: Path, environment: dict[str, str], timeout: fl
 def last_words(text: str, count: int = 12) -> str:
     """The last lines of a text, indented."""
     lines = [line for line in text.splitlines() if line.strip()]
-    return "\n".join(f"    | {line}" for line in lines[-count:]) or "    | (it said nothing)"
+    return "\n".join(f"    | {line}" for line in lines[-count:]) or "    | (no output)"
 
 
 def _end(child: subprocess.Popen) -> None:
-    """Ends the group of `child`: politely, so that mpiexec ends its ranks, then not. Then reaps the child."""
+    """Ends the group of `child`: by SIGTERM, so that mpiexec ends its ranks, then by SIGKILL. Then reaps the child."""
     if child.poll() is None:
         _signal(child, signal.SIGTERM)
         try:
             child.communicate(timeout=5.0)
         except subprocess.TimeoutExpired:
             pass
-    # What the child may have left of its group.
+    # Remaining processes of the group.
     _signal(child, signal.SIGKILL)
     child.wait()
 

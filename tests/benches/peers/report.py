@@ -9,7 +9,7 @@ from peers.measurement import Case, Measurement
 
 @dataclass(frozen=True)
 class Spread:
-    """Of the repetitions."""
+    """Statistics of the repetitions."""
 
     median: float
     minimum: float
@@ -32,14 +32,14 @@ class Group:
     threads: int
     cases: list[Case]
     runs: dict[str, list[Optional[Measurement]]] = field(default_factory=dict)
-    """By name of the case, one a repetition; nothing where a run failed."""
+    """By name of the case, one per repetition; None if a run failed."""
 
     def rates(self, name: str, clock: str) -> Optional[Spread]:
         """Particle-steps per second of `clock`, "wall" or "cpu"."""
         return Spread.of([getattr(run, f"{clock}_rate") for run in self.runs.get(name, []) if run])
 
     def ratios(self, case: Case, clock: str) -> Optional[Spread]:
-        """Our rate over that of `case`, both with or both without servo, in the same repetition."""
+        """Rate of grainlab over that of `case`, both with or both without servo, in the same repetition."""
         ours = next((c for c in self.cases if c.ours and c.servo == case.servo), None)
         if ours is None or case.ours:
             return None
@@ -50,7 +50,7 @@ class Group:
         return Spread.of(ratios)
 
     def table(self) -> str:
-        """One line a code: median, least and largest of the repetitions."""
+        """One line per code: median, least and largest of the repetitions."""
         millions = "M particle-steps/s"
         lines = [
             f"N = {self.grains}, {self.threads} thread{'s' * (self.threads > 1)}",
@@ -77,7 +77,7 @@ class Group:
         return "\n".join(lines)
 
     def rows(self) -> list[dict]:
-        """The same for machines, every run included."""
+        """The same as data, with every run."""
         rows = []
         for case in self.cases:
             spreads = {f"{clock}_particle_steps_per_second": self.rates(case.name, clock) for clock in ("wall", "cpu")}

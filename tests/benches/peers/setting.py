@@ -1,4 +1,4 @@
-"""What every code is asked to compute: material, contact, load and numerics, in SI units."""
+"""The setting of all codes: material, contact, load and numerics, in SI units."""
 
 from dataclasses import asdict, dataclass
 
@@ -12,10 +12,10 @@ class Setting:
     poisson: float = 0.2
     friction: float = 0.1
     restitution: float = 0.3
-    """Coefficient of restitution, where a code takes one."""
+    """Coefficient of restitution, for codes that use one."""
     viscosity: float = 2.0e12
     """gamma_n of LAMMPS' gran/hertz/history, 1/(m s): a third of critical damping at this packing's mean overlap,
-    which is what a restitution of 0.3 gives."""
+    which corresponds to a restitution of 0.3."""
     time_step: float = 3.0e-8
     """s."""
     skin: float = 2.0e-6

@@ -1,4 +1,4 @@
-"""YADE: a distribution's package."""
+"""YADE: the package of a distribution."""
 
 import json
 import shutil
@@ -14,11 +14,11 @@ NAME = "YADE"
 INSTALL = "apt install yade"
 SCRIPT = Path(__file__).resolve().parent.parent / "inputs" / "loop_yade.py"
 RATE = 1.2e6
-"""Particle-steps/s about expected on a core."""
+"""Expected particle-steps/s on a core."""
 
 
 class Yade:
-    """An installed YADE: its launcher, and the interpreter that the launcher asks for."""
+    """An installed YADE: its launcher, and the interpreter of the launcher."""
 
     name = NAME
 

@@ -1,12 +1,12 @@
 //! Mutated inputs for decoders and file formats.
 //!
-//! A [`Target`] has seeds, a bound of memory, and a function that must neither panic nor use more. The inputs that once
-//! failed are kept under `corpus/<target>/` and run first, always. How long it then goes on is said by
-//! `GRAINLAB_FUZZ_SECONDS`; without it, some hundred inputs are tried, the same in every run.
+//! A [`Target`] has seeds, a bound of memory, and a function that must neither panic nor exceed the bound.
+//! Inputs that once failed are kept under `corpus/<target>/` and always run first. `GRAINLAB_FUZZ_SECONDS`
+//! sets the duration; without it, some hundred inputs are tried, the same in every run.
 //!
-//! This is a mutation loop of our own, without coverage: it runs with `cargo test` on stable Rust and needs no
-//! other crate. `cargo-fuzz` needs a nightly compiler, and `bolero` its own tool and some forty crates to be more than
-//! this.
+//! The mutation loop is implemented here, without coverage: it runs with `cargo test` on stable Rust and
+//! needs no other crate. `cargo-fuzz` needs a nightly compiler, and `bolero` a separate tool and some forty
+//! crates for more than that.
 
 mod memory;
 mod mutate;
@@ -18,31 +18,32 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Something that takes bytes from outside.
+/// A decoder of bytes from outside.
 pub struct Target<'a> {
-    /// Its name, and that of its folder of the corpus.
+    /// Its name, and that of its folder in the corpus.
     pub name: &'a str,
-    /// Inputs that are good, or nearly.
+    /// Valid or nearly valid inputs.
     pub seeds: Vec<Vec<u8>>,
     /// Words of the format.
     pub words: &'a [&'a str],
-    /// Bytes of memory that any input may take, and for each of its bytes.
+    /// Memory in bytes that any input may need, plus a number per byte of the input.
     pub memory: (usize, usize),
     /// The decoder.
     pub decode: &'a mut dyn FnMut(&[u8]),
 }
 
-/// Inputs of each target without `GRAINLAB_FUZZ_SECONDS`.
+/// Number of inputs per target without `GRAINLAB_FUZZ_SECONDS`.
 const INPUTS: u64 = 400;
 
-/// A single input that takes longer has found something, too.
+/// Maximum time for a single input.
 const SLOW: Duration = Duration::from_secs(20);
 
 impl Target<'_> {
     /// Tries the corpus, the seeds and their mutations.
     ///
     /// # Panics
-    /// If any of them panics, takes too much memory or too long; the input is left in a file that the message names.
+    /// If one of them panics, needs too much memory or too long; the input is stored in a file named in the
+    /// message.
     pub fn run(mut self) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(self.name);
         for path in files(&folder) {
@@ -93,7 +94,7 @@ impl Target<'_> {
 
 fn keep(name: &str, bytes: &[u8]) -> PathBuf {
     let path = std::env::temp_dir().join(format!("fuzzing-{name}-{}", std::process::id()));
-    // The message names the file; if it cannot be written, the number of the input brings it back.
+    // The message names the file; if it cannot be written, the number of the input reproduces it.
     let _ = std::fs::write(&path, bytes);
     path
 }

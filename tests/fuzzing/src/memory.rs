@@ -1,4 +1,4 @@
-//! How much memory a thread has, and had at most.
+//! Present and peak memory of a thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -8,23 +8,23 @@ thread_local! {
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// The system's allocator, which counts by thread: tests that run side by side do not disturb each other. To be made the
-/// `#[global_allocator]` of a test.
+/// The allocator of the system with counters per thread, so that parallel tests do not affect each other. Set
+/// it as the `#[global_allocator]` of a test.
 pub struct Counting;
 
 fn count(bytes: isize) {
-    // A thread that ends has no counters any more, and nobody asks for them.
+    // A thread that ends has no counters any more.
     let _ = NOW.try_with(|now| {
         now.set(now.get() + bytes);
         let _ = PEAK.try_with(|peak| peak.set(peak.get().max(now.get())));
     });
 }
 
-// SAFETY: every call is passed on to the system's allocator unchanged.
+// SAFETY: every call is passed unchanged to the allocator of the system.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
-        // SAFETY: the caller's promises are the ones that `System` asks for.
+        // SAFETY: the caller guarantees the conditions of `System`.
         unsafe { System.alloc(layout) }
     }
 
@@ -41,14 +41,14 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// Forgets the peak; bytes that the thread has now.
+/// Resets the peak; returns the present memory of the thread, bytes.
 pub(crate) fn reset() -> usize {
     let now = NOW.with(Cell::get);
     PEAK.with(|peak| peak.set(now));
     now.max(0) as usize
 }
 
-/// Bytes that the thread had at most since [`reset`].
+/// Peak memory of the thread since [`reset`], bytes.
 pub(crate) fn peak() -> usize {
     PEAK.with(Cell::get).max(0) as usize
 }

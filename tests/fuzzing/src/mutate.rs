@@ -1,11 +1,11 @@
-//! Inputs that are nearly right.
+//! Nearly valid inputs.
 
-/// Makes one input from seeds; the same number makes the same input.
+/// Makes inputs from seeds; the same number gives the same input.
 pub struct Mutator {
     state: u64,
 }
 
-/// Numbers at which lengths, counts and indices go wrong.
+/// Numbers that are often invalid as lengths, counts and indices.
 const NUMBERS: [u64; 14] = [
     0,
     1,
@@ -23,7 +23,7 @@ const NUMBERS: [u64; 14] = [
     u64::MAX / 3,
 ];
 
-/// Numbers in text at which the same happens.
+/// The same numbers as text.
 const WORDS: [&str; 18] = [
     "0",
     "-1",
@@ -52,7 +52,7 @@ impl Mutator {
     }
 
     fn next(&mut self) -> u64 {
-        // xorshift64*: any generator will do.
+        // xorshift64*: any generator suffices.
         self.state ^= self.state >> 12;
         self.state ^= self.state << 25;
         self.state ^= self.state >> 27;
@@ -109,7 +109,7 @@ impl Mutator {
         WORDS.get(n).or_else(|| words.get(n - WORDS.len())).map_or_else(Vec::new, |w| w.as_bytes().to_vec())
     }
 
-    /// A field of text becomes another.
+    /// Replaces a field of text.
     fn replace_word(&mut self, bytes: &mut Vec<u8>, at: usize, words: &[&str]) {
         let part = |b: &u8| b.is_ascii_alphanumeric() || b"+-._".contains(b);
         let start = bytes[..at].iter().rposition(|b| !part(b)).map_or(0, |p| p + 1);
@@ -118,7 +118,7 @@ impl Mutator {
         bytes.splice(start..end, word);
     }
 
-    /// A piece of another seed comes in.
+    /// Inserts a piece of another seed.
     fn splice(&mut self, bytes: &mut Vec<u8>, at: usize, seeds: &[Vec<u8>]) {
         if seeds.is_empty() {
             return;
@@ -136,10 +136,10 @@ impl Mutator {
     }
 }
 
-/// The line of text around a byte, with what ends it.
+/// The line of text around a byte, with its line end.
 fn line(bytes: &[u8], at: usize) -> std::ops::Range<usize> {
     let start = bytes[..at].iter().rposition(|b| *b == b'\n').map_or(0, |p| p + 1);
     let end = bytes[at..].iter().position(|b| *b == b'\n').map_or(bytes.len(), |p| at + p + 1);
-    // Of bytes that are no text, a piece.
+    // A piece, if the bytes are not text.
     start.max(end.saturating_sub(512))..end
 }

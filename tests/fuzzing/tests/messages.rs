@@ -1,6 +1,7 @@
 //! CDR of every message, and the boundary to the kernels' types.
 
 use fuzzing::{Counting, Target};
+use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 use grainlab_msgs::boundary::{
     EstimateReading, FabricReading, MicrostructureReading, ModuliReading, RunStateReading, StrainRateAnswer,
@@ -12,7 +13,8 @@ use grainlab_msgs::{Message, from_cdr, msg, rcl_interfaces, rosgraph_msgs, tf2_m
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A decoded message is at most some times as large as its bytes: a string of no byte has four in CDR and 24 in memory.
+/// A decoded message is at most a few times as large as its bytes: an empty string has four in CDR and 24 in
+/// memory.
 const MEMORY: (usize, usize) = (1 << 20, 64);
 
 fn packing() -> Packing {
@@ -24,6 +26,7 @@ fn packing() -> Packing {
         normal: Vec3::z() * z,
         normal_force: 1.0,
         tangential_force: Vec3::x(),
+        rolling_force: Vec3::y(),
     };
     Packing {
         step: 7,
@@ -37,7 +40,7 @@ fn packing() -> Packing {
         spins: vec![Vec3::zeros(); 3],
         contacts: vec![contact(0, 1, 1.0), contact(1, 2, 1.0)],
         material: Material::GLASS,
-        law: Default::default(),
+        law: ContactLaw::new("hertz_mindlin", &[1e4, 0.0, 0.1]).expect("a law with resistance to rolling"),
         friction: 0.3,
         time_step: 1e-7,
     }

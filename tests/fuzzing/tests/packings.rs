@@ -7,14 +7,14 @@ use grainlab_recordings::import::{ImportOptions, csv, lammps_data, lammps_dump, 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A grain has 60 bytes of text or more, some 300 of memory, and at most 160 neighbours of 100 bytes each where spheres
-/// overlap as far as is allowed.
+/// A grain has at least 60 bytes of text, some 300 of memory, and at most 160 neighbours of 100 bytes each at
+/// the largest allowed overlaps.
 const MEMORY: (usize, usize) = (8 << 20, 2048);
 
 const WORDS: [&str; 12] =
     ["ITEM:", "TIMESTEP", "ATOMS", "Atoms", "xlo", "xhi", "x_y_z_r", "cell", "p", "c", "#format", "radius"];
 
-/// What files do not say.
+/// Data that files lack.
 fn complete() -> ImportOptions {
     ImportOptions {
         shear_modulus: Some(29e9),
@@ -29,7 +29,7 @@ fn with_cell() -> ImportOptions {
     ImportOptions { cell: Some(Mat3::from_diagonal(&Vec3::repeat(1e-3))), ..complete() }
 }
 
-/// `import` says whether it gave a packing; of the seeds it must.
+/// `import` returns whether it gave a packing; for the seeds it must.
 fn run(name: &str, seeds: &[&str], mut import: impl FnMut(&str) -> bool) {
     assert!(seeds.iter().all(|seed| import(seed)), "{name}: a seed is no packing");
     Target {

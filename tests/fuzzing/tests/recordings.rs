@@ -12,7 +12,7 @@ use std::path::Path;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A recording with several chunks, attachments and metadata, and the same without its end.
+/// A recording with several chunks, attachments and metadata, and the same truncated.
 fn seeds(folder: &Path) -> Vec<Vec<u8>> {
     let specs = [topics::PACKING, topics::STRESS].map(|t| TopicSpec::of_contract(&t, &t.absolute_name()));
     let options = WriterOptions { chunk_size: 1 << 10, ..WriterOptions::default() };
@@ -35,7 +35,7 @@ fn seeds(folder: &Path) -> Vec<Vec<u8>> {
     vec![whole, cut]
 }
 
-/// What the module text of `grainlab_recordings::reader` promises, and what the index of the file takes.
+/// The bound stated in `grainlab_recordings::reader`, plus the index of the file.
 const MEMORY: (usize, usize) = (384 << 20, 64 + 64);
 
 #[test]

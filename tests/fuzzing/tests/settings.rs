@@ -6,7 +6,7 @@ use grainlab_node_kit::{Names, ParameterSpec, Parameters, RosArgs};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Settings are of a megabyte at most; a tree of them is some times as large.
+/// Settings have at most a megabyte; their tree is a few times as large.
 const MEMORY: (usize, usize) = (1 << 20, 512);
 
 fn run(name: &str, seeds: &[&str], words: &[&str], mut parse: impl FnMut(&str)) {

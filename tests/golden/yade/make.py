@@ -1,4 +1,4 @@
-"""A packing of 80 grains made by YADE, exported in every way that grainlab reads; run by YADE's own interpreter:
+"""A packing of 80 grains from YADE, exported in every format that grainlab reads; run by the interpreter of YADE:
 
     cd tests/golden/yade && /usr/bin/python3 make.py
 """
@@ -62,8 +62,8 @@ export.textExt(
 export.text("x_y_z_r.txt")
 stress = utils.getStress()
 with open("stress.json", "w") as file:
-    # Positive in tension, as YADE has it.
+    # Positive in tension, the convention of YADE.
     json.dump([[stress[r, c] for c in range(3)] for r in range(3)], file)
 print("unbalanced force ratio", utils.unbalancedForce(), flush=True)
-# Past YADE's own tear-down, which may crash without a prompt.
+# Without YADE's shutdown, which may crash without a prompt.
 os._exit(0)

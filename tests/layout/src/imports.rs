@@ -1,5 +1,5 @@
-//! Which module uses which. A name that a module only passes on leads to the module that defines it, so that importing
-//! through a re-export is not an import of the module that re-exports.
+//! The modules that each module uses. A re-exported name is resolved to the module that defines it, so that
+//! importing through a re-export is not an import of the re-exporting module.
 
 use crate::modules::{Module, ModulePath};
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,7 +8,7 @@ use syn::{Item, UseTree};
 
 type Modules = BTreeMap<ModulePath, Module>;
 
-/// For each module those that it uses, without itself.
+/// For each module the others that it uses.
 pub(crate) fn imports(modules: &Modules) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
     let aliases: BTreeMap<&ModulePath, Aliases> =
         modules.iter().map(|(path, module)| (path, Aliases::of(path, module, modules))).collect();
@@ -41,14 +41,14 @@ impl Aliases {
     }
 }
 
-/// The module that defines what `target`, a path from the crate root, names.
+/// The module that defines `target`, a path from the crate root.
 fn defining(
     target: &[String],
     modules: &Modules,
     aliases: &BTreeMap<&ModulePath, Aliases>,
 ) -> Option<ModulePath> {
     let mut target = target.to_vec();
-    // A chain of re-exports is never longer than this.
+    // No chain of re-exports is longer than this.
     for _ in 0..16 {
         let depth = (0..=target.len()).rev().find(|d| modules.contains_key(&target[..*d]))?;
         let (module, rest) = (target[..depth].to_vec(), &target[depth..]);
@@ -61,7 +61,7 @@ fn defining(
     None
 }
 
-/// Every path in a module that leads into its crate, from the crate root.
+/// Every path in a module that refers to its crate, from the crate root.
 struct Paths<'a> {
     module: &'a ModulePath,
     modules: &'a Modules,
@@ -83,11 +83,11 @@ impl<'ast> Visit<'ast> for Paths<'_> {
         syn::visit::visit_path(self, path);
     }
 
-    // What a module written inline imports by `super` means another place; such modules hold tests and constants.
+    // In an inline module `super` means another module; inline modules contain tests and constants.
     fn visit_item_mod(&mut self, _: &'ast syn::ItemMod) {}
 }
 
-/// A path as written in `module`, from the crate root; `None` if it leads elsewhere.
+/// A path as written in `module`, from the crate root; `None` if it is outside the crate.
 fn absolute(module: &ModulePath, path: &[String], modules: &Modules) -> Option<Vec<String>> {
     let (first, rest) = path.split_first()?;
     match first.as_str() {
@@ -110,7 +110,7 @@ fn absolute(module: &ModulePath, path: &[String], modules: &Modules) -> Option<V
 /// The paths of a tree of imports with the names they get; a glob has none.
 fn leaves(tree: &UseTree, mut prefix: Vec<String>) -> Vec<(Vec<String>, Option<String>)> {
     let joined = |mut prefix: Vec<String>, name: String| {
-        // `x::{self}` names x.
+        // `x::{self}` means x.
         if name != "self" || prefix.is_empty() {
             prefix.push(name);
         }

@@ -1,9 +1,9 @@
-//! Rules that the source of every crate keeps, read off the source itself.
+//! Rules for the source of every crate, checked on the source.
 //!
-//! - `modules`: the modules of a crate, a file each
-//! - `imports`: which module uses which, re-exports resolved to where an item is defined
-//! - `rules`: what breaks a rule, in words
-//! - `samples`: the rules find what breaks them; `workspace`: every crate keeps them
+//! - `modules`: the modules of a crate, one file each
+//! - `imports`: the modules that a module uses, with re-exports resolved
+//! - `rules`: violations of the rules, as text
+//! - `samples`: tests of the rules on small crates; `workspace`: every crate keeps them
 
 // All of it is tests: a build without tests does not pay for it.
 #![cfg(test)]

@@ -1,4 +1,4 @@
-//! The modules of a crate, a file each.
+//! The modules of a crate, one file each.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub(crate) struct Module {
     pub(crate) items: Vec<Item>,
 }
 
-/// Every module of the crate whose root is the file `root`. Modules written inline belong to the file around them.
+/// Every module of the crate with the root file `root`. Inline modules belong to the file around them.
 ///
 /// # Panics
 /// With the file's name if it cannot be read or parsed.
@@ -41,7 +41,7 @@ fn read(file: &Path, children: &Path, path: ModulePath, found: &mut BTreeMap<Mod
     found.insert(path, Module { file: file.to_owned(), lines: text.lines().count(), items });
 }
 
-/// The declaration of a module that is a file of its own.
+/// The declaration of a module in a separate file.
 pub(crate) fn declaration(item: &Item) -> Option<&ItemMod> {
     match item {
         Item::Mod(module) if module.content.is_none() => Some(module),

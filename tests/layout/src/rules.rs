@@ -1,4 +1,4 @@
-//! What breaks a rule, in words.
+//! Violations of the rules, as text.
 
 use crate::imports::imports;
 use crate::modules::{Module, ModulePath, declaration};
@@ -7,10 +7,10 @@ use petgraph::graphmap::DiGraphMap;
 use std::collections::{BTreeMap, BTreeSet};
 use syn::{Item, UseTree, Visibility};
 
-/// Longest file, lines.
+/// Maximum length of a file, lines.
 pub(crate) const MAX_LINES: usize = 500;
 
-/// Groups of modules each of which uses all others of its group, if by way of others.
+/// Groups of modules in which each uses all others of its group, directly or indirectly.
 pub(crate) fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let imports = imports(modules);
     let number: BTreeMap<&ModulePath, usize> =
@@ -26,7 +26,7 @@ pub(crate) fn circles(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     tarjan_scc(&graph).into_iter().filter(|group| group.len() > 1).map(in_words).collect()
 }
 
-/// Items that have two paths: re-exported by a module in which the module that defines them is public, too.
+/// Items with two paths: re-exported by a module although the module that defines them is public, too.
 pub(crate) fn doubled(modules: &BTreeMap<ModulePath, Module>) -> Vec<String> {
     let mut found = Vec::new();
     for (path, module) in modules {

@@ -1,4 +1,4 @@
-//! The rules find what breaks them, in small crates made for it.
+//! The rules detect violations, in small crates made for the tests.
 
 use crate::modules::modules;
 use crate::rules::{circles, doubled, long_files};

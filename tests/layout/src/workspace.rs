@@ -1,4 +1,4 @@
-//! Every crate of the workspace keeps the rules.
+//! The crates of the workspace follow the rules.
 
 use crate::modules::{Module, ModulePath, modules};
 use crate::rules;
@@ -17,7 +17,7 @@ fn roots() -> Vec<PathBuf> {
     roots
 }
 
-/// Asserts that `rule` finds nothing in any crate.
+/// Asserts that `rule` finds no violation in any crate.
 fn holds(rule: fn(&BTreeMap<ModulePath, Module>) -> Vec<String>) {
     let faults = |root: &PathBuf| {
         let place = root.display().to_string();

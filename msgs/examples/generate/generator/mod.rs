@@ -28,7 +28,7 @@ pub(crate) fn generate(root: &Path) -> Result<BTreeMap<PathBuf, String>, String>
     Ok(files)
 }
 
-/// Our own package in `msg/`, the standard ones in `std/<package>/msg/`.
+/// The messages of this project in `msg/`, the standard ones in `std/<package>/msg/`.
 fn load(root: &Path) -> Result<Library, String> {
     let mut library = Library::new();
     let mut folders = vec![("grainlab_msgs".to_owned(), PathBuf::from("msg"))];

@@ -61,7 +61,7 @@ const fn primitive(ros: &'static str, rust: &'static str, type_id: u32) -> Primi
     Primitive { ros, rust, type_id }
 }
 
-/// `char` and `wstring` are left out: tools disagree about them.
+/// `char` and `wstring` are left out: their meaning differs between tools.
 const PRIMITIVES: [Primitive; 13] = [
     primitive("bool", "bool", 15),
     primitive("byte", "u8", 16),

@@ -5,7 +5,7 @@ use super::parse::{Base, Constant, Field, MessageFile, Shape};
 use super::type_hash::{lookup, rihs01};
 use std::collections::BTreeSet;
 
-/// serde and the standard library know arrays up to this length; longer ones need care.
+/// serde and the standard library support arrays up to this length; longer ones need `fixed_array`.
 const DERIVED_ARRAY: usize = 32;
 
 /// As in rustfmt.toml.
@@ -94,8 +94,8 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
     Ok(out + "}\n")
 }
 
-/// The schema in rosbag2's convention is put together by the compiler from the message files themselves, so that it
-/// cannot differ from them. Dependencies alphabetically, depth first, each once.
+/// The compiler assembles the schema in rosbag2's convention from the message files, so that it cannot differ
+/// from them. Dependencies alphabetically, depth first, each once.
 fn definition(file: &MessageFile, library: &Library) -> Result<String, String> {
     let mut seen = Vec::new();
     depth_first(file, library, &mut seen)?;
@@ -145,7 +145,7 @@ fn default_impl(file: &MessageFile) -> String {
     format!("\nimpl Default for {} {{\n    fn default() -> Self {{\n{body}\n    }}\n}}\n", file.name)
 }
 
-/// Whether a message is small enough to copy at will: numbers, and other such messages.
+/// Whether a message is small enough for `Copy`: it consists of numbers and other such messages.
 fn plain(file: &MessageFile, library: &Library) -> Result<bool, String> {
     for field in &file.fields {
         let plain = match &field.base {

@@ -45,7 +45,7 @@ fn description(file: &MessageFile) -> String {
     format!(r#"{{"type_name": "{}/msg/{}", "fields": [{}]}}"#, file.package, file.name, fields.join(", "))
 }
 
-/// Default values are no part of it.
+/// Default values are not part of it.
 fn field(field: &Field) -> String {
     let (increment, capacity) = match field.shape {
         Shape::One => (0, 0),

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// The complete mechanical state: measures, displays and resumes bit for bit.
 /// Structure of arrays; triples interleaved xyz. n grains, m contacts.
 /// Lengths: radius and id n; position, velocity, angular_velocity 3 n; contact_overlap and contact_normal_force m;
-/// contact_pair 2 m; contact_image, contact_normal, contact_tangential_force 3 m.
+/// contact_pair 2 m; contact_image, contact_normal, contact_tangential_force 3 m;
+/// contact_rolling_force 3 m, or 0 where the contact law has no resistance to rolling.
 /// Everything is finite, except friction, which may be +inf.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Packing {
@@ -43,6 +44,8 @@ pub struct Packing {
     pub contact_normal_force: Vec<f64>,
     /// N, on i, as integrated
     pub contact_tangential_force: Vec<f64>,
+    /// N, elastic part: R\* n x this is a torque on i, its opposite one on j
+    pub contact_rolling_force: Vec<f64>,
     /// Pa, of the grain
     pub shear_modulus: f64,
     /// of the grain
@@ -51,7 +54,7 @@ pub struct Packing {
     pub density: f64,
     /// name, as in scenes: hertz_mindlin, linear
     pub contact_law: String,
-    /// those that do not follow from the material, as in scenes
+    /// those that do not follow from the material, as in scenes; last those of rolling, if any
     pub contact_law_parameters: Vec<f64>,
     /// in force, may be +inf
     pub friction: f64,
@@ -67,7 +70,7 @@ impl Message for Packing {
     const PACKAGE: &'static str = "grainlab_msgs";
     const NAME: &'static str = "Packing";
     const TYPE: &'static str = "grainlab_msgs/msg/Packing";
-    const HASH: &'static str = "RIHS01_662484e983818a423e0c3914130bbdad3bcb2c03bdc961e95f030f303f5562d2";
+    const HASH: &'static str = "RIHS01_efb90efc0a1bb9f476b26e0486fff1b14a644a4dbc73314730daf1a9d2ca4646";
     const DEFINITION: &'static str = definition!(
         "msg/Packing.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",

@@ -1,4 +1,4 @@
-//! Claims about the acoustic node, on the bus in memory.
+//! Tests of the acoustic node, on the bus in memory.
 
 mod node;
 mod sample;

@@ -7,7 +7,7 @@ use grainlab_msgs::msg::{Packing, WaveSpeeds, Waveform};
 use grainlab_msgs::{to_cdr, topics};
 use grainlab_node_kit::{Bus, Demand, Hub, Level, MemoryBus, Names, Node, Publisher, Subscription};
 
-/// Who publishes packings, and hears what becomes of them.
+/// A publisher of packings that receives the results.
 struct Source {
     bus: MemoryBus,
     packings: Publisher<Packing>,
@@ -32,7 +32,7 @@ impl Source {
     }
 }
 
-/// A probe that finds what [`measurement`] says, whatever the packing, if that has contacts.
+/// A probe that returns [`measurement`] for every packing with contacts.
 fn probe(bus: &mut MemoryBus) -> AcousticProbe {
     let work = |message: &Packing| {
         let packing = grainlab_core::Packing::try_from(message).map_err(MeasureError::Refused)?;

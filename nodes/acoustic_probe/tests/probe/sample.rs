@@ -1,4 +1,4 @@
-//! A packing that can be reckoned by hand, and what might be measured of it.
+//! A packing with known properties, and a result of its measurement.
 
 use grainlab_acoustics::Channel;
 use grainlab_acoustics::{AcousticsError, EffectiveDensity, Measurement, Trace};
@@ -9,13 +9,23 @@ use grainlab_msgs::msg;
 pub(crate) const DIAMETER: f64 = 2e-4;
 pub(crate) const OVERLAP: f64 = 2e-8;
 
-/// One grain a cell touching its own images: a simple cubic lattice, or grains apart where `overlap` is not positive.
+/// One grain per cell touching its own images: a simple cubic lattice, or grains apart if `overlap` is not
+/// positive.
 pub(crate) fn lattice(overlap: f64) -> grainlab_core::Packing {
     let contact = |axis: usize| {
         let (mut image, mut normal) = ([0; 3], Vec3::zeros());
         (image[axis], normal[axis]) = (1, 1.0);
         let normal_force = Material::GLASS.normal_force(DIAMETER / 4.0, overlap);
-        Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+        Contact {
+            i: 0,
+            j: 0,
+            image,
+            overlap,
+            normal,
+            normal_force,
+            tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
+        }
     };
     grainlab_core::Packing {
         step: 12,

@@ -71,7 +71,7 @@ fn rays_and_instrument_are_as_asked_for() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_name() {
+fn invalid_parameters_are_refused_by_name() {
     for (value, word) in [
         ("axis:=up", "\"axis\""),
         ("axis:=0,0,0", "\"axis\""),

@@ -1,7 +1,8 @@
 //! The Pareto front of time against error.
 
-/// Whether each point (seconds, error) lies on the front: no other point is at least as fast and at least as accurate
-/// and better in one of the two. Points that are not finite lie on no front and beat nothing; equal points share a place.
+/// Whether each point (seconds, error) is on the front: no other point is at least as fast and at least as
+/// accurate and better in one of the two. Points that are not finite are not on the front and exclude no
+/// other; equal points share a place.
 pub(crate) fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let beats = |a: &(f64, f64), b: &(f64, f64)| finite(a) && a.0 <= b.0 && a.1 <= b.1 && a != b;
@@ -24,7 +25,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_without_a_result_is_on_no_front_and_keeps_nobody_off_it() {
+    fn a_setting_without_a_result_is_not_on_the_front_and_excludes_no_other() {
         assert_eq!(front(&[(f64::NAN, 0.0), (1.0, f64::NAN), (2.0, 2.0)]), [false, false, true]);
         assert!(front(&[]).is_empty());
     }
@@ -38,7 +39,7 @@ mod tests {
             (0..points.len()).min_by(|a, b| key(&points[*a]).total_cmp(&key(&points[*b]))).unwrap()
         };
         assert!(on[best(|p| p.0)] && on[best(|p| p.1)]);
-        // Along the front more time always buys less error.
+        // Along the front, more time always means a smaller error.
         let mut along: Vec<_> = points.iter().zip(&on).filter(|(_, on)| **on).map(|(p, _)| *p).collect();
         along.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert!(along.len() > 2 && along.windows(2).all(|w| w[0].1 > w[1].1));

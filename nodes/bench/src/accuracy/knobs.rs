@@ -1,4 +1,4 @@
-//! The knobs: what of a scene is turned, how far, and what its most careful value is.
+//! The knobs: settings of a scene that are varied, their values, and their most accurate value.
 
 use clap::ValueEnum;
 use grainlab_core::{ComponentControl, ServoLaw};
@@ -6,24 +6,25 @@ use grainlab_scene::{GasMethod, Phase, PhaseKind, Scene};
 use serde::Serialize;
 use std::fmt;
 
-/// What is turned. Every value is a factor on the scene's own, so that the scene as it stands is every knob's default.
+/// A knob. Every value is a factor on that of the scene, so that the unchanged scene is the default of every
+/// knob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[value(rename_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Knob {
-    /// Share of the stability bound that the time step takes.
+    /// Fraction of the stability bound that the time step takes.
     TimeStep,
     /// Control law of the servo phases.
     ServoLaw,
-    /// Solver steps between two answers, in every phase but the gas.
+    /// Solver steps between two exchanges with the servo, in every phase but the gas.
     ControlPeriod,
-    /// Every strain rate and rate limit behind the gas; the inertial number follows it.
+    /// Every strain rate and rate limit after the gas; the inertial number is proportional to it.
     StrainRate,
-    /// Strain rate of the gas: how hot it stays while it is compressed.
+    /// Strain rate of the gas: determines its temperature during compression.
     GasRate,
-    /// How the gas is run: hard spheres event by event, or soft ones step by step.
+    /// Method of the gas: hard spheres event by event, or soft ones step by step.
     GasStage,
-    /// Contact damping behind the gas, share of critical.
+    /// Contact damping after the gas, share of critical.
     Damping,
     /// Verlet skin over grain diameter.
     Skin,
@@ -31,32 +32,32 @@ pub(crate) enum Knob {
     Grains,
 }
 
-/// What a knob is set to.
+/// The value of a knob.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Value {
     /// In the unit of the knob.
     Number(f64),
-    /// A law in words.
+    /// The name of a law.
     Text(String),
 }
 
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            // A factor leaves digits that mean nothing.
+            // A factor leaves digits that are not significant.
             Self::Number(v) => write!(f, "{}", (v * 1e4).round() / 1e4),
             Self::Text(text) => f.write_str(text),
         }
     }
 }
 
-/// One value of one knob, everything else as in the scene.
+/// One value of one knob, with the rest of the scene unchanged.
 #[derive(Clone, Debug)]
 pub(crate) struct Setting {
     pub(crate) knob: Knob,
     pub(crate) value: Value,
-    /// The scene as it stands.
+    /// The unchanged scene.
     pub(crate) default: bool,
     pub(crate) scene: Scene,
 }
@@ -66,17 +67,17 @@ pub(crate) struct Setting {
 pub(crate) struct Servoed {
     /// Tangent stiffness of a normal component, Pa.
     pub(crate) tangent: f64,
-    /// Simulated time between two answers, s.
+    /// Simulated time between two exchanges, s.
     pub(crate) interval: f64,
 }
 
 impl Knob {
-    /// As it is typed and printed.
+    /// Its name on the command line and in output.
     pub(crate) fn name(self) -> String {
         self.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
     }
 
-    /// Factors on the scene's own value, and the most careful one; 0 stands for the smallest value there is.
+    /// Factors on the value of the scene, and the most accurate one; 0 is the smallest possible value.
     fn factors(self, quick: bool) -> (&'static [f64], f64) {
         match (self, quick) {
             (Self::TimeStep, false) => (&[0.5, 0.75, 1.0, 1.25], 0.5),
@@ -85,10 +86,12 @@ impl Knob {
             (Self::ControlPeriod, true) => (&[1.0, 4.0], 0.0),
             (Self::StrainRate, false) => (&[0.25, 0.5, 1.0, 2.0, 4.0], 0.25),
             (Self::StrainRate, true) => (&[1.0, 2.0], 0.5),
-            // A slow gas cools down, which is no limit to go to: no value is more careful than the scene's.
+            // A slow gas cools down, so that its limit is not meaningful: no value is more accurate than that
+            // of the scene.
             (Self::GasRate, false) => (&[0.5, 1.0, 2.0, 4.0], 1.0),
             (Self::GasRate, true) => (&[1.0, 2.0], 1.0),
-            // Slow straining makes the end independent of damping; no value of it is more careful by itself.
+            // Slow straining makes the end independent of damping; no value of damping is more accurate by
+            // itself.
             (Self::Damping, false) => (&[0.33, 1.0, 2.0], 1.0),
             (Self::Damping, true) => (&[1.0, 2.0], 1.0),
             (Self::Skin, false) => (&[0.4, 1.0, 2.0, 4.0], 4.0),
@@ -99,7 +102,7 @@ impl Knob {
         }
     }
 
-    /// The scene with this knob turned by `factor`, as far as its range allows.
+    /// The scene with this knob changed by `factor`, within its range.
     fn turned(self, scene: &Scene, factor: f64) -> Scene {
         let mut s = scene.clone();
         match self {
@@ -134,7 +137,7 @@ impl Knob {
         }
     }
 
-    /// What this knob stands at; `None` where the scene has nothing to turn.
+    /// The present value of this knob; `None` if the scene has no such setting.
     fn reading(self, scene: &Scene) -> Option<f64> {
         let behind_gas = scene.phases.iter().rfind(|p| !matches!(p.kind, PhaseKind::Gas { .. }));
         match self {
@@ -152,7 +155,8 @@ impl Knob {
         }
     }
 
-    /// Its settings for this scene, the default among them; empty where the scene has nothing to turn.
+    /// The settings of this knob for this scene, including the default; empty if the scene has no such
+    /// setting.
     pub(crate) fn settings(self, scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setting> {
         if self == Self::ServoLaw {
             return servo_laws(scene, servoed, quick);
@@ -164,7 +168,7 @@ impl Knob {
         for factor in self.factors(quick).0 {
             let turned = self.turned(scene, *factor);
             let Some(value) = self.reading(&turned) else { continue };
-            // A range that ends early makes two factors one setting.
+            // At the end of a range, two factors give one setting.
             if settings.iter().all(|s| s.scene != turned) {
                 let (value, default) = (Value::Number(value), turned == *scene);
                 settings.push(Setting { knob: self, value, default, scene: turned });
@@ -174,20 +178,20 @@ impl Knob {
     }
 }
 
-/// The scene with every knob at its most careful value.
+/// The scene with every knob at its most accurate value.
 pub(crate) fn converged(scene: &Scene, quick: bool) -> Scene {
     let turn = |s: Scene, knob: &Knob| knob.turned(&s, knob.factors(quick).1);
     Knob::value_variants().iter().fold(scene.clone(), turn)
 }
 
-/// Largest strain rate imposed or allowed behind the gas, 1/s.
+/// Largest strain rate imposed or allowed after the gas, 1/s.
 fn largest_rate(scene: &Scene) -> Option<f64> {
     let behind_gas = scene.phases.iter().filter(|p| !matches!(p.kind, PhaseKind::Gas { .. }));
     behind_gas.filter_map(|p| p.kind.rate_limit()).reduce(f64::max)
 }
 
-/// Inertial number I = rate·D·√(ρ/p) of the fastest straining behind the gas, at the mean stress target p of the last
-/// servo phase; `None` without either.
+/// Inertial number I = rate·D·√(ρ/p) of the fastest straining after the gas, at the mean stress target p of
+/// the last servo phase; `None` without either.
 pub(crate) fn inertial_number(scene: &Scene) -> Option<f64> {
     let target = |c: &ComponentControl| if let ComponentControl::Stress(s) = c { Some(*s) } else { None };
     let pressure = scene.phases.iter().rev().find_map(|p| match &p.kind {
@@ -207,8 +211,9 @@ fn law(scene: &Scene) -> Option<ServoLaw> {
     })
 }
 
-/// The scene's law and others of like speed. Eq. 1 turns stress and rate into an oscillator of ω² = gain·K/T, T the time
-/// between two answers; ω is put a decade below the scene's response, and a leak of 2ωT damps it critically.
+/// The law of the scene and others of similar speed. Eq. 1 makes stress and rate an oscillator of ω² =
+/// gain·K/T, with T the time between two exchanges; ω is set a decade below the response of the scene, and a
+/// leak of 2ωT damps it critically.
 fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setting> {
     let (Some(own), Some(servoed)) = (law(scene), servoed) else { return Vec::new() };
     let response_time = match own {
@@ -243,7 +248,7 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
                 format!("Eq. 1 at {share} of critical, leak {leak:.2}")
             }
         };
-        // The scene's own servo phases may differ among themselves; they stay as they are.
+        // The scene's servo phases may have different laws; they are unchanged.
         let default = *new == own;
         let scene = if default { scene.clone() } else { turned };
         Setting { knob: Knob::ServoLaw, value: Value::Text(text), default, scene }
@@ -251,8 +256,8 @@ fn servo_laws(scene: &Scene, servoed: Option<Servoed>, quick: bool) -> Vec<Setti
     laws.iter().map(setting).collect()
 }
 
-/// Both ways to run the gas. What only soft spheres have is given them as the paper's preparation had it: nearly elastic
-/// collisions, and looks far apart.
+/// Both methods of the gas. Settings that only soft spheres have are those of the paper's preparation: nearly
+/// elastic collisions, and long control periods.
 fn gas_stages(scene: &Scene) -> Vec<Setting> {
     let with = |wanted: GasMethod| {
         let mut turned = scene.clone();
@@ -288,7 +293,7 @@ mod tests {
     const SERVOED: Option<Servoed> = Some(Servoed { tangent: 3e8, interval: 3.5e-7 });
 
     #[test]
-    fn every_knob_has_exactly_one_default_and_turns_nothing_that_is_not_its_own() {
+    fn every_knob_has_exactly_one_default_and_changes_only_its_own_setting() {
         for quick in [false, true] {
             for knob in Knob::value_variants() {
                 let settings = knob.settings(&scene(), SERVOED, quick);

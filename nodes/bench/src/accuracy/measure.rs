@@ -7,12 +7,12 @@ use grainlab_core::{ComponentControl, ServoLaw};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 
-/// What a run cost and where it ended.
+/// Cost and result of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
     /// The packing at the end of the path; moduli in Pa.
     pub(crate) observables: Observables<f64>,
-    /// CPU time of the run, the measurement at its end left out, s.
+    /// CPU time of the run, without the measurement at its end, s.
     pub(crate) seconds: f64,
     /// Solver steps.
     pub(crate) steps: u64,
@@ -20,7 +20,8 @@ pub(crate) struct Outcome {
     pub(crate) servoed: Option<Servoed>,
 }
 
-/// Runs the scene to its end and measures the packing there. A run that is not done after `limit` solver steps fails.
+/// Runs the scene to its end and measures the packing. A run that is not finished after `limit` solver steps
+/// fails.
 pub(crate) fn measure(scene: &Scene, limit: u64) -> Result<Outcome, String> {
     let clock = || thread_seconds().map_err(|e| e.to_string());
     let begin = clock()?;

@@ -6,11 +6,11 @@ use super::row::Row;
 use clap::ValueEnum;
 use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 
-/// What the marks mean.
+/// The legend.
 const NOTES: [&str; 4] = [
     "red star: the default",
     "filled: an error is resolved",
-    "hollow: no more than a bound",
+    "hollow: only an upper bound",
     "grey line: Pareto front",
 ];
 
@@ -20,12 +20,12 @@ pub(crate) fn svg(report: &Report) -> String {
     let knobs: Vec<Knob> = (Knob::value_variants().iter().copied())
         .filter(|knob| report.rows.iter().filter(drawn).any(|r| r.knob == *knob))
         .collect();
-    // The default comes last, on top of its neighbours; one star for all knobs, as it is the same run.
+    // The default is drawn last, on top of its neighbours; one star for all knobs, since it is the same run.
     let (defaults, others): (Vec<&Row>, Vec<&Row>) = report.rows.iter().partition(|r| r.default);
     let one = |row: &Row, marker: Marker| Series {
         colour: Some(row.knob as usize),
         marker: Some(marker),
-        // Filled where an error is resolved; hollow where the point is but a bound.
+        // Filled if an error is resolved; hollow if the point is only an upper bound.
         hollow: marker == Marker::Circle && !row.resolved.array().contains(&Some(true)),
         line: None,
         points: point(row).into_iter().collect(),
@@ -37,7 +37,7 @@ pub(crate) fn svg(report: &Report) -> String {
     let notes = NOTES.map(|note| Entry::Note(note.to_owned()));
     Figure {
         title: format!("{}: CPU time against error, {} seeds", report.scene, report.seeds.len()),
-        subtitle: "error: five observables over their scatter from seed to seed; 1 is as wrong as one packing is by chance"
+        subtitle: "error: five observables over their scatter from seed to seed; 1 is the random error of one packing"
             .into(),
         x: Axis::log("CPU time of a run, s"),
         y: Axis::log("combined error"),
@@ -57,7 +57,7 @@ fn point(row: &Row) -> Option<Point> {
     Some(Point { tooltip: Some(tooltip), label, ..Point::at(seconds, error) })
 }
 
-/// Steps along the front: between two of its points the faster one is the best there is.
+/// Steps along the front: between two of its points the faster one is the best available.
 fn front(report: &Report) -> Series {
     let on = report.rows.iter().filter(|r| r.on_front).filter_map(point);
     let mut points: Vec<Point> = on.map(|p| Point::at(p.x, p.y)).collect();

@@ -25,13 +25,13 @@ const NOTES: [&str; 4] = [
     "error: mean over the seeds of the difference from the converged run at the same seed; change: the same from the default; \
      k, eps, phi as they are, g12 and theta relative to the converged run",
     "not resolved: zero lies in the 95 % interval of the mean (two standard errors, more with few seeds: Student's t); the \
-     error may be anything up to that bound. One in twenty that is resolved is so by chance",
+     error may have any value up to that bound. One in twenty resolved errors is due to chance",
     "combined: root mean square of the five errors over their scatter from seed to seed at the default, an unresolved one \
-     counted with its bound; 1 is as wrong as one packing is by chance",
+     counted with its bound; 1 is the random error of one packing",
     "seconds: CPU time of the run in its own thread",
 ];
 
-/// The converged run: every knob at its most careful value.
+/// The converged run: every knob at its most accurate value.
 #[derive(Debug, Serialize)]
 pub(crate) struct Reference {
     pub(crate) grains: u32,
@@ -45,7 +45,8 @@ pub(crate) struct Reference {
     pub(crate) scatter: Observables<f64>,
 }
 
-/// Puts together what the settings led to. `None` unless two runs of the converged setting and two of the default ended.
+/// Combines the outcomes of the settings. `None` unless two runs of the converged setting and two of the
+/// default succeeded.
 pub(crate) fn report(
     scene: &Scene,
     seeds: Vec<u64>,

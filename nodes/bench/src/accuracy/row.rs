@@ -1,11 +1,11 @@
-//! What one setting led to.
+//! The outcome of one setting.
 
 use super::knobs::{Knob, Setting, Value, inertial_number};
 use super::measure::Outcome;
 use super::statistics::{Estimate, Observables};
 use serde::Serialize;
 
-/// What one setting led to at each seed.
+/// The outcome of one setting at each seed.
 pub(crate) type Sample = Vec<Result<Outcome, String>>;
 
 /// One setting.
@@ -29,7 +29,7 @@ pub(crate) struct Row {
     pub(crate) change: Observables<Option<f64>>,
     pub(crate) change_standard_error: Observables<Option<f64>>,
     pub(crate) change_resolved: Observables<Option<bool>>,
-    /// Seeds at which the run came to its end.
+    /// Seeds at which the run succeeded.
     pub(crate) runs: usize,
     pub(crate) warnings: Vec<String>,
     /// The errors with their standard errors.
@@ -40,7 +40,7 @@ pub(crate) struct Row {
     pub(crate) changes: Differences,
 }
 
-/// Five differences; `None` where too few runs ended.
+/// Five differences; `None` if too few runs succeeded.
 pub(crate) type Differences = Option<Observables<Estimate>>;
 
 impl Row {
@@ -78,7 +78,7 @@ fn of<T: Copy>(differences: Differences, part: impl Fn(Estimate) -> T) -> Observ
     differences.map_or(Observables::from_array([None; 5]), |d| d.map(|e| Some(part(e))))
 }
 
-/// A value of each run that ended without an error.
+/// A value of each run that succeeded.
 pub(crate) fn finished<T>(sample: &Sample, part: impl Fn(&Outcome) -> T) -> Vec<T> {
     sample.iter().filter_map(|r| r.as_ref().ok()).map(part).collect()
 }

@@ -5,16 +5,16 @@ use grainlab_scene::Scene;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// One run to do.
+/// One run.
 pub(crate) struct Job<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) seed: u64,
-    /// Solver steps after which it counts as failed.
+    /// Maximum number of solver steps; a longer run counts as failed.
     pub(crate) limit: u64,
 }
 
-/// What each job led to, in the order of the jobs. A run never leaves the thread it began on, so that the thread's CPU
-/// time is the run's. `done` is called after each run.
+/// The outcome of each job, in the order of the jobs. A run stays on one thread, so that the CPU time of the
+/// thread is that of the run. `done` is called after each run.
 pub(crate) fn all(jobs: &[Job<'_>], threads: usize, done: impl Fn() + Sync) -> Vec<Result<Outcome, String>> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<Result<Outcome, String>>>> =

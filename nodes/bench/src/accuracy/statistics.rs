@@ -1,11 +1,12 @@
 //! Differences between settings, averaged over seeds, with their standard errors.
 //!
-//! Packings diverge after any perturbation, however small, so the difference between two single runs contains the effect of
-//! the setting and chance. The mean of the differences over seeds has the effect alone, to within its standard error.
+//! Packings diverge after any perturbation, however small. The difference between two single runs is
+//! therefore the sum of the effect of the setting and of chance. The mean of the differences over seeds is
+//! the effect, within its standard error.
 
 use serde::Serialize;
 
-/// What is measured on the packing at the end of a path.
+/// The quantities measured on the packing at the end of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct Observables<T> {
     /// Coordination number, all grains.
@@ -37,7 +38,7 @@ impl<T: Copy> Observables<T> {
     }
 }
 
-/// A mean over seeds and how well it is known.
+/// A mean over seeds with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Estimate {
     /// Mean.
@@ -49,7 +50,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// Of at least two samples; fewer have no standard error.
+    /// From at least two samples; a single sample has no standard error.
     pub(crate) fn of(samples: &[f64]) -> Option<Self> {
         let n = samples.len();
         let standard_error = deviation(samples)? / (n as f64).sqrt();
@@ -61,20 +62,21 @@ impl Estimate {
         student(self.samples - 1) * self.standard_error
     }
 
-    /// Whether zero lies outside the 95 % interval. A mean without any scatter is resolved, also where it is zero: then
-    /// every sample is exactly zero.
+    /// Whether zero lies outside the 95 % interval. A mean without scatter is resolved, even if it is zero:
+    /// then every sample is exactly zero.
     pub(crate) fn resolved(&self) -> bool {
         self.mean.abs() >= self.half_width()
     }
 
-    /// The magnitude to count with: that of the mean where it is resolved, else the half width, below which it stays.
+    /// The magnitude for further use: that of the mean if it is resolved, else the half width, its upper
+    /// bound.
     pub(crate) fn bound(&self) -> f64 {
         self.mean.abs().max(self.half_width())
     }
 }
 
-/// 97.5 % quantile of Student's t with `freedom` degrees of freedom, 1 or more, never below 2. From the fifth on the
-/// expansion of Abramowitz and Stegun, 26.7.5, which is right to 0.2 %.
+/// 97.5 % quantile of Student's t with `freedom` degrees of freedom, 1 or more, never below 2. From five on,
+/// by the expansion of Abramowitz and Stegun, 26.7.5, accurate to 0.2 %.
 fn student(freedom: usize) -> f64 {
     const FEW: [f64; 4] = [12.706, 4.303, 3.182, 2.776];
     let v = freedom as f64;
@@ -92,8 +94,8 @@ pub(crate) fn deviation(samples: &[f64]) -> Option<f64> {
     Some((samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt())
 }
 
-/// What two settings differ by at the same seeds, over the seeds at which both came to an end; `None` with fewer than
-/// two of them.
+/// The difference of two settings at the same seeds, over the seeds at which both succeeded; `None` with
+/// fewer than two of them.
 pub(crate) fn paired(
     of: &[Option<Observables<f64>>],
     from: &[Option<Observables<f64>>],
@@ -106,8 +108,8 @@ pub(crate) fn paired(
     Some(Observables::from_array([estimate(0)?, estimate(1)?, estimate(2)?, estimate(3)?, estimate(4)?]))
 }
 
-/// One number for five errors: the root mean square of their bounds, each over the seed scatter of its quantity, so that
-/// 1 is as wrong as one packing is by chance. `None` without any scatter to compare with.
+/// One number for five errors: the root mean square of their bounds, each over the seed scatter of its
+/// quantity, so that 1 is the random error of one packing. `None` without scatter.
 pub(crate) fn combined(errors: &Observables<Estimate>, scatter: &Observables<f64>) -> Option<f64> {
     let squares: Vec<f64> = errors
         .array()
@@ -141,7 +143,7 @@ mod tests {
         assert!(!noise.resolved() && noise.bound() == 0.2);
         let effect = Estimate { mean: -0.21, ..noise };
         assert!(effect.resolved() && effect.bound() == 0.21);
-        // Three samples scatter too little by chance too often.
+        // The scatter of three samples is often too small by chance.
         assert!(!Estimate { samples: 3, ..effect }.resolved());
     }
 

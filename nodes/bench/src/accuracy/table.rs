@@ -1,11 +1,11 @@
-//! Rows as a table for people and as CSV.
+//! Rows as a text table and as CSV.
 
 use super::report::Report;
 use super::row::{Differences, Row};
 use super::statistics::{Estimate, Observables};
 use grainlab_console::{Table, exact, fixed};
 
-/// Digits behind the point of k, eps, phi, g12, theta.
+/// Decimal places of k, eps, phi, g12, theta.
 const DIGITS: [usize; 5] = [3, 4, 5, 4, 4];
 
 /// Two tables, errors and changes, with their notes and the conclusions.
@@ -67,7 +67,7 @@ fn block(report: &Report, part: impl Fn(&Row) -> Differences) -> Table {
     t
 }
 
-/// A mean is shown only where it is resolved, and zero only where every difference is.
+/// A mean is shown only if it is resolved, and zero only if every difference is zero.
 fn cell(estimate: Option<Estimate>, digits: usize) -> String {
     match estimate {
         None => "-".to_owned(),
@@ -77,7 +77,7 @@ fn cell(estimate: Option<Estimate>, digits: usize) -> String {
     }
 }
 
-/// Everything in one line a row.
+/// All columns, one line per row.
 pub(crate) fn csv(report: &Report) -> String {
     let names = Observables::<f64>::NAMES;
     let mut header: Vec<String> = [

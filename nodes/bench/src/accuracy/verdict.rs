@@ -3,11 +3,12 @@
 use super::row::Row;
 use super::statistics::{Estimate, Observables};
 
-/// Relative scatter of the CPU time of a run on a shared machine; smaller gains do not count.
+/// Relative scatter of the CPU time of a run on a shared machine; smaller gains are ignored.
 const TIME_NOISE: f64 = 0.05;
 
-/// The default's place, what could replace it, and one sentence for each setting that changes something for sure or
-/// fails. A change that is not resolved is no reason for or against a setting: only more seeds tell.
+/// The cost of the default, faster alternatives, and one sentence for each setting with a resolved change or
+/// a failure. A change that is not resolved is no reason for or against a setting: only more seeds resolve
+/// it.
 pub(crate) fn verdict(rows: &[Row]) -> Vec<String> {
     let Some(default) = rows.iter().find(|r| r.default) else { return Vec::new() };
     let (Some(seconds), Some(bound)) = (default.seconds, default.combined) else { return Vec::new() };
@@ -54,11 +55,11 @@ pub(crate) fn verdict(rows: &[Row]) -> Vec<String> {
 /// The resolved differences that are not exactly zero.
 fn resolved(differences: Option<&Observables<Estimate>>) -> Vec<String> {
     let Some(differences) = differences else { return Vec::new() };
-    let told = |(name, d): (&str, &Estimate)| {
+    let text = |(name, d): (&str, &Estimate)| {
         let certain = d.resolved() && d.mean != 0.0;
         certain.then(|| format!("{name} {:+.2e} ± {:.0e}", d.mean, d.standard_error))
     };
-    Observables::<f64>::NAMES.into_iter().zip(&differences.array()).filter_map(told).collect()
+    Observables::<f64>::NAMES.into_iter().zip(&differences.array()).filter_map(text).collect()
 }
 
 fn name(row: &Row) -> String {

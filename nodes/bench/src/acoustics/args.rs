@@ -1,4 +1,4 @@
-//! What to measure, and how.
+//! The packings, methods and values to measure.
 
 use clap::ValueEnum;
 use grainlab_acoustics::Survey;
@@ -7,41 +7,42 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-Without --packing it is one of 2,000 grains made by LAMMPS, whose file holds no tangential forces: prepared packings are
-the better test.
+The default packing has 2,000 grains and was made by LAMMPS; its file has no tangential forces, so that prepared packings
+are a better test.
 
 Examples:
-  Every way on one packing along three rays, with the pictures (some minutes):
+  Every method on one packing along three rays, with plots (some minutes):
     grainlab bench acoustics --packing recordings/runs/s2-1-1 --out acoustics
   A full set of speeds by dispersion:
     grainlab bench acoustics --survey complete --method dispersion
-  What speeds with errors of 0 to 3 % tell of the microstructure, beside moduli of the network (every packing of every file):
+  Microstructure from speeds with errors of 0 to 3 %, and from moduli of the network (every packing of every file):
     grainlab bench acoustics --survey complete --noise 0,0.001,0.003,0.01,0.03 --packing recordings/runs/s2-1-1";
 
-/// What to measure, and how.
+/// The packings, methods and values to measure.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording (its first packing); also as .gz. As
-    /// often as there are packings
+    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording (its first packing);
+    /// also as .gz. May be repeated
     #[arg(long, value_name = "FILE")]
     pub(super) packing: Vec<PathBuf>,
-    /// Ways to measure [default: all]
+    /// Methods [default: all]
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]
     method: Vec<Method>,
     /// Rays: three (9 speeds) or complete (27; 39 where the packing is repeated along its path)
     #[arg(long, value_enum, default_value_t)]
     pub(super) survey: Rays,
-    /// Errors allowed to the squares of the frequencies of a dispersion
+    /// Tolerances of the squared frequencies of a dispersion
     #[arg(long, value_name = "REL", value_delimiter = ',', default_value = "1e-2,1e-4,1e-6,1e-8", value_parser = tolerance)]
     pub(super) tolerances: Vec<f64>,
     /// Repetitions of the packing along the path of a standing wave
     #[arg(long, value_name = "N", value_delimiter = ',', default_value = "5,8,12", value_parser = clap::value_parser!(u32).range(5..=200))]
     pub(super) copies: Vec<u32>,
-    /// Instead: infer the microstructure from speeds by dispersion with these relative errors, and compare with what is counted
+    /// Instead: infer the microstructure from speeds by dispersion with these relative errors, and compare it
+    /// with the counted one
     #[arg(long, value_name = "REL", value_delimiter = ',', value_parser = noise, conflicts_with_all = ["method", "out"])]
     pub(super) noise: Vec<f64>,
-    /// Draws of the noise for each packing
+    /// Draws of the noise per packing
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub(super) draws: u32,
     /// Folder for acoustics.json, acoustics.svg (time against error) and dispersion.svg
@@ -58,13 +59,13 @@ impl Args {
     }
 }
 
-/// Which rays.
+/// A set of rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Rays {
     /// Along the axis, across it, and between.
     #[default]
     Three,
-    /// With all the azimuths that a transversely isotropic average takes.
+    /// With all azimuths for a transversely isotropic average.
     Complete,
 }
 
@@ -77,18 +78,18 @@ impl From<Rays> for Survey {
     }
 }
 
-/// How speeds are measured.
+/// A method of measuring speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub(super) enum Method {
     /// Modes of the frozen network.
     Dispersion,
-    /// Ringing of the packing.
+    /// Free vibration of the packing.
     StandingWave,
     /// Onset of a burst.
     FirstArrival,
-    /// Delay of greatest correlation of a burst.
+    /// Delay of largest correlation of a burst.
     CrossCorrelation,
     /// Delay of the peak of a burst.
     Peak,

@@ -1,4 +1,4 @@
-//! Dispersion as SVG: how much slower than long waves the shorter ones are, and the law of the extrapolation.
+//! Dispersion as SVG: decrease of the speed at shorter wavelengths, and the law of the extrapolation.
 
 use grainlab_acoustics::DispersionPoint;
 use grainlab_acoustics::{DispersionCurve, Modes, Ray, Survey, dispersion, standing_wave};
@@ -8,17 +8,17 @@ use grainlab_core::{Packing, Vec3};
 use grainlab_node_kit::Exit;
 use std::f64::consts::TAU;
 
-/// Wavelengths shown, mean diameters: down to where packings hardly have waves any more.
+/// Wavelengths shown, mean diameters: down to the shortest ones that propagate.
 const SHOWN: [f64; 11] = [20.0, 28.0, 40.0, 56.0, 80.0, 112.0, 160.0, 240.0, 320.0, 480.0, 640.0];
 
-/// A wave that is surely one, beside each of them, mean diameters.
+/// A longer wave that certainly propagates, for each of them, mean diameters.
 const LONG: f64 = 800.0;
 
 /// The curves of the three rays.
 const NAMES: [&str; 9] =
     ["P, e3", "S, e3", "S, e3", "P, e1", "S, e1", "S, e1", "qP, 45°", "qS, 45°", "S, 45°"];
 
-/// The picture of one packing.
+/// The plot of one packing.
 pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
     let invalid = |e: grainlab_acoustics::AcousticsError| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let axis = Vec3::z();
@@ -33,7 +33,8 @@ pub(super) fn svg(packing: &Packing) -> Result<String, Failure> {
     Ok(draw(&laws, &seen, &rung, diameter))
 }
 
-/// Speeds at every wavelength shown, by curve, where the packing has modes of that length that are waves.
+/// Speeds at every wavelength shown, by curve, as far as the packing has propagating modes of that
+/// wavelength.
 fn seen(packing: &Packing, rays: &[Ray]) -> Vec<Vec<DispersionPoint>> {
     let at = |wavelength: f64| {
         let wavelengths = vec![wavelength, LONG, 2.0 * LONG];

@@ -1,4 +1,4 @@
-//! Each way to measure, timed and compared with the stiffness of the frozen network.
+//! Each method, timed and compared with the stiffness of the frozen network.
 
 use super::args::{Args, Method};
 use super::report::{Error, Row};
@@ -14,7 +14,7 @@ use grainlab_micromechanics::network::Springs;
 use grainlab_node_kit::Exit;
 use std::time::Instant;
 
-/// One row a way and value.
+/// One row per method and value.
 pub(super) fn rows(packing: &Packing, args: &Args) -> Result<Vec<Row>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let springs = Springs::with_friction(packing.friction);

@@ -1,12 +1,13 @@
-//! Microstructure inferred from noisy speeds and from the analyzer's moduli, both by the inversion of the node.
+//! Microstructure inferred from noisy speeds and from the moduli of the analyzer, both by the inversion of
+//! the node.
 
 use super::args::Args;
 use crate::packing::load_all;
 use grainlab_acoustics::{Measurement, with_speed_noise};
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
 use grainlab_core::Packing;
+use grainlab_core::results::InferredQuantity;
 use grainlab_core::results::PackingReport;
-use grainlab_emt::Quantity;
 use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::MicrostructureReading;
 use grainlab_msgs::msg::Microstructure;
@@ -20,7 +21,8 @@ const MODEL: &str = "relaxed";
 /// Half the width of a 95 % interval, standard deviations.
 const INTERVAL: f64 = 1.96;
 
-const QUANTITIES: [Quantity; 4] = [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness];
+const JUDGED: [InferredQuantity; 4] =
+    [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness];
 
 /// One level of noise, or the analyzer's moduli.
 #[derive(Debug, Serialize)]
@@ -35,16 +37,16 @@ struct Row {
     eps_stiffness: Score,
 }
 
-/// Inferred less counted.
+/// Inferred minus counted.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 struct Score {
     rms: Option<f64>,
     bias: Option<f64>,
-    /// Share within the 95 % interval.
+    /// Fraction within the 95 % interval.
     covered: Option<f64>,
 }
 
-/// Inferred values less those counted, in their standard deviations as well.
+/// Inferred minus counted values, also in units of their standard deviations.
 type Errors = [Option<(f64, f64)>; 4];
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
@@ -65,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Of one packing: the errors by the analyzer's moduli, then those of every draw of every level.
+/// For one packing: the errors from the moduli of the analyzer, then those of every draw of every level.
 fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     let invalid = |e: &dyn std::fmt::Display| Failure::new(Exit::PhysicsInvalid, e.to_string());
     let settings = grainlab_acoustics::Settings { survey: args.survey.into(), ..Default::default() };
@@ -87,7 +89,7 @@ fn one(packing: &Packing, args: &Args) -> Result<Vec<Vec<Errors>>, Failure> {
     for noise in &args.noise {
         let draws = if *noise > 0.0 { args.draws } else { 1 };
         let draw = |seed: u32| {
-            // Draws of one packing are not those of another.
+            // Each packing has different draws.
             let seed = packing.step.wrapping_mul(u64::from(args.draws) + 1).wrapping_add(seed.into());
             let waves = with_speed_noise(&measurement.waves, *noise, seed);
             let noisy = Measurement { waves, ..measurement.clone() };
@@ -109,19 +111,19 @@ fn inversion() -> Result<grainlab_emt_inversion::Settings, Failure> {
 fn compared(found: &Microstructure, truth: &PackingReport) -> Errors {
     let reading = MicrostructureReading::try_from(found).ok();
     let inferred = reading.and_then(|r| r.estimates.into_iter().next()?.inferred);
-    let of = |quantity: Quantity| {
+    let of = |quantity: InferredQuantity| {
         let (inferred, at) = (inferred.as_ref()?, quantity as usize);
         let counted = match quantity {
-            Quantity::K => truth.contacts.coordination,
-            Quantity::Z => truth.contacts.mechanical_coordination,
-            Quantity::Eps => truth.fabric.contact_anisotropy,
-            Quantity::EpsStiffness => truth.stiffness_anisotropy()?,
-            Quantity::KHat => return None,
+            InferredQuantity::K => truth.contacts.coordination,
+            InferredQuantity::Z => truth.contacts.mechanical_coordination,
+            InferredQuantity::Eps => truth.fabric.contact_anisotropy,
+            InferredQuantity::EpsStiffness => truth.stiffness_anisotropy()?,
+            InferredQuantity::KHat => return None,
         };
         let error = inferred.values[at]? - counted;
         Some((error, error / inferred.covariance?[6 * at].sqrt()))
     };
-    QUANTITIES.map(of)
+    JUDGED.map(of)
 }
 
 fn row(noise: Option<f64>, packings: usize, errors: &[Errors]) -> Row {

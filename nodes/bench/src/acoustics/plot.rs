@@ -1,4 +1,4 @@
-//! Time against error: a colour for each method, hollow what is only stated.
+//! Time against error: a colour for each method; hollow points are stated errors.
 
 use super::args::Method;
 use super::report::{Report, Row};
@@ -35,7 +35,7 @@ pub(super) fn svg(report: &Report) -> String {
     .svg(Theme::Light)
 }
 
-/// Found and stated, where both are known.
+/// Found and stated error, if both are known.
 fn errors(row: &Row) -> Option<(f64, f64)> {
     Some((row.error.rms?, row.error.stated?))
 }

@@ -1,4 +1,4 @@
-//! Rows as JSON, as a table, as CSV.
+//! Rows as JSON, as a text table, as CSV.
 
 use super::args::Method;
 use crate::numbers::rounded;
@@ -15,18 +15,18 @@ pub(super) struct Report {
 const NOTES: [&str; 3] = [
     "value: error allowed to the square of a frequency (dispersion), repetitions along the path (standing_wave); seconds: CPU \
      time of all threads for all speeds, the preparation of the packing included",
-    "rms, largest, stated: of rho v^2, relative to p Gamma p of the frozen network; stated is the standard deviation that came \
-     with it, density included, and sigmas the largest error over its own. It is zero for an exact measurement of a frozen \
-     network; moving grains are not quite one",
+    "rms, largest, stated: of rho v^2, relative to p Gamma p of the frozen network; stated is the standard deviation \
+     of the result, including the density, and sigmas the largest error over its own. It is zero for an exact measurement of a frozen \
+     network, from which moving grains differ slightly",
     "moduli: largest relative error of C33, C11, C44, C66 and C13 by Christoffel, against the transversely isotropic projection \
-     of the stiffness: three rays alone miss its average over azimuths",
+     of the stiffness: three rays alone do not give its average over azimuths",
 ];
 
-/// One way to measure, on one packing.
+/// One method on one packing.
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
     pub(super) method: Method,
-    /// What was varied.
+    /// The varied value.
     pub(super) value: Option<f64>,
     pub(super) grains: usize,
     pub(super) speeds: usize,
@@ -51,7 +51,7 @@ pub(super) fn report(rows: Vec<Row>) -> Report {
     Report { rows, notes: NOTES }
 }
 
-/// For people.
+/// As a text table.
 pub(super) fn text(report: &Report) -> String {
     let mut text = table(&report.rows, rounded).text();
     for row in &report.rows {
@@ -64,7 +64,7 @@ pub(super) fn text(report: &Report) -> String {
     text
 }
 
-/// The rows alone.
+/// Only the rows, as CSV.
 pub(super) fn csv(report: &Report) -> String {
     table(&report.rows, exact).csv()
 }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_way_that_failed_has_a_row_without_numbers_and_says_why() {
+    fn a_failed_method_has_a_row_without_numbers_and_a_reason() {
         let row = Row {
             method: Method::Peak,
             value: None,

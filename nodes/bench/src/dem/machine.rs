@@ -1,4 +1,4 @@
-//! The machine that was measured on.
+//! The machine of the measurement.
 
 use super::peak::peak;
 use grainlab_console::Failure;
@@ -7,21 +7,21 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// What a number has to be read beside.
+/// Properties of the machine that affect the timings.
 #[derive(Debug, Serialize)]
 pub(crate) struct Machine {
     pub(crate) processor: String,
     pub(crate) cores: usize,
-    /// Over one minute, at the start: above zero the machine was shared.
+    /// Over one minute, at the start: above zero other processes were running.
     pub(crate) load_average: Option<f64>,
     pub(crate) simd_available: Vec<String>,
-    /// Independent additions and multiplications that one core does in a second, fused ones left out as the contact law
-    /// has none; measured in this run.
+    /// Independent additions and multiplications of one core per second, without fused ones, which the
+    /// contact law does not use; measured in this run.
     pub(crate) peak_operations_per_second: BTreeMap<String, f64>,
 }
 
 impl Machine {
-    /// Asks the system, and measures the peak of each set.
+    /// Queries the system, and measures the peak of each instruction set.
     pub(crate) fn measured(sets: &[Simd]) -> Result<Self, Failure> {
         let mut peak_operations_per_second = BTreeMap::new();
         for set in sets {
@@ -37,7 +37,7 @@ impl Machine {
         })
     }
 
-    /// Operations per second of one core with this set, if measured.
+    /// Operations per second of one core with this instruction set, if measured.
     pub(crate) fn peak(&self, set: Simd) -> Option<f64> {
         self.peak_operations_per_second.get(&set.to_string()).copied()
     }
@@ -68,11 +68,11 @@ fn processor(cpuinfo: &str) -> String {
 /// Memory of this process in use, bytes; `None` where the system does not report it.
 pub(crate) fn resident_bytes() -> Option<f64> {
     #[cfg(target_env = "gnu")]
-    // SAFETY: no pointers are involved; what is freed already goes back to the system.
+    // SAFETY: no pointers are involved; only free memory is returned to the system.
     unsafe {
         libc::malloc_trim(0);
     }
-    // Counted page by page; statm is off by what each core has not reported yet.
+    // Counted page by page; statm omits memory that a core has not reported yet.
     let rollup = read("/proc/self/smaps_rollup")?;
     let line = rollup.lines().find(|l| l.starts_with("Rss:"))?;
     let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;

@@ -1,4 +1,4 @@
-//! The most that one core can do.
+//! The peak performance of one core.
 
 use crate::cpu_time::thread_seconds;
 use grainlab_console::Failure;
@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 /// Rounds of one measurement, some milliseconds.
 const ROUNDS: u64 = 1_000_000;
-/// The best of these is the peak: what else runs on a shared core only ever slows one down.
+/// Number of measurements, of which the best is the peak: other load on a shared core only slows it down.
 const MEASUREMENTS: usize = 10;
 
 /// Operations per second of one core with this instruction set, by CPU time.

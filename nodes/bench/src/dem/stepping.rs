@@ -1,4 +1,4 @@
-//! The loop that is timed: all that this bench asks of the engine.
+//! The timed loop.
 
 use super::super::packing::repeated;
 use crate::cpu_time::process_seconds;
@@ -11,21 +11,21 @@ use grainlab_node_kit::Exit;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Friction, the peers' own.
+/// Friction, as in the runs of the other programs.
 const FRICTION: f64 = 0.1;
 /// Contact damping, share of critical: a coefficient of restitution of about 0.3.
 const DAMPING: f64 = 0.3;
 /// s.
 const TIME_STEP: f64 = 3e-8;
-/// Verlet skin over the largest diameter: none is used up in a packing at rest.
+/// Verlet skin over the largest diameter: a packing at rest does not use it up.
 const SKIN: f64 = 0.01;
-/// Strain rate up to which a packing is pressed anew without friction, 1/s, and the steps after which it must be done.
+/// Strain rate limit of the compression without friction, 1/s, and its maximum number of steps.
 const PRESS_RATE: f64 = 100.0;
 const PRESS_STEPS: u32 = 1_000_000;
 /// Steps between two returns of the engine without a servo: the control period of the scenes.
 const PERIOD: u32 = 20;
 
-/// Which parts of the contact law are stepped.
+/// The parts of the contact law that are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Features {
@@ -55,10 +55,10 @@ impl Features {
     }
 }
 
-/// One thing to time.
+/// One case.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Case {
-    /// Of the packing, along each axis.
+    /// Copies of the packing along each axis.
     pub(crate) copies: u32,
     pub(crate) grains: u64,
     pub(crate) threads: u32,
@@ -68,13 +68,13 @@ pub(crate) struct Case {
     pub(crate) steps: u32,
 }
 
-/// What one loop took.
+/// Results of one loop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Loop {
     pub(crate) wall_seconds: f64,
     /// Of all threads.
     pub(crate) cpu_seconds: f64,
-    /// Mean of before and after.
+    /// Mean of the values before and after.
     pub(crate) contacts: f64,
     /// Mean stress at the end, Pa.
     pub(crate) pressure: f64,
@@ -82,17 +82,17 @@ pub(crate) struct Loop {
     pub(crate) bytes: Option<f64>,
 }
 
-/// The packings that are stepped: one with friction holds more loosely than one without can, which would fall apart.
+/// The packings to step. A frictional packing would collapse without friction, so that each has its own.
 pub(crate) struct Packings {
     given: Packing,
-    /// The given one pressed to the same pressure without friction, if that is asked for.
+    /// The given one compressed to the same pressure without friction, if needed.
     frictionless: Option<Packing>,
     /// Pressure of both, Pa: the servo's target.
     pressure: f64,
 }
 
 impl Packings {
-    /// Presses the packing anew where `features` ask for it.
+    /// Compresses the packing again if `features` need it.
     pub(crate) fn new(given: Packing, features: &[Features]) -> Result<Self, Failure> {
         let pressure = grainlab_core::stress::stress(&given).tensor.mean();
         if pressure <= 0.0 {
@@ -124,7 +124,7 @@ fn setting(features: Features, packing: &Packing) -> EngineSettings {
     }
 }
 
-/// Floating-point operations of the contact law on one contact.
+/// Floating-point operations of the contact law per contact.
 pub(crate) fn operations_per_contact(packing: &Packing, case: &Case) -> f64 {
     roofline::operations_per_contact(packing.law, &setting(case.features, packing))
 }
@@ -214,7 +214,7 @@ fn advance(
             Ok(())
         });
     }
-    // The stiffness hardly changes on the way: one look is enough for the law to be scaled by.
+    // The stiffness hardly changes during the loop: the law uses that at its start.
     let tangent = engine.observables().map_err(invalid)?.tangent;
     compute.install(|| {
         for _ in 0..steps {

@@ -1,8 +1,8 @@
-//! What is forged.
+//! Kinds of forged messages.
 
 use grainlab_msgs::{Topic, topics};
 
-/// What is forged.
+/// A kind of forged message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Forgery {
     StrainRate,

@@ -1,4 +1,4 @@
-//! The processes of a run in one thread, and who restarts them.
+//! The processes of a run in one thread, and their restarts.
 
 use super::plan::{Event, Plan};
 use super::process::{Kind, Process, Start};
@@ -10,30 +10,31 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-/// Virtual time within which a run has to come to an end.
+/// Limit of the virtual time of a run.
 const LIMIT: Duration = Duration::from_secs(3600);
 
-/// Steps of processes within which it has to.
+/// Limit of the steps of processes.
 const STEPS: u64 = 2_000_000;
 
-/// Time for messages on their way to arrive.
+/// Time for messages in transit to arrive.
 const LAST_CALL: Duration = Duration::from_secs(2);
 
-/// Restarts of the simulator after one packing. The next crash ends the run, as in the launcher.
-const DEATHS: usize = 3;
+/// Maximum number of restarts of the simulator after one packing. The next crash ends the run, as in the
+/// launcher.
+const CRASHES_ALLOWED: usize = 3;
 
-/// What a run came to.
+/// The outcome of a run.
 #[derive(Debug)]
 pub(super) enum Outcome {
     /// The path is done, and its last packing is inverted.
     Finished(Box<Record>),
     /// It ended with an error that is reported to the user.
     Failed(String),
-    /// No process has anything left to do, or the run does not end.
+    /// No process can continue, or the run does not end.
     Stuck(String),
 }
 
-/// What was done to a run.
+/// Counts of the faults in a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Done {
     pub(super) crashes: u64,
@@ -57,7 +58,7 @@ struct Laboratory<'a> {
     strangers: Vec<Stranger>,
     events: std::vec::IntoIter<(super::plan::Moment, Event)>,
     next: Option<(super::plan::Moment, Event)>,
-    deaths: Vec<usize>,
+    crashes: Vec<usize>,
     done: Done,
     explain: bool,
 }
@@ -79,7 +80,7 @@ pub(super) fn run_with(scene: &Scene, plan: &Plan, explain: bool) -> Finished {
         strangers: Vec::new(),
         events,
         next,
-        deaths: Vec::new(),
+        crashes: Vec::new(),
         done: Done::default(),
         explain,
     };
@@ -111,7 +112,7 @@ impl Laboratory<'_> {
             self.processes.push(process);
         }
         self.advance(|lab| lab.record.borrow().is_complete(), LIMIT)?;
-        // What is stopped goes on, and what is on its way arrives.
+        // Stopped processes continue, and messages in transit arrive.
         self.processes.iter_mut().for_each(|p| p.stopped_until = Duration::ZERO);
         self.next = None;
         let end = self.hub.now() + LAST_CALL;
@@ -125,7 +126,7 @@ impl Laboratory<'_> {
         Start { hub: &self.hub, run: self.run, scene: self.scene, record: &self.record }
     }
 
-    /// Lets the run go on until `done`, or to an error, or until virtual time `limit`.
+    /// Continues the run until `done`, an error, or virtual time `limit`.
     fn advance(&mut self, done: impl Fn(&Self) -> bool, limit: Duration) -> Result<(), Outcome> {
         let mut steps = 0;
         loop {
@@ -155,9 +156,9 @@ impl Laboratory<'_> {
         }
     }
 
-    /// When anything is to happen next, if anything is.
+    /// Time of the next event, if any.
     fn next_moment(&self, now: Duration) -> Option<Duration> {
-        let of = |p: &Process| match &p.alive {
+        let of = |p: &Process| match &p.running {
             _ if p.ended.is_some() => None,
             None => p.restart_at,
             Some((_, bus)) => {
@@ -169,13 +170,13 @@ impl Laboratory<'_> {
         processes.chain(self.hub.next_arrival()).filter(|at| *at > now).min()
     }
 
-    /// One step of a process that can and wants to take one.
+    /// One step of a process that is due.
     fn step(&mut self, index: usize, now: Duration) -> Result<bool, Outcome> {
         let process = &mut self.processes[index];
         if process.ended.is_some() || process.stopped_until > now {
             return Ok(false);
         }
-        let Some((node, bus)) = &mut process.alive else { return Ok(false) };
+        let Some((node, bus)) = &mut process.running else { return Ok(false) };
         if process.due > now && !bus.has_arrivals() {
             return Ok(false);
         }
@@ -210,7 +211,7 @@ impl Laboratory<'_> {
         Ok(any)
     }
 
-    /// Does what is due by the count of samples.
+    /// Applies the events that are due by the count of samples.
     fn events_due(&mut self) -> Result<(), Outcome> {
         while let Some((moment, event)) = self.next {
             if self.record.borrow().seen < moment.recorded {
@@ -253,17 +254,17 @@ impl Laboratory<'_> {
 
     fn crash(&mut self, kind: Kind, back_at: Duration) -> Result<(), Outcome> {
         let Some(process) = self.processes.iter_mut().find(|p| p.kind == kind) else { return Ok(()) };
-        if process.alive.take().is_none() {
+        if process.running.take().is_none() {
             return Ok(());
         }
         match kind {
-            Kind::Recorder => return Err(Outcome::Failed("the recorder died: exit 3".to_owned())),
+            Kind::Recorder => return Err(Outcome::Failed("the recorder crashed: exit 3".to_owned())),
             Kind::Simulator if process.ended == Some(Exit::Done) => return Ok(()),
             Kind::Simulator => {
                 let packings = self.record.borrow().packings();
-                self.deaths.push(packings);
-                if self.deaths.iter().filter(|known| **known == packings).count() > DEATHS {
-                    return Err(Outcome::Failed("the simulator died too often: exit 1".to_owned()));
+                self.crashes.push(packings);
+                if self.crashes.iter().filter(|known| **known == packings).count() > CRASHES_ALLOWED {
+                    return Err(Outcome::Failed("the simulator crashed too often: exit 1".to_owned()));
                 }
             }
             _ => {}
@@ -273,14 +274,14 @@ impl Laboratory<'_> {
     }
 
     fn describe(&self, why: &str) -> String {
-        let dead = self.processes.iter().filter(|p| p.alive.is_none()).map(|p| p.kind);
+        let crashed = self.processes.iter().filter(|p| p.running.is_none()).map(|p| p.kind);
         let record = self.record.borrow();
         format!(
-            "{why}: at {:.1} s, {} samples, state {:?}, dead: {:?}",
+            "{why}: at {:.1} s, {} samples, state {:?}, not running: {:?}",
             self.hub.now().as_secs_f64(),
             record.seen,
             record.state.as_ref().map(|s| (s.status, s.step)),
-            dead.collect::<Vec<_>>()
+            crashed.collect::<Vec<_>>()
         )
     }
 

@@ -1,67 +1,67 @@
-//! What a seed makes of a run.
+//! The faults of a run, from its seed.
 
 use super::forgery::Forgery;
 use super::process::Kind;
 use grainlab_node_kit::{Dice, Faults};
 use std::time::Duration;
 
-/// Something that happens at a moment of a run.
+/// An event of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
-    /// A process crashes, and is started again after this time.
+    /// A process crashes, and is restarted after this time.
     Crash(Kind, Duration),
     /// A process is stopped for this time, while messages for it arrive.
     Stop(Kind, Duration),
     /// All processes are stopped for this time: the clocks jump forward.
     Suspend(Duration),
-    /// The wall clock is set forward by so many seconds, or back.
+    /// The wall clock is set forward or back by this number of seconds.
     WallClock(i64),
 }
 
-/// A stranger, from the beginning on.
+/// A stranger that is present from the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stranger {
-    /// What it forges.
+    /// Kind of message that it forges.
     pub(super) forgery: Forgery,
-    /// It claims to belong to another run; else to no run.
+    /// Whether it claims to belong to another run; otherwise it has no run.
     pub(super) of_a_run: bool,
-    /// Share of the messages received that it forges.
+    /// Fraction of the received messages that it forges.
     pub(super) share: f64,
 }
 
-/// Everything that is done to a run.
+/// All faults of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Plan {
     /// Seed of the bus.
     pub(super) bus: u64,
     /// Faults of every topic.
     pub(super) faults: Faults,
-    /// By the count of exchanges before it: whatever the machine, it meets the run in the same state.
+    /// By the count of exchanges before it, so that the run is in the same state on every machine.
     pub(super) events: Vec<(Moment, Event)>,
     pub(super) strangers: Vec<Stranger>,
 }
 
-/// A moment of a run.
+/// The time of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Moment {
-    /// Samples that the recorder has seen.
+    /// Samples that the recorder has received.
     pub(super) recorded: u64,
 }
 
-/// Samples that a run of the scene records: moments are drawn from them, and some lie behind the end.
+/// Samples that a run of the scene records, from which times are drawn; some lie after the end.
 const SAMPLES: usize = 700;
 
 impl Plan {
-    /// Nothing happens.
+    /// No faults.
     pub(super) fn quiet() -> Self {
         Self { bus: 0, faults: Faults::default(), events: Vec::new(), strangers: Vec::new() }
     }
 
-    /// The run of a seed.
+    /// The plan for a seed.
     pub(super) fn of(seed: u64) -> Self {
         let mut dice = Dice::new(seed);
         let ms = |dice: &mut Dice, most: f64| Duration::from_secs_f64(1e-3 * most * dice.unit());
-        // A third of the runs has a good network, so that crashes and strangers meet fast runs, too.
+        // A third of the runs has a good network, so that crashes and strangers also affect fast runs.
         let bad = dice.below(3) > 0;
         let scale = if bad { dice.unit() } else { 0.0 };
         let faults =

@@ -1,4 +1,4 @@
-//! One process of the run, which may crash and be started again.
+//! One process of the run, which may crash and be restarted.
 
 use super::recorder::{MemoryRecorder, Record};
 use grainlab_dem_simulator::DemSimulator;
@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-/// Which process.
+/// The kind of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Recorder,
@@ -26,7 +26,7 @@ impl Kind {
     pub(super) const ALL: [Kind; 5] =
         [Kind::Recorder, Kind::Inversion, Kind::Analyzer, Kind::Servo, Kind::Simulator];
 
-    /// Its place in the run.
+    /// Its member number in the run.
     pub(super) fn member(self) -> u8 {
         1 + self as u8
     }
@@ -42,21 +42,21 @@ impl Kind {
     }
 }
 
-/// A node at work on its bus.
+/// A node running on its bus.
 pub(super) struct Process {
     pub(super) kind: Kind,
     /// `None` between a crash and the restart.
-    pub(super) alive: Option<(Box<dyn Node>, MemoryBus)>,
-    /// When it wants its next step at the latest.
+    pub(super) running: Option<(Box<dyn Node>, MemoryBus)>,
+    /// Latest time of its next step.
     pub(super) due: Duration,
-    /// It takes no step before this time.
+    /// Earliest time of its next step.
     pub(super) stopped_until: Duration,
-    /// When it is started again after a crash.
+    /// Time of its restart after a crash.
     pub(super) restart_at: Option<Duration>,
     pub(super) ended: Option<Exit>,
 }
 
-/// What a process is started with.
+/// Arguments of a process.
 pub(super) struct Start<'a> {
     pub(super) hub: &'a Hub,
     pub(super) run: RunId,
@@ -68,7 +68,7 @@ impl Process {
     pub(super) fn start(kind: Kind, with: &Start) -> Result<Self, NodeError> {
         let mut process = Self {
             kind,
-            alive: None,
+            running: None,
             due: Duration::ZERO,
             stopped_until: Duration::ZERO,
             restart_at: None,
@@ -78,7 +78,7 @@ impl Process {
         Ok(process)
     }
 
-    /// Starts its node, also again. A simulator continues from the last packing recorded.
+    /// Starts or restarts its node. A simulator continues from the last packing recorded.
     pub(super) fn begin(&mut self, with: &Start) -> Result<(), NodeError> {
         let names = Names::new(self.kind.name()).map_err(|e| NodeError::new(Exit::Usage, e.to_string()))?;
         let mut bus = with.hub.bus_as(names, Identity::member_of(with.run, self.kind.member()));
@@ -105,7 +105,7 @@ impl Process {
                 Box::new(simulator.map_err(|e| failed(&e))?)
             }
         };
-        self.alive = Some((node, bus));
+        self.running = Some((node, bus));
         self.due = with.hub.now();
         (self.stopped_until, self.restart_at, self.ended) = (Duration::ZERO, None, None);
         Ok(())

@@ -1,4 +1,4 @@
-//! What is recorded of a run in memory: by the rules of the recorder, without a file.
+//! The recording of a run in memory, by the rules of the recorder.
 
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
@@ -21,21 +21,21 @@ const REPRODUCIBLE: [Topic; 6] = [
     topics::MICROSTRUCTURE,
 ];
 
-/// What came of a run.
+/// The record of a run.
 #[derive(Debug, Default)]
 pub(super) struct Record {
     /// Whole bodies by topic, each once.
     bodies: BTreeMap<&'static str, Vec<Vec<u8>>>,
     /// The last run state.
     pub(super) state: Option<RunStateReading>,
-    /// Samples seen, repeats included.
+    /// Samples received, including repeats.
     pub(super) seen: u64,
-    /// Messages that contradict what was recorded.
+    /// Messages that contradict a recorded one.
     pub(super) contradictions: u64,
 }
 
 impl Record {
-    /// The last packing, and the state of the run in it.
+    /// The last packing, and the run state in it.
     pub(super) fn last_packing(&self) -> Option<(Packing, Vec<u8>)> {
         let message: msg::Packing = from_cdr(self.bodies.get(topics::PACKING.name)?.last()?).ok()?;
         Some((Packing::try_from(&message).ok()?, message.run_state))
@@ -55,8 +55,8 @@ impl Record {
         found.filter_map(|body| from_cdr::<msg::Microstructure>(body).ok()).any(|m| m.source_step == step)
     }
 
-    /// The first result that a finished run lacks: the structure of a packing, or the microstructure from its moduli. The
-    /// launcher ends such a run with exit 3.
+    /// The first result that a finished run lacks: the structure of a packing, or the microstructure from its
+    /// moduli. The launcher ends such a run with exit 3.
     pub(super) fn lacks(&self) -> Option<String> {
         let steps = |topic: &Topic, step: fn(&[u8]) -> Option<u64>| -> BTreeSet<u64> {
             self.bodies.get(topic.name).into_iter().flatten().filter_map(|body| step(body)).collect()
@@ -74,7 +74,8 @@ impl Record {
         })
     }
 
-    /// The first topic on which two records differ. Requests and answers have an order; results come when they come.
+    /// The first topic on which two records differ. Requests and answers have an order; results may arrive in
+    /// any order.
     pub(super) fn difference(&self, other: &Record) -> Option<&'static str> {
         let sorted = |record: &Record, name: &str| {
             let mut bodies = record.bodies.get(name).cloned().unwrap_or_default();

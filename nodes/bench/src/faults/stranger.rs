@@ -23,7 +23,7 @@ pub(super) struct Stranger {
 }
 
 impl Stranger {
-    /// Says something before anybody asks: an answer of zeros, an old result.
+    /// Publishes a message before any request: an answer of zeros, an old result.
     pub(super) fn join(hub: &Hub, run: RunId, plan: plan::Stranger, seed: u64) -> Result<Self, BusError> {
         let identity = match plan.of_a_run {
             true => Identity::member_of(RunId::named("another"), 1),
@@ -50,24 +50,24 @@ impl Stranger {
         self.bus.publish_about(self.output, body, about).map(drop)
     }
 
-    /// Forges a share of the messages received; true if any arrived.
+    /// Forges a fraction of the received messages; true if any arrived.
     pub(super) fn step(&mut self) -> Result<bool, BusError> {
-        let mut heard = false;
+        let mut received = false;
         while let Some(sample) = self.bus.take(self.input)? {
-            heard = true;
-            // Two strangers that forge what the other one forged would never come to an end.
+            received = true;
+            // Two strangers that forge each other's messages would never end.
             let of_the_run = run_of(&sample.info.writer.participant()) == Some(self.run);
             if !of_the_run || self.dice.unit() >= self.plan.share {
                 continue;
             }
             let by = 0.5 + self.dice.unit();
             if let Some(body) = forged(self.plan.forgery, &sample, by) {
-                // As a servo of its own would: about the request.
+                // Refers to the request, like the answer of a servo.
                 let about = (self.dice.below(2) == 0).then(|| sample.info.id());
                 self.publish(&body, about)?;
             }
         }
-        Ok(heard)
+        Ok(received)
     }
 }
 
@@ -75,7 +75,7 @@ fn decoded<T: Message>(sample: &Sample) -> Option<T> {
     from_cdr(&sample.body).ok()
 }
 
-/// Another message than this one, off by a factor.
+/// A message that differs from this one by a factor.
 fn forged(forgery: Forgery, sample: &Sample, by: f64) -> Option<Vec<u8>> {
     let scale = |values: &mut [f64]| values.iter_mut().for_each(|v| *v *= by);
     Some(match forgery {

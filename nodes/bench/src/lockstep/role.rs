@@ -1,16 +1,16 @@
-//! The parts that processes of the measurement take.
+//! The roles of the processes of the measurement.
 
 use clap::ValueEnum;
 
-/// What one process of the measurement does.
+/// The role of one process of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Role {
-    /// Asks, over our bus.
+    /// Sends requests over the bus of grainlab.
     Ping,
-    /// Answers, over our bus.
+    /// Answers over the bus of grainlab.
     Pong,
-    /// Asks, over bare ros2-client.
+    /// Sends requests over bare ros2-client.
     BarePing,
-    /// Answers, over bare ros2-client.
+    /// Answers over bare ros2-client.
     BarePong,
 }

@@ -10,10 +10,10 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-/// Time for a process to be up before the next one counts on it.
+/// Time for a process to start before the next one depends on it.
 const START: Duration = Duration::from_millis(1000);
 
-/// What a round with a recorder found.
+/// Results of a round with a recorder.
 pub(super) struct Recorded {
     /// Duration of each exchange.
     pub(super) micros: Vec<f64>,
@@ -21,7 +21,7 @@ pub(super) struct Recorded {
     pub(super) lost: u64,
 }
 
-/// A child that does not outlive its round.
+/// A child process that is ended with its round.
 struct Process(Child);
 
 impl Process {
@@ -38,7 +38,7 @@ impl Process {
         Self::start(domain, &["bench", "lockstep", "--role", role, "--exchanges", &exchanges])
     }
 
-    /// Waits for the end; its standard output.
+    /// Waits for the end; returns its standard output.
     fn output(mut self) -> Result<String, Failure> {
         let failed = |e: std::io::Error| Failure::failed(format!("a process of the measurement: {e}"));
         let text = self.0.stdout.take().map(std::io::read_to_string).transpose().map_err(failed)?;
@@ -50,20 +50,20 @@ impl Process {
     }
 
     fn interrupt(&self) {
-        // SAFETY: kill takes two integers. The child was not waited for, so the id is its own.
+        // SAFETY: kill takes two integers. The child was not waited for, so that its id has not been reused.
         unsafe { libc::kill(self.0.id() as i32, libc::SIGINT) };
     }
 }
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // Both fail only where the process has ended.
+        // Both fail only if the process has ended.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Two processes and a recorder, in a domain of their own.
+/// Two processes and a recorder, in a separate domain.
 pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     let domain = FreeDomain::take()?;
     let directory = TemporaryDirectory::new()?;
@@ -77,17 +77,17 @@ pub(super) fn recorded(exchanges: u64) -> Result<Recorded, Failure> {
     recorder.interrupt();
     recorder.output()?;
     let tallies = Recording::open(directory.0.join("run").as_path()).map_err(Failure::failed)?.ledger();
-    // What was said before the recorder was found belongs to the warm-up.
+    // Messages before the recorder was found belong to the warm-up.
     let (_, lost) = losses(&tallies.unwrap_or_default());
     Ok(Recorded { micros, lost })
 }
 
-/// Two processes without a recorder, in a domain of their own.
+/// Two processes without a recorder, in a separate domain.
 pub(super) fn unrecorded(exchanges: u64) -> Result<Vec<f64>, Failure> {
     pair(["pong", "ping"], exchanges)
 }
 
-/// Two processes over bare ros2-client, in a domain of their own.
+/// Two processes over bare ros2-client, in a separate domain.
 pub(super) fn bare(exchanges: u64) -> Result<Vec<f64>, Failure> {
     pair(["bare-pong", "bare-ping"], exchanges)
 }
@@ -104,7 +104,7 @@ fn parse(text: &str) -> Result<Vec<f64>, Failure> {
         .map_err(|e| Failure::failed(format!("a process of the measurement printed no times: {e}")))
 }
 
-/// Does what one process does.
+/// Runs one role.
 pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     let network = Network::from_env().map_err(Failure::usage)?;
     let failed = Failure::failed;
@@ -122,7 +122,7 @@ pub(super) fn role(role: Role, exchanges: u64) -> Result<Exit, Failure> {
     };
     if (micros.len() as u64) < exchanges {
         let count = micros.len();
-        return Err(Failure::failed(format!("the partner answered {count} of {exchanges} questions")));
+        return Err(Failure::failed(format!("the partner answered {count} of {exchanges} requests")));
     }
     print(&serde_json::to_string(&micros).map_err(|e| Failure::failed(e.to_string()))?)?;
     Ok(Exit::Done)
@@ -141,7 +141,7 @@ impl TemporaryDirectory {
 
 impl Drop for TemporaryDirectory {
     fn drop(&mut self) {
-        // What is left behind in the folder for temporary files does no harm.
+        // A folder that remains among temporary files does no harm.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

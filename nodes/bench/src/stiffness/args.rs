@@ -1,4 +1,4 @@
-//! What to measure, and how.
+//! The packings, methods and values to measure.
 
 use clap::ValueEnum;
 use grainlab_console::Format;
@@ -6,29 +6,29 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
-Without --packing it is one of 2,000 grains made by LAMMPS. Copies of a packing converge more easily than a packing of
-that size; their rows say so, and exponents never mix the two. A solve that fails has a row that says why.
+The default packing has 2,000 grains and was made by LAMMPS. Copies of a packing converge faster than a packing of that
+size; their rows are marked, and exponents never mix the two. The row of a failed solve has the reason.
 
 Examples:
-  Every method on 2,000 grains, with its picture (some seconds):
+  Every method on 2,000 grains, with a plot (some seconds):
     grainlab bench stiffness --all --out stiffness
-  How the cost grows, over packings of one's own and over copies of the first (minutes):
+  Growth of the cost over several packings and over copies of the first (minutes):
     grainlab bench stiffness --packing a --packing b --packing c --grains 16000,54000,128000 --out stiffness
-  A frictionless packing near isostaticity, where iterations become many:
+  A frictionless packing near isostaticity, where many iterations are needed:
     grainlab bench stiffness --packing recordings/runs/frictionless-1-1 --frictionless";
 
-/// Residual of the solve that others are measured by: the smallest that a solve is asked for.
+/// Residual of the reference solve: the smallest that a solve accepts.
 pub(super) const CONVERGED: f64 = 1e-13;
 
-/// What to measure, and how.
+/// The packings, methods and values to measure.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz. As often as there are
-    /// packings
+    /// Packing to measure: CSV with its sidecar, LAMMPS data or dump, or a recording; also as .gz. May be
+    /// repeated
     #[arg(long, value_name = "FILE")]
     pub(super) packing: Vec<PathBuf>,
-    /// Sizes of copies of the first packing: cubes of its own number of grains
+    /// Sizes of copies of the first packing: its number of grains times cubes
     #[arg(long, value_name = "N", value_delimiter = ',')]
     pub(super) grains: Vec<u64>,
     /// Relative residuals at which the iterations stop
@@ -37,19 +37,19 @@ pub struct Args {
     /// Strains of explicit probes, which take far longer
     #[arg(long, value_name = "STRAIN", value_delimiter = ',', value_parser = amplitude)]
     amplitudes: Vec<f64>,
-    /// Every method: probes of 1e-4 to 1e-8 too
+    /// Every method: also probes of 1e-4 to 1e-8
     #[arg(long, conflicts_with = "amplitudes")]
     all: bool,
-    /// Contacts without tangential springs, as of a packing made without friction
+    /// Contacts without tangential springs, as in a packing prepared without friction
     #[arg(long)]
     pub(super) frictionless: bool,
-    /// Grains up to which packings are solved directly: time grows with the square of their number
+    /// Largest number of grains for the direct solve: its time grows with the square of the number
     #[arg(long, value_name = "N", default_value_t = 4000)]
     pub(super) direct_up_to: u64,
-    /// Grains up to which packings are probed
+    /// Largest number of grains for probes
     #[arg(long, value_name = "N", default_value_t = 4000)]
     pub(super) probe_up_to: u64,
-    /// Repetitions of every case but the probes
+    /// Repetitions of every case except probes
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(super) repetitions: u32,
     /// Folder for stiffness.json and stiffness.svg
@@ -66,13 +66,13 @@ impl Args {
     }
 }
 
-/// How a stiffness is found.
+/// A method for the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Method {
     /// Every grain moves with the strain.
     Affine,
-    /// The same, and all grains spin alike.
+    /// The same with a uniform spin of all grains.
     MeanSpin,
     /// Conjugate gradients on the frozen network.
     Cg,
@@ -93,7 +93,7 @@ impl Method {
         }
     }
 
-    /// In a legend.
+    /// Its name in a legend.
     pub(super) fn explained(self) -> &'static str {
         match self {
             Self::Affine => "affine motion",

@@ -14,13 +14,13 @@ use grainlab_micromechanics::network::{
 use grainlab_micromechanics::probe::{StrainProbe, strain_probe};
 use grainlab_node_kit::Exit;
 
-/// Residual of the direct solve: the factorisation alone comes close to it.
+/// Residual of the direct solve: the factorisation alone almost reaches it.
 const DIRECT: f64 = 1e-12;
 
-/// A stiffness, Pa, and the iterations or steps that it took.
+/// A stiffness, Pa, and the number of iterations or steps.
 type Found = Result<(Stiffness, Option<u32>), String>;
 
-/// Rows of the packing, in the order of time that they take.
+/// Rows of the packing, in the order of increasing time.
 pub(super) fn rows(packing: &Packing, replicated: bool, args: &Args) -> Result<Vec<Row>, Failure> {
     say!("grainlab: {} grains, {} contacts", packing.grains(), packing.contacts.len());
     let springs = if args.frictionless { Springs::Normal } else { Springs::NormalAndTangential };
@@ -89,7 +89,7 @@ impl Bench<'_> {
         Ok((found.relaxed, Some(found.iterations)))
     }
 
-    /// What errors are measured against, with its name: near isostaticity only the factorisation comes so far.
+    /// The reference for errors, with its name: near isostaticity only the factorisation converges that far.
     fn converged(&self, direct: bool) -> Result<(Stiffness, &'static str), Failure> {
         let by = |solver, name| self.solved(solver, CONVERGED).map(|found| (found.0, name));
         let iterated = by(Solver::Iterative, "frozen network by cg at 1e-13");
@@ -109,7 +109,7 @@ impl Bench<'_> {
     }
 }
 
-/// Median CPU time of doing it so often, s, and what came of it.
+/// Median CPU time of several repetitions, s, and the result.
 fn timed(repetitions: u32, work: impl Fn() -> Found) -> Result<(f64, Found), Failure> {
     let mut times = Vec::new();
     loop {

@@ -5,7 +5,7 @@ use super::report::{Report, Row};
 use clap::ValueEnum;
 use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 
-/// Errors below are rounding, and drawn here.
+/// Smaller errors are rounding, and drawn at this value.
 const ROUNDING: f64 = 1e-16;
 
 /// The plot as SVG; each point has a tooltip.
@@ -13,7 +13,7 @@ pub(super) fn svg(report: &Report) -> String {
     let sizes = sizes(report);
     let series = |size: &(bool, usize), method: &Method| {
         let rows = report.rows.iter().filter(|r| r.method == *method && key(r) == *size);
-        // The values of the smallest and the largest packing stand beside their points.
+        // The values of the smallest and the largest packing are labelled.
         let labelled = [sizes.first(), sizes.last()].contains(&Some(size));
         Series {
             colour: Some(*method as usize),
@@ -50,7 +50,7 @@ fn point(row: &Row, labelled: bool) -> Option<Point> {
     Some(Point { tooltip: Some(tooltip), label, ..Point::at(row.seconds, error.max(ROUNDING)) })
 }
 
-/// What has a shape of its own.
+/// Points with the same shape.
 fn key(row: &Row) -> (bool, usize) {
     (row.replicated, row.grains)
 }

@@ -1,4 +1,4 @@
-//! Rows and the exponents of the CPU time, as JSON, as a table, as CSV.
+//! Rows and the exponents of the CPU time, as JSON, as a text table, as CSV.
 
 use super::args::Method;
 use crate::numbers::rounded;
@@ -17,8 +17,8 @@ const NOTES: [&str; 3] = [
     "seconds: CPU time of one thread for all 36 entries, network and factorisation included; median over the repetitions, \
      probes once",
     "error: largest difference of an entry over C11, against the frozen network solved to 1e-13, by cg or, where that \
-     fails, directly. The probe's contacts neither slide nor scale their tangential force: the network is its linear limit, \
-     but for terms of the order of the pressure and for what moves while the packing first comes to rest",
+     fails, directly. Contacts under the probe neither slide nor scale their tangential force: the network is its linear limit, \
+     except for terms of the order of the pressure and for the motion while the packing first comes to rest",
     "exponent: of N in the CPU time, least squares over the logarithms; packings prepared at their size and copies of one \
      are never mixed: copies converge more easily",
 ];
@@ -30,11 +30,11 @@ pub(super) struct Row {
     /// Relative residual of a solve, strain of a probe.
     pub(super) value: Option<f64>,
     pub(super) grains: usize,
-    /// Whether a packing was repeated to come to this size.
+    /// Whether the packing is a repetition of a smaller one.
     pub(super) replicated: bool,
     pub(super) coordination: f64,
     pub(super) seconds: f64,
-    /// Of the solve, or solver steps of the probe.
+    /// Iterations of the solve, or solver steps of the probe.
     pub(super) iterations: Option<u32>,
     pub(super) error: Error,
     /// Why there is no result.
@@ -45,7 +45,7 @@ pub(super) struct Row {
 pub(super) struct Error {
     /// Largest entry of the difference over C11.
     pub(super) stiffness: Option<f64>,
-    /// What it is the difference from.
+    /// The reference of the error.
     pub(super) against: &'static str,
 }
 
@@ -63,7 +63,7 @@ pub(super) fn report(rows: Vec<Row>) -> Report {
     Report { exponents: exponents(&rows), rows, notes: NOTES }
 }
 
-/// Of every method and value that ran at two sizes at least.
+/// For every method and value with at least two sizes.
 fn exponents(rows: &[Row]) -> Vec<Exponent> {
     let key = |r: &Row| (r.method, r.value, r.replicated);
     let done: Vec<&Row> = rows.iter().filter(|r| r.failure.is_none()).collect();
@@ -84,7 +84,7 @@ fn exponents(rows: &[Row]) -> Vec<Exponent> {
     found
 }
 
-/// Least squares slope; none without two different abscissas.
+/// Least-squares slope; `None` without two different abscissas.
 fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
@@ -93,7 +93,7 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (spread > 1e-9).then(|| common / spread)
 }
 
-/// For people: rows, exponents, what they mean.
+/// As text: rows, exponents, notes.
 pub(super) fn text(report: &Report) -> String {
     let mut text = table(&report.rows, rounded).text();
     for row in &report.rows {
@@ -118,7 +118,7 @@ pub(super) fn text(report: &Report) -> String {
     text
 }
 
-/// The rows alone.
+/// Only the rows, as CSV.
 pub(super) fn csv(report: &Report) -> String {
     table(&report.rows, exact).csv()
 }

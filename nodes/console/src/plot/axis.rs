@@ -1,26 +1,26 @@
-//! From values to places, and the marks of an axis.
+//! Positions of values, and the tick marks of an axis.
 
 use super::figure::Scale;
 
-/// Room beyond the outermost values, share of what lies between them.
+/// Margin beyond the outermost values, fraction of the range.
 const MARGIN: f64 = 0.03;
 
-/// A logarithmic axis is at least this factor longer than its values on either side.
+/// Least ratio of an end of a logarithmic axis to the outermost value.
 const LEAST_FACTOR: f64 = 1.25;
 
-/// On an axis of less than a decade every digit is marked.
+/// An axis of less than a decade has a mark at every digit.
 const ONE_DECADE: f64 = 1.0;
 
-/// More decades than these are marked by their powers of ten alone…
+/// With more decades than this, only powers of ten are marked…
 const FEW_DECADES: f64 = 3.5;
 
-/// …and more than these by every second one.
+/// …and with more than this, every second one.
 const MANY_DECADES: f64 = 10.0;
 
-/// Marks of a linear axis, about.
+/// Approximate number of marks of a linear axis.
 const MARKS: f64 = 6.0;
 
-/// Values from the one end of an axis to the other, and where they lie in the picture.
+/// The range of an axis, and its position in the plot.
 pub(super) struct Range {
     low: f64,
     high: f64,
@@ -30,7 +30,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// Of an axis between these places, a little longer than its values.
+    /// An axis between these positions, slightly longer than the range of its values.
     pub(super) fn of(values: impl Iterator<Item = f64>, scale: Scale, [from, to]: [f64; 2]) -> Self {
         let fits = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
         let ends = values.filter(fits).fold(None, |ends: Option<(f64, f64)>, v| {
@@ -51,12 +51,12 @@ impl Range {
         Self { low, high, scale, from, to }
     }
 
-    /// Whether a value lies on the axis.
+    /// Whether a value is on the axis.
     pub(super) fn has(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// The place of a value.
+    /// The position of a value.
     pub(super) fn at(&self, value: f64) -> f64 {
         let share = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -65,7 +65,7 @@ impl Range {
         self.from + (self.to - self.from) * share
     }
 
-    /// Values that are marked, and how they are written.
+    /// Marked values with their labels.
     pub(super) fn marks(&self) -> Vec<(f64, String)> {
         match self.scale {
             Scale::Linear => self.linear_marks(),
@@ -89,7 +89,7 @@ impl Range {
         numbers.map(mark).collect()
     }
 
-    /// 1, 2 and 5 of every decade in range, more on a short axis and fewer on a long one.
+    /// 1, 2 and 5 of every decade in the range, more on a short axis and fewer on a long one.
     fn log_marks(&self) -> Vec<(f64, String)> {
         let span = (self.high / self.low).log10();
         let parts: &[f64] = match span {
@@ -105,7 +105,7 @@ impl Range {
     }
 }
 
-/// One significant digit, as people write it.
+/// A number with one significant digit.
 fn power(value: f64) -> String {
     if (1e-3..1e5).contains(&value) {
         format!("{}", (value * 1e4).round() / 1e4)

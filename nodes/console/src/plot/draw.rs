@@ -1,4 +1,4 @@
-//! The elements of a picture. Colours are classes, so that one style sheet holds those of a theme.
+//! The elements of a plot. Colours are classes, so that one style sheet contains those of a theme.
 
 use super::axis::Range;
 use super::figure::{Entry, Line, Marker, Series, Theme};
@@ -6,7 +6,7 @@ use super::labels::Area;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
-/// Width and height of the picture.
+/// Width and height of the plot.
 const PICTURE: [f64; 2] = [860.0, 560.0];
 
 /// Left, top, right and bottom of the axes.
@@ -18,7 +18,7 @@ pub(super) const HORIZONTAL: [f64; 2] = [FRAME[0], FRAME[2]];
 /// Ends of the vertical axis.
 pub(super) const VERTICAL: [f64; 2] = [FRAME[3], FRAME[1]];
 
-/// Distinct for the colour-blind (Okabe and Ito, and two more), dark enough on white.
+/// Distinct under colour blindness (Okabe and Ito, and two more), dark enough on white.
 const ON_WHITE: [&str; Series::COLOURS] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
 
@@ -29,10 +29,10 @@ const ON_DARK: [&str; Series::COLOURS] =
 /// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
 
-/// Centre of the keys of the legend, and the left end of its texts.
+/// Centre of the symbols of the legend, and the left end of its texts.
 const LEGEND: [f64; 2] = [FRAME[2] + 36.0, FRAME[2] + 50.0];
 
-/// What a point looks like.
+/// The style of a point.
 #[derive(Clone, Copy)]
 pub(super) struct Key {
     pub(super) marker: Marker,
@@ -40,11 +40,11 @@ pub(super) struct Key {
     pub(super) hollow: bool,
 }
 
-/// A picture that is being drawn.
+/// A plot under construction.
 pub(super) struct Drawing(String);
 
 impl Drawing {
-    /// With a title and a line that explains it.
+    /// With a title and a subtitle.
     pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
         let [width, height] = PICTURE;
         let mut drawing = Self(format!(
@@ -58,7 +58,7 @@ impl Drawing {
         drawing
     }
 
-    /// The whole.
+    /// The complete SVG.
     pub(super) fn end(mut self) -> String {
         self.0 += "</svg>\n";
         self.0
@@ -85,7 +85,7 @@ impl Drawing {
         self.text([20.0, middle], "middle", &turned, up);
     }
 
-    /// The line of a series through these places.
+    /// The line of a series through these positions.
     pub(super) fn line(&mut self, series: &Series, places: &[[f64; 2]]) {
         let (Some(line), Some((first, rest))) = (series.line, places.split_first()) else { return };
         let mut path = format!("M {:.1} {:.1}", first[0], first[1]);
@@ -117,7 +117,7 @@ impl Drawing {
         );
     }
 
-    /// A point, with what its tooltip says.
+    /// A point with its tooltip.
     pub(super) fn marker(&mut self, [x, y]: [f64; 2], key: Key, tooltip: &str) {
         let class = match (key.marker, key.hollow) {
             (Marker::Star, _) => "star".to_owned(),
@@ -137,13 +137,13 @@ impl Drawing {
         let _ = writeln!(self.0, "<{element} {shape} class=\"{class}\">{title}</{element}>");
     }
 
-    /// A small text whose left and bottom end is given.
+    /// A small text with its lower left corner.
     pub(super) fn label(&mut self, at: [f64; 2], text: &str, colour: Option<usize>) {
         let more = format!("class=\"{}\" fill=\"currentColor\" font-size=\"10\"", class(colour));
         self.text(at, "start", &more, text);
     }
 
-    /// What the colours and shapes mean.
+    /// The legend.
     pub(super) fn legend(&mut self, entries: &[Entry]) {
         let [x, beside] = LEGEND;
         let mut y = FRAME[1] + 10.0;

@@ -1,19 +1,19 @@
-//! What is drawn.
+//! The contents of a plot.
 
 /// A plot: series over two axes, and a legend beside them.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// In large letters above.
+    /// The title.
     pub title: String,
-    /// What explains it, below the title.
+    /// The subtitle.
     pub subtitle: String,
-    /// From left to right.
+    /// The horizontal axis.
     pub x: Axis,
-    /// From bottom to top.
+    /// The vertical axis.
     pub y: Axis,
-    /// Drawn in this order: later ones lie on top.
+    /// In the order of drawing: later ones are on top.
     pub series: Vec<Series>,
-    /// From top to bottom.
+    /// The legend, from top to bottom.
     pub legend: Vec<Entry>,
 }
 
@@ -22,7 +22,7 @@ pub struct Figure {
 pub struct Axis {
     /// Name and unit.
     pub name: String,
-    /// How values are spaced.
+    /// Spacing of the values.
     pub scale: Scale,
 }
 
@@ -32,13 +32,13 @@ impl Axis {
         Self { name: name.into(), scale: Scale::Linear }
     }
 
-    /// A logarithmic axis. What is not above zero is left out.
+    /// A logarithmic axis. Values that are not positive are left out.
     pub fn log(name: impl Into<String>) -> Self {
         Self { name: name.into(), scale: Scale::Log }
     }
 }
 
-/// How the values of an axis are spaced.
+/// The spacing of the values of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal differences are equal distances.
@@ -57,34 +57,34 @@ pub struct Series {
     pub marker: Option<Marker>,
     /// Whether points are drawn as outlines.
     pub hollow: bool,
-    /// The line through them, if there is one.
+    /// The line through the points, if any.
     pub line: Option<Line>,
-    /// In the order of the line.
+    /// The points, in the order of the line.
     pub points: Vec<Point>,
 }
 
 impl Series {
-    /// Colours that differ from one another; higher numbers begin anew.
+    /// Number of different colours; higher numbers start over.
     pub const COLOURS: usize = 9;
 }
 
 /// One point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Along the horizontal axis.
+    /// Value on the horizontal axis.
     pub x: f64,
-    /// Along the vertical axis.
+    /// Value on the vertical axis.
     pub y: f64,
     /// Half length of the vertical error bar.
     pub error: Option<f64>,
-    /// What it is, shown where the pointer rests on it.
+    /// Text of its tooltip.
     pub tooltip: Option<String>,
-    /// Text beside it, left out where there is no room.
+    /// Label, left out if there is no room.
     pub label: Option<String>,
 }
 
 impl Point {
-    /// A point without anything else.
+    /// A point with nothing else.
     pub fn at(x: f64, y: f64) -> Self {
         Self { x, y, ..Self::default() }
     }
@@ -104,24 +104,24 @@ impl Point {
 pub enum Marker {
     /// A disc.
     Circle,
-    /// A square on its side.
+    /// A square standing on a side.
     Square,
-    /// A triangle on its side.
+    /// A triangle standing on a side.
     Triangle,
-    /// A square on its corner.
+    /// A square standing on a corner.
     Diamond,
-    /// A triangle on its corner.
+    /// A triangle standing on a corner.
     TriangleDown,
     /// A pentagon.
     Pentagon,
     /// A hexagon.
     Hexagon,
-    /// A large red star, for the one point that others are compared with.
+    /// A large red star, for the reference point.
     Star,
 }
 
 impl Marker {
-    /// A shape for each of several sets; higher numbers begin anew.
+    /// A shape for each of several sets; higher numbers start over.
     pub fn of(set: usize) -> Self {
         const SHAPES: [Marker; 7] = [
             Marker::Circle,
@@ -136,12 +136,12 @@ impl Marker {
     }
 }
 
-/// How points are joined.
+/// The line between points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
     /// By straight lines.
     Straight,
-    /// By straight lines so faint that they only guide the eye.
+    /// By faint straight lines that only guide the eye.
     Faint,
     /// By steps, first across and then up or down.
     Steps,
@@ -154,13 +154,13 @@ pub enum Entry {
     Colour(usize, String),
     /// A shape, filled or hollow, in a colour or grey.
     Shape(Marker, Option<usize>, bool, String),
-    /// Words alone.
+    /// Only text.
     Note(String),
-    /// Nothing.
+    /// An empty line.
     Gap,
 }
 
-/// The paper.
+/// The theme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Theme {
     /// Dark on white.
@@ -168,6 +168,6 @@ pub enum Theme {
     Light,
     /// Light on dark.
     Dark,
-    /// Whichever of both the reader's system asks for.
+    /// That of the reader's system.
     System,
 }

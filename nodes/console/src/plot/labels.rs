@@ -1,26 +1,27 @@
 //! Texts beside points, where there is room: a label never lies on a marker or on another label.
 
-/// Half the width of what is kept free around a point.
+/// Half the width of the free area around a point.
 const MARKER: f64 = 5.0;
 
 /// Size of the letters: width of one, height of all.
 const LETTER: [f64; 2] = [6.0, 10.0];
 
-/// Labels may reach this far beyond the right end of the axes.
+/// Distance by which labels may extend beyond the right end of the axes.
 const BEYOND: f64 = 20.0;
 
-/// Where a label is tried, from its point: left end where the first number is positive, else right end; bottom.
+/// Positions tried for a label, relative to its point: the left end if the first number is positive, else the
+/// right end; bottom.
 const BESIDE: [[f64; 2]; 6] = [[8.0, 3.5], [-8.0, 3.5], [6.0, -6.0], [-6.0, -6.0], [6.0, 15.0], [-6.0, 15.0]];
 
 /// A rectangle: left, top, right, bottom.
 pub(super) type Area = [f64; 4];
 
-/// What is kept free around a point.
+/// The free area around a point.
 pub(super) fn around([x, y]: [f64; 2]) -> Area {
     [x - MARKER, y - MARKER, x + MARKER, y + MARKER]
 }
 
-/// What is kept free along steps through these places.
+/// The free areas along steps through these positions.
 pub(super) fn along_steps(places: &[[f64; 2]]) -> Vec<Area> {
     let between = |a: f64, b: f64| (a.min(b) - 1.0, a.max(b) + 1.0);
     let areas = places.windows(2).flat_map(|pair| {
@@ -31,7 +32,7 @@ pub(super) fn along_steps(places: &[[f64; 2]]) -> Vec<Area> {
     areas.collect()
 }
 
-/// The labels that have room within `frame`, each with its left and bottom end; `taken` are the areas of markers.
+/// The labels that fit into `frame`, each with its lower left corner; `taken` are the areas of markers.
 pub(super) fn place<'a, T: Copy>(
     labels: &[([f64; 2], &'a str, T)],
     mut taken: Vec<Area>,

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::time::Duration;
 
-/// What "byte-identical" is said of.
+/// The reproducible topics.
 pub(crate) const REPRODUCIBLE: [Topic; 6] = [
     topics::STRESS,
     topics::STRAIN_RATE,
@@ -26,14 +26,14 @@ pub(crate) const REPRODUCIBLE: [Topic; 6] = [
     topics::MICROSTRUCTURE,
 ];
 
-/// Virtual time that no run needs.
+/// Virtual time that exceeds every run.
 pub(crate) const FOREVER: Duration = Duration::from_secs(10_000);
 
 pub(crate) fn scene() -> Scene {
     Scene::parse(include_str!("tiny.toml")).expect("a valid scene")
 }
 
-/// Whole bodies by topic, in the order in which they came.
+/// Whole bodies by topic, in the order of arrival.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Record(pub(crate) BTreeMap<&'static str, Vec<Vec<u8>>>);
 
@@ -50,7 +50,7 @@ impl Record {
         self.bodies(topic).last().map(|body| from_cdr(body).expect("a message of the topic's type"))
     }
 
-    /// The reproducible topics, every body once, where it came first.
+    /// The reproducible topics, every body once, at its first arrival.
     pub(crate) fn without_repeats(&self) -> Record {
         let once = |bodies: &[Vec<u8>]| {
             let mut seen = std::collections::BTreeSet::new();
@@ -64,7 +64,7 @@ impl Record {
         REPRODUCIBLE.iter().map(|t| t.name).find(|name| self.0.get(name) != other.0.get(name))
     }
 
-    /// A microstructure of the last packing of a finished run is there.
+    /// Whether a microstructure of the last packing of a finished run exists.
     pub(crate) fn complete(&self) -> bool {
         let Some(end) = self.last::<RunState>(&topics::RUN_STATE) else { return false };
         let last = self.last::<Microstructure>(&topics::MICROSTRUCTURE).map(|m| m.source_step);
@@ -72,7 +72,7 @@ impl Record {
     }
 }
 
-/// Records every topic of ours.
+/// Records all topics.
 pub(crate) struct Recorder {
     subscriptions: Vec<(&'static str, SubscriptionId)>,
     record: Rc<RefCell<Record>>,
@@ -102,7 +102,7 @@ impl Node for Recorder {
     }
 }
 
-/// A network with the four nodes' names, and what is recorded on it.
+/// A network with the names of the four nodes, and a recorder.
 pub(crate) struct Bench {
     pub(crate) hub: Hub,
     pub(crate) record: Rc<RefCell<Record>>,
@@ -113,7 +113,7 @@ impl Bench {
         Self { hub: Hub::new(seed), record: Rc::default() }
     }
 
-    /// A bench on which much gets lost, comes twice, and comes late.
+    /// A bench whose network loses, repeats and delays messages.
     pub(crate) fn faulty(seed: u64) -> Self {
         let bench = Self::new(seed);
         let faults = Faults { drop: 0.1, duplicate: 0.2, delay: Duration::from_millis(30) };
@@ -181,14 +181,14 @@ impl Bench {
         let complete = run_until(&self.hub, &mut actors, FOREVER, |_| self.record.borrow().complete());
         let ends: Vec<_> = actors.iter().filter_map(Actor::ended).collect();
         assert!(complete, "the run did not end; nodes ended: {ends:?}");
-        // What is still on its way belongs to the record.
+        // Messages in transit belong to the record.
         let end = self.hub.now() + Duration::from_secs(1);
         run_until(&self.hub, &mut actors, end, |_| false);
         self.record.take()
     }
 }
 
-/// How an actor ended.
+/// The end of an actor.
 pub(crate) fn exit_of(actor: &Actor) -> Option<Exit> {
     actor.ended().map(|end| end.as_ref().map_or_else(NodeError::exit, |exit| *exit))
 }

@@ -1,4 +1,4 @@
-//! Messages that must not be believed, and runs that cannot go on.
+//! Invalid messages, and runs that cannot continue.
 
 use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_core::{ComponentControl, Packing};
@@ -10,14 +10,14 @@ use grainlab_node_kit::{Actor, run_until};
 use grainlab_node_kit::{Bus, Demand, Exit, Health, Next, Node, NodeError, Publisher, Subscription};
 use std::time::Duration;
 
-/// A servo that answers `honest` requests as it should and then something else.
+/// A servo that answers `honest` requests correctly and then invalidly.
 struct BadServo {
     stress: Subscription<Stress>,
     strain_rate: Publisher<StrainRate>,
     honest: u64,
     lies: u32,
     lie: f64,
-    /// Also where the component is not the servo's to choose.
+    /// Also in a component that the servo must not choose.
     anywhere: bool,
 }
 
@@ -50,13 +50,13 @@ impl Node for BadServo {
     }
 }
 
-/// How a run with this servo ends, if it does within some seconds, and what was recorded.
+/// The end of a run with this servo, if it ends within some seconds, and its record.
 fn run_with(honest: u64, lies: u32, lie: f64) -> (Option<Exit>, Record) {
     let (exit, record, _) = run_ahead_with(honest, lies, lie, true);
     (exit, record)
 }
 
-/// The same, computed ahead of the answers or not, and how many answers were foreseen, of all.
+/// The same with or without speculative steps, with the number of answers predicted and the total.
 fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit>, Record, [u64; 2]) {
     let bench = Bench::new(0);
     let (mut recorder, recorder_bus) = bench.recorder();
@@ -72,7 +72,7 @@ fn run_ahead_with(honest: u64, lies: u32, lie: f64, ahead: bool) -> (Option<Exit
         let end = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
         actors[1].ended().is_some() || end.is_some_and(|s| s.state == RunState::FINISHED)
     });
-    // What the simulator said last is still on its way.
+    // The last messages of the simulator are still in transit.
     run_until(&bench.hub, &mut actors[..1], bench.hub.now(), |_| false);
     let exit = exit_of(&actors[1]);
     drop(actors);
@@ -89,7 +89,7 @@ fn computing_ahead_of_the_answers_changes_no_message_whether_they_are_foreseen_o
     assert_eq!(foreseen, [exchanges; 2], "every answer is foreseen");
     assert!(plain == ahead, "run_state and repetitions included");
 
-    // Another law is obeyed, and once is enough to know it.
+    // Another law is applied, and one answer suffices to detect it.
     let (_, plain, _) = run_ahead_with(300, 5, -0.7, false);
     let (_, ahead, foreseen) = run_ahead_with(300, 5, -0.7, true);
     let first = plain.messages::<Stress>(&topics::STRESS).into_iter().find(|stress| {
@@ -112,7 +112,7 @@ fn ten_answers_that_are_not_numbers_end_the_run_with_its_state_saved() {
     assert!(end.message.contains("rate[2] (zz) = NaN"), "{}", end.message);
     let saved: msg::Packing = record.last(&topics::PACKING).unwrap();
     assert_eq!((saved.step, end.last_packing_step), (end.step, end.step));
-    // The state is that of request 200: it can be resumed, and gives what an undisturbed run gives.
+    // The state is that of request 200: resumed, it gives the result of an undisturbed run.
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let resume = (Packing::try_from(&saved).unwrap(), saved.run_state);
     let resumed = Bench::new(0).whole_run(&Settings::default(), Some(resume)).without_repeats();
@@ -138,7 +138,7 @@ fn nine_answers_that_are_not_numbers_change_no_byte() {
 
 #[test]
 fn ten_answers_beyond_the_rate_limit_end_the_run_with_its_state_saved() {
-    // Obeyed, 10⁸ per second would move a grain by more than its size within one step of some 10⁻⁸ s.
+    // Applied, 10⁸ per second would move a grain by more than its size within one step of some 10⁻⁸ s.
     let (exit, record) = run_with(400, u32::MAX, -1e8);
     assert_eq!(exit, Some(Exit::PhysicsInvalid));
     let end: RunState = record.last(&topics::RUN_STATE).unwrap();
@@ -149,7 +149,7 @@ fn ten_answers_beyond_the_rate_limit_end_the_run_with_its_state_saved() {
 }
 
 #[test]
-fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_lives() {
+fn a_packing_with_an_index_out_of_range_is_refused_and_the_analyzer_continues() {
     let record = Bench::new(0).whole_run(&Settings::default(), None);
     let good: msg::Packing = record.last(&topics::PACKING).unwrap();
     let mut broken = good.clone();

@@ -1,4 +1,4 @@
-//! Nodes that come, go, and come again in the middle of a run.
+//! Nodes that join, leave, and return in the middle of a run.
 
 use crate::bench::{Bench, FOREVER, Record, exit_of, scene};
 use grainlab_core::Packing;
@@ -36,8 +36,8 @@ fn a_fresh_servo_in_the_middle_of_a_run_changes_no_byte() {
     ];
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 300));
     actors.pop();
-    let death = bench.hub.now();
-    run_until(&bench.hub, &mut actors, death + Duration::from_secs(3), |_| false);
+    let killed = bench.hub.now();
+    run_until(&bench.hub, &mut actors, killed + Duration::from_secs(3), |_| false);
     assert!(!bench.record.borrow().complete(), "the simulator waits");
     let (mut second, second_bus) = bench.servo();
     actors.push(Actor::new(&mut second, second_bus));
@@ -60,7 +60,7 @@ fn a_run_resumed_from_any_packing_continues_bit_for_bit() {
     }
 }
 
-/// A simulator that is asked to stop before its n-th step.
+/// A simulator that is stopped before its n-th step.
 struct Stopped {
     simulator: DemSimulator,
     steps_left: u32,
@@ -163,7 +163,8 @@ fn a_run_waits_for_the_readers_it_was_told_to_wait_for() {
 fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     let clean = Bench::new(0).whole_run(&Settings::default(), None).without_repeats();
     let bench = Bench::new(0);
-    // The intruder joins first, so that its GUID is the smaller one: who runs already stays nevertheless.
+    // The intruder joins first, so that its GUID is the smaller one; nevertheless the running simulator
+    // continues.
     let mut intruder_bus = bench.bus("dem_simulator");
     let (mut recorder, recorder_bus) = bench.recorder();
     let (mut analyzer, analyzer_bus) = bench.analyzer();
@@ -177,7 +178,7 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
         Actor::new(&mut servo, servo_bus),
         Actor::new(&mut simulator, simulator_bus),
     ];
-    // Delays give the intruder time to look around while the run lasts.
+    // Delays give the intruder time for its check while the run lasts.
     bench.hub.set_faults("/stress", Faults { delay: Duration::from_millis(20), ..Default::default() });
     assert!(run_until(&bench.hub, &mut actors, FOREVER, |_| requests(&bench.record.borrow()) > 100));
     let mut intruder = DemSimulator::new(&mut intruder_bus, scene(), None, Settings::default()).unwrap();
@@ -189,7 +190,7 @@ fn a_second_simulator_ends_and_the_first_one_does_not_notice() {
     let ours = actors[4].bus().published()[0].writer.to_string();
     assert!(message.contains(&ours) && message.contains("ROS_DOMAIN_ID"), "{message}");
     actors.pop();
-    // The last request may still be under way when its result is there.
+    // The last request may still be in transit when its result is there.
     let all = clean.bodies(&topics::STRESS).len();
     let whole =
         |record: &Record| record.complete() && record.without_repeats().bodies(&topics::STRESS).len() >= all;

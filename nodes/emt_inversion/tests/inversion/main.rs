@@ -1,4 +1,4 @@
-//! The inversion node and its messages, with the first row of the paper's Table III.
+//! The inversion node and its messages, for the first row of the paper's Table III.
 
 mod moduli;
 mod node;
@@ -12,7 +12,7 @@ use grainlab_msgs::msg::{ElasticStiffness, Estimate, Microstructure, Moduli, Str
 use grainlab_msgs::stamp;
 use grainlab_msgs::std_msgs::Header;
 
-/// Sample S1 as an instrument gives it: k = 5.73, k̂ = 5.63, ε = .016.
+/// Sample S1 as measured by an instrument: k = 5.73, k̂ = 5.63, ε = .016.
 fn s1() -> Moduli {
     Moduli {
         header: Header { stamp: stamp(0.125), frame_id: "cell".into() },
@@ -30,12 +30,12 @@ fn s1() -> Moduli {
     }
 }
 
-/// A stiffness as the analyzer sends it, of which an inversion takes the tensor alone.
+/// A stiffness as published by the analyzer; an inversion uses only the tensor.
 fn sent(stiffness: &grainlab_core::Stiffness) -> Vec<ElasticStiffness> {
     vec![ElasticStiffness { stiffness: stiffness.row_major(), ..ElasticStiffness::default() }]
 }
 
-/// Of model `ratio`, as every reader takes it.
+/// The estimate of model `ratio`, checked like by any reader.
 fn corrected(moduli: &Moduli, settings: &Settings) -> Estimate {
     of_ratio(microstructure_message(moduli, settings).unwrap())
 }

@@ -1,8 +1,9 @@
 use crate::{corrected, of_ratio, s1, sent};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3};
-use grainlab_emt::{Calibration, Conditions, Measured, Modulus, Quantity, StrainRatio, Structure};
+use grainlab_emt::{Calibration, Conditions, Measured, Modulus, StrainRatio};
 use grainlab_emt_inversion::{Axis, Settings, microstructure_message};
-use grainlab_msgs::boundary::{DATA, MicrostructureReading, QUANTITIES};
+use grainlab_msgs::boundary::{DATA, MicrostructureReading};
 use grainlab_msgs::geometry_msgs::Vector3;
 use grainlab_msgs::msg::{Estimate, Moduli, StrainRatios};
 use nalgebra::Rotation3;
@@ -16,7 +17,7 @@ pub(crate) fn s1_medium() -> Stiffness {
     TransverseIsotropy { c11, c12, c13, c33, g13: m.g13[0], g12: m.g12[0], residual: 0.0 }.stiffness()
 }
 
-/// S1 with the whole stiffness of that.
+/// S1 with the whole stiffness of that medium.
 pub(crate) fn s1_stiffness() -> Moduli {
     Moduli { stiffness: sent(&s1_medium()), ..s1() }
 }
@@ -26,8 +27,7 @@ fn with_error(modulus_error: f64) -> Settings {
 }
 
 #[test]
-fn the_words_of_the_wire_are_those_of_the_kernel() {
-    assert_eq!(grainlab_emt::Quantity::ALL.map(grainlab_emt::Quantity::name), QUANTITIES);
+fn names_in_messages_are_those_of_the_kernel() {
     assert_eq!(grainlab_emt::INPUT_NAMES, DATA);
 }
 
@@ -51,7 +51,7 @@ fn table_iii_comes_back_with_header_step_source_and_models_in_order() {
     assert_eq!(e.status, Estimate::STATUS_OK);
 }
 
-/// Each fed with what it predicts itself, as a whole stiffness where it predicts one.
+/// Each model with the moduli that it predicts, as a whole stiffness if it predicts one.
 #[test]
 fn every_model_finds_the_structure_it_was_given_through_the_message() {
     let assumed = [5.2, 5.25, 5.4, 0.05, 0.04];
@@ -72,8 +72,8 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
             microstructure_message(moduli, &Settings::default()).unwrap().estimates.remove(i)
         };
         let calibration = Calibration::builtin(&answer(&m).calibration).unwrap();
-        let mut structure = Structure::default();
-        for (q, range) in Quantity::ALL.into_iter().zip(model.domain(calibration).structure) {
+        let mut structure = Microstructure::default();
+        for (q, range) in InferredQuantity::ALL.into_iter().zip(model.domain(calibration).structure) {
             if range.is_some() {
                 structure = structure.with(q, assumed[q as usize]);
             }
@@ -91,7 +91,7 @@ fn every_model_finds_the_structure_it_was_given_through_the_message() {
         }
         let e = answer(&moduli);
         let found = [&e.k, &e.k_hat, &e.z, &e.eps, &e.eps_stiffness];
-        for q in Quantity::ALL {
+        for q in InferredQuantity::ALL {
             let Some(given) = structure.get(q) else { continue };
             assert!((found[q as usize][0] - given).abs() < 1e-6, "{} {q}: {given} {e:?}", model.name());
         }
@@ -118,10 +118,10 @@ fn the_uncertainty_is_that_of_the_data_else_that_of_the_parameter_else_unknown()
 }
 
 #[test]
-fn an_estimate_says_which_datum_decides_what() {
+fn an_estimate_has_the_contribution_of_each_datum() {
     let e = corrected(&s1(), &with_error(0.01));
     let of_eps = &e.information[27..36];
-    // ε follows from G13/G12 alone: half from each.
+    // ε follows only from G13/G12: half of the variance from each.
     assert!((of_eps[0] - 0.5).abs() < 1e-6 && (of_eps[1] - 0.5).abs() < 1e-6, "{of_eps:?}");
     let of_k_hat = &e.information[9..18];
     assert!(of_k_hat[2] > 0.3 && (of_k_hat.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{of_k_hat:?}");
@@ -130,7 +130,7 @@ fn an_estimate_says_which_datum_decides_what() {
 }
 
 #[test]
-fn an_estimate_says_which_strain_ratio_it_was_fed_with() {
+fn an_estimate_names_the_strain_ratio_it_used() {
     let of = |change: fn(&mut Moduli)| {
         let mut moduli = s1();
         change(&mut moduli);
@@ -144,7 +144,7 @@ fn an_estimate_says_which_strain_ratio_it_was_fed_with() {
 }
 
 #[test]
-fn data_without_a_solution_say_why_and_carry_no_values() {
+fn data_without_a_solution_have_a_reason_and_no_values() {
     let of = |change: fn(&mut Moduli)| {
         let mut moduli = s1();
         change(&mut moduli);
@@ -176,7 +176,7 @@ fn a_modulus_that_is_missing_leaves_the_rest_known() {
     );
     assert_eq!((&e.eps, e.covariance[18]), (&whole.eps, whole.covariance[18]));
     assert_eq!((e.interval[0], e.interval[6] < e.eps[0]), (0.0, true));
-    // A covariance of what is not there is left out, and does no harm.
+    // A covariance of a missing modulus is ignored.
     let mut measured = Moduli { theta: vec![], ..s1() };
     measured.covariance = vec![1e12, 0.0, 4e11, 0.0, 1e12, 0.0, 4e11, 0.0, 1e12];
     let measured = corrected(&measured, &Settings::default());
@@ -187,7 +187,7 @@ fn a_modulus_that_is_missing_leaves_the_rest_known() {
 fn of_a_full_stiffness_the_error_is_that_of_five_moduli_and_theta_follows() {
     let (three, six) = (corrected(&s1(), &with_error(0.01)), corrected(&s1_stiffness(), &with_error(0.01)));
     assert!((six.k[0] - three.k[0]).abs() < 1e-9 && (six.eps[0] - three.eps[0]).abs() < 1e-12);
-    // ε needs G12 and G13 alone. Θ hangs on C11 most of all, and is less well known than when it is measured itself.
+    // ε needs only G12 and G13. Θ depends mostly on C11, and has a larger error than a measured Θ.
     assert!((six.covariance[18] / three.covariance[18] - 1.0).abs() < 1e-6);
     let of_k_hat = |e: &Estimate| e.covariance[6] / three.covariance[6];
     assert!(of_k_hat(&six) > 1.1 && of_k_hat(&six) < 1.3, "{}", of_k_hat(&six));
@@ -206,7 +206,7 @@ fn a_covariance_of_the_three_is_kept_where_the_stiffness_is_known_too() {
 }
 
 #[test]
-fn a_stiffness_that_is_not_isotropic_about_the_axis_says_so() {
+fn a_stiffness_that_is_not_isotropic_about_the_axis_gives_a_warning() {
     let mut orthotropic = s1_stiffness();
     orthotropic.stiffness[0].stiffness[0] *= 1.4;
     let e = corrected(&orthotropic, &Settings::default());
@@ -216,7 +216,7 @@ fn a_stiffness_that_is_not_isotropic_about_the_axis_says_so() {
     assert!(!e.warnings.iter().any(|w| w.contains("not isotropic")), "{:?}", e.warnings);
 }
 
-/// S1 lying on its side: what was along e3 now is along this axis.
+/// S1 rotated: its axis e3 is now along this axis.
 fn turned(axis: Vec3) -> Moduli {
     let turn = Rotation3::rotation_between(&Vec3::z(), &axis).unwrap();
     let lying = s1_medium().rotated(turn.matrix());
@@ -233,7 +233,7 @@ fn turned(axis: Vec3) -> Moduli {
 }
 
 #[test]
-fn a_sample_on_its_side_is_understood_about_the_axis_found_or_given() {
+fn a_rotated_sample_is_inverted_about_the_axis_found_or_given() {
     let axis = Vec3::new(0.6, -0.48, 0.64);
     let zero = Moduli { strain_ratios: StrainRatios::default(), ..s1_stiffness() };
     let upright = corrected(&zero, &Settings::default());
@@ -255,14 +255,13 @@ fn the_strain_ratio_turns_with_the_axis() {
         corrected(&s1_stiffness(), &Settings { axis: Axis::Given(axis), ..Settings::default() })
             .gamma_over_delta[0]
     };
-    // γ of a strain that is symmetric about e3 is −1/2 of it about e1, and nothing at the magic angle.
+    // For a strain symmetric about e3, γ about e1 is −1/2 of that about e3, and zero at the magic angle.
     assert_eq!(about(Vec3::z()), -0.0623);
     assert!((about(Vec3::x()) - 0.5 * 0.0623).abs() < 1e-15);
     assert!(about(Vec3::new(1.0, 1.0, 1.0).normalize()).abs() < 1e-15);
 }
 
-/// S1 lying on its side, measured about its axis: moduli and strain ratio are those of S1 as they stand, and are turned
-/// neither once nor twice.
+/// S1 rotated and measured about its axis: moduli and strain ratio are those of S1, and are not transformed.
 #[test]
 fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
     let axis = Vec3::new(0.6, -0.48, 0.64);
@@ -282,7 +281,7 @@ fn moduli_and_strain_ratio_about_another_axis_are_taken_as_they_are() {
             "{about:?} {e:?}"
         );
     }
-    // Without a stiffness there is nothing to turn, and the same to learn.
+    // Without a stiffness no transformation is possible, and the results are the same.
     let three = Moduli { stiffness: vec![], ..lying.clone() };
     let e = corrected(&three, &Settings::default());
     assert_eq!(e.eps, corrected(&s1(), &Settings::default()).eps);
@@ -305,7 +304,7 @@ fn an_axis_that_the_data_cannot_be_turned_to_leaves_them_undetermined() {
         e.warnings.join("; ")
     };
     let why = because(&s1_stiffness(), Axis::Found);
-    assert!(why.contains("name none"), "{why}");
+    assert!(why.contains("these data have none"), "{why}");
     let why = because(&s1(), Axis::Given(Vec3::x()));
     assert!(why.contains("(1.0000, 0.0000, 0.0000)"), "{why}");
     let e = corrected(&s1(), &Settings { axis: Axis::Given(-Vec3::z()), ..Settings::default() });

@@ -56,15 +56,15 @@ fn moduli_and_the_wave_speeds_of_a_remapped_instrument_are_answered_side_by_side
         microstructure_of_speeds(&upright(), &settings).unwrap(),
     ];
     assert_eq!(answers, expected);
-    // A broken one is counted where it came from.
+    // An invalid message is counted on its topic.
     speeds.publish(&mut instrument, &WaveSpeeds { density: 0.0, ..upright() }).unwrap();
     node.step(&mut bus).unwrap();
     let refused: Vec<(String, u64)> = bus.received().into_iter().map(|r| (r.topic, r.refused)).collect();
     assert_eq!(refused, [("/moduli".into(), 0), ("/instrument/wave_speeds".into(), 1)]);
     assert_eq!(node.health().level, Level::Warn);
-    // Without the remap the instrument is not heard.
+    // Without the remap no message of the instrument arrives.
     drop((node, bus));
-    let (mut deaf, mut bus) = start(Names::new("emt_inversion").unwrap());
-    deaf.step(&mut bus).unwrap();
+    let (mut other, mut bus) = start(Names::new("emt_inversion").unwrap());
+    other.step(&mut bus).unwrap();
     assert_eq!(bus.received().iter().map(|r| r.taken).collect::<Vec<_>>(), [1, 0]);
 }

@@ -1,4 +1,4 @@
-//! Sets of speeds of every kind: without an axis, of one kind of wave, and of a sample that is no medium.
+//! Sets of speeds: without an axis, of one kind of wave, and of a sample that is not exactly a medium.
 
 use crate::moduli::s1_medium;
 use crate::speeds::{DENSITY, answer, upright, wire};
@@ -10,7 +10,7 @@ use nalgebra::Rotation3;
 
 const FOUND: Axis = Axis::Found;
 
-/// P and both S of `stiffness` in thirteen directions, to 0.1 %; no axis is named.
+/// P and both S of `stiffness` in thirteen directions, with an error of 0.1 %; no axis is stated.
 fn everywhere(stiffness: &Stiffness) -> WaveSpeeds {
     let steps = || (-1..=1).map(f64::from);
     let all = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
@@ -31,7 +31,7 @@ fn says(estimate: &Estimate, words: &str) -> bool {
     estimate.warnings.iter().any(|w| w.contains(words))
 }
 
-/// Of every model, with what it is named.
+/// The estimate of every model, with its name.
 fn all(speeds: &WaveSpeeds) -> impl Fn(&str) -> Estimate + use<> {
     let message = microstructure_of_speeds(speeds, &Settings::default()).unwrap();
     move |model| message.estimates.iter().find(|e| e.model == model).unwrap().clone()
@@ -49,7 +49,7 @@ fn is_compressional(s: &WaveSpeed) -> bool {
 }
 
 #[test]
-fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() {
+fn an_unknown_axis_is_inferred_from_the_speeds_if_set() {
     let turn = Rotation3::from_euler_angles(0.7, -0.4, 0.2);
     let lying = everywhere(&s1_medium().rotated(turn.matrix()));
     let expected = answer(&upright(), &Settings::default());
@@ -59,17 +59,17 @@ fn an_axis_that_nobody_names_is_found_from_the_speeds_where_that_is_asked_for() 
     let axis = turn * Vec3::z();
     let named = format!("no axis was named: ({:.4}, {:.4}, {:.4}) was found", axis.x, axis.y, axis.z);
     assert!(says(&e, &named) && says(&e, "degrees (one sigma)"), "{:?}", e.warnings);
-    // Unasked, e3 is taken as ever; that it is the wrong axis is seen.
+    // By default e3 is used; a note states that another axis fits better.
     let e = answer(&lying, &Settings::default());
     assert!(!says(&e, "was found") && (e.eps[0] - expected.eps[0]).abs() > 1e-3, "{e:?}");
     assert!(says(&e, "fit another axis better") && e.status == Estimate::STATUS_EXTRAPOLATED, "{e:?}");
-    // An axis that is named is taken.
+    // A stated axis is used.
     let named = WaveSpeeds { axis: wire(&axis), ..lying };
     assert!(!says(&answer(&named, &Settings { axis: FOUND, ..Settings::default() }), "no axis was named"));
 }
 
 #[test]
-fn of_a_medium_that_looks_isotropic_e3_is_taken_and_that_is_said() {
+fn a_medium_that_looks_isotropic_gets_e3_and_a_note() {
     let (p, s) = (300e6, 120e6);
     let isotropic = TransverseIsotropy {
         c11: p,
@@ -87,7 +87,7 @@ fn of_a_medium_that_looks_isotropic_e3_is_taken_and_that_is_said() {
 
 #[test]
 fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
-    // A percent and a half of one shear modulus: the azimuths of a packing of some thousand grains differ so.
+    // 1.5 % of one shear modulus, the variation with azimuth in a packing of some thousand grains.
     let mut stiffness = s1_medium();
     stiffness.0[(3, 3)] *= 1.015;
     stiffness.0[(4, 4)] /= 1.015;
@@ -101,7 +101,7 @@ fn a_sample_that_is_not_quite_a_medium_is_noted_and_no_conflict() {
 }
 
 #[test]
-fn shear_waves_alone_tell_eps_to_the_ratios_and_all_to_the_relaxed_network() {
+fn shear_waves_alone_determine_eps_for_the_ratios_and_all_for_the_relaxed_network() {
     let shear = all(&only(|s| !is_compressional(s)));
     let ratio = shear("ratio");
     assert_eq!(
@@ -125,7 +125,7 @@ fn compression_alone_tells_the_relaxed_network_something_and_the_ratios_say_what
     assert!(says(&ratio, "needs G12") && says(&ratio, "do not determine G12, G13, Theta, C13"), "{ratio:?}");
     let relaxed = compression("relaxed");
     assert!(!relaxed.z.is_empty() && !relaxed.eps.is_empty(), "{relaxed:?}");
-    // Less well than with all of them.
+    // With a larger error than from all of them.
     let whole = all(&upright())("relaxed");
     assert!(relaxed.covariance[12] > whole.covariance[12] && relaxed.covariance[18] > whole.covariance[18]);
 }
@@ -154,6 +154,6 @@ fn what_the_instrument_warns_of_reaches_every_estimate() {
     let warned = WaveSpeeds { warnings: vec!["speeds[3] was picked by hand".into()], ..upright() };
     let message = microstructure_of_speeds(&warned, &Settings::default()).unwrap();
     for e in &message.estimates {
-        assert!(says(e, "the instrument says: speeds[3] was picked by hand"), "{e:?}");
+        assert!(says(e, "the instrument reports: speeds[3] was picked by hand"), "{e:?}");
     }
 }

@@ -4,7 +4,7 @@ use grainlab_emt::{Calibration, StrainRatioSource};
 use grainlab_emt_inversion::{Axis, Models, Settings, SettingsError, microstructure_message, parameters};
 use grainlab_node_kit::{Names, Parameters, RosArgs};
 
-/// A calibration as text: ours, by another name.
+/// The built-in calibration as text, with another name.
 fn mine() -> String {
     let grainlab = Calibration::builtin("grainlab").unwrap().to_toml().unwrap();
     let text = grainlab.replacen("\"grainlab\"", "\"mine\"", 1);
@@ -12,7 +12,7 @@ fn mine() -> String {
     text
 }
 
-/// As they come from a command line; there are two files.
+/// Settings from a command line, with two files.
 fn given(arguments: &[&str]) -> Result<Settings, SettingsError> {
     let owned: Vec<String> =
         std::iter::once("--ros-args").chain(arguments.iter().copied()).map(Into::into).collect();
@@ -124,12 +124,12 @@ fn the_strain_ratio_that_feeds_the_models_can_be_chosen_and_moves_eps_by_as_much
         (vec![-0.02], "contact")
     );
     assert_eq!((zero.gamma_over_delta.clone(), zero.gamma_over_delta_source.as_str()), (vec![0.0], "zero"));
-    // ε ≈ (5/3) a + g, and k̂ does not depend on g at all.
+    // ε ≈ (5/3) a + g, and k̂ does not depend on g.
     for (e, g) in [(&contact, -0.02), (&zero, 0.0)] {
         assert!((e.eps[0] - total.eps[0] - (g + 0.0623)).abs() < 3e-3, "{e:?}");
         assert!((e.k_hat[0] - total.k_hat[0]).abs() < 1e-12);
     }
     assert_eq!(given(&["-p", "gamma_over_delta:=elastic"]).unwrap().gamma, StrainRatioSource::Elastic);
-    // An elastic ratio that nobody measured is replaced by that of the contacts.
+    // An elastic ratio that was not measured is replaced by that of the contacts.
     assert_eq!(with("elastic").gamma_over_delta_source, "contact");
 }

@@ -1,4 +1,4 @@
-//! S1 as an acoustic instrument hears it.
+//! S1 as measured by an acoustic instrument.
 
 use crate::moduli::{s1_medium, s1_stiffness};
 use crate::{corrected, of_ratio, s1};
@@ -14,7 +14,7 @@ pub(crate) fn wire(v: &Vec3) -> Vector3 {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
-/// What the mode with this particle motion has for a speed in `stiffness`, known to half a percent.
+/// The speed of the mode with this polarization in `stiffness`, with an error of half a percent.
 fn wave(stiffness: &Stiffness, direction: Vec3, motion: Vec3) -> WaveSpeed {
     let (direction, motion) = (direction.normalize(), motion.normalize());
     let speed = (stiffness.plane_waves(&direction).meant_by(&motion).modulus / DENSITY).sqrt();
@@ -28,7 +28,7 @@ fn wave(stiffness: &Stiffness, direction: Vec3, motion: Vec3) -> WaveSpeed {
     }
 }
 
-/// P and S along and across the axis, and P in between; the sample is turned by `turn`.
+/// P and S along and across the axis, and P in between; the sample is rotated by `turn`.
 fn heard(turn: &Rotation3<f64>) -> WaveSpeeds {
     let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
     let stiffness = s1_medium().rotated(turn.matrix());
@@ -71,7 +71,7 @@ fn speeds_give_what_the_moduli_of_the_same_medium_give() {
     );
     assert!((heard.eps[0] - told.eps[0]).abs() < 1e-7, "{} {}", heard.eps[0], told.eps[0]);
     assert_eq!(heard.gamma_over_delta_source, "zero", "an instrument knows no strain ratio");
-    // Six speeds, five moduli, of which the model takes three for its three unknowns.
+    // Six speeds determine five moduli, of which the model uses three for its three unknowns.
     assert_eq!(heard.degrees_of_freedom, 1);
     assert!(heard.chi_square < 1e-9 && heard.status == Estimate::STATUS_OK, "{heard:?}");
 }
@@ -84,7 +84,7 @@ fn the_error_is_that_of_the_speeds_and_the_density_else_that_of_the_settings() {
     twice.speeds.iter_mut().for_each(|s| s.speed_stddev *= 2.0);
     let ratio = answer(&twice, &none).covariance[0] / stated.covariance[0];
     assert!((ratio - 4.0).abs() < 1e-6, "{ratio}");
-    // The density moves all moduli together: k follows them, and ε and k̂ only know their ratios.
+    // The density changes all moduli together: k follows them, and ε and k̂ depend only on ratios.
     let dense = answer(&WaveSpeeds { density_stddev: 0.02 * DENSITY, ..upright() }, &none);
     assert!(dense.covariance[0] > stated.covariance[0] + 0.9 * (0.02 * dense.k[0]).powi(2), "{dense:?}");
     for at in [6, 18] {
@@ -99,7 +99,7 @@ fn the_error_is_that_of_the_speeds_and_the_density_else_that_of_the_settings() {
         (assumed.covariance[6] / of_moduli.covariance[6] - 1.0).abs() < 1e-4,
         "as for moduli without errors"
     );
-    // One alone without: the largest of the others, and a word on it.
+    // A single speed without an error gets the largest one of the others, and there is a note.
     let mut one = upright();
     one.speeds[0].speed_stddev = 0.0;
     let one = answer(&one, &Settings::default());
@@ -115,7 +115,7 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
         speeds.speeds.retain(|_| !missing.contains(&index.next().unwrap()));
         answer(&speeds, &Settings::default())
     };
-    // Without the wave between axis and plane there is no C13, no Θ, and so no coordination.
+    // Without the oblique wave C13, Θ, and so the coordination number are undetermined.
     let e = without(&[5]);
     assert_eq!((!e.k.is_empty(), !e.k_hat.is_empty(), !e.eps.is_empty()), (false, false, true));
     assert!((e.eps[0] - whole.eps[0]).abs() < 1e-7 && e.status == Estimate::STATUS_OK, "{e:?}");
@@ -124,7 +124,7 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
         "{:?}",
         e.warnings
     );
-    // Without the S wave across the plane there is no G12, and nothing that `ratio` could say.
+    // Without the S wave across the plane G12 is undetermined, and `ratio` has no result.
     let e = without(&[4]);
     assert_eq!((e.status, !e.k.is_empty(), !e.eps.is_empty()), (Estimate::STATUS_UNDETERMINED, false, false));
     assert!(
@@ -139,16 +139,16 @@ fn a_missing_speed_leaves_what_hangs_on_it_unknown_and_the_rest_known() {
 #[test]
 fn speeds_that_contradict_each_other_say_so_and_name_the_worst() {
     let mut speeds = upright();
-    // The same modulus G13 by two waves; one is off by eight of its sigma.
+    // The same modulus G13 from two waves, one of which is off by eight standard deviations.
     speeds.speeds[3].speed *= 1.04;
     let e = answer(&speeds, &Settings::default());
     let conflict =
         e.warnings.iter().find(|w| w.contains("contradict each other")).unwrap_or_else(|| panic!("{e:?}"));
     assert!(conflict.contains("speeds[2]") || conflict.contains("speeds[3]"), "{conflict}");
     assert_eq!((e.status, e.degrees_of_freedom), (Estimate::STATUS_EXTRAPOLATED, 1));
-    // (8 sigma)² between two equals.
+    // (8 sigma)² between two equal weights.
     assert!((e.chi_square - 32.0).abs() < 2.0, "{}", e.chi_square);
-    // Within two sigma nothing is said.
+    // Within two standard deviations there is no warning.
     let mut speeds = upright();
     speeds.speeds[3].speed *= 1.01;
     let e = answer(&speeds, &Settings::default());
@@ -189,7 +189,7 @@ fn an_axis_that_is_not_the_one_the_instrument_names_is_mentioned() {
 
 #[test]
 fn speeds_of_no_medium_fail_and_malformed_ones_are_refused_by_name() {
-    // P slower than S across the axis: C11 < G12.
+    // P is slower than S across the axis: C11 < G12.
     let mut swapped = upright();
     swapped.speeds[1].speed = 150.0;
     let e = answer(&swapped, &Settings::default());

@@ -1,10 +1,10 @@
 //! The backbone: the grains that carry waves, and their effective density.
 //!
-//! Rattlers do not move with a wave, and a grain that can rotate freely, for example about the line through its two
-//! contacts, moves with less than its mass. Modes are M-orthogonal to every floppy motion Z, so that the uniform
-//! translation T of a long wave has the kinetic energy of its part M-orthogonal to all Z: V ρ = Tᵀ M T − TᵀMZ (ZᵀMZ)⁻¹
-//! ZᵀMT, a tensor. A nearly floppy motion, of a frequency below that of the wave, does not follow it either: the
-//! effective density depends weakly on frequency.
+//! Rattlers do not move with a wave. A grain that can rotate freely, for example about the line through its
+//! two contacts, moves with less than its mass. Modes are M-orthogonal to every floppy motion Z, so that the
+//! uniform translation T of a long wave has the kinetic energy of its part M-orthogonal to all Z: V ρ = Tᵀ M
+//! T − TᵀMZ (ZᵀMZ)⁻¹ ZᵀMT, a tensor. A nearly floppy motion with a frequency below that of the wave does not
+//! follow the wave either: the effective density depends weakly on frequency.
 
 mod cluster;
 
@@ -23,9 +23,10 @@ pub(crate) struct Backbone {
     pub(crate) network: SpringNetwork,
     /// Mass of each grain, kg; 0 for rattlers.
     pub(crate) mass: Vec<f64>,
-    /// Moment of inertia of each grain over a², with a the length that scales rotations, kg; 0 for rattlers.
+    /// Moment of inertia of each grain over a², where a is the length that scales rotations, kg; 0 for
+    /// rattlers.
     pub(crate) inertia: Vec<f64>,
-    /// Softest motions of the most loosely held grains.
+    /// Softest motions of grains with few contacts.
     pub(crate) clusters: Vec<Cluster>,
     /// Volume of the cell, m³.
     volume: f64,
@@ -66,7 +67,7 @@ impl Backbone {
         let mut left_behind = 0;
         for cluster in &self.clusters {
             for motion in cluster.motions.iter().filter(|m| m.is_free || m.square < frequency.powi(2)) {
-                // TᵀM z of the three translations.
+                // TᵀM z for the three translations.
                 let carried: Vec3 = (cluster.grains.iter().enumerate())
                     .map(|(at, g)| self.mass[*g as usize] * Vec3::from_fn(|k, _| motion.shape[6 * at + k]))
                     .sum();

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 type Key = (u32, u32, [i8; 3]);
 
-/// Contacts that differ from those at the start, over all looks.
+/// Contacts that differ from those at the start, over all comparisons.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactChanges {
     start: BTreeSet<Key>,
@@ -15,7 +15,7 @@ pub(crate) struct ContactChanges {
 }
 
 impl ContactChanges {
-    /// With the present contacts as the start.
+    /// Takes the present contacts as the start.
     pub(crate) fn since(engine: &Engine) -> Self {
         Self { start: keys(engine), opened: BTreeSet::new(), closed: BTreeSet::new() }
     }
@@ -27,12 +27,12 @@ impl ContactChanges {
         self.closed.extend(now.difference(&self.start));
     }
 
-    /// Number of contacts that were missing at some look.
+    /// Number of contacts that were missing in at least one comparison.
     pub(crate) fn opened(&self) -> u32 {
         self.opened.len() as u32
     }
 
-    /// Number of contacts that were new at some look.
+    /// Number of contacts that were new in at least one comparison.
     pub(crate) fn closed(&self) -> u32 {
         self.closed.len() as u32
     }

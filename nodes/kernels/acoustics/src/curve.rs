@@ -1,7 +1,7 @@
-//! A speed at several wavelengths, and its limit at long ones.
+//! A speed at several wavelengths, and its limit for long waves.
 //!
-//! In a packing of grains of diameter D waves of wave number q have v² = v₀² (1 − b q² + O(q⁴)) with b of the order of
-//! D²/10: D²/12 for a chain, 0.1 D² (S) to 0.2 D² (P) for packings.
+//! In a packing of grains of diameter D, waves of wave number q have v² = v₀² (1 − b q² + O(q⁴)). b is of the
+//! order of D²/10: D²/12 for a chain, 0.1 D² (S) to 0.2 D² (P) for packings.
 
 use grainlab_core::Vec3;
 use nalgebra::{DMatrix, DVector};
@@ -51,7 +51,8 @@ impl DispersionCurve {
         let mut variance = straight.variance * scale;
         if let Some(bent) = Fit::of(&points, 3) {
             let moved = bent.coefficients[0] - straight.coefficients[0];
-            // A q⁴ term that is not significant changes v₀ by chance; this part is already in the variance.
+            // A q⁴ term that is not significant changes v₀ by chance. The variance includes this part
+            // already.
             variance += (moved * moved - (bent.variance * scale - variance).max(0.0)).max(0.0);
         }
         let square = straight.coefficients[0];
@@ -162,7 +163,7 @@ mod tests {
         assert!(through(same).is_none());
         assert!(through(points(|_| f64::NAN, 1e-3)).is_none());
         assert!(through(points(|_| 100.0, 0.0)).is_none());
-        // The speed falls so fast with the wavelength that v₀² is negative.
+        // The speed falls so steeply with the wavelength that v₀² is negative.
         assert!(through(points(|q| 100.0 * (q - 0.099), 1e-3)).is_none());
     }
 }

@@ -31,8 +31,8 @@ use modes::modes;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Wavelength in mean diameters below which loosely held grains stay behind a wave, which increases ω² by up to this
-/// fraction.
+/// Wavelength in mean diameters below which loosely held grains do not follow a wave, which increases ω² by
+/// up to this fraction.
 const SOFT_BELOW: f64 = 100.0;
 const SOFT: f64 = 1e-3;
 
@@ -55,7 +55,8 @@ pub(crate) fn mean_diameter(packing: &Packing) -> f64 {
     2.0 * packing.radii.iter().sum::<f64>() / packing.grains() as f64
 }
 
-/// The curves of all rays. Rays whose modes are not found are left out with a warning; if all are, that is the error.
+/// The curves of all rays. Rays whose modes are not found are left out with a warning. If all are, the first
+/// error is returned.
 pub(crate) fn all_curves(
     backbone: &Backbone,
     diameter: f64,
@@ -113,8 +114,8 @@ fn curves_along(
     let mut wavelengths = settings.wavelengths.clone();
     wavelengths.sort_by(|a, b| b.total_cmp(a));
     let completed = completed(&ray.polarizations);
-    // All three modes are computed, so that none is mistaken for another; if some have no stiffness, only those of the
-    // ray.
+    // All three modes are computed, so that they cannot be confused. If some have no stiffness, only those of
+    // the ray are.
     let tensors = acoustic_tensors(backbone, ray, &completed, diameter, &wavelengths, settings);
     let tensors = match tensors {
         Err(_) if ray.polarizations.len() < completed.len() => {

@@ -11,7 +11,8 @@ pub struct EffectiveDensity {
     pub bulk: f64,
     /// Number of grains that carry no force.
     pub rattlers: u32,
-    /// Number of motions of the other grains that do not follow the wave: floppy, or of a frequency below it.
+    /// Number of motions of the other grains that do not follow the wave: floppy ones, and those with a lower
+    /// frequency.
     pub left_behind: u32,
 }
 

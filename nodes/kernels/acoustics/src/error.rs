@@ -15,7 +15,7 @@ pub enum AcousticsError {
         /// What is required.
         requirement: &'static str,
     },
-    /// Nothing carries a wave.
+    /// No contact carries force, so that no wave propagates.
     #[error(transparent)]
     NotJammed(#[from] NotJammed),
     /// Waves of this frequency do not propagate in the packing.

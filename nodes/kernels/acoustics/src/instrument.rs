@@ -88,8 +88,8 @@ impl Instrument {
         Ok(self)
     }
 
-    /// Sampling rate for waves of `frequency`, Hz. The spectrum of a burst reaches to twice its centre, so that fewer
-    /// than six samples per period would alias; more than 10,000 only take memory.
+    /// Sampling rate for waves of `frequency`, Hz. The spectrum of a burst extends to twice its centre, so
+    /// that fewer than six samples per period would alias; more than 10,000 only need memory.
     pub fn rate(&self, frequency: f64) -> Result<f64, AcousticsError> {
         let rate = self.sample_rate.unwrap_or(SAMPLES_PER_PERIOD * frequency);
         if !(MIN_PER_PERIOD..=MAX_PER_PERIOD).contains(&(rate / frequency)) {
@@ -113,7 +113,7 @@ impl Instrument {
     ) -> Vec<Vec<f64>> {
         let noise = signal * 10f64.powf(-self.signal_to_noise / 20.0);
         let mut mean = vec![vec![0.0; window.samples]; signals.channels.len()];
-        // Without jitter shots differ in their noise alone: their mean is one shot with less noise.
+        // Without jitter, shots differ only in their noise: their mean equals one shot with less noise.
         let (shots, noise) = match self.jitter > 0.0 {
             true => (self.shots, noise),
             false => (1, noise / f64::from(self.shots).sqrt()),

@@ -12,12 +12,13 @@ use crate::survey::Survey;
 use crate::trace::Trace;
 use crate::warning::Warning;
 use crate::{dispersion, standing_wave, time_of_flight};
+use grainlab_core::results::StiffnessMethod;
 use grainlab_core::{MeasuredWave, Packing, Vec3, WaveMethod, WaveSpeed};
 
 /// Relative standard deviation of a speed above which there is a warning.
 const NOISY: f64 = 0.1;
 
-/// Place of the noise of speeds, different from those of all other noise.
+/// Place of the noise of speeds, different from the places of all other noise.
 const SPEEDS: u64 = u64::MAX;
 
 /// What was measured.
@@ -43,8 +44,8 @@ pub struct Measurement {
 
 /// Measures the wave speeds of `packing`. The result is the same to the last bit for any number of threads.
 ///
-/// Dispersion uses the frozen network; the other two methods move the grains. A wave without a speed is left out with a
-/// warning; if no speed is left, that is an error.
+/// Dispersion uses the frozen network. In the other two methods grains move. A wave without a speed is left
+/// out with a warning. If no speed is left, that is an error.
 pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, AcousticsError> {
     settings.check()?;
     let backbone = Backbone::new(packing)?;
@@ -61,7 +62,8 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
             let rays = survey.rays(&about, settings.modes);
             let diameter = dispersion::mean_diameter(packing);
             let alignment = if axis.is_some() { Alignment::InPlane } else { Alignment::Free };
-            let (curves, warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            let (curves, mut warnings) = dispersion::all_curves(&backbone, diameter, &rays, alignment, of)?;
+            warnings.extend(StiffnessMethod::FrozenNetwork.leaves_out(&packing.law).map(Warning::Springs));
             (curves, Vec::new(), warnings)
         }
         MethodSettings::StandingWave(of) => standing_wave::curves(packing, &lattice(), of, instrument)?,
@@ -102,8 +104,8 @@ pub fn measure(packing: &Packing, settings: &Settings) -> Result<Measurement, Ac
     Ok(Measurement { waves, effective_density, density, density_stddev, axis, curves, traces, warnings })
 }
 
-/// The same speeds with an additional independent relative error of standard deviation `noise`, which their uncertainty
-/// includes. The same seed gives the same errors.
+/// The same speeds with an additional independent relative error of standard deviation `noise`, included in
+/// their uncertainty. The same seed gives the same errors.
 pub fn with_speed_noise(waves: &[MeasuredWave], noise: f64, seed: u64) -> Vec<MeasuredWave> {
     let mut waves = waves.to_vec();
     for (index, MeasuredWave { wave, .. }) in waves.iter_mut().enumerate().filter(|_| noise > 0.0) {

@@ -38,7 +38,7 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    /// `packing` with `friction` (its own for `None`), relaxed to rest.
+    /// `packing` with `friction` (`None`: that of the packing), relaxed to rest.
     pub(crate) fn new(
         packing: &Packing,
         friction: Option<f64>,

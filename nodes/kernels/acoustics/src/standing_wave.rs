@@ -30,9 +30,10 @@ use grainlab_core::Packing;
 /// The curves of all polarizations of all rays, in that order, and their traces: one per curve, with a channel per
 /// wavelength.
 ///
-/// Each ray must name lattice planes. A polarization without a tone is left out with a warning; if none has one, that
-/// is the error. ω is that of the best damped tone. Its standard deviation combines that of the fit, with correlated
-/// residuals, and the difference between the first half of the periods and all of them.
+/// Each ray must name lattice planes. A polarization without a tone is left out with a warning. If none has a
+/// tone, the first error is returned. ω is that of the tone that fits best. Its standard deviation combines
+/// that of the fit, with correlated residuals, and the difference between the first half of the periods and
+/// all of them.
 ///
 /// The standard deviation of a curve's speed includes the differences of ρv² from n·C·n of the unstressed frozen
 /// network: terms of the order of the pressure; sin² of the angle between the polarization sent and that of the

@@ -22,7 +22,7 @@ const MAX_INDEX: u32 = 1000;
 /// A packing repeated along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Supercell {
-    /// All copies in order: grain `c n + g`, which is also its id, is grain `g` of the `n` of the packing in copy `c`.
+    /// All copies in order: grain `g` of the `n` of the packing has the index and id `c n + g` in copy `c`.
     /// Positions are in the cell. Contacts keep their forces.
     pub packing: Packing,
     /// Unit normal of the lattice planes: the direction of the path.

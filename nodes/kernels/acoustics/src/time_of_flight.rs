@@ -37,8 +37,8 @@ use grainlab_core::Packing;
 /// The curves of all polarizations of all rays, in that order, and their traces.
 ///
 /// Each ray must name lattice planes. A polarization whose arrivals are hidden by noise is left out with a
-/// [`Warning::LeftOut`]; if all are, that is the error. The result is the same to the last bit for any number of
-/// threads.
+/// [`Warning::LeftOut`]. If all are, the first error is returned. The result is the same to the last bit for
+/// any number of threads.
 #[allow(clippy::type_complexity)]
 pub fn curves(
     packing: &Packing,
@@ -53,8 +53,9 @@ pub fn curves(
     measure_all(&paths, &sample, |path| measurement::measure(path, &sample, settings, instrument))
 }
 
-/// The curve of one mode from its traces, for bursts of so many `cycles` at one or more frequencies. `seed` is that of
-/// the noisy copies that give the uncertainty; the mean `diameter`, m, gives the error of a single frequency.
+/// The curve of one mode from its traces, for bursts of `cycles` periods at one or more frequencies. `seed`
+/// is that of the noisy copies that give the uncertainty. The mean `diameter`, m, gives the error of a single
+/// frequency.
 pub fn curve(
     traces: &[Trace],
     cycles: f64,

@@ -1,6 +1,7 @@
 //! Limitations of a measurement.
 
 use crate::error::{AcousticsError, in_brackets};
+use grainlab_core::results::LeftOut;
 
 /// A limitation of a measurement.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,9 +20,9 @@ pub enum Warning {
         polarization: [f64; 3],
         /// Peak strain.
         amplitude: f64,
-        /// Number of contacts that were missing at some look.
+        /// Number of contacts that were missing in at least one comparison.
         opened: u32,
-        /// Number of contacts that were new at some look.
+        /// Number of contacts that were new in at least one comparison.
         closed: u32,
         /// Root mean square of the relative change of the normalised trace at half the amplitude.
         change: f64,
@@ -41,7 +42,7 @@ pub enum Warning {
         /// Relative standard deviation of the speed.
         relative: f64,
     },
-    /// The packing moves by itself.
+    /// The packing is not at rest.
     #[error(
         "the packing did not come to rest (unbalanced force ratio {unbalanced:.1e}): its own motion is superposed on the waves; \
          relax it further, or increase the amplitude"
@@ -50,6 +51,9 @@ pub enum Warning {
         /// Mean net force of the grains that carry force, over the mean contact force.
         unbalanced: f64,
     },
+    /// The waves are those of a network that lacks springs of the contact law.
+    #[error("waves of the contact network: {0}")]
+    Springs(LeftOut),
     /// A mode was left out.
     #[error("left out: {0}")]
     LeftOut(AcousticsError),

@@ -114,6 +114,7 @@ mod tests {
                 normal: branch.normalize(),
                 normal_force,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             }
         };
         Packing {
@@ -187,6 +188,7 @@ mod tests {
             normal: Vec3::z() * f64::from(k),
             normal_force: 1.0,
             tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
         };
         p.contacts = vec![own(1)];
         assert!(p.clone().validated().unwrap().consistent().is_ok());

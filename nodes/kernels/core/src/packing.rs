@@ -22,14 +22,17 @@ pub struct Contact {
     pub normal_force: f64,
     /// Tangential force on `i`, N, perpendicular to [`Contact::normal`].
     pub tangential_force: Vec3,
+    /// Elastic rolling force, N, perpendicular to [`Contact::normal`]: R* n × this is a torque on `i`, and the opposite one a
+    /// torque on `j` ([`RollingResistance`](crate::contact::RollingResistance)). Zero without resistance to rolling.
+    pub rolling_force: Vec3,
 }
 
 /// Share of the Coulomb limit from which a contact counts as sliding.
 const SLIDING: f64 = 0.999;
 
 impl Contact {
-    /// Whether the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. None is where there is no such limit (μ = 0 or
-    /// infinite).
+    /// Whether the contact is at the Coulomb limit: |F_t| ≥ 0.999 μ F_n. Never true where there is no such limit
+    /// (μ = 0 or infinite).
     pub fn slides(&self, friction: f64) -> bool {
         let limited = friction > 0.0 && friction.is_finite();
         limited && self.tangential_force.norm() >= SLIDING * friction * self.normal_force
@@ -221,6 +224,11 @@ impl Packing {
                 return Err(range("contact_normal", index, c.normal.norm(), "a unit vector"));
             }
             finite3("contact_tangential_force", index, &c.tangential_force)?;
+            finite3("contact_rolling_force", index, &c.rolling_force)?;
+            if self.law.rolling.is_none() && c.rolling_force != Vec3::zeros() {
+                let requirement = "0: the contact law has no resistance to rolling";
+                return Err(range("contact_rolling_force", index, c.rolling_force.norm(), requirement));
+            }
         }
         Ok(())
     }
@@ -292,6 +300,7 @@ mod tests {
                 normal: -Vec3::z(),
                 normal_force: 1.0,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             }],
             material: Material::GLASS,
             law: Default::default(),

@@ -232,7 +232,7 @@ mod tests {
     fn a_contact_with_more_physics_takes_more_operations() {
         let of = |friction: f64| {
             operations_per_contact(
-                ContactLaw::HertzMindlin,
+                ContactLaw::default(),
                 &EngineSettings { friction, damping: 0.3, ..EngineSettings::default() },
             )
         };

@@ -2,10 +2,12 @@
 //!
 //! `cargo run --release -p grainlab_emt --example infer`
 
-use grainlab_emt::{Measured, Observation, Quantity, StrainRatio, models, recommended};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Measured, Observation, StrainRatio, models, recommended};
 
 fn main() {
-    // G12, G13, Theta and pressure in Pa, each modulus known to 1 %; gamma/Delta as the paper gives it.
+    // G12, G13, Theta and pressure in Pa, each modulus with an error of 1 %; gamma/Delta is that of the
+    // paper.
     let gamma = StrainRatio::given(-0.0623);
     let mut state = Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50e3, gamma);
     state.conditions.solid_fraction = Some(Measured::exact(0.636));
@@ -16,11 +18,11 @@ fn main() {
         let calibration = model.default_calibration();
         match model.infer(&state, calibration) {
             Ok(estimate) => {
-                let told = |q: Quantity| {
+                let told = |q: InferredQuantity| {
                     let value = estimate.structure.get(q)?;
                     Some(format!("{} {value:.3} +- {:.3}", q.name(), estimate.stddev(q)?))
                 };
-                let values: Vec<String> = Quantity::ALL.into_iter().filter_map(told).collect();
+                let values: Vec<String> = InferredQuantity::ALL.into_iter().filter_map(told).collect();
                 println!("{:16}  {:?}: {}", estimate.model, estimate.status, values.join(", "));
                 found.push((estimate.model, estimate.status));
             }

@@ -4,8 +4,8 @@ use crate::calibration::Calibration;
 use crate::conditions::StrainRatioSource;
 use crate::moduli::Modulus;
 use crate::observation::Observation;
-use crate::structure::{Quantity, Structure};
 use crate::warning::Warning;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Coordination number of a close packing of equal spheres, the largest possible.
 const CLOSE_PACKING: f64 = 12.0;
@@ -29,7 +29,7 @@ const LARGE_ERROR: f64 = 0.1;
 /// Warnings that follow from the observation and the structure alone.
 pub(crate) fn common(
     observation: &Observation,
-    structure: &Structure,
+    structure: &Microstructure,
     calibration: &Calibration,
     uses_gamma: bool,
 ) -> Vec<Warning> {
@@ -64,7 +64,7 @@ pub(crate) fn common(
         let stddev = errors.and_then(|c| observation.moduli.imbalance_stddev(c)).unwrap_or(0.0);
         add(relative.abs() > ROUNDING + CERTAIN * stddev, Warning::Imbalance { relative });
     }
-    for quantity in [Quantity::K, Quantity::Z] {
+    for quantity in [InferredQuantity::K, InferredQuantity::Z] {
         let Some(value) = structure.get(quantity) else { continue };
         add(value < 1.0, Warning::CoordinationAbsurd { quantity, value });
     }
@@ -92,7 +92,11 @@ pub(crate) fn common(
 }
 
 /// The warning for a coordination number in Eqs. 21 and 22 that no packing of the calibration had.
-pub(crate) fn outside_fit(quantity: Quantity, value: f64, calibration: &Calibration) -> Option<Warning> {
+pub(crate) fn outside_fit(
+    quantity: InferredQuantity,
+    value: f64,
+    calibration: &Calibration,
+) -> Option<Warning> {
     let range = calibration.isotropic().fitted;
     let outside = !(range[0]..=range[1]).contains(&value);
     outside.then_some(Warning::CoordinationOutsideFit { quantity, value, range })

@@ -8,7 +8,7 @@ use std::fmt;
 /// The source of a γ/Δ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StrainRatioSource {
-    /// The total strain since the reference state, which is mostly plastic. The one of the paper's Table II.
+    /// The total strain since the reference state, which is mostly plastic. That of the paper's Table II.
     Total,
     /// The elastic strain of an isotropic stress increment.
     Elastic,

@@ -2,7 +2,7 @@
 
 use crate::conditions::Conditions;
 use crate::error::EmtError;
-use crate::structure::{QUANTITIES, Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// Lowest and highest value, both included.
 pub type Range = [f64; 2];
@@ -12,8 +12,8 @@ pub type Range = [f64; 2];
 pub struct Domain {
     /// Name of the model.
     pub model: &'static str,
-    /// Range of each quantity in the order of [`Quantity::ALL`]; `None` for those that the model does not use.
-    pub structure: [Option<Range>; QUANTITIES],
+    /// Range of each quantity in the order of [`InferredQuantity::ALL`]; `None` for those that the model does not use.
+    pub structure: [Option<Range>; InferredQuantity::COUNT],
     /// Range of g = γ/Δ.
     pub gamma: Range,
     /// Range of the Poisson ratio of the grains.
@@ -24,20 +24,20 @@ pub struct Domain {
 
 impl Domain {
     /// These structures, in every state that an elastic packing can have, whether or not its solid fraction is known.
-    pub(crate) fn new(model: &'static str, structure: [Option<Range>; QUANTITIES]) -> Self {
+    pub(crate) fn new(model: &'static str, structure: [Option<Range>; InferredQuantity::COUNT]) -> Self {
         Self { model, structure, gamma: [-1.0, 1.0], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
     }
 
-    /// The values of `structure` that the model uses, in the order of [`Quantity::ALL`] with zero for the others; an
-    /// error if one of them is missing, or one of them or of `conditions` lies outside.
+    /// The values of `structure` that the model uses, in the order of [`InferredQuantity::ALL`], with zero for the
+    /// others. An error if one of them is missing, or if one of them or of `conditions` lies outside.
     pub fn validate(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
-    ) -> Result<[f64; QUANTITIES], EmtError> {
+    ) -> Result<[f64; InferredQuantity::COUNT], EmtError> {
         conditions.check()?;
-        let mut values = [0.0; QUANTITIES];
-        for (i, quantity) in Quantity::ALL.into_iter().enumerate() {
+        let mut values = [0.0; InferredQuantity::COUNT];
+        for (i, quantity) in InferredQuantity::ALL.into_iter().enumerate() {
             let Some(range) = self.structure[i] else { continue };
             let missing = EmtError::Missing { model: self.model, missing: quantity.name() };
             values[i] = structure.get(quantity).ok_or(missing)?;
@@ -54,7 +54,7 @@ impl Domain {
     }
 
     /// Whether everything of `structure` that the model uses lies inside.
-    pub fn contains(&self, structure: &Structure) -> bool {
+    pub fn contains(&self, structure: &Microstructure) -> bool {
         structure.values().iter().zip(&self.structure).all(|(value, range)| match (value, range) {
             (Some(v), Some([low, high])) => (*low..=*high).contains(v),
             _ => true,

@@ -8,7 +8,7 @@ pub enum EmtError {
     /// An input, or a number computed from it, is not finite.
     #[error("{quantity} = {value} is not finite: check the given numbers and their units")]
     NotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value found.
         value: f64,
@@ -18,7 +18,7 @@ pub enum EmtError {
         "{quantity} = {value:e} Pa must be positive: the packing is not jammed, or the unit or sign is wrong"
     )]
     NotPositive {
-        /// Which input.
+        /// Name of the input.
         quantity: &'static str,
         /// The value found, Pa.
         value: f64,
@@ -26,7 +26,7 @@ pub enum EmtError {
     /// A standard deviation is negative.
     #[error("{quantity} = {value:e} must not be negative; 0 takes the quantity as exact")]
     NegativeStddev {
-        /// Which input.
+        /// Name of the input.
         quantity: &'static str,
         /// The value found.
         value: f64,
@@ -36,7 +36,7 @@ pub enum EmtError {
         "the covariance of the moduli is invalid: {fault} ({value:e} Pa2); leave it out if it is not known"
     )]
     Covariance {
-        /// What is wrong with it.
+        /// What is wrong with the covariance.
         fault: &'static str,
         /// The offending value, Pa².
         value: f64,
@@ -76,7 +76,7 @@ pub enum EmtError {
     OutsideDomain {
         /// Name of the model.
         model: &'static str,
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// The value found.
         value: f64,

@@ -7,8 +7,8 @@ use crate::domain::Domain;
 use crate::error::EmtError;
 use crate::observation::{INPUTS, InputCovariance, Observation};
 use crate::point_estimate::{Jacobian, Misfit, PointEstimate};
-use crate::structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 use crate::warning::Warning;
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::SMatrix;
 
 /// Level of the intervals of an [`Estimate`].
@@ -36,13 +36,13 @@ pub struct Estimate {
     /// The γ/Δ given to the model; `None` if it uses none.
     pub gamma: Option<StrainRatio>,
     /// The most probable values; `None` is undetermined, or not part of the model.
-    pub structure: Structure,
+    pub structure: Microstructure,
     /// Their derivatives with respect to the data.
     pub jacobian: Jacobian,
     /// Covariance from the errors of the observation; `None` if those are not known.
-    pub data_covariance: Option<StructureCovariance>,
+    pub data_covariance: Option<MicrostructureCovariance>,
     /// Covariance of the model's own error, learned from the packings of the calibration; `None` if it was not learned.
-    pub model_covariance: Option<StructureCovariance>,
+    pub model_covariance: Option<MicrostructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
     /// Whether model and calibration were used inside their range.
@@ -51,12 +51,12 @@ pub struct Estimate {
     pub warnings: Vec<Warning>,
     inputs: Option<InputCovariance>,
     /// The independent quantities of the model; the others follow from them.
-    unknowns: [bool; QUANTITIES],
+    unknowns: [bool; InferredQuantity::COUNT],
 }
 
 impl Estimate {
-    /// Covariance of the estimate, from data and model as far as either is known; `None` if neither is.
-    pub fn covariance(&self) -> Option<StructureCovariance> {
+    /// Covariance of the estimate: the sum of those of data and model that are known; `None` if neither is.
+    pub fn covariance(&self) -> Option<MicrostructureCovariance> {
         match (self.data_covariance, self.model_covariance) {
             (None, None) => None,
             (data, model) => Some(data.unwrap_or_default() + model.unwrap_or_default()),
@@ -64,20 +64,20 @@ impl Estimate {
     }
 
     /// The unknowns of the model that the data do not determine.
-    pub fn undetermined(&self) -> impl Iterator<Item = Quantity> + '_ {
-        let is_open = |q: &Quantity| self.unknowns[*q as usize] && self.structure.get(*q).is_none();
-        Quantity::ALL.into_iter().filter(is_open)
+    pub fn undetermined(&self) -> impl Iterator<Item = InferredQuantity> + '_ {
+        let is_open = |q: &InferredQuantity| self.unknowns[*q as usize] && self.structure.get(*q).is_none();
+        InferredQuantity::ALL.into_iter().filter(is_open)
     }
 
     /// Standard deviation of a quantity; `None` if it is undetermined or its uncertainty is not known.
-    pub fn stddev(&self, quantity: Quantity) -> Option<f64> {
+    pub fn stddev(&self, quantity: InferredQuantity) -> Option<f64> {
         self.structure.get(quantity)?;
         let i = quantity as usize;
         Some(self.covariance()?[(i, i)].max(0.0).sqrt())
     }
 
     /// Central interval of a quantity at [`CREDIBLE_LEVEL`], low and high, for normal errors.
-    pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
+    pub fn interval(&self, quantity: InferredQuantity) -> Option<[f64; 2]> {
         let middle = self.structure.get(quantity)?;
         let half = HALF_WIDTH * self.stddev(quantity)?;
         Some([middle - half, middle + half])
@@ -87,9 +87,9 @@ impl Estimate {
     /// with relative changes for coordination numbers. It compares how strongly errors of the data act on different
     /// combinations.
     pub fn condition_number(&self) -> Option<f64> {
-        let mut scaled = SMatrix::<f64, QUANTITIES, INPUTS>::zeros();
+        let mut scaled = SMatrix::<f64, { InferredQuantity::COUNT }, INPUTS>::zeros();
         let mut determined = 0;
-        for (i, quantity) in Quantity::ALL.into_iter().enumerate() {
+        for (i, quantity) in InferredQuantity::ALL.into_iter().enumerate() {
             let Some(value) = self.structure.get(quantity).filter(|_| self.unknowns[i]) else { continue };
             let scale = if quantity.is_coordination() { 1.0 / value } else { 1.0 };
             scaled.set_row(determined, &(self.jacobian.row(i) * scale));
@@ -107,7 +107,7 @@ impl Estimate {
     /// order of [`crate::INPUT_NAMES`]. Correlated errors divide their covariance equally, so that a fraction may be
     /// negative. Where the errors are not known, all inputs are given the same relative error. `None` if the quantity
     /// is undetermined.
-    pub fn information(&self, quantity: Quantity) -> Option<[f64; INPUTS]> {
+    pub fn information(&self, quantity: InferredQuantity) -> Option<[f64; INPUTS]> {
         self.structure.get(quantity)?;
         let row = self.jacobian.row(quantity as usize);
         let inputs = self.inputs.filter(|c| c.amax() > 0.0).unwrap_or_else(InputCovariance::identity);
@@ -160,7 +160,10 @@ pub(crate) fn assemble(
     })
 }
 
-fn of_determined(mut covariance: StructureCovariance, structure: &Structure) -> StructureCovariance {
+fn of_determined(
+    mut covariance: MicrostructureCovariance,
+    structure: &Microstructure,
+) -> MicrostructureCovariance {
     for (i, value) in structure.values().iter().enumerate() {
         if value.is_none() {
             covariance.fill_row(i, 0.0);

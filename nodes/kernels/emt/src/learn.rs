@@ -9,9 +9,9 @@ mod sample;
 pub use sample::CalibrationSample;
 
 use crate::calibration::{Calibration, CalibrationError};
-use crate::structure::Quantity;
 use discrepancy::discrepancies;
 use grainlab_core::Material;
+use grainlab_core::results::InferredQuantity;
 use isotropic::of_isotropic;
 use relaxation::network;
 use sample::bounds;
@@ -27,9 +27,9 @@ pub fn learn(
     let material = material(&all)?;
     let (low, high) = bounds(all.iter().map(|s| s.pressure));
     let mut calibration = Calibration {
-        other: Some(of_isotropic(isotropic, Quantity::Z)?),
+        other: Some(of_isotropic(isotropic, InferredQuantity::Z)?),
         pressures: Some([low, high]),
-        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic, Quantity::K)?, material)
+        ..Calibration::of_isotropic(name.to_owned(), of_isotropic(isotropic, InferredQuantity::K)?, material)
     };
     if !anisotropic.is_empty() {
         calibration.network = Some(Box::new(network(isotropic, anisotropic, &material)?));

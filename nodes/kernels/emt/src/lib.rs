@@ -5,11 +5,11 @@
 //! interface. The axis of anisotropy is e3; ε and g = γ/Δ are positive when there are more contacts, or more extension,
 //! along it.
 //!
-//! - `structure`, `moduli`, `conditions`: what is inferred, what it is inferred from, and at what state
+//! - `moduli`, `conditions`: what a microstructure is inferred from, and at what state
 //! - `observation`, `estimate`, `warning`, `error`: input and output of an inversion
-//! - `model`, `point_estimate`, `domain`: what a model is, what it returns, and where it applies
+//! - `model`, `point_estimate`, `domain`: the trait of the models, their result, and their range
 //! - `registry`: the list of the models
-//! - `models`: a file for each model
+//! - `models`: one file per model
 //!   - `effective_medium`: the plain theory, at given pressure
 //!   - `ratio`: the paper's model, corrected, as printed, and at fixed volume
 //!   - `unequal_springs`: the same with K_N ≠ K_T, and with the overlap law linear in g or not
@@ -21,7 +21,8 @@
 //! - [`christoffel`], [`WaveModuli`]: moduli from wave speeds
 //!
 //! ```
-//! use grainlab_emt::{Calibration, Observation, Quantity, StrainRatio};
+//! use grainlab_core::results::InferredQuantity;
+//! use grainlab_emt::{Calibration, Observation, StrainRatio};
 //! // The first row of the paper's Table III: k = 5.73, k_hat = 5.63, eps = 0.016.
 //! let gamma = StrainRatio::given(-0.0623);
 //! let s1 = Observation::from_g12_g13_theta(121.71e6, 127.37e6, 144.38e6, 50.0e3, gamma).with_relative_error(0.01);
@@ -29,7 +30,7 @@
 //! let near = |found: Option<f64>, value: f64| (found.unwrap() - value).abs() < 1e-3;
 //! assert!(near(estimate.structure.k, 5.73) && near(estimate.structure.k_hat, 5.63));
 //! assert!(near(estimate.structure.eps, 0.016));
-//! assert!((estimate.stddev(Quantity::K).unwrap() - 0.056).abs() < 1e-2);
+//! assert!((estimate.stddev(InferredQuantity::K).unwrap() - 0.056).abs() < 1e-2);
 //! ```
 
 mod calibration;
@@ -54,7 +55,6 @@ mod propagation;
 mod registry;
 mod root;
 mod sampling;
-mod structure;
 mod warning;
 mod wave_moduli;
 
@@ -78,6 +78,5 @@ pub use observation::{INPUT_NAMES, INPUTS, Observation};
 pub use point_estimate::{Jacobian, Misfit, PointEstimate};
 pub use registry::{model, models, recommended};
 pub use sampling::{MonteCarlo, SamplingSettings, monte_carlo};
-pub use structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
 pub use warning::Warning;
 pub use wave_moduli::WaveModuli;

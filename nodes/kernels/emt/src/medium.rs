@@ -53,9 +53,9 @@ impl Medium {
 
     /// Mean of the normal stresses, Pa, from Eq. 4: p = (2/3π) φ k E* (Δ/3)^{3/2} J.
     ///
-    /// Every contact carries the Hertz force of the overlap whose root is Eq. 10, (4/3) E* √R* (√δ)³ ∝ (1 + g − 3gx²)³,
-    /// which is consistent with its stiffness. J is the mean of that cube over the contacts of Eq. 6. To first order in
-    /// g it is 1 − 12εg/5 in any reading of Eq. 10.
+    /// Every contact carries the Hertz force for the overlap whose root is Eq. 10, (4/3) E* √R* (√δ)³ ∝ (1 +
+    /// g − 3gx²)³, which is consistent with its stiffness. J is the mean of that cube over the contacts of
+    /// Eq. 6. To first order in g it is 1 − 12εg/5 in any reading of Eq. 10.
     pub fn pressure(&self) -> f64 {
         let (eps, g) = (self.eps, self.gamma_over_delta);
         let mean_cube = 1.0 + g * g * (12.0 / 5.0 - 16.0 / 35.0 * g)

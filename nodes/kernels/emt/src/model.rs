@@ -1,4 +1,4 @@
-//! What a model is.
+//! The trait of all models.
 
 use crate::calibration::Calibration;
 use crate::conditions::Conditions;
@@ -9,7 +9,7 @@ use crate::moduli::Moduli;
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
 use crate::propagation::numerical_jacobian;
-use crate::structure::Structure;
+use grainlab_core::results::Microstructure;
 use std::fmt::Debug;
 
 /// A theory that relates microstructure to moduli. A new one is a file in `models` with this trait and a line in
@@ -36,13 +36,13 @@ pub trait Model: Sync + Debug {
     /// The moduli of a packing of this structure in this state; `None` for those that the model does not predict.
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError>;
 
-    /// The structure whose prediction equals this observation, or comes nearest to it; `None` for what the known moduli
-    /// do not determine. The observation comes from [`Observation::checked`].
+    /// The structure whose prediction equals this observation or is closest to it; `None` for quantities that
+    /// the known moduli do not determine. The observation comes from [`Observation::checked`].
     fn solve(&self, observation: &Observation, calibration: &Calibration) -> Result<PointEstimate, EmtError>;
 
     /// The structure with its uncertainty.

@@ -1,4 +1,4 @@
-//! The models, a file each; [`crate::models`](fn@crate::models) lists them.
+//! The models, one file each; [`crate::models`](fn@crate::models) lists them.
 
 pub(crate) mod directional;
 pub(crate) mod effective_medium;

@@ -1,4 +1,4 @@
-//! The moduli of a transversely isotropic medium, as far as they are known.
+//! The known moduli of a transversely isotropic medium.
 
 use grainlab_core::TransverseIsotropy;
 use nalgebra::{RowSVector, SMatrix};
@@ -62,15 +62,15 @@ impl fmt::Display for Modulus {
     }
 }
 
-/// Moduli, Pa; `None` is not known, or not predicted.
+/// Moduli, Pa; `None`: not known, or not predicted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moduli([Option<f64>; MODULI]);
 
 impl Moduli {
-    /// None known.
+    /// All unknown.
     pub const NONE: Moduli = Moduli([None; MODULI]);
 
-    /// The three that the paper works with, Pa.
+    /// The three moduli of the paper, Pa.
     pub const fn paper(g12: f64, g13: f64, theta: f64) -> Self {
         Self([Some(g12), Some(g13), Some(theta), None, None, None])
     }
@@ -129,7 +129,7 @@ impl Moduli {
         Some(variance.sqrt() / (9.0 * self.get(Modulus::Theta)?))
     }
 
-    /// The same with the one modulus that the others leave no choice for, and its covariance with them.
+    /// The same with the one modulus that follows from the others, and its covariance with them.
     #[must_use]
     pub(crate) fn completed(
         mut self,
@@ -152,13 +152,14 @@ impl Moduli {
         (self, covariance)
     }
 
-    /// Whether no medium has them: some strain would cost no energy. Looks at what is known of C11, C33, C13 and G12.
+    /// Whether no medium has these moduli: some strain would cost no energy. Considers the known ones of C11,
+    /// C33, C13 and G12.
     pub(crate) fn unstable(&self) -> bool {
         let [c11, c33, c13, g12] =
             [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G12].map(|m| self.get(m));
         let plane = c11.zip(g12).is_some_and(|(c11, g12)| c11 <= g12);
         let axial = c11.zip(g12).zip(c33.zip(c13)).is_some_and(|((c11, g12), (c33, c13))| {
-            // Strain E along the axis with the stress across it free of work: C33 (C11 + C12)/2 > C13².
+            // Strain E along the axis while the stress across it does no work: C33 (C11 + C12)/2 > C13².
             c33 * (c11 - g12) <= c13 * c13
         });
         plane || axial

@@ -1,38 +1,38 @@
 //! What a model infers, before errors are propagated.
 
 use crate::observation::INPUTS;
-use crate::structure::{QUANTITIES, Structure, StructureCovariance};
 use crate::warning::Warning;
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::SMatrix;
 
 /// Change of each quantity per relative change of each input (for γ/Δ: per absolute change). Rows in the order of
 /// [`crate::Quantity::ALL`], columns in the order of [`crate::INPUT_NAMES`].
-pub type Jacobian = SMatrix<f64, QUANTITIES, INPUTS>;
+pub type Jacobian = SMatrix<f64, { InferredQuantity::COUNT }, INPUTS>;
 
-/// A point estimate, and what only the model knows about it.
+/// A point estimate, with the data on its error that depend on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointEstimate {
     /// The structure.
-    pub structure: Structure,
-    /// How it depends on the inputs; `None`: by central differences of [`crate::Model::solve`].
+    pub structure: Microstructure,
+    /// Its derivatives with respect to the inputs; `None`: by central differences of [`crate::Model::solve`].
     pub jacobian: Option<Jacobian>,
     /// Covariance of the model's own error where the model computes it; `None`: as the calibration has it for the
     /// model.
-    pub discrepancy: Option<StructureCovariance>,
+    pub discrepancy: Option<MicrostructureCovariance>,
     /// Misfit, where there are more data than unknowns.
     pub misfit: Option<Misfit>,
-    /// Warnings of this model; those of every model are added later.
+    /// Warnings of this model; those common to all models are added later.
     pub warnings: Vec<Warning>,
 }
 
 impl PointEstimate {
     /// A structure that fits exactly, without warnings.
-    pub const fn exact(structure: Structure) -> Self {
+    pub const fn exact(structure: Microstructure) -> Self {
         Self { structure, jacobian: None, discrepancy: None, misfit: None, warnings: Vec::new() }
     }
 }
 
-/// How far the data are from every structure, where they are more than the unknowns.
+/// Distance of the data from every structure, where there are more data than unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
     /// Sum of squares weighted by the errors of data and model.

@@ -3,18 +3,18 @@
 use crate::error::EmtError;
 use crate::observation::{INPUTS, Observation};
 use crate::point_estimate::Jacobian;
-use crate::structure::Structure;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::SVector;
 
 /// Relative step. The error of central differences is its square times a third derivative, plus rounding over it.
 const STEP: f64 = 1e-5;
 
-/// Derivatives of `solve` at `observation`, where it gives `structure`, by central differences, or one-sided ones where
-/// an observation beside it has no solution.
+/// Derivatives of `solve` at `observation`, where it gives `structure`, by central differences, or by
+/// one-sided ones if a neighbouring observation has no solution.
 pub(crate) fn numerical_jacobian(
     observation: &Observation,
-    structure: &Structure,
-    solve: impl Fn(&Observation) -> Result<Structure, EmtError>,
+    structure: &Microstructure,
+    solve: impl Fn(&Observation) -> Result<Microstructure, EmtError>,
 ) -> Jacobian {
     let here = column(structure);
     let mut jacobian = Jacobian::zeros();
@@ -34,6 +34,6 @@ pub(crate) fn numerical_jacobian(
     jacobian
 }
 
-fn column(structure: &Structure) -> SVector<f64, { crate::structure::QUANTITIES }> {
+fn column(structure: &Microstructure) -> SVector<f64, { InferredQuantity::COUNT }> {
     SVector::from(structure.values().map(|v| v.unwrap_or(0.0)))
 }

@@ -28,13 +28,14 @@ pub fn model(name: &str) -> Option<&'static dyn Model> {
 }
 
 /// Names of the models by their error, smallest first: rms error of ε over the 384 held-out packings of
-/// `tests/golden/ensembles/held_out.csv`, each model with the calibration `grainlab` and, where it takes one, with γ/Δ of
-/// the contacts. `relaxed` 0.007, `directional` 0.025, those of the paper 0.06; the plain theory has k wrong by 3.
+/// `tests/golden/ensembles/held_out.csv`, each model with the calibration `grainlab` and, where it takes one,
+/// with γ/Δ of the contacts: `relaxed` 0.007, `directional` 0.025, those of the paper 0.06. The error of k of
+/// the plain theory is 3.
 const BY_ERROR: [&str; 8] =
     ["relaxed", "directional", "full", "sqrt", "ratio", "ratio-volume", "ratio-as-printed", "emt"];
 
-/// The model whose estimate is recommended: of those inside their range, the one with the smallest error over the held-out
-/// packings; if none is inside, of all. `None` without an estimate.
+/// The model whose estimate is recommended: among those inside their range, the one with the smallest error
+/// over the held-out packings; among all if none is inside. `None` without an estimate.
 pub fn recommended<'a>(estimates: impl IntoIterator<Item = (&'a str, Status)>) -> Option<&'a str> {
     let rank = |name: &str| BY_ERROR.iter().position(|known| *known == name).unwrap_or(BY_ERROR.len());
     let key = |(name, status): &(&str, Status)| (*status != Status::Ok, rank(name));

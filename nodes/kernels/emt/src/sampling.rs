@@ -1,9 +1,9 @@
 //! Propagation of distributions by sampling (JCGM 101:2008), where errors are too large for a linear propagation.
 //!
-//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a draw of
-//! the model's own error is added. With small errors this agrees with [`crate::Estimate`]; with large ones intervals
-//! become asymmetric, and some draws have no solution. Those are counted. Every number here is of the draws with a
-//! solution, and is not meaningful where many have none.
+//! Moduli, pressure, γ/Δ and solid fraction are drawn from normal distributions, each draw is inverted, and a
+//! draw of the model's error is added. With small errors this agrees with [`crate::Estimate`]. With large
+//! ones intervals become asymmetric, and some draws have no solution. These are counted. Every number here
+//! refers to the draws with a solution, and is not meaningful if many draws have none.
 
 use crate::calibration::Calibration;
 use crate::error::EmtError;
@@ -11,7 +11,7 @@ use crate::estimate::CREDIBLE_LEVEL;
 use crate::model::Model;
 use crate::moduli::MODULI;
 use crate::observation::Observation;
-use crate::structure::{QUANTITIES, Quantity, Structure, StructureCovariance};
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{SMatrix, SVector};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
@@ -44,14 +44,14 @@ pub struct MonteCarlo {
     pub draws: usize,
     /// Number of draws without a solution.
     pub unsolved: usize,
-    /// The fault of the first of those.
+    /// The error of the first of these.
     pub first_fault: Option<EmtError>,
     /// Means; `None` is undetermined, or not part of the model.
-    pub mean: Structure,
+    pub mean: Microstructure,
     /// Covariance; `None` where fewer than two draws have a solution.
-    pub covariance: Option<StructureCovariance>,
+    pub covariance: Option<MicrostructureCovariance>,
     /// Values of each quantity in rising order; empty where it is undetermined.
-    sorted: [Vec<f64>; QUANTITIES],
+    sorted: [Vec<f64>; InferredQuantity::COUNT],
 }
 
 impl MonteCarlo {
@@ -61,14 +61,14 @@ impl MonteCarlo {
     }
 
     /// Standard deviation of a quantity.
-    pub fn stddev(&self, quantity: Quantity) -> Option<f64> {
+    pub fn stddev(&self, quantity: InferredQuantity) -> Option<f64> {
         self.mean.get(quantity)?;
         let i = quantity as usize;
         Some(self.covariance?[(i, i)].sqrt())
     }
 
     /// The quantile of a quantity at `level`, 0 to 1.
-    pub fn quantile(&self, quantity: Quantity, level: f64) -> Option<f64> {
+    pub fn quantile(&self, quantity: InferredQuantity, level: f64) -> Option<f64> {
         let sorted = &self.sorted[quantity as usize];
         let last = sorted.len().checked_sub(1)?;
         let at = level.clamp(0.0, 1.0) * last as f64;
@@ -77,14 +77,14 @@ impl MonteCarlo {
     }
 
     /// Interval of a quantity at [`CREDIBLE_LEVEL`], low and high, with as many draws below as above it.
-    pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
+    pub fn interval(&self, quantity: InferredQuantity) -> Option<[f64; 2]> {
         let outside = 0.5 * (1.0 - CREDIBLE_LEVEL);
         Some([self.quantile(quantity, outside)?, self.quantile(quantity, 1.0 - outside)?])
     }
 
     /// Skewness of the interval about the median: 0 if symmetric, 1 if all of it lies above, −1 if all lies below.
     /// Higher moments need not exist.
-    pub fn skewness(&self, quantity: Quantity) -> Option<f64> {
+    pub fn skewness(&self, quantity: InferredQuantity) -> Option<f64> {
         let [low, high] = self.interval(quantity)?;
         let median = self.quantile(quantity, 0.5)?;
         Some(if high > low { ((high - median) - (median - low)) / (high - low) } else { 0.0 })
@@ -93,7 +93,7 @@ impl MonteCarlo {
 
 /// Draws from the distribution of what `model` infers from `observation`, whose covariance of the moduli must be known.
 ///
-/// The observation itself must have a solution; the model's own error is that of this solution for every draw.
+/// The observation must have a solution; the model's error at this solution is used for every draw.
 pub fn monte_carlo(
     model: &dyn Model,
     observation: &Observation,
@@ -109,7 +109,7 @@ pub fn monte_carlo(
     let of_model = root(&estimate.model_covariance.unwrap_or_default());
 
     let mut normal = Normal::new(settings.seed);
-    let mut solved: Vec<SVector<f64, QUANTITIES>> = Vec::with_capacity(settings.draws);
+    let mut solved: Vec<SVector<f64, { InferredQuantity::COUNT }>> = Vec::with_capacity(settings.draws);
     let mut first_fault = None;
     for _ in 0..settings.draws {
         // All numbers are drawn before the inversion can fail, so that no draw depends on the outcome of another.
@@ -123,10 +123,11 @@ pub fn monte_carlo(
 
     let determined = estimate.structure.values().map(|v| v.is_some());
     let count = solved.len() as f64;
-    let mean: SVector<f64, QUANTITIES> = solved.iter().sum::<SVector<f64, QUANTITIES>>() / count;
+    let mean: SVector<f64, { InferredQuantity::COUNT }> =
+        solved.iter().sum::<SVector<f64, { InferredQuantity::COUNT }>>() / count;
     let covariance = (solved.len() > 1).then(|| {
-        let about_mean = |v: &SVector<f64, QUANTITIES>| (v - mean) * (v - mean).transpose();
-        solved.iter().map(about_mean).sum::<StructureCovariance>() / (count - 1.0)
+        let about_mean = |v: &SVector<f64, { InferredQuantity::COUNT }>| (v - mean) * (v - mean).transpose();
+        solved.iter().map(about_mean).sum::<MicrostructureCovariance>() / (count - 1.0)
     });
     let sorted = std::array::from_fn(|i| {
         let mut column: Vec<f64> =
@@ -140,7 +141,7 @@ pub fn monte_carlo(
         draws: settings.draws,
         unsolved: settings.draws - solved.len(),
         first_fault,
-        mean: Structure::of_values(std::array::from_fn(|i| {
+        mean: Microstructure::of_values(std::array::from_fn(|i| {
             (determined[i] && !solved.is_empty()).then_some(mean[i])
         })),
         covariance,
@@ -174,12 +175,12 @@ fn solve(
     model: &dyn Model,
     drawn: &Observation,
     calibration: &Calibration,
-    wanted: &Structure,
-) -> Result<SVector<f64, QUANTITIES>, EmtError> {
+    wanted: &Microstructure,
+) -> Result<SVector<f64, { InferredQuantity::COUNT }>, EmtError> {
     drawn.check_values()?;
     let found = model.solve(drawn, calibration)?.structure;
     let mut values = SVector::zeros();
-    for quantity in Quantity::ALL {
+    for quantity in InferredQuantity::ALL {
         if wanted.get(quantity).is_none() {
             continue;
         }
@@ -193,8 +194,8 @@ fn solve(
     Ok(values)
 }
 
-/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an error
-/// depends on those before it.
+/// The lower triangular R with R Rᵀ = covariance, of any rank: Cholesky's, with a column of zeros where an
+/// error depends on earlier ones.
 fn root<const N: usize>(covariance: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     /// Fraction of a variance that is rounding.
     const ROUNDING: f64 = 1e-12;

@@ -1,7 +1,7 @@
 //! Warnings about an estimate.
 
 use crate::moduli::Modulus;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use std::fmt;
 
 /// A limitation of an estimate.
@@ -9,8 +9,8 @@ use std::fmt;
 pub enum Warning {
     /// A coordination number lies outside the packings of the calibration.
     CoordinationOutsideFit {
-        /// Which one.
-        quantity: Quantity,
+        /// The quantity.
+        quantity: InferredQuantity,
         /// Its value.
         value: f64,
         /// Lowest and highest of the calibration.
@@ -85,13 +85,13 @@ pub enum Warning {
     NotOneMedium,
     /// Θ differs from the value that follows from C11, C33, C13 and G12 by more than the errors.
     Imbalance {
-        /// Difference in parts of Θ.
+        /// Difference relative to Θ.
         relative: f64,
     },
-    /// A coordination number is less than one contact per grain.
+    /// The coordination number is less than one contact per grain.
     CoordinationAbsurd {
-        /// Which one.
-        quantity: Quantity,
+        /// The quantity.
+        quantity: InferredQuantity,
         /// Its value.
         value: f64,
     },
@@ -108,7 +108,7 @@ pub enum Warning {
         chi_square: f64,
         /// Number of data minus number of unknowns.
         degrees_of_freedom: usize,
-        /// The modulus furthest from its prediction by the others, and by how many standard deviations.
+        /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
         worst: (Modulus, f64),
     },
 }

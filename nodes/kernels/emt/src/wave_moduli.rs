@@ -1,29 +1,30 @@
-//! The medium that wave speeds tell, where the axis may not be named.
+//! The moduli from wave speeds, with a given or an inferred axis.
 
 use crate::christoffel::{self, ChristoffelError, SpeedFit};
 use crate::conditions::{Conditions, Measured};
 use crate::moduli::Modulus;
 use grainlab_core::{Vec3, WaveSpeed};
 
-/// The moduli of wave speeds, and the axis they are about.
+/// The moduli from wave speeds, and their axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaveModuli {
-    /// The axis named, else the one that the speeds tell, else e3; unit.
+    /// The given axis, else the one inferred from the speeds, else e3; unit.
     pub axis: Vec3,
-    /// The moduli about it, or why the speeds are those of no medium.
+    /// The moduli about it, or the reason why no medium has these speeds.
     pub fitted: Result<SpeedFit, ChristoffelError>,
 }
 
 impl WaveModuli {
-    /// Of the waves in a sample of this density, kg/m³, in the state `conditions`; `named` is the axis of symmetry, if known.
+    /// From the waves in a sample of this density, kg/m³, in the state `conditions`; `named` is the axis of
+    /// symmetry, if known.
     pub fn of_speeds(
         speeds: &[WaveSpeed],
         density: Measured,
         named: Option<Vec3>,
         conditions: Conditions,
     ) -> Self {
-        let told = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
-        let axis = named.or_else(told).unwrap_or_else(Vec3::z);
+        let inferred = || christoffel::find_axis(speeds).ok().map(|found| found.axis);
+        let axis = named.or_else(inferred).unwrap_or_else(Vec3::z);
         Self { axis, fitted: christoffel::moduli_from_speeds(speeds, density, Some(axis), conditions) }
     }
 

@@ -1,9 +1,10 @@
-//! How well a packing knows its own noise: many seeds of a scene, the scatter among them beside what each one claims.
+//! Accuracy of the estimated noise of a fabric: scatter over many seeds of a scene, and the estimate from
+//! each packing.
 //!
-//! `cargo run --release -p grainlab_experiment --example fabric_noise SCENE.toml FIRST-LAST [PHASES [FRICTION]]` keeps the phases named
-//! (comma-separated; all without) and, where a friction is given, has it in all of them. So
-//! `nodes/scenes/demo.toml 1-60 gas,rest,load,settle` makes packings that are isotropic, `… gas,rest,load 0` frictionless
-//! ones.
+//! `cargo run --release -p grainlab_experiment --example fabric_noise SCENE.toml FIRST-LAST [PHASES
+//! [FRICTION]]` keeps the named phases (comma-separated; default all) and sets the friction, if given, in all
+//! of them. `nodes/scenes/demo.toml 1-60 gas,rest,load,settle` prepares isotropic packings, `… gas,rest,load
+//! 0` frictionless ones.
 
 use grainlab_core::results::PackingReport;
 use grainlab_core::symmetry;
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// All that is measured without a stiffness.
+/// All measurements without a stiffness.
 fn structure(packing: &Packing) {
     let view = PackingView::new(packing);
     let fabric = fabric(&view, &Vec3::z());

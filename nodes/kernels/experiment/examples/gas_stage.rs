@@ -1,12 +1,13 @@
-//! What the gas stage costs and what packing it leads to: `gas_stage GRAINS FIRST-LAST METHOD:RATE…`, seeds from first to
-//! last, for example `cargo run --release -p grainlab_experiment --example gas_stage 500 1-6 soft:12 event_driven:12`.
+//! Cost of the gas stage, and the packing that follows: `gas_stage GRAINS FIRST-LAST METHOD:RATE…`, seeds
+//! from first to last, for example `cargo run --release -p grainlab_experiment --example gas_stage 500 1-6
+//! soft:12 event_driven:12`.
 //!
-//! Each gas is compressed to φ = 0.607 at that rate (1/s), comes to rest, is pressed without friction to 1 kPa (its φ
-//! there stands for jamming), then with μ = 0.1 to 50 kPa.
+//! Each gas is compressed to φ = 0.607 at that rate (1/s), comes to rest, is compressed without friction to 1
+//! kPa (its φ there approximates jamming), then with μ = 0.1 to 50 kPa.
 
 use std::time::Instant;
 
-/// One gas and what became of it.
+/// One gas and its result.
 struct Outcome {
     /// Wall time to φ = 0.607, s.
     seconds: f64,
@@ -76,7 +77,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "gas", "seed", "seconds", "phi 1 kPa", "phi 50 kPa", "k", "z"
     );
     let mut outcomes: Vec<Vec<Outcome>> = gases.iter().map(|_| Vec::new()).collect();
-    // Seed by seed, so that a load on the machine that comes and goes meets all alike.
+    // Seed by seed, so that a varying load on the machine affects all alike.
     for seed in first..=last {
         for (gas, outcomes) in gases.iter().zip(&mut outcomes) {
             let (method, rate) = gas.split_once(':').ok_or("a gas is METHOD:RATE")?;

@@ -1,4 +1,4 @@
-//! Runs the demo scene to its packing, in this process, and measures that.
+//! Runs the demo scene to its packing, in this process, and measures the packing.
 //!
 //! `cargo run --release -p grainlab_experiment --example measure_a_scene`
 
@@ -9,7 +9,7 @@ use grainlab_scene::{Scene, built_in};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::parse(built_in("demo").ok_or("no scene demo")?)?;
     let mut run = Simulation::new(scene)?;
-    // The simulator asks, the servo answers with a strain rate, and grains move for one control period.
+    // The simulator sends a request, the servo returns a strain rate, and grains move for one control period.
     while let Some(request) = run.request() {
         let outcome = run.advance(&grainlab_servo::control(&request.servo_input())?.rate)?;
         if outcome.packing_due {

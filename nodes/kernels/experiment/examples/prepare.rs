@@ -1,4 +1,5 @@
-//! Runs a scene in this process alone, the servo as a function call: `cargo run --release -p grainlab_experiment --example prepare FILE`.
+//! Runs a scene in this process, with the servo as a function call: `cargo run --release -p
+//! grainlab_experiment --example prepare FILE`.
 
 use grainlab_core::ComponentControl;
 use std::time::Instant;
@@ -35,7 +36,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The largest error of a servoed component over the mean of the normal targets; NaN where none is servoed.
+/// The largest error of a servoed component over the mean of the normal targets; NaN without a servoed
+/// component.
 fn off_target(stress: &[f64; 6], controls: &[ComponentControl; 6]) -> f64 {
     let targets = controls.map(|c| match c {
         ComponentControl::Stress(target) => Some(target),

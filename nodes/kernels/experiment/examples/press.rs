@@ -1,5 +1,5 @@
-//! Presses a gas of grains to rest and prints the packing: `cargo run --release -p grainlab_experiment --example press -- COUNT SEED
-//! PRESSURE FRICTION`. The packings of the tests come from here.
+//! Compresses a gas of grains to rest and prints the packing: `cargo run --release -p grainlab_experiment
+//! --example press -- COUNT SEED PRESSURE FRICTION`. It made the packings of the tests.
 
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
@@ -54,7 +54,8 @@ until = {{ on_target = 1e-6, unbalanced = 1e-7, hold = 2e-5, timeout = 0.1 }}
     Ok(())
 }
 
-/// One line a thing: the cell's columns, friction and time step, grains, contacts with their tangential force.
+/// One line per item: the columns of the cell, friction and time step, grains, contacts with their tangential
+/// force.
 fn print(p: &grainlab_core::Packing) {
     let three = |v: &[f64]| format!("{:e} {:e} {:e}", v[0], v[1], v[2]);
     for column in p.cell.matrix().column_iter() {

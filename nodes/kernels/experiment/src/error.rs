@@ -2,7 +2,7 @@
 
 use grainlab_dem::DemError;
 
-/// Why a run cannot start or go on.
+/// Why a run cannot start or continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExperimentError {
     /// The engine failed.

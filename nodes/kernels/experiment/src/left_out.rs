@@ -1,12 +1,12 @@
-//! What a phase leaves out of the model, because it has no effect there.
+//! Parts of the model without effect in a phase, which are left out.
 
 use crate::phase_settings::phase_settings;
 use grainlab_dem::roofline::operations_per_contact;
 use grainlab_dem::{EngineSettings, Features};
 use grainlab_scene::{GasMethod, Phase, PhaseKind, Scene};
 
-/// What a phase leaves out, and what of the arithmetic of a contact is left: for people. `equal_sized` tells whether all
-/// grains are of one size.
+/// Description of the parts left out in a phase, and of the remaining operations per contact. `equal_sized`:
+/// all grains have one size.
 pub(crate) fn left_out(scene: &Scene, phase: &Phase, equal_sized: bool) -> String {
     if matches!(phase.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. }) {
         return "without the contact law and spins: hard spheres, from collision to collision".into();
@@ -25,7 +25,8 @@ pub(crate) fn left_out(scene: &Scene, phase: &Phase, equal_sized: bool) -> Strin
     }
     let whole = operations_per_contact(scene.law, &EngineSettings { friction: 0.5, ..settings });
     let left = operations_per_contact(scene.law, &settings);
-    // A contact that friction holds takes fewer than one that slides, though nothing is left out.
+    // A contact below the friction limit takes fewer operations than a sliding one, though nothing is left
+    // out.
     let saved = if left < whole && settings.features() != Features::Sliding {
         format!(" ({left:.0} of {whole:.0} operations per contact)")
     } else {

@@ -1,9 +1,10 @@
 //! A scene run along its loading path, one request to the servo and one strain rate at a time.
 //!
 //! - [`Simulation`]: the run
-//! - [`ServoRequest`], [`StepOutcome`]: what it asks, and what a strain rate led to
+//! - [`ServoRequest`], [`StepOutcome`]: its requests, and the results of a strain rate
 //!
-//! A packing and the run state published with it are a checkpoint: a run resumed from them goes on bit for bit.
+//! A packing and the run state published with it are a checkpoint: a run resumed from them continues bit for
+//! bit.
 
 mod error;
 mod left_out;

@@ -3,7 +3,7 @@
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_dem::{EnergyBalance, Observables};
 
-/// A request for a strain rate, with all that a servo needs.
+/// A request for a strain rate, with all data for the servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServoRequest {
     /// Counts requests from 0.
@@ -14,7 +14,7 @@ pub struct ServoRequest {
     pub time: f64,
     /// Index of the present phase.
     pub phase: u32,
-    /// What the contacts show.
+    /// Observation of the contacts.
     pub observables: Observables,
     /// What is imposed on each component.
     pub controls: [ComponentControl; 6],
@@ -31,7 +31,7 @@ pub struct ServoRequest {
 }
 
 impl ServoRequest {
-    /// The part of the request that the servo's law reads.
+    /// The part of the request that the law of the servo uses.
     pub fn servo_input(&self) -> grainlab_servo::ServoInput {
         grainlab_servo::ServoInput {
             stress: self.observables.stress.tensor,
@@ -45,7 +45,7 @@ impl ServoRequest {
     }
 }
 
-/// What one control period led to.
+/// The result of one control period.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepOutcome {
     /// Name of the phase that ended, if one did.

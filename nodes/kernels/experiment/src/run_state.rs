@@ -1,5 +1,5 @@
-//! The part of a run's state that is not in the packing: loading path, accumulated strain, rate in force. It is stored as
-//! opaque bytes with a version, so that a recording is also a checkpoint.
+//! The part of a run's state that is not in the packing: loading path, accumulated strain, present rate. It
+//! is stored as opaque bytes with a version, so that a recording is also a checkpoint.
 
 use crate::error::ExperimentError;
 use grainlab_core::Mat3;
@@ -7,7 +7,7 @@ use grainlab_scene::PathState;
 
 const VERSION: u64 = 3;
 
-/// Everything beside the packing that a run needs to continue bit for bit.
+/// Everything besides the packing that a run needs to continue bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RunState {
     pub(crate) sequence: u64,
@@ -61,7 +61,7 @@ impl RunState {
             }
             Some(&VERSION) => {}
             Some(v) => {
-                return Err(resume(format!("run state version {v}, this program knows version {VERSION}")));
+                return Err(resume(format!("run state version {v}, this program reads version {VERSION}")));
             }
         }
         if words.len() != 26 || !bytes.len().is_multiple_of(8) {

@@ -24,7 +24,8 @@ pub struct Simulation {
     path: PathState,
     sequence: u64,
     packings: u64,
-    /// Friction coefficient of the present forces. At the end of a phase the engine already has that of the next.
+    /// Friction coefficient of the present forces. At the end of a phase the engine already has that of the
+    /// next one.
     friction: f64,
     /// Deformation gradient since the reference state; the identity before the reference state.
     deformation: Mat3,
@@ -68,11 +69,10 @@ impl Simulation {
     pub fn from_packing(scene: Scene, packing: &Packing) -> Result<Self, ExperimentError> {
         let phase = scene.phases.first();
         let phase = phase.ok_or(ExperimentError::Resume("the scene has no phases".into()))?;
-        // The time step of the packing was chosen under other settings.
+        // The time step of the packing was set under other settings.
         let start = Packing { step: 0, time: 0.0, time_step: 0.0, ..packing.clone() };
         let engine = Engine::from_packing(&start, phase_settings(&scene, phase));
         let mut run = Self::begin(scene, engine, packing.friction)?;
-        run.engine.measure_energy(run.scene.numerics.energy_balance);
         // It is published before the first request.
         run.packings = 1;
         Ok(run)
@@ -80,6 +80,9 @@ impl Simulation {
 
     fn begin(scene: Scene, mut engine: Engine, friction: f64) -> Result<Self, ExperimentError> {
         engine.initialise()?;
+        // Hard spheres that only collide have no balance.
+        let hard = |p: &Phase| matches!(p.kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. });
+        engine.measure_energy(scene.numerics.energy_balance && !scene.phases.first().is_some_and(hard));
         let observables = engine.observables()?;
         Ok(Self {
             friction,
@@ -158,7 +161,8 @@ impl Simulation {
         &self.engine
     }
 
-    /// What the present phase leaves out of the model, and what that saves, in a line; empty once the path is done.
+    /// What the present phase leaves out of the model, and the operations saved, in one line; empty once the
+    /// path is done.
     pub fn left_out(&self) -> String {
         let phase = self.path.phase(&self.scene);
         phase.map_or_else(String::new, |phase| left_out(&self.scene, phase, self.engine.equal_sized()))
@@ -243,7 +247,7 @@ impl Simulation {
         }
     }
 
-    /// How far the phase has come.
+    /// Progress of the phase.
     fn travelled(&self) -> Travelled {
         let (steps, time) = (self.engine.steps(), self.engine.time() - self.path.began);
         Travelled { steps, time, strain: self.phase_strain }

@@ -36,7 +36,7 @@ until = { elapsed = 5e-5 }
 publish = true
 "#;
 
-/// A packing that was due, the run state with it, and whether a phase had ended.
+/// A packing that was due, its run state, and whether a phase had ended.
 type Published = (Packing, Vec<u8>, bool);
 
 /// Runs to the end; all packings that were due.
@@ -69,9 +69,9 @@ fn filmed() -> String {
         .replace("until = { elapsed = 5e-5 }", "record = { every_time = 1e-5 }\nuntil = { elapsed = 5e-5 }")
 }
 
-/// Expected: the same end, bit for bit, with a packing each thousandth of strain and one at the end.
+/// Expected: the same end, bit for bit, with a packing per thousandth of strain and one at the end.
 #[test]
-fn a_run_that_is_filmed_is_the_run_that_is_not() {
+fn recording_packings_within_phases_does_not_change_a_run() {
     let ((_, plain), (film, frames)) = (run(of(SCENE)), run(of(&filmed())));
     assert_eq!(plain.len(), 1);
     assert_eq!(frames.last().unwrap().0, plain[0].0);
@@ -86,9 +86,9 @@ fn a_run_that_is_filmed_is_the_run_that_is_not() {
     }
 }
 
-/// Expected: a run taken up from any of its packings goes on to the same packings, bit for bit.
+/// Expected: a run resumed from any of its packings continues to the same packings, bit for bit.
 #[test]
-fn a_filmed_run_goes_on_from_each_of_its_packings() {
+fn a_run_resumes_from_each_packing_recorded_within_phases() {
     let scene = filmed();
     let (_, frames) = run(of(&scene));
     for at in (0..frames.len() - 1).step_by(7) {
@@ -99,7 +99,8 @@ fn a_filmed_run_goes_on_from_each_of_its_packings() {
     }
 }
 
-/// Expected: solid fraction, energy per grain and momentum of a gas of several sizes, which comes to the same end each time.
+/// Expected: solid fraction, energy per grain and momentum of a gas of several sizes, with the same end each
+/// time.
 #[test]
 fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
     for diameter in [
@@ -124,7 +125,7 @@ fn grains_of_several_sizes_are_placed_compressed_and_pressed() {
     }
 }
 
-/// Expected: the packing as it was, at time 0; its forces are those that it came with.
+/// Expected: the same packing, at time 0, with its own forces.
 #[test]
 fn a_run_starts_from_a_packing() {
     let packing = run(of(SCENE)).1.remove(0).0;
@@ -136,14 +137,14 @@ fn a_run_starts_from_a_packing() {
     assert_eq!((first.step, first.time, start.packings()), (0, 0.0, 1));
     assert_eq!((&first.positions, &first.velocities), (&packing.positions, &packing.velocities));
     assert_eq!(first.contacts, packing.contacts);
-    // It is published first, and the run goes on from that.
+    // It is published first, and the run continues from it.
     let again = Simulation::resume(scene, &first, &start.run_state()).unwrap();
     assert_eq!(run(again).1, run(start).1);
 }
 
 /// Expected: what each phase leaves out, by name.
 #[test]
-fn a_run_says_what_each_phase_leaves_out() {
+fn a_run_reports_what_each_phase_leaves_out() {
     let mut run = of(SCENE);
     let mut said = Vec::new();
     while let Some(request) = run.request() {

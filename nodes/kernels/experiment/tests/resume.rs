@@ -1,5 +1,6 @@
-//! A packing and its run state are a checkpoint: a run taken up from them goes on bit for bit.
+//! A packing and its run state are a checkpoint: a run resumed from them continues bit for bit.
 
+use grainlab_core::Packing;
 use grainlab_dem::DemError;
 use grainlab_experiment::{ExperimentError, Simulation};
 use grainlab_scene::Scene;
@@ -67,8 +68,21 @@ fn event_driven() -> String {
 
 #[test]
 fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
-    // The phase of every request, to save in the middle of each phase and where each begins.
-    let (mut run, mut phases) = (start(), Vec::new());
+    resumes(SCENE);
+}
+
+#[test]
+fn a_run_with_resistance_to_rolling_resumed_at_any_request_equals_the_run_that_went_on() {
+    let end = resumes(&format!(
+        "{SCENE}\n[contact]\nrolling_stiffness = 1e4\nrolling_damping = 1e-3\nrolling_friction = 0.1\n"
+    ));
+    assert!(end.contacts.iter().any(|c| c.rolling_force.norm() > 0.0));
+}
+
+/// Resumes the run of a scene in the middle of each phase and where each begins; its last packing.
+fn resumes(scene: &str) -> Packing {
+    // The phase of every request.
+    let (mut run, mut phases) = (begin(scene), Vec::new());
     while run.request().is_some() {
         phases.push(run.path().phase);
         advance(&mut run);
@@ -81,11 +95,11 @@ fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
         let length = phases.iter().filter(|p| **p == phase).count();
         saves.extend([first, first + length / 2]);
     }
-    let mut first = start();
+    let mut first = begin(scene);
     for (at, phase) in phases.iter().enumerate() {
         if saves.contains(&at) {
             let saved = (first.packing(), first.run_state());
-            let mut second = Simulation::resume(Scene::parse(SCENE).unwrap(), &saved.0, &saved.1).unwrap();
+            let mut second = Simulation::resume(Scene::parse(scene).unwrap(), &saved.0, &saved.1).unwrap();
             while advance(&mut second) {}
             // Every number of both states, contact history and run state included.
             assert_eq!(second.packing(), end, "resumed at request {at}, in phase {phase}");
@@ -93,6 +107,7 @@ fn a_run_resumed_at_any_request_equals_the_run_that_went_on() {
         }
         advance(&mut first);
     }
+    end
 }
 
 #[test]
@@ -119,7 +134,7 @@ fn an_event_driven_gas_resumed_at_every_request_equals_the_run_that_went_on() {
 }
 
 #[test]
-fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
+fn an_event_driven_phase_keeps_its_clock_and_meets_its_conditions() {
     let mut run = begin(&event_driven());
     while run.path().phase == 0 {
         let asked = run.request().unwrap();
@@ -136,12 +151,12 @@ fn an_event_driven_phase_keeps_its_clock_and_ends_where_its_scene_says() {
     let reached = run.packing().solid_fraction();
     assert!((0.55..0.55 * (1.0 + 1e-8)).contains(&reached), "{reached}");
     assert!(run.engine().speed() > 0.9, "still a gas: {}", run.engine().speed());
-    // The contact law takes over at its own time step.
+    // The contact law continues with its own time step.
     assert!(run.engine().time_step() < 1e-6, "{}", run.engine().time_step());
 }
 
 #[test]
-fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
+fn an_event_driven_gas_accepts_isotropic_rates_only_and_reports_jamming() {
     let mut run = begin(&event_driven());
     advance(&mut run);
     let before = (run.packing(), run.run_state());
@@ -149,7 +164,7 @@ fn an_event_driven_gas_obeys_isotropic_rates_only_and_says_when_it_jams() {
     assert!(error.contains("not isotropic"), "{error}");
     let error = run.advance(&[f64::NAN; 6]).unwrap_err().to_string();
     assert!(error.contains("finite"), "{error}");
-    // Refused, the run is back at a state from which it can go on.
+    // After a refused rate, the run is in a state from which it can continue.
     assert!(run.engine().steps() <= before.0.step);
     assert!(advance(&mut run));
 

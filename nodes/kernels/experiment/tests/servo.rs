@@ -6,7 +6,7 @@ use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 use std::sync::OnceLock;
 
-/// Targets, Pa, met one after the other.
+/// Targets, Pa, one after the other.
 const PRESSURES: [f64; 5] = [1e3, 10e3, 50e3, 500e3, 5e6];
 
 const GAS: &str = r#"
@@ -27,7 +27,7 @@ control_period = 50
 until = { speed = 1e-3 }
 "#;
 
-/// Isotropic compression to `pressure` (Pa) under the scene's default law, its parameters untouched.
+/// Isotropic compression to `pressure` (Pa) under the default law of the scene, with unchanged parameters.
 fn servo_phase(pressure: f64) -> String {
     let normal = format!("{{ stress = {pressure:e} }}");
     format!(
@@ -38,7 +38,7 @@ fn servo_phase(pressure: f64) -> String {
     )
 }
 
-/// The packing at each of [`PRESSURES`], with the largest error of a component over the pressure seen when it settled.
+/// The packing at each of [`PRESSURES`], with the largest relative error of a component when it settled.
 fn settled() -> &'static Vec<(Engine, f64)> {
     static SETTLED: OnceLock<Vec<(Engine, f64)>> = OnceLock::new();
     SETTLED.get_or_init(|| {
@@ -66,7 +66,8 @@ fn the_default_law_settles_to_a_permille_in_all_components_from_1_kpa_to_5_mpa()
     assert!(errors.iter().all(|e| *e <= 1e-3), "{errors:?}");
 }
 
-/// Eq. 1 closed around a settled packing, its targets a shade (1e-4 of the pressure) away from where it is.
+/// Eq. 1 in a closed loop with a settled packing, with targets slightly (1e-4 of the pressure) off its
+/// stress.
 struct Loop {
     engine: Engine,
     controls: [ComponentControl; 6],
@@ -84,7 +85,7 @@ impl Loop {
         });
         let stress = engine.observables().unwrap().stress.tensor;
         let shade = 1e-4 * stress.mean();
-        // Both signs: volume and shape of the cell are out of balance.
+        // Both signs: volume and shape of the cell are off.
         let targets: [f64; 6] =
             std::array::from_fn(|i| stress.voigt()[i] + shade * [1.0, 0.5, 1.0, -0.5, 0.5, 1.0][i]);
         let controls = std::array::from_fn(|i| match servoed[i] {
@@ -103,7 +104,8 @@ impl Loop {
         grainlab_servo::critical_gain(&tangent, &self.controls, self.interval(), leak)
     }
 
-    /// The largest error of a servoed component, in shades, before each of `intervals` control intervals.
+    /// The largest error of a servoed component, in units of this offset, before each of `intervals` control
+    /// intervals.
     fn errors(&mut self, gain: f64, leak: f64, rate_limit: f64, intervals: usize) -> Vec<f64> {
         let mut errors = Vec::new();
         for _ in 0..intervals {
@@ -113,7 +115,7 @@ impl Loop {
                 _ => 0.0,
             };
             errors.push((0..6).map(off).fold(0.0, f64::max));
-            // Far beyond a swing, and still far below the pressure: the network is the same.
+            // Far beyond an oscillation, and still far below the pressure: the network is the same.
             if errors[errors.len() - 1] > 100.0 && rate_limit.is_infinite() {
                 break;
             }
@@ -123,7 +125,7 @@ impl Loop {
                 rate: self.engine.rate(),
                 rate_limit: rate_limit.min(f64::MAX),
                 law: ServoLaw::Integral { gain, leak },
-                // Withheld, else the law would be refused beyond its limit.
+                // The stiffness is not given; otherwise the law would be refused beyond its limit.
                 tangent: [0.0; 6],
                 control_interval: self.interval(),
             };
@@ -175,10 +177,10 @@ fn eq_1_goes_unstable_at_the_gain_predicted_from_the_tangent_stiffness() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Over a long interval the grains have time to give way, and the limit rises from the affine stiffness towards the
-/// relaxed one: hardly in compression of all sides, by up to nearly 2 in a lone shear. An interval of 100 steps is a
-/// third of a sound crossing, in which grains may swing past the relaxed state: 1.45 to 1.87 were found in packings that
-/// relax by 1.63 to 1.71.
+/// Over a long interval the grains have time to relax, and the limit rises from the affine stiffness towards
+/// the relaxed one: hardly in isotropic compression, by up to nearly 2 in a single shear. In an interval of
+/// 100 steps, a third of a sound crossing, grains may overshoot the relaxed state: 1.45 to 1.87 were found in
+/// packings that relax by 1.63 to 1.71.
 #[test]
 fn over_long_intervals_the_limit_rises_as_far_as_the_grains_give_way() {
     let packing = &settled()[2].0;
@@ -199,19 +201,19 @@ fn over_long_intervals_the_limit_rises_as_far_as_the_grains_give_way() {
     assert!(shear > 1.25 && isotropic < 1.15, "{shear} {isotropic}");
 }
 
-/// Three times the critical gain: rates jump from one end of what is allowed to the other, the stress error stays of the
-/// order of what one interval at the limit strains, and nothing is left over when the gain is right again.
+/// Three times the critical gain: rates alternate between the limits, the stress error stays of the order of
+/// the strain of one interval at the limit, and vanishes after the gain is reduced.
 #[test]
 fn beyond_the_critical_gain_the_rate_limit_bounds_the_swings_and_nothing_winds_up() {
     let mut l = Loop::around(&settled()[2].0, [true; 6], 20);
     let critical = l.predicted(0.0);
-    // K h = 4/g_c: one interval at this rate strains by 10 shades of stress.
+    // K h = 4/g_c: one interval at this rate strains by 10 offsets of stress.
     let limit = 10.0 * l.shade * critical / 4.0;
     let swings = l.errors(3.0 * critical, 0.0, limit, 400);
     let late = swings[200..].iter().fold(0.0f64, |m, e| m.max(*e));
     assert!((2.5..20.0).contains(&late), "{late} shades");
     assert!(l.engine.rate().iter().all(|r| r.abs() <= limit));
-    // The shaken grains need some hundred intervals to come to rest.
+    // The agitated grains need some hundred intervals to come to rest.
     let after = l.errors(0.3 * critical, 0.0, limit, 400);
     let left = after[350..].iter().fold(0.0f64, |m, e| m.max(*e));
     assert!(left < 0.5, "{left} shades left of {late}");

@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let positions: Vec<Vec3> = (0..4 * CELLS.pow(3)).map(site).collect();
     let cell = Cell::cube(CELLS as f64 * edge).ok_or("the cell has no volume")?;
-    // Friction keeps the tangential springs, which a crystal needs to resist shear.
+    // Friction keeps the tangential springs, without which a crystal does not resist shear.
     let settings = EngineSettings { friction: 0.5, skin: 0.1 * RADIUS, ..EngineSettings::default() };
     let radii = vec![RADIUS; positions.len()];
     let mut engine = Engine::new(cell, Material::GLASS, radii, &positions, settings);

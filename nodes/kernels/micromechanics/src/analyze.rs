@@ -1,4 +1,4 @@
-//! Everything that is measured on one packing.
+//! All measurements on one packing.
 
 use crate::equilibrium::unbalanced_force_ratio;
 use crate::error::MicroError;
@@ -14,22 +14,25 @@ use grainlab_core::results::{
 };
 use grainlab_core::{Packing, Vec3, symmetry};
 
-/// How a packing is measured.
+/// Settings of the measurement of a packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of about 1e-14
-    /// in C at z = 5.3; a loose one overestimates C, the more so the closer the network is to isostaticity (z = 4).
+    /// Relative residual at which the stiffness solve stops, in [1e-13, 1e-2]. The default leaves an error of
+    /// about 1e-14 in C at z = 5.3. A larger one overestimates C, the more so the closer the network is to
+    /// isostaticity (z = 4).
     pub tolerance: f64,
-    /// How the stiffness solve is done; the result is the same.
+    /// Method of the stiffness solve; the result is the same.
     pub solver: Solver,
-    /// Iterations after which the solve gives up.
+    /// Maximum number of iterations of the solve.
     pub max_iterations: u32,
-    /// Axis about which ε, the P4 coefficient and the ratios γ/Δ are taken, and what is read off the stiffness as moduli
-    /// ([`Fabric::reference_axis`] keeps it). Any length but zero. The stiffnesses themselves stay in the frame of the cell.
+    /// Axis of ε, the P4 coefficient, the ratios γ/Δ, and the moduli taken from the stiffness
+    /// ([`Fabric::reference_axis`] keeps it). Of any length above zero. The stiffnesses stay in the frame of
+    /// the cell.
     pub axis: Vec3,
     /// Which springs the frozen network has.
     pub springs: Springs,
-    /// With a probe the stiffness is measured by straining the packing, instead of that of the frozen network.
+    /// With a probe, the stiffness is measured by straining the packing instead of solving the frozen
+    /// network.
     pub probe: Option<StrainProbe>,
 }
 
@@ -46,21 +49,22 @@ impl Default for Settings {
     }
 }
 
-/// What [`analyze`] finds.
+/// The result of [`analyze`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// Everything measured.
+    /// The measured quantities.
     pub report: PackingReport,
-    /// How the probe went, where there was one.
+    /// The result of the probe, if one was set.
     pub probe: Option<StrainProbeResult>,
 }
 
 /// Measures structure, stress and stiffness of `packing`.
 ///
-/// A packing that is not jammed is measured as far as it goes and says why in [`PackingReport::elasticity`].
+/// A packing that is not jammed is measured as far as possible; [`PackingReport::elasticity`] has the reason.
 ///
 /// # Errors
-/// A setting out of range, a contact whose normal is not along its branch, and a stiffness that fails its checks.
+/// A setting out of range, a contact whose normal is not parallel to its branch vector, and a stiffness that
+/// fails its checks.
 pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, MicroError> {
     let axis = settings.check()?;
     let view = PackingView::new(packing);
@@ -82,22 +86,22 @@ pub fn analyze(packing: &Packing, settings: &Settings) -> Result<Analysis, Micro
     Ok(Analysis { report: report(&view, parts), probe })
 }
 
-/// What a report holds beside the state of the packing.
+/// The parts of a report besides the state of the packing.
 #[derive(Clone, Debug)]
 pub struct ReportParts {
     /// Contacts and the forces they carry.
     pub contacts: ContactStatistics,
     /// Orientation of the contacts.
     pub fabric: Fabric,
-    /// Which forces and which contacts carry the stress.
+    /// Parts of the stress by force and by network.
     pub stress_decomposition: StressDecomposition,
     /// The three ratios γ/Δ.
     pub strain_ratios: StrainRatios,
-    /// The stiffness, or why there is none.
+    /// The stiffness, or the reason why it is not defined.
     pub elasticity: Elasticity,
 }
 
-/// The report of a packing whose parts were measured, here or by whoever recorded them.
+/// The report of a packing from measured parts, computed here or read from a recording.
 pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
     let packing = view.packing;
     let ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity } = parts;
@@ -117,7 +121,7 @@ pub fn report(view: &PackingView<'_>, parts: ReportParts) -> PackingReport {
     }
 }
 
-/// The stiffness by the method of the settings, and how the probe went.
+/// The stiffness by the method of the settings, and the result of the probe.
 fn elasticity(
     view: &PackingView<'_>,
     settings: &Settings,

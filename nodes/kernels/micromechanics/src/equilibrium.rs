@@ -1,9 +1,10 @@
-//! How far a packing is from equilibrium.
+//! Distance of a packing from equilibrium.
 
 use grainlab_core::{Packing, Vec3};
 
-/// Unbalanced force ratio: mean net force of the grains that take part, over the mean contact force (all contacts).
-/// Contact forces are those the packing holds. `None` if no grain takes part or no contact carries force.
+/// Unbalanced force ratio: mean net force of the non-rattlers, over the mean contact force (all contacts).
+/// Contact forces are those stored in the packing. `None` without non-rattlers or if no contact carries
+/// force.
 ///
 /// `non_rattlers` is one entry per grain, from [`crate::non_rattlers`].
 pub fn unbalanced_force_ratio(packing: &Packing, non_rattlers: &[bool]) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! What can go wrong, typed.
+//! Errors.
 
 use grainlab_core::results::NotJammed;
 
@@ -30,7 +30,7 @@ pub enum MicroError {
         /// Cosine of the angle between them; not a number if the centres coincide.
         cosine: f64,
     },
-    /// The linear solve stopped short of its tolerance.
+    /// The linear solve did not reach its tolerance.
     #[error(
         "stiffness solve reached a relative residual of {residual:e} after {iterations} iterations, {tolerance:e} was \
          asked for; raise max_iterations or tolerance (a network near isostaticity converges slowly)"
@@ -38,12 +38,12 @@ pub enum MicroError {
     NotConverged {
         /// The worst relative residual of the columns.
         residual: f64,
-        /// The tolerance asked for.
+        /// The tolerance set.
         tolerance: f64,
         /// Iterations done.
         iterations: u32,
     },
-    /// Prestress makes the network a mechanism that gives way.
+    /// Prestress gives the network a direction of negative stiffness.
     #[error(
         "the prestressed network has a direction of negative stiffness: the packing is not at rest in a stable state \
          (relative residual {residual:e}); relax it further, or leave the prestress term out"
@@ -60,7 +60,7 @@ pub enum MicroError {
     Inconsistent {
         /// Largest difference over the largest entry of the affine stiffness.
         relative: f64,
-        /// What is allowed.
+        /// The largest value allowed.
         limit: f64,
     },
     /// The stiffness is not between zero and the affine stiffness.
@@ -69,7 +69,8 @@ pub enum MicroError {
          withheld"
     )]
     OutOfBounds {
-        /// Which of C, B − C and A − B, with B of affine motion and a uniform rotation: as "C", "B - C", "A - B".
+        /// Name of the matrix: "C", "B - C" or "A - B", with B the stiffness of affine motion with a uniform
+        /// rotation.
         what: &'static str,
         /// The offending eigenvalue, Pa.
         eigenvalue: f64,
@@ -92,10 +93,10 @@ pub enum ProbeError {
         /// What is required.
         requirement: &'static str,
     },
-    /// There is nothing to probe.
+    /// The packing has no contact network.
     #[error(transparent)]
     NotJammed(#[from] NotJammed),
-    /// The packing did not come to rest before it was strained.
+    /// The packing did not come to rest before the strain.
     #[error(
         "the packing is not at rest: an unbalanced force ratio of {unbalanced:e} after {steps} steps, {target:e} is needed \
          for this amplitude; relax the packing further, raise max_steps, or raise the amplitude"
@@ -103,7 +104,7 @@ pub enum ProbeError {
     NoRest {
         /// Mean net force of non-rattlers over mean contact force.
         unbalanced: f64,
-        /// What is needed.
+        /// The largest value allowed.
         target: f64,
         /// Steps done.
         steps: u32,
@@ -121,7 +122,7 @@ pub enum ProbeError {
         residual: f64,
         /// See [`crate::probe::ProbeColumn::drift`].
         drift: f64,
-        /// The tolerance asked for.
+        /// The tolerance set.
         tolerance: f64,
         /// Steps done.
         steps: u32,

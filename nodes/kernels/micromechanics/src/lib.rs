@@ -1,14 +1,15 @@
 //! Structure and stiffness of a packing: fabric, coordination, and the moduli of the frozen contact network.
 //!
-//! [`analyze`] is the one entry that node and command line share: it looks at a packing once ([`PackingView`]) and returns a
-//! [`grainlab_core::results::PackingReport`]. The parts are public for those who need one alone:
+//! [`analyze`], the entry point of node and command line, measures a packing once ([`PackingView`]) and
+//! returns a [`grainlab_core::results::PackingReport`]. The parts are public, too:
 //!
 //! - [`structure`]: contacts, fabric, stress, strain ratios
 //! - [`network`]: the frozen contact network and its stiffness
 //! - [`probe`]: the same stiffness by straining the packing with the whole contact law
-//! - [`non_rattlers`], [`min_contacts`]: who carries force; [`unbalanced_force_ratio`]: how far from equilibrium
-//! - [`sampling_tolerance()`]: how much of a stiffness is the scatter of one packing
-//! - [`MicroError`], [`ProbeError`]: what can go wrong
+//! - [`non_rattlers`], [`min_contacts`]: grains that carry force; [`unbalanced_force_ratio`]: distance from
+//!   equilibrium
+//! - [`sampling_tolerance()`]: scatter of the stiffness of one packing
+//! - [`MicroError`], [`ProbeError`]: errors
 
 mod analyze;
 mod equilibrium;

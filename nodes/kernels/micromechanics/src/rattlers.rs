@@ -2,14 +2,14 @@
 
 use grainlab_core::Packing;
 
-/// Contacts that a grain needs in order to carry force: 2 with friction, 4 without.
+/// Number of contacts that a grain needs to carry force: 2 with friction, 4 without.
 pub fn min_contacts(friction: f64) -> u32 {
     if friction > 0.0 { 2 } else { 4 }
 }
 
-/// Whether each grain takes part in the contact network: what is left after removing, again and again, grains with fewer
-/// than [`min_contacts`] contacts with grains that are left. A contact with an own image counts twice,
-/// as it touches the grain on two sides.
+/// For each grain, whether it is part of the contact network: grains with fewer than [`min_contacts`]
+/// contacts with remaining grains are removed, again and again. A contact with an own image counts twice,
+/// because it touches the grain on two sides.
 pub fn non_rattlers(packing: &Packing) -> Vec<bool> {
     let needed = min_contacts(packing.friction);
     let n = packing.grains();

@@ -1,15 +1,15 @@
-//! What every measurement on a packing needs, found once.
+//! Data common to all measurements on a packing, computed once.
 
 use crate::rattlers::non_rattlers;
 use grainlab_core::stress::{Stress, stress};
 use grainlab_core::{Packing, Vec3};
 
-/// A packing with what every measurement needs of it.
+/// A packing with the data common to all measurements.
 #[derive(Clone, Debug)]
 pub struct PackingView<'a> {
     /// The packing.
     pub packing: &'a Packing,
-    /// Whether each grain takes part in the contact network ([`non_rattlers`]).
+    /// For each grain, whether it is part of the contact network ([`non_rattlers`]).
     pub non_rattlers: Vec<bool>,
     /// Branch vector of each contact, m.
     pub branches: Vec<Vec3>,
@@ -22,7 +22,7 @@ pub struct PackingView<'a> {
 }
 
 impl<'a> PackingView<'a> {
-    /// Looks at `packing`.
+    /// Computes the data of `packing`.
     pub fn new(packing: &'a Packing) -> Self {
         let contacts = &packing.contacts;
         let forces: f64 = contacts.iter().map(|c| c.normal_force).sum();

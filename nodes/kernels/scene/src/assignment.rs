@@ -1,12 +1,12 @@
-//! `KEY=VALUE`, as it is typed.
+//! `KEY=VALUE`, as on a command line.
 
 use crate::fault::{Fault, SceneError};
 use crate::key::Domain;
 use crate::keys::KEYS;
 use toml::{Table, Value};
 
-/// The table that an assignment such as `phase.rest.drag=1e3` means: keys as in a scene, where a phase stands by its name,
-/// and a value as in a scene, where the quotes of a text may be left out.
+/// The table of an assignment such as `phase.rest.drag=1e3`: keys as in a scene, with a phase given by its
+/// name, and a value as in a scene, except that the quotes of a text may be omitted.
 ///
 /// ```
 /// let table = grainlab_scene::assignment("grains.count=500").unwrap();
@@ -16,7 +16,7 @@ pub fn assignment(text: &str) -> Result<Table, SceneError> {
     let fault =
         |message: &str| SceneError { faults: vec![Fault { place: text.into(), message: message.into() }] };
     let (key, value) =
-        text.split_once('=').ok_or_else(|| fault("is no KEY=VALUE, such as grains.count=500"))?;
+        text.split_once('=').ok_or_else(|| fault("is not KEY=VALUE, such as grains.count=500"))?;
     let parts = split(key.trim()).ok_or_else(|| fault("has no key before the =, or an empty part in it"))?;
     let mut value = read(&parts, value.trim());
     let mut parts = parts.into_iter().rev();
@@ -29,7 +29,7 @@ pub fn assignment(text: &str) -> Result<Table, SceneError> {
     Ok(table)
 }
 
-/// The parts of a key between its dots; a part in quotes may contain some.
+/// The parts of a key between its dots; a part in quotes may contain dots.
 fn split(key: &str) -> Option<Vec<String>> {
     let (mut parts, mut quoted) = (vec![String::new()], None);
     for c in key.chars() {
@@ -43,7 +43,7 @@ fn split(key: &str) -> Option<Vec<String>> {
     parts.iter().all(|p| !p.trim().is_empty()).then_some(parts)
 }
 
-/// A value as TOML has it; what is no TOML is a text, and so is whatever is given to a key that takes text.
+/// A value in TOML. Invalid TOML is a text, as is every value of a key that takes text.
 fn read(key: &[String], value: &str) -> Value {
     let path = match key {
         [phase, _, rest @ ..] if phase == "phase" => format!("phase.{}", rest.join(".")),

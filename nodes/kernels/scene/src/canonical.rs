@@ -1,24 +1,24 @@
-//! The canonical text of a scene: every key in one order, defaults too, no base.
+//! The canonical text of a scene: every key in a fixed order, with defaults, without base.
 
 use toml::Value;
 
 /// Keys of one table in order.
 pub(crate) type Entries = Vec<(&'static str, Entry)>;
 
-/// What a key stands for.
+/// The value of a key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Entry {
     /// Written as TOML.
     Value(String),
     /// A table.
     Table(Entries),
-    /// An array of tables, each under a heading of its own.
+    /// An array of tables, each with its own heading.
     Tables(Vec<Entries>),
-    /// An array of tables in a line.
+    /// An array of tables on one line.
     Inline(Vec<Entries>),
 }
 
-/// A number, in as many digits as it takes to read the same bits again.
+/// A number, with as many digits as are needed to read the same bits.
 pub(crate) fn number(value: f64) -> Entry {
     Entry::Value(format!("{value:?}"))
 }
@@ -40,7 +40,7 @@ pub(crate) fn write(entries: &Entries) -> String {
     out
 }
 
-/// Writes a table of which `path` is the name; those at the top have sections of their own, deeper ones stand in a line.
+/// Writes the table at `path`. Tables at the top have their own sections, deeper ones are on one line.
 fn body(entries: &Entries, path: &str, top: bool, out: &mut String) {
     for (name, entry) in entries {
         match entry {

@@ -1,8 +1,9 @@
-//! A scene from a base and what changes it.
+//! A scene from a base and its changes.
 //!
-//! One rule: tables are merged key by key, everything else replaces what the base has, and `"unset"` forgets it. A path is
-//! an array, so `[[phase]]` replaces it whole; `[phase.NAME]` changes the phase of that name, `remove` leaves phases out and
-//! `[[append]]` adds some, in this order. What is set on a command line is merged in the same way.
+//! Tables are merged key by key, every other value replaces that of the base, and `"unset"` removes it. A
+//! path is an array, so `[[phase]]` replaces it whole; `[phase.NAME]` changes the phase of that name,
+//! `remove` leaves phases out and `[[append]]` adds some, in this order. Keys set on a command line are
+//! merged in the same way.
 
 use crate::built_in::built_in;
 use crate::fault::{Fault, SceneError};
@@ -13,40 +14,40 @@ use crate::reader::as_number;
 use grainlab_core::Packing;
 use toml::{Table, Value};
 
-/// A text that a base names.
+/// The text of a base.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// What identifies it: the built-in name, or the whole path.
+    /// Its identity: the built-in name, or the whole path.
     pub name: String,
     /// The text.
     pub text: String,
 }
 
-/// Looks a base up: its name as it is written, and the name of the source that it is written in. The error says why there
-/// is none.
+/// Looks a base up by its name as written and the name of the source that contains it. The error is the
+/// reason of a failure.
 pub type Library<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
 
-/// A scene as a table: its bases are merged, its values are not judged yet.
+/// A scene as a table: its bases are merged, its values are not checked yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     table: Table,
-    /// The source that names the packing to start from.
+    /// The source that contains the path of the packing to start from.
     start_from: Option<String>,
 }
 
-/// The packing that a scene starts from, as its text names it.
+/// The packing that a scene starts from, as written in its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StartFile {
-    /// A path, seen from the source that names it.
+    /// A path relative to the source that contains it.
     pub path: String,
-    /// That source; none where it was set beside the scene.
+    /// That source; `None` if the path was set outside the scene.
     pub from: Option<String>,
-    /// Solver step of the packing in a recording; the last one if there is none.
+    /// Solver step of the packing in a recording; `None`: the last one.
     pub step: Option<u64>,
 }
 
 impl Scene {
-    /// Parses a scene; every fault of the text is in the error. Its base, if it has one, is built in.
+    /// Parses a scene. The error has every fault of the text. A base must be built in.
     ///
     /// ```
     /// let faults = grainlab_scene::Scene::parse("name = 'x'\nfriktion = 1").unwrap_err().faults;
@@ -58,7 +59,7 @@ impl Scene {
 }
 
 impl Draft {
-    /// Of a text whose base, if it has one, is built in.
+    /// From a text whose base, if any, is built in.
     pub fn of_text(text: &str) -> Result<Draft, SceneError> {
         let source = Source { name: "scene".into(), text: text.into() };
         Self::of(&source, &|base, _| {
@@ -67,10 +68,11 @@ impl Draft {
         })
     }
 
-    /// Of a text, with bases from `library`.
+    /// From a text, with bases from `library`.
     ///
     /// # Errors
-    /// A text that is no TOML, a base that is not found, a circle of bases, and overrides of what is not there.
+    /// A text that is invalid TOML, a base that is not found, a circle of bases, and overrides of missing
+    /// keys.
     pub fn of(source: &Source, library: Library<'_>) -> Result<Draft, SceneError> {
         let (mut layers, mut names) = (Vec::new(), vec![source.name.clone()]);
         let mut next = Some(source.clone());
@@ -81,7 +83,7 @@ impl Draft {
                 let circle = names.contains(&found.name);
                 names.push(found.name.clone());
                 if circle {
-                    return Err(fault("base", format!("goes in a circle: {}", names.join(" -> "))));
+                    return Err(fault("base", format!("is a circle: {}", names.join(" -> "))));
                 }
                 next = Some(found);
             }
@@ -96,7 +98,7 @@ impl Draft {
         if faults.is_empty() { Ok(Draft { table, start_from }) } else { Err(SceneError { faults }) }
     }
 
-    /// Lays keys over the scene, as [`crate::assignment`] reads them.
+    /// Merges keys into the scene, as [`crate::assignment`] parses them.
     pub fn set(&mut self, keys: Table) -> Result<(), SceneError> {
         if names_start(&keys) {
             self.start_from = None;
@@ -105,7 +107,7 @@ impl Draft {
         if faults.is_empty() { Ok(()) } else { Err(SceneError { faults }) }
     }
 
-    /// The packing that the scene starts from, if it does: to be read, and given to [`Draft::resolve_from`].
+    /// The packing that the scene starts from, if any: to be read and given to [`Draft::resolve_from`].
     pub fn start(&self) -> Option<StartFile> {
         let start = self.table.get("start")?.as_table()?;
         let path = start.get("packing")?.as_str()?.to_owned();
@@ -113,7 +115,7 @@ impl Draft {
         Some(StartFile { path, from: self.start_from.clone(), step })
     }
 
-    /// Names the packing to start from by the whole path of its file and its solver step.
+    /// Sets the packing to start from by the whole path of its file and its solver step.
     pub fn start_at(&mut self, path: &str, step: u64) {
         let entries = [("packing", Value::from(path)), ("step", Value::from(step as i64))];
         let start = entries.map(|(key, value)| (key.to_owned(), value));
@@ -127,12 +129,12 @@ impl Draft {
         as_number(first.or_else(|| self.table.get("friction"))?)
     }
 
-    /// A value given under `[material]`: what a file of a packing may not say.
+    /// A value under `[material]`, which the file of a packing may lack.
     pub fn material(&self, key: &str) -> Option<f64> {
         as_number(self.table.get("material")?.as_table()?.get(key)?)
     }
 
-    /// The scene, if all its values hold. One that starts from a packing needs it: see [`Draft::resolve_from`].
+    /// The scene, if all its values are valid. If it starts from a packing, use [`Draft::resolve_from`].
     pub fn resolve(&self) -> Result<Resolved, SceneError> {
         read(&self.table, None)
     }

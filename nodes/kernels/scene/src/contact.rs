@@ -1,21 +1,40 @@
 //! The contact law of a scene.
 
+use crate::key::Key;
 use crate::keys;
 use crate::reader::Reader;
-use grainlab_core::contact::{ContactLaw, Linear};
+use grainlab_core::contact::{ContactLaw, LawParameter, RollingResistance, SpringLaw};
 
-/// Reads `[contact]`: the law and the keys of that law. What it does not name is that of `default`.
+/// Reads `[contact]`: the law and its keys. Missing keys are those of `default`.
 pub(crate) fn read(r: &mut Reader<'_>, default: &ContactLaw) -> ContactLaw {
-    let laws = ContactLaw::examples().map(|law| (law.name(), law));
-    match r.choice(&keys::CONTACT_LAW, default.name(), &laws) {
-        ContactLaw::HertzMindlin => ContactLaw::HertzMindlin,
-        ContactLaw::Linear(_) => {
-            let known = if let ContactLaw::Linear(law) = default { Some(law) } else { None };
-            let ratio = known.map_or(0.5, |law| law.stiffness_ratio);
-            ContactLaw::Linear(Linear {
-                normal_stiffness: r.number_or(&keys::NORMAL_STIFFNESS, known.map(|l| l.normal_stiffness)),
-                stiffness_ratio: r.number_or(&keys::STIFFNESS_RATIO, Some(ratio)),
-            })
-        }
+    let laws = SpringLaw::EXAMPLES.map(|springs| (springs.name(), springs));
+    let springs = r.choice(&keys::CONTACT_LAW, default.name(), &laws);
+    let own = keys::LAW_KEYS.iter().find(|(name, _)| *name == springs.name());
+    let known = (springs.name() == default.name()).then(|| default.springs.parameters());
+    let list = springs.parameter_list();
+    let parameters = parameters(r, own.map_or(&[], |(_, keys)| keys), list, known.as_deref());
+    ContactLaw { springs: springs.with_parameters(&parameters), rolling: rolling(r, default.rolling) }
+}
+
+/// The resistance to rolling, where the scene or the packing that it starts from has any.
+fn rolling(r: &mut Reader<'_>, default: Option<RollingResistance>) -> Option<RollingResistance> {
+    let keys = &*keys::ROLLING_KEYS;
+    if default.is_none() && !keys.iter().any(|key| r.has(key)) {
+        keys.iter().for_each(|key| _ = r.get(key));
+        return None;
     }
+    let known = default.map(|resistance| resistance.parameters());
+    let found = parameters(r, keys, &RollingResistance::PARAMETERS, known.as_ref().map(|k| &k[..]));
+    found.try_into().ok().map(RollingResistance::from_parameters)
+}
+
+/// The parameters of a list: from the scene, else those known, else their defaults.
+fn parameters(
+    r: &mut Reader<'_>,
+    keys: &'static [Key],
+    list: &[LawParameter],
+    known: Option<&[f64]>,
+) -> Vec<f64> {
+    let default = |k: usize| known.map_or(list[k].default, |values| Some(values[k]));
+    keys.iter().enumerate().map(|(k, key)| r.number_or(key, default(k))).collect()
 }

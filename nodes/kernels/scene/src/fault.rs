@@ -1,13 +1,13 @@
-//! What can be wrong with a scene.
+//! Faults of a scene.
 
 use std::fmt;
 
-/// One fault of a scene, with the place it was found in.
+/// One fault of a scene, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Where: for example `phase[2] (load).friction`.
+    /// The place: for example `phase[2] (load).friction`.
     pub place: String,
-    /// What is wrong and what would be right.
+    /// What is wrong, and valid values.
     pub message: String,
 }
 

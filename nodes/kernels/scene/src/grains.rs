@@ -7,10 +7,10 @@ use crate::reader::{Reader, as_number};
 use crate::sizes::{Sizes, Species};
 use toml::{Table, Value};
 
-/// Largest diameter over smallest: pairs are looked for in a grid as wide as the largest.
+/// Largest diameter over smallest: the grid of the neighbour search is as wide as the largest diameter.
 const LARGEST_RATIO: f64 = 20.0;
 
-/// Reads `[grains]`: how many, and how large.
+/// Reads `[grains]`: number and sizes.
 pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
     let listed = r.peek(&keys::DIAMETER).and_then(counts);
     let count = match listed {
@@ -31,7 +31,7 @@ pub(crate) fn read(r: &mut Reader<'_>) -> (u32, Sizes) {
     (count as u32, sizes)
 }
 
-/// The sum of the counts in a list of diameters, if it has some.
+/// The sum of the counts in a list of diameters, if it has counts.
 fn counts(value: &Value) -> Option<u64> {
     let entries = value.as_array()?.iter().map(Value::as_table);
     let counts = entries.map(|t| u64::try_from(t?.get("count")?.as_integer()?).ok());

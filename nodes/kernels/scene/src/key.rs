@@ -1,4 +1,4 @@
-//! A key of the format: what it means, and what values it takes.
+//! A key of the format: its meaning and its values.
 
 use std::fmt;
 use std::ops::Bound;
@@ -8,19 +8,19 @@ use std::ops::Bound;
 pub struct Key {
     /// Tables and name, as in `grains.count`; the keys of a phase begin with `phase`.
     pub path: &'static str,
-    /// Kinds of phases that have it; empty for all, and for keys outside phases.
+    /// Kinds of phases that have the key; empty for all, and for keys outside phases.
     pub kinds: &'static [&'static str],
     /// Unit; empty for none.
     pub unit: &'static str,
-    /// Values that it takes.
+    /// Values of the key.
     pub domain: Domain,
-    /// Value where the scene names none.
+    /// Value if the scene does not set it.
     pub default: DefaultValue,
-    /// One line for people.
+    /// Description in one line.
     pub meaning: &'static str,
 }
 
-/// Values that a key takes.
+/// Values of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Domain {
     /// A number.
@@ -33,14 +33,14 @@ pub enum Domain {
     Text,
     /// One of these words.
     Choice(&'static [&'static str]),
-    /// Something else, in words.
+    /// Another form, described in words.
     Form(&'static str),
 }
 
-/// Value of a key that the scene does not name.
+/// Value of a key that the scene does not set.
 #[derive(Clone, Copy, Debug)]
 pub enum DefaultValue {
-    /// There is none: the scene must name it.
+    /// No default: the scene must set it.
     Required,
     /// A number.
     Number(f64),
@@ -50,7 +50,7 @@ pub enum DefaultValue {
     Flag(bool),
     /// Text.
     Text(&'static str),
-    /// Depends on other keys, or means that the key has no effect; in words.
+    /// Depends on other keys, or the key has no effect without a value; in words.
     Words(&'static str),
 }
 
@@ -81,7 +81,7 @@ impl Interval {
         Self { low: Bound::Included(low), high: Bound::Included(high) }
     }
 
-    /// Whether `value` is one of them; NaN never is.
+    /// Whether `value` is in the interval; NaN never is.
     pub fn contains(&self, value: f64) -> bool {
         let above = match self.low {
             Bound::Included(low) => value >= low,
@@ -124,7 +124,7 @@ impl Key {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// What its value must be: "a number in m, more than 0".
+    /// The requirement on its value: "a number in m, more than 0".
     pub fn requirement(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" in {}", self.unit) };
         match self.domain {

@@ -1,16 +1,17 @@
-//! Every key of the format, once: the parser reads by this table, and the reference is written from it.
+//! Every key of the format. The parser uses this table, and the reference is written from it.
 
 use crate::key::{DefaultValue, Domain, Interval, Key};
 use DefaultValue::{Required, Words};
 use grainlab_core::Material;
+use grainlab_core::contact::{LawParameter, RollingResistance, SpringLaw};
 use std::ops::Bound::{Excluded, Included};
+use std::sync::LazyLock;
 
-/// Declares a constant for each key, and `KEYS` with all of them in this order.
+/// Declares a constant for each key, and `FIXED` with all of them in this order.
 macro_rules! keys {
     ($($id:ident = $key:expr;)*) => {
         $(pub(crate) static $id: Key = $key;)*
-        /// Every key of the format, in the order of the reference.
-        pub static KEYS: &[&Key] = &[$(&$id),*];
+        static FIXED: &[&Key] = &[$(&$id),*];
     };
 }
 
@@ -25,7 +26,7 @@ pub(crate) const KINDS: [(&str, &str); 5] = [
     ("strain", "`kind = \"strain\"`: an imposed strain rate"),
     ("servo", "`kind = \"servo\"`: on each component a stress target, a strain rate, or nothing"),
     ("cycle", "`kind = \"cycle\"`: phases to repeat"),
-    ("relax", "`kind = \"relax\"`: a fixed cell; it has no keys of its own"),
+    ("relax", "`kind = \"relax\"`: a fixed cell; it has no other keys"),
 ];
 
 const GAS: &[&str] = &["gas"];
@@ -43,15 +44,15 @@ keys! {
     REMOVE = form("remove", "names of phases of the base, as in [\"unload\", \"reload\"]", Words("none"), "phases of the base to leave out; only with base");
     APPEND = form("append", "tables like those of phase, with or without after = \"NAME\"", Words("none"), "phases to add behind the last one of the base, or behind the one named by after; only with base");
     NAME = text("name", Required, "name, also of the runs; lower case letters, digits, _ and -");
-    DESCRIPTION = text("description", DefaultValue::Text(""), "one line for people");
+    DESCRIPTION = text("description", DefaultValue::Text(""), "description in one line");
     SEED = whole("seed", 0, u64::MAX >> 1, DefaultValue::Whole(1), "seed of every random choice");
-    FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that names none, but for a gas");
+    FRICTION = number("friction", "", Interval::FROM_ZERO_TO_INFINITY, Words("none"), "friction coefficient of every phase that does not set it, except a gas");
 
-    START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: the run goes on from a packing");
-    START_PACKING = text("start.packing", Required, "file whose packing the run starts from, by its path from this file: a recording, CSV, LAMMPS or YADE; then there is no [grains] and no gas");
+    START = form("start", "a table with the packing to start from", Words("none: the path begins with a gas"), "[start]: a packing to start from");
+    START_PACKING = text("start.packing", Required, "file with the packing, by its path from this file: a recording, CSV, LAMMPS or YADE; excludes [grains] and a gas");
     START_STEP = whole("start.step", 0, u64::MAX >> 1, Words("the last one"), "solver step of the packing in a recording or a dump");
 
-    GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: how many, and how large");
+    GRAINS = form("grains", "a table with count and diameter", Words("required, but with start"), "[grains]: number and sizes");
     GRAIN_COUNT = whole("grains.count", 1, 10_000_000, Words("required, but with counts in diameter"), "number of grains");
     DIAMETER = Key { unit: "m", ..form("grains.diameter", "a length above 0, { min, max }, { median, spread } or [{ diameter, share }, ...] or [{ diameter, count }, ...]", Required, "of every grain, or a law: uniform, lognormal (spread: standard deviation of the logarithm, cut at 3), or several sizes") };
 
@@ -59,9 +60,7 @@ keys! {
     POISSON_RATIO = number("material.poisson_ratio", "", Interval::from_to(0.0, 0.5), DefaultValue::Number(GLASS.poisson_ratio), "Poisson ratio of the grains");
     DENSITY = number("material.density", "kg/m3", Interval::POSITIVE, DefaultValue::Number(GLASS.density), "density of the grains");
 
-    CONTACT_LAW = choice("contact.law", &["hertz_mindlin", "linear"], "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
-    NORMAL_STIFFNESS = number("contact.normal_stiffness", "N/m", Interval::POSITIVE, Required, "normal stiffness k_n; law linear");
-    STIFFNESS_RATIO = number("contact.stiffness_ratio", "", Interval::POSITIVE, DefaultValue::Number(0.5), "k_t/k_n; law linear");
+    CONTACT_LAW = choice("contact.law", &SpringLaw::NAMES, "hertz_mindlin", "springs of a contact: Hertz and Mindlin, with stiffnesses from the material, or linear ones");
 
     TIME_STEP_SAFETY = number("numerics.time_step_safety", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.8), "time step over its stability bound");
     SKIN = number("numerics.skin", "", OVER_ZERO_TO_ONE, DefaultValue::Number(0.05), "Verlet skin over grain diameter");
@@ -80,24 +79,24 @@ keys! {
     PUBLISH = Key { kinds: STEPS, ..flag("phase.publish", "whether the packing at the end is published") };
 
     RECORD = Key { kinds: STEPS, ..form("phase.record", "a table with one of every_steps, every_strain and every_time", Words("none"), "how often a packing within the phase is published; the run is the same with and without") };
-    EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of so many solver steps of the run") };
-    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much strain in the phase, to and fro alike") };
-    EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of so much simulated time in the phase") };
+    EVERY_STEPS = Key { kinds: STEPS, ..whole("phase.record.every_steps", 1, 1_000_000_000_000, Words("none"), "at the first exchange after each multiple of this number of solver steps of the run") };
+    EVERY_STRAIN = Key { kinds: STEPS, ..number("phase.record.every_strain", "", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this strain in the phase, counted without sign") };
+    EVERY_TIME = Key { kinds: STEPS, ..number("phase.record.every_time", "s", Interval::POSITIVE, Words("none"), "at the first exchange after each multiple of this simulated time in the phase") };
 
     METHOD = Key { kinds: GAS, ..choice("phase.method", &["event_driven", "soft"], "event_driven", "how the grains collide: as hard, elastic, frictionless spheres, or by the contact law") };
     INITIAL_SOLID_FRACTION = Key { kinds: GAS, ..number("phase.initial_solid_fraction", "", Interval::from_to(0.001, 0.35), DefaultValue::Number(0.3), "solid fraction at which the grains are placed") };
-    SPEED = Key { kinds: GAS, ..number("phase.speed", "m/s", Interval::POSITIVE, DefaultValue::Number(1.0), "root mean square speed of the grains, kept from rising") };
+    SPEED = Key { kinds: GAS, ..number("phase.speed", "m/s", Interval::POSITIVE, DefaultValue::Number(1.0), "root mean square speed of the grains, an upper bound during the phase") };
     GAS_RATE = Key { kinds: GAS, ..number("phase.rate", "1/s", Interval::NEGATIVE, Required, "strain rate of each axis, negative in compression") };
 
     STRAIN_RATE = Key { kinds: STRAIN, unit: "1/s", domain: SIX, ..form("phase.rate", "", Required, "strain rate, tensor components, positive in extension") };
 
-    CONTROL = Key { kinds: SERVO, ..form("phase.control", "a table of xx, yy, zz, yz, xz, xy, each { stress = Pa }, { rate = 1/s } or \"held\"", Required, "what is imposed on each component, held where it is not named; one value each: an override replaces it whole") };
+    CONTROL = Key { kinds: SERVO, ..form("phase.control", "a table of xx, yy, zz, yz, xz, xy, each { stress = Pa }, { rate = 1/s } or \"held\"", Required, "what is imposed on each component, held if not set; an override replaces the value of a component whole") };
     RATE_LIMIT = Key { kinds: SERVO, ..number("phase.rate_limit", "1/s", Interval::POSITIVE, DefaultValue::Number(4.0), "largest magnitude of a component of the strain rate") };
     LAW = Key { kinds: SERVO, ..form("phase.law", "\"normalised\", \"scaled\" or \"integral\"", Words("normalised; scaled with a response_time"), "control law") };
     GAIN_SHARE = Key { kinds: SERVO, ..number("phase.gain_share", "", Interval { low: Excluded(0.0), high: Excluded(1.0) }, DefaultValue::Number(0.3), "gain over its critical value; law normalised") };
     RESPONSE_TIME = Key { kinds: SERVO, ..number("phase.response_time", "s", Interval::POSITIVE, Required, "time in which an error is corrected; law scaled") };
     GAIN = Key { kinds: SERVO, ..number("phase.gain", "1/(Pa s)", Interval::POSITIVE, Required, "gain of the law integral") };
-    LEAK = Key { kinds: SERVO, ..number("phase.leak", "", Interval::from_to(0.0, 1.0), DefaultValue::Number(0.0), "share of the strain rate forgotten at each exchange; laws normalised and integral") };
+    LEAK = Key { kinds: SERVO, ..number("phase.leak", "", Interval::from_to(0.0, 1.0), DefaultValue::Number(0.0), "fraction by which the strain rate decays at each exchange; laws normalised and integral") };
 
     TIMES = Key { kinds: CYCLE, ..whole("phase.times", 1, 10_000, Required, "rounds of the cycle") };
     CYCLE_PHASES = Key { kinds: CYCLE, ..form("phase.phase", "an array of tables, one per phase", Required, "phases of the cycle: [[phase.phase]]") };
@@ -115,6 +114,41 @@ keys! {
     UNTIL_ON_TARGET = Key { kinds: SERVO, ..condition("phase.until.on_target", "", "error of every stress component that has a target, over the mean target, at or below it") };
     HOLD = Key { kinds: STEPS, ..number("phase.until.hold", "s", Interval::FROM_ZERO, DefaultValue::Number(0.0), "simulated time for which all conditions must hold; below timeout") };
     TIMEOUT = Key { kinds: STEPS, ..number("phase.until.timeout", "s", Interval::POSITIVE, DefaultValue::Number(1.0), "simulated time after which the phase, and with it the run, has failed") };
+}
+
+/// Every key of the format, in the order of the reference.
+pub static KEYS: LazyLock<Vec<&'static Key>> = LazyLock::new(|| {
+    let laws = LAW_KEYS.iter().flat_map(|(_, keys)| keys).chain(ROLLING_KEYS.iter());
+    let (before, after) =
+        FIXED.split_at(FIXED.iter().take_while(|k| k.path != TIME_STEP_SAFETY.path).count());
+    before.iter().copied().chain(laws).chain(after.iter().copied()).collect()
+});
+
+/// Keys of the parameters of each law of springs, by its name.
+pub(crate) static LAW_KEYS: LazyLock<Vec<(&'static str, Vec<Key>)>> = LazyLock::new(|| {
+    let of = |springs: &SpringLaw| {
+        let keys = springs.parameter_list().iter().map(|p| law_key(p, &format!("law {}", springs.name())));
+        (springs.name(), keys.collect())
+    };
+    SpringLaw::EXAMPLES.iter().map(of).collect()
+});
+
+/// Keys of the resistance to rolling.
+pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
+    let of = |p: &LawParameter| {
+        let key = law_key(p, "any law");
+        let default = if p.default.is_none() { Words("none: no resistance to rolling") } else { key.default };
+        Key { default, ..key }
+    };
+    RollingResistance::PARAMETERS.iter().map(of).collect()
+});
+
+/// The key of a parameter of a contact law. Its text lives as long as the program, as that of every key.
+fn law_key(p: &LawParameter, whose: &str) -> Key {
+    let path = String::leak(format!("contact.{}", p.key));
+    let range = if p.may_be_zero { Interval::FROM_ZERO } else { Interval::POSITIVE };
+    let default = p.default.map_or(Required, DefaultValue::Number);
+    number(path, p.unit, range, default, String::leak(format!("{}; {whose}", p.meaning)))
 }
 
 const OVER_ZERO_TO_ONE: Interval = Interval { low: Excluded(0.0), high: Included(1.0) };

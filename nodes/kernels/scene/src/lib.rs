@@ -2,12 +2,12 @@
 //!
 //! - `model`: the scene as a value
 //! - `keys`: every key of the format, with unit, range and default; `reference`: the same as a page
-//! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`, as it is typed
+//! - `compose`: bases and overrides; `assignment`: `KEY=VALUE`
 //! - `parse`, `phases`, `servo`, `until`: a table to [`Scene`], with every fault reported at once
 //! - `canonical`: the scene as text again
 //! - `path`: the loading path as a state machine
 //!
-//! A scene is data: the same text and seed always mean the same run.
+//! A scene is data: the same text and seed always define the same run.
 
 mod assignment;
 mod built_in;

@@ -4,12 +4,12 @@ use crate::sizes::Sizes;
 use grainlab_core::contact::{ContactLaw, TangentialLaw};
 use grainlab_core::{ComponentControl, Material, ServoLaw};
 
-/// A whole experiment: what is simulated and along which loading path.
+/// An experiment: what is simulated, and along which loading path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name; lower case letters, digits, `_` and `-`.
     pub name: String,
-    /// One line for people.
+    /// Description in one line.
     pub description: String,
     /// Seed of every random choice.
     pub seed: u64,
@@ -32,8 +32,9 @@ pub struct Scene {
 /// Numerical settings of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numerics {
-    /// Share of the stability bound that the time step takes, in (0, 1]. What it leaves is for contacts that stiffen until
-    /// the next look at them, 200 steps later: without damping, 1 heats packings that are pressed at 40 1/s or faster.
+    /// Fraction of the stability bound that the time step takes, in (0, 1]. The margin is for contacts that
+    /// stiffen until the next update of the bound, 200 steps later: without damping, 1 heats packings that
+    /// are compressed at 40 1/s or faster.
     pub time_step_safety: f64,
     /// Verlet skin over grain diameter, positive.
     pub skin: f64,
@@ -52,7 +53,7 @@ impl Default for Numerics {
 /// One phase of the loading path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// Name, for people; unrolled cycles carry their round, as in `unload#2`.
+    /// Name; unrolled cycles carry their round, as in `unload#2`.
     pub name: String,
     /// What drives the cell.
     pub kind: PhaseKind,
@@ -62,8 +63,9 @@ pub struct Phase {
     pub damping: f64,
     /// Drag on velocities relative to the affine motion, 1/s.
     pub drag: f64,
-    /// Drag on spins, 1/s: keeps a grain held by two contacts from spinning for ever, which no contact resists. A relaxing
-    /// or servoed phase that names none has √(G/ρ)/(1000 d): spins die away while a shear wave crosses a thousand grains.
+    /// Drag on spins, 1/s: stops a grain with two contacts from spinning, which no contact resists. The
+    /// default of a relaxing or servoed phase is √(G/ρ)/(1000 d): spins decay while a shear wave crosses a
+    /// thousand grains.
     pub spin_drag: f64,
     /// Solver steps between two requests; in an event-driven gas a step is a mean free time.
     pub control_period: u32,
@@ -71,9 +73,9 @@ pub struct Phase {
     pub reference: bool,
     /// Publish the packing at the end.
     pub publish: bool,
-    /// How often a packing within the phase is published; never at its end, which is what `publish` is for.
+    /// How often a packing within the phase is published; the one at its end is published by `publish`.
     pub record: Option<Record>,
-    /// When the phase is over.
+    /// Conditions that end the phase.
     pub until: Conditions,
 }
 
@@ -104,7 +106,7 @@ pub enum PhaseKind {
     Gas {
         /// Solid fraction at which the grains are placed, below 0.35.
         initial_solid_fraction: f64,
-        /// Root mean square speed of a grain, m/s; the kinetic energy is capped at what it means.
+        /// Root mean square speed of a grain, m/s; upper bound of the kinetic energy.
         speed: f64,
         /// Strain rate of each axis, 1/s, negative in compression.
         rate: f64,
@@ -118,7 +120,7 @@ pub enum PhaseKind {
         /// Voigt order, tensor components, 1/s, positive in extension.
         rate: [f64; 6],
     },
-    /// Per component: a stress target, a strain rate, or nothing.
+    /// Per component: a stress target, a strain rate, or held.
     Servo {
         /// What is imposed on each component, Voigt order.
         controls: [ComponentControl; 6],
@@ -183,14 +185,14 @@ pub enum GasMethod {
     Soft,
 }
 
-/// When a phase is over: every condition holds for `hold` seconds, or else at `timeout` the run fails.
+/// Conditions that end a phase: all must hold for `hold` seconds, or the run fails at `timeout`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
-    /// All must hold at once.
+    /// Conditions that must hold at the same time.
     pub all: Vec<Condition>,
-    /// For how long, s of simulated time.
+    /// Duration for which they must hold, s of simulated time.
     pub hold: f64,
-    /// Simulated time after which the phase counts as failed, s.
+    /// Simulated time after which the phase has failed, s.
     pub timeout: f64,
 }
 
@@ -208,7 +210,7 @@ pub enum Condition {
     },
 }
 
-/// What a condition looks at.
+/// The quantity of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Solid fraction.

@@ -1,9 +1,9 @@
-//! What somebody may have meant by a word that is not known.
+//! Suggestions for an unknown word.
 
-/// Longer words are not compared: a distance takes the product of two lengths.
+/// Longer words are not compared, because the cost of a distance is the product of both lengths.
 const LONGEST: usize = 64;
 
-/// The known word that is nearest to `word`, if it is near: a letter or two are wrong, or the beginning is right.
+/// The known word nearest to `word`, if it differs by one or two letters or has the same beginning.
 pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     if word.len() > LONGEST {
         return None;
@@ -18,7 +18,7 @@ fn is_start(word: &str, known: &str) -> bool {
     word.len().min(known.len()) >= 3 && (known.starts_with(word) || word.starts_with(known))
 }
 
-/// As it is added to a message.
+/// Formatted for a message.
 pub(crate) fn hint(meant: &str) -> String {
     format!(" (did you mean {meant}?)")
 }

@@ -5,10 +5,10 @@ use crate::nearest::{hint, nearest};
 use crate::reader::kind;
 use toml::{Table, Value};
 
-/// Forgets what the base says of a key.
+/// Removes a key of the base.
 const UNSET: &str = "unset";
 
-/// Merges `over` over a scene; the faults are what it changes and the scene does not have.
+/// Merges `over` over a scene. The faults are changes of keys that the scene lacks.
 pub(crate) fn overlay(scene: &mut Table, mut over: Table) -> Vec<Fault> {
     let mut faults = Vec::new();
     let (removed, appended) = (over.remove("remove"), over.remove("append"));
@@ -27,7 +27,7 @@ pub(crate) fn overlay(scene: &mut Table, mut over: Table) -> Vec<Fault> {
     faults
 }
 
-/// The phases of a scene, or of a cycle. What is no array is a fault when the scene is read.
+/// The phases of a scene or a cycle. A value that is not an array is reported when the scene is read.
 fn path(table: &mut Table) -> Option<&mut Vec<Value>> {
     table.get_mut("phase").and_then(Value::as_array_mut)
 }
@@ -44,7 +44,7 @@ fn merge(table: &mut Table, over: Table, place: &str, faults: &mut Vec<Fault>) {
                     nearest(&key, table.keys().map(String::as_str)).map(|k| hint(&k)).unwrap_or_default();
                 faults.push(Fault { place, message: format!("is unset, but there is none{hint}") });
             }
-            // What is imposed on a component is one value.
+            // What is imposed on a component is a single value.
             (Some(Value::Table(under)), Value::Table(over)) if !is_component(&place) => {
                 merge(under, over, &place, faults);
             }
@@ -112,7 +112,7 @@ fn append(phases: Option<&mut Vec<Value>>, added: Value, faults: &mut Vec<Fault>
         faults.push(Fault { place: "append".into(), message });
         return;
     };
-    // Those behind one phase keep their order.
+    // Phases added after the same phase keep their order.
     let mut last: Vec<(String, String)> = Vec::new();
     for (i, mut entry) in added.into_iter().enumerate() {
         let after = entry.as_table_mut().and_then(|t| t.remove("after"));
@@ -138,7 +138,7 @@ fn append(phases: Option<&mut Vec<Value>>, added: Value, faults: &mut Vec<Fault>
     }
 }
 
-/// Inserts a phase behind the first one of this name, at whatever depth.
+/// Inserts a phase after the first one of this name, at any depth.
 fn insert(phases: &mut Vec<Value>, behind: &str, phase: Value) -> bool {
     if let Some(at) = phases.iter().position(|p| p.as_table().is_some_and(|t| name_of(t) == behind)) {
         phases.insert(at + 1, phase);
@@ -147,7 +147,7 @@ fn insert(phases: &mut Vec<Value>, behind: &str, phase: Value) -> bool {
     phases.iter_mut().filter_map(|p| path(p.as_table_mut()?)).any(|body| insert(body, behind, phase.clone()))
 }
 
-/// Every phase, those of cycles too.
+/// Every phase, including those of cycles.
 fn visit(phases: &[Value], see: &mut dyn FnMut(&str, &Table)) {
     for table in phases.iter().filter_map(Value::as_table) {
         see(name_of(table), table);
@@ -157,7 +157,7 @@ fn visit(phases: &[Value], see: &mut dyn FnMut(&str, &Table)) {
     }
 }
 
-/// The phases whose name fits the pattern. A cycle that fits stands for itself, not for its body.
+/// The phases whose name matches the pattern. A matching cycle is returned without its phases.
 fn select<'a>(phases: &'a mut [Value], pattern: &str, found: &mut Vec<&'a mut Table>) {
     for table in phases.iter_mut().filter_map(Value::as_table_mut) {
         if matches(pattern, name_of(table)) && !(pattern.contains('*') && is_cycle(table)) {
@@ -172,12 +172,12 @@ fn is_cycle(table: &Table) -> bool {
     table.get("kind").and_then(Value::as_str) == Some("cycle")
 }
 
-/// The name of a phase: its kind where it has none.
+/// The name of a phase; its kind if it has no name.
 fn name_of(table: &Table) -> &str {
     table.get("name").or(table.get("kind")).and_then(Value::as_str).unwrap_or_default()
 }
 
-/// Whether a name fits a pattern, in which `*` stands for any letters.
+/// Whether a name matches a pattern, in which `*` matches any letters.
 fn matches(pattern: &str, name: &str) -> bool {
     let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(mut name) = name.strip_prefix(start) else { return false };
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_stands_for_any_letters() {
+    fn a_star_matches_any_letters() {
         let fits = |pattern, names: [&str; 3]| names.map(|name| matches(pattern, name));
         assert_eq!(fits("load-*", ["load-50kPa", "load-", "unload-50kPa"]), [true, true, false]);
         assert_eq!(fits("*load*Pa", ["unload-50kPa", "load-50kPb", "settle"]), [true, false, false]);

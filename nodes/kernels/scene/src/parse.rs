@@ -14,13 +14,13 @@ use grainlab_core::contact::{ContactLaw, TangentialLaw};
 use grainlab_core::{Material, Packing};
 use toml::Table;
 
-/// A scene that holds, as a value and as text.
+/// A valid scene, as a value and as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
     /// The scene.
     pub scene: Scene,
-    /// The same as TOML that needs no other file: bases and overrides applied, every default written out. Its own
-    /// resolution is the same text.
+    /// The same as TOML that needs no other file: bases and overrides applied, every default written out.
+    /// Resolving this text gives the same text.
     pub toml: String,
 }
 

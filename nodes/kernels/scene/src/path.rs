@@ -3,7 +3,7 @@
 use crate::model::{Condition, Measure, Phase, Scene};
 use grainlab_core::{ComponentControl, SymTensor};
 
-/// What the path sees of the packing at each exchange.
+/// The state of the packing that the path evaluates at each exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
     /// Simulated time, s.
@@ -14,13 +14,13 @@ pub struct Observation {
     pub strain: SymTensor,
     /// Solid fraction.
     pub solid_fraction: f64,
-    /// Unbalanced force ratio; 1 where nothing is in contact.
+    /// Unbalanced force ratio; 1 without contacts.
     pub unbalanced: f64,
     /// Root mean square speed relative to the affine motion, m/s.
     pub speed: f64,
 }
 
-/// Where the run stands on its path: everything needed to go on.
+/// Position of the run on its path: everything needed to continue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathState {
     /// Index of the phase under way; the number of phases once the path is done.
@@ -31,10 +31,10 @@ pub struct PathState {
     pub holding_since: Option<f64>,
 }
 
-/// What an observation led to.
+/// The result of an observation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEvent {
-    /// The phase goes on.
+    /// The phase continues.
     Stay,
     /// The phase is over; `PathState::phase` is already the next.
     PhaseEnded {
@@ -47,10 +47,10 @@ pub enum PathEvent {
     },
 }
 
-/// The path cannot go on.
+/// The path cannot continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    /// A phase ran out of time.
+    /// A phase exceeded its timeout.
     #[error(
         "phase {index} ({name}) did not meet its end conditions within {timeout} s of simulated time: {unmet}; \
          raise its timeout, loosen the condition, or change the loading"
@@ -81,7 +81,7 @@ impl PathState {
         self.phase as f64 / scene.phases.len() as f64
     }
 
-    /// Takes one observation and moves on where the phase is over.
+    /// Evaluates one observation, and advances if the phase is over.
     pub fn observe(&mut self, scene: &Scene, seen: &Observation) -> Result<PathEvent, PathError> {
         let Some(phase) = scene.phases.get(self.phase) else { return Ok(PathEvent::Stay) };
         let elapsed = seen.time - self.began;

@@ -10,34 +10,35 @@ use crate::{record, servo, until};
 use grainlab_core::Material;
 use toml::{Table, Value};
 
-/// Unrolled phases a path may have; more is a mistake in a cycle count.
+/// Maximum number of unrolled phases of a path; more indicates a wrong cycle count.
 const MAX_PHASES: usize = 100_000;
 const GAS_METHODS: [(&str, GasMethod); 2] =
     [("event_driven", GasMethod::EventDriven), ("soft", GasMethod::Soft)];
 
-/// Grains that a shear wave crosses while a spin dies away, where grains are to come to rest.
+/// Number of grains that a shear wave crosses during the decay time of spins, in phases that come to rest.
 ///
-/// Packings of 500 grains settle in two thirds of the steps that they take without, as with 10 or 100; with 10⁴ in as
-/// many. What settles is the same: k to 0.01, moduli to 5e-4. Grains that are held and turn with a slow strain do not feel
-/// it: at 50 kPa and 10 rad/s its torque is 4e-4 of what friction bears at one contact.
+/// Packings of 500 grains settle in two thirds of the steps that they need without this drag, as with 10 or
+/// 100; with 10⁴ in the same number. The settled state is the same: k to 0.01, moduli to 5e-4. The effect on
+/// grains that rotate with a slow strain is negligible: at 50 kPa and 10 rad/s the torque is 4e-4 of the
+/// friction limit of one contact.
 const SPIN_CROSSINGS: f64 = 1e3;
 
-/// What phases take from the scene where they name nothing.
+/// Values that phases take from the scene by default.
 pub(crate) struct Inherited {
     /// Friction coefficient of the scene.
     pub(crate) friction: Option<f64>,
-    /// Whether a phase took it.
+    /// Whether a phase used it.
     pub(crate) taken: bool,
     /// Drag on spins of relaxing and servoed phases, 1/s.
     pub(crate) spin_drag: f64,
 }
 
-/// Drag on spins of a relaxing or servoed phase that names none, 1/s.
+/// Default of the drag on spins of a relaxing or servoed phase, 1/s.
 pub(crate) fn spin_drag(material: &Material, diameter: f64) -> f64 {
     (material.shear_modulus / material.density).sqrt() / (SPIN_CROSSINGS * diameter)
 }
 
-/// The phases of a scene, which begins with a gas or with none.
+/// The phases of a scene, with or without a gas at the start.
 pub(crate) fn read(r: &mut Reader<'_>, inherited: &mut Inherited, begins_with_gas: bool) -> Vec<Phase> {
     let mut phases = Vec::new();
     list(r, &keys::PHASE, "phase", inherited, &mut phases);
@@ -101,7 +102,7 @@ fn one(
     let mut r = Reader::new(place.clone(), table);
     let word = table.get("kind").and_then(Value::as_str);
     let Some(word) = keys::KINDS.into_iter().map(|(kind, _)| kind).find(|kind| Some(*kind) == word) else {
-        // Without a kind the other keys cannot be judged; the missing kind is the fault to mend first.
+        // Without a kind the other keys cannot be checked; the missing kind is the first fault to correct.
         r.refuse(&keys::KIND, table.get("kind"));
         let (_, faults) = r.finish();
         return (Entries::new(), faults.into_iter().filter(|f| f.place.ends_with(".kind")).take(1).collect());
@@ -172,7 +173,7 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited) -> Phase {
     phase
 }
 
-/// The friction of a phase: its own, else that of the scene, which stands in the canonical form once.
+/// The friction of a phase: its own, else that of the scene, which is in the canonical form once.
 fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited) -> f64 {
     if gas || r.has(&keys::PHASE_FRICTION) {
         return r.number_or(&keys::PHASE_FRICTION, gas.then_some(0.0));
@@ -195,7 +196,7 @@ fn friction(r: &mut Reader<'_>, gas: bool, inherited: &mut Inherited) -> f64 {
     }
 }
 
-/// An event-driven gas knows nothing of the contact law.
+/// An event-driven gas has no contact law.
 fn refuse_contacts(r: &mut Reader<'_>, phase: &Phase) {
     let contacts = [
         (&keys::PHASE_FRICTION, phase.friction),

@@ -1,5 +1,5 @@
-//! Reading a TOML table key by key: every fault is collected instead of stopping at the first, and what is read is kept,
-//! defaults too, as the canonical form of the table.
+//! Reading a TOML table key by key. All faults are collected, and what is read is kept, with defaults, as the
+//! canonical form of the table.
 
 use crate::canonical::{Entries, Entry, number};
 use crate::fault::Fault;
@@ -7,7 +7,7 @@ use crate::key::{DefaultValue, Domain, Key};
 use crate::nearest::{hint, nearest};
 use toml::{Table, Value};
 
-/// One table being read: knows its place in the text and which of its keys were asked for.
+/// A table being read, with its place in the text and the keys read so far.
 pub(crate) struct Reader<'a> {
     place: String,
     table: &'a Table,
@@ -22,7 +22,7 @@ impl<'a> Reader<'a> {
         Self { place: place.into(), table, asked, faults, entries }
     }
 
-    /// Notes a fault at `key`, or at the table itself if `key` is empty.
+    /// Records a fault at `key`, or at the table if `key` is empty.
     pub(crate) fn fault(&mut self, key: &str, message: impl Into<String>) {
         let place = self.place_of(key);
         self.faults.push(Fault { place, message: message.into() });
@@ -36,7 +36,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes that a key is missing or has a wrong value.
+    /// Records that a key is missing or has an invalid value.
     pub(crate) fn refuse(&mut self, key: &Key, value: Option<&Value>) {
         let found = match value {
             None => "is missing".into(),
@@ -55,18 +55,18 @@ impl<'a> Reader<'a> {
         self.table.get(key.name())
     }
 
-    /// A value that is looked at before it is read.
+    /// A value that is inspected before it is read.
     pub(crate) fn peek(&self, key: &Key) -> Option<&'a Value> {
         self.table.get(key.name())
     }
 
-    /// The same for a key that is no row of the table of keys: a component.
+    /// The same for a key that is not in the table of keys: a component.
     pub(crate) fn get_named(&mut self, name: &'static str) -> Option<&'a Value> {
         self.asked.push(name);
         self.table.get(name)
     }
 
-    /// Adds to the canonical form what a method of this reader did not add by itself.
+    /// Adds to the canonical form what no method of this reader added.
     pub(crate) fn keep(&mut self, key: &Key, entry: Entry) {
         self.keep_named(key.name(), entry);
     }
@@ -75,7 +75,7 @@ impl<'a> Reader<'a> {
         self.entries.push((name, entry));
     }
 
-    /// Leaves out of the canonical form what has no effect.
+    /// Removes a value without effect from the canonical form.
     pub(crate) fn leave_out(&mut self, keys: &[&Key]) {
         self.entries.retain(|(name, _)| keys.iter().all(|k| k.name() != *name));
     }
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
         self.number_or(key, default)
     }
 
-    /// A number; `default` where it is absent, a fault where there is none.
+    /// A number; `default` if it is absent, a fault if there is no default.
     pub(crate) fn number_or(&mut self, key: &'static Key, default: Option<f64>) -> f64 {
         if !self.has(key) && default.is_none() {
             self.asked.push(key.name());
@@ -98,14 +98,14 @@ impl<'a> Reader<'a> {
         value
     }
 
-    /// A number, if it is there; a wrong one is a fault, and 1.
+    /// A number, if present; an invalid one is a fault and returned as 1.
     pub(crate) fn optional(&mut self, key: &'static Key) -> Option<f64> {
         let value = self.found(key)?.unwrap_or(1.0);
         self.keep(key, number(value));
         Some(value)
     }
 
-    /// A number, if there is something; nothing within, and a fault, if it is wrong.
+    /// A number, if present. The inner option is `None`, with a fault, if the value is invalid.
     fn found(&mut self, key: &'static Key) -> Option<Option<f64>> {
         let value = self.get(key)?;
         let found = as_number(value).filter(|v| match key.domain {
@@ -182,7 +182,7 @@ impl<'a> Reader<'a> {
         text.to_string()
     }
 
-    /// One of the named choices; the words are those of the key.
+    /// One of the choices of the key.
     pub(crate) fn choice<T: Copy>(
         &mut self,
         key: &'static Key,
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A table at the top of the scene, read by `read` whether it is there or not: its keys have defaults.
+    /// A table at the top of the scene, read by `read` whether it is present or not: its keys have defaults.
     pub(crate) fn section<T>(&mut self, name: &'static str, read: impl FnOnce(&mut Reader<'_>) -> T) -> T {
         self.asked.push(name);
         let empty = Table::new();
@@ -246,7 +246,7 @@ impl<'a> Reader<'a> {
         self.faults.extend(faults);
     }
 
-    /// Ends the reading: keys never asked for are faults.
+    /// Ends the reading: keys that were not read are faults.
     pub(crate) fn finish(mut self) -> (Entries, Vec<Fault>) {
         let mut known = std::mem::take(&mut self.asked);
         known.sort_unstable();
@@ -261,7 +261,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Where a key of this name is known.
+/// Places in which a key of this name exists.
 fn elsewhere(name: &str) -> String {
     let found = crate::keys::KEYS.iter().find(|k| k.name() == name);
     found.map_or_else(String::new, |k| hint(&k.path.replacen("phase.", "phase.NAME.", 1)))
@@ -275,7 +275,7 @@ pub(crate) fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-/// A value as it is quoted in a message.
+/// A value, quoted for a message.
 fn brief(value: &Value) -> String {
     match value {
         Value::Float(v) => v.to_string(),
@@ -283,7 +283,7 @@ fn brief(value: &Value) -> String {
     }
 }
 
-/// What a value is, with its article.
+/// The type of a value, with its article.
 pub(crate) fn kind(value: &Value) -> String {
     let kind = value.type_str();
     let article = if kind.starts_with(['a', 'i']) { "an" } else { "a" };

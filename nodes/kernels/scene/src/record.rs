@@ -4,19 +4,19 @@ use crate::keys;
 use crate::model::Record;
 use crate::reader::Reader;
 
-/// How far a phase has come.
+/// Progress of a phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Travelled {
     /// Solver steps of the run.
     pub steps: u64,
     /// Simulated time since the phase began, s.
     pub time: f64,
-    /// Strain since the phase began: the integral over time of the largest component of the strain rate, to and fro alike.
+    /// Integral over time of the largest component of the strain rate since the phase began, without sign.
     pub strain: f64,
 }
 
 impl Record {
-    /// Whether a packing is due, having come from `before` to `now`.
+    /// Whether a packing is due between `before` and `now`.
     pub fn is_due(&self, before: &Travelled, now: &Travelled) -> bool {
         let passed = |from: f64, to: f64, every: f64| (to / every).floor() > (from / every).floor();
         match *self {
@@ -27,7 +27,7 @@ impl Record {
     }
 }
 
-/// How often, in the text; `None` where the phase publishes no packing within.
+/// The interval in the text; `None` if the phase publishes no packing within.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Record> {
     r.sub(&keys::RECORD, |r| {
         let steps = r.has(&keys::EVERY_STEPS).then(|| Record::EverySteps(r.whole(&keys::EVERY_STEPS)));

@@ -5,7 +5,7 @@ use crate::keys::{KEYS, KINDS};
 
 const INTRODUCTION: &str = include_str!("reference/introduction.md");
 
-/// The page: how scenes are written and changed, and every key with its unit, its default and the values that it takes.
+/// The page: how scenes are written and changed, and every key with its unit, default and values.
 pub fn reference() -> String {
     let mut page = format!("{INTRODUCTION}\n## Keys\n");
     let of_phase = |k: &Key| k.path.starts_with("phase.");
@@ -15,7 +15,7 @@ pub fn reference() -> String {
     for (table, title) in [
         ("start.", "`[start]`: from a packing instead of a gas"),
         ("grains.", "`[grains]`"),
-        ("material.", "`[material]`, glass unless it says otherwise"),
+        ("material.", "`[material]`, glass by default"),
         ("contact.", "`[contact]`: the contact law"),
         ("numerics.", "`[numerics]`"),
     ] {
@@ -37,7 +37,7 @@ pub fn reference() -> String {
     page
 }
 
-/// A table of the keys that belong here, under a title; the title alone where there are none.
+/// A table of these keys under a title; only the title if there are none.
 fn section(title: &str, belongs: impl Fn(&Key) -> bool) -> String {
     let rows: Vec<String> = KEYS.iter().filter(|k| belongs(k)).map(|k| row(k)).collect();
     let head = if rows.is_empty() {

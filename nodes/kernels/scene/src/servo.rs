@@ -1,4 +1,4 @@
-//! A servoed phase in the text: what is imposed on each component, and by which law.
+//! A servoed phase in the text: what is imposed on each component, and the control law.
 
 use crate::canonical::{Entry, number, text};
 use crate::keys;
@@ -8,7 +8,7 @@ use crate::until::COMPONENTS;
 use grainlab_core::{ComponentControl, ServoLaw};
 use toml::{Table, Value};
 
-/// The keys that a servoed phase has beside those of every phase.
+/// The keys of a servoed phase besides those of every phase.
 pub(crate) fn read(r: &mut Reader<'_>) -> PhaseKind {
     let controls: [ComponentControl; 6] =
         r.sub(&keys::CONTROL, |r| COMPONENTS.map(|c| component(r, c))).unwrap_or_else(|| {
@@ -40,7 +40,7 @@ enum Law {
 }
 
 fn law(r: &mut Reader<'_>) -> ServoLaw {
-    // A response time means the law that has one.
+    // A response time selects the law that has one.
     let default = if r.has(&keys::RESPONSE_TIME) { "scaled" } else { "normalised" };
     let laws = [("normalised", Law::Normalised), ("scaled", Law::Scaled), ("integral", Law::Integral)];
     match r.choice(&keys::LAW, default, &laws) {

@@ -1,9 +1,10 @@
-//! Sizes of the grains: from a law, the same for every seed.
+//! Sizes of the grains: from a distribution, the same for every seed.
 //!
-//! Of n grains the i-th has the diameter below which a share 1 − (i + ½)/n of the law lies. A packing then has the law's
-//! moments already at a few hundred grains, nothing is drawn, and grains are placed from the largest to the smallest.
+//! The i-th of n grains has the diameter below which a fraction 1 − (i + ½)/n of the distribution lies. A
+//! packing of a few hundred grains then already has the moments of the distribution. Grains are placed from
+//! the largest to the smallest.
 
-/// Standard deviations at which a lognormal law is cut.
+/// Standard deviations at which a lognormal distribution is cut.
 pub(crate) const CUT: f64 = 3.0;
 
 /// Diameters of the grains.
@@ -11,7 +12,7 @@ pub(crate) const CUT: f64 = 3.0;
 pub enum Sizes {
     /// All of one diameter, m.
     Equal(f64),
-    /// Every diameter between two, m, as often as any other.
+    /// A uniform distribution between two diameters, m.
     Uniform {
         /// Smallest diameter, m.
         min: f64,
@@ -39,7 +40,7 @@ pub enum Sizes {
 pub struct Species {
     /// Diameter, m.
     pub diameter: f64,
-    /// Share of the grains, by number; all shares sum to 1.
+    /// Fraction of the grains, by number; the sum is 1.
     pub share: f64,
 }
 
@@ -62,7 +63,7 @@ impl Sizes {
                     share += kind.share;
                     diameters.resize((share * n).round().min(n) as usize, kind.diameter);
                 }
-                // The last share ends at 1 but for rounding.
+                // The sum of the fractions is 1 up to rounding.
                 diameters.resize(count as usize, sorted.last().map_or(0.0, |kind| kind.diameter));
                 diameters
             }
@@ -70,12 +71,12 @@ impl Sizes {
         }
     }
 
-    /// Mean diameter of the law, m.
+    /// Mean diameter of the distribution, m.
     pub fn mean(&self) -> f64 {
         match self {
             Self::Equal(diameter) => *diameter,
             Self::Uniform { min, max } => 0.5 * (min + max),
-            // Of the law that is not cut: a hair off.
+            // Of the distribution that is not cut: the difference is negligible.
             Self::Lognormal { median, spread } => median * libm::exp(0.5 * spread * spread),
             Self::Mixture(species) => species.iter().map(|s| s.share * s.diameter).sum(),
             Self::OfPacking { mean } => *mean,
@@ -96,7 +97,7 @@ impl Sizes {
     }
 }
 
-/// The value below which a share of the standard normal law lies that is cut at [`CUT`] on both sides, by bisection.
+/// The quantile of the standard normal distribution cut at [`CUT`] on both sides, by bisection.
 fn cut_normal(share: f64) -> f64 {
     let below = |z: f64| 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);
     let wanted = below(-CUT) + share * (below(CUT) - below(-CUT));
@@ -120,7 +121,7 @@ mod tests {
             (mean, (logs.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / 400.0).sqrt())
         };
         let (mean, spread) = moments(&Sizes::Lognormal { median: 2e-4, spread: 0.2 });
-        // Cut at three standard deviations, a normal law keeps 0.9866 of its own.
+        // A normal distribution cut at three standard deviations has 0.9866 of its standard deviation.
         assert!(mean.abs() < 1e-9 && (spread / 0.2 - 0.9866).abs() < 2e-3, "{mean} {spread}");
         let uniform = Sizes::Uniform { min: 1e-4, max: 3e-4 }.diameters(400);
         assert!((uniform.iter().sum::<f64>() / 400.0 - 2e-4).abs() < 1e-18);
@@ -143,7 +144,7 @@ mod tests {
     fn half_of_a_symmetric_law_lies_below_its_middle() {
         assert!(cut_normal(0.5).abs() < 1e-12);
         assert!((cut_normal(0.9) + cut_normal(0.1)).abs() < 1e-12);
-        // Of the whole law it is 1.2816.
+        // It is 1.2816 for the whole distribution.
         assert!((cut_normal(0.9) - 1.2754).abs() < 1e-3, "{}", cut_normal(0.9));
     }
 }

@@ -1,4 +1,4 @@
-//! A run that starts from a packing: what of the scene has to agree with it.
+//! A run that starts from a packing: parts of the scene that have to agree with it.
 
 use crate::fault::Fault;
 use crate::keys;
@@ -8,10 +8,10 @@ use crate::sizes::Sizes;
 use grainlab_core::contact::ContactLaw;
 use grainlab_core::{Material, Packing};
 
-/// Two numbers are the same if they differ by less than this share: a file may have six digits.
+/// Two numbers are equal if they differ by less than this fraction: a file may have six digits.
 const SAME: f64 = 1e-5;
 
-/// Reads `[start]`; `None` where the scene has none.
+/// Reads `[start]`; `None` if the scene has none.
 pub(crate) fn read(r: &mut Reader<'_>) -> Option<Start> {
     r.sub(&keys::START, |r| {
         let packing = r.text(&keys::START_PACKING);
@@ -35,7 +35,7 @@ pub(crate) fn grains(r: &mut Reader<'_>, packing: &Packing) -> (u32, Sizes) {
     (u32::try_from(packing.grains()).unwrap_or(u32::MAX), Sizes::OfPacking { mean })
 }
 
-/// Faults of a material that is not the packing's, by what the scene says of it.
+/// Faults of a material that differs from that of the packing.
 pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
     let of = &packing.material;
     let pairs = [
@@ -56,16 +56,17 @@ pub(crate) fn differing(own: &Material, packing: &Packing) -> Vec<Fault> {
 pub(crate) fn other_law(own: &ContactLaw, packing: &Packing) -> Option<String> {
     let of = &packing.law;
     (own != of).then(|| {
-        format!("is {own:?}, but the forces of the packing that the run starts from are those of {of:?}")
+        format!("is {own}, but the forces of the packing that the run starts from are those of {of}")
     })
 }
 
-/// Why the first phase cannot take the packing up, if it cannot.
+/// Why the first phase cannot start from the packing, if it cannot.
 pub(crate) fn refused(first: &Phase, packing: &Packing) -> Option<String> {
-    let pulled = packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0);
+    let pulled =
+        packing.contacts.iter().any(|c| c.tangential_force.norm() > 0.0 || c.rolling_force.norm() > 0.0);
     (first.friction == 0.0 && pulled).then(|| {
         format!(
-            "{} has no friction, and the packing that the run starts from has tangential forces (friction {}), which it would \
+            "{} has no friction, and the packing that the run starts from has tangential or rolling forces (friction {}), which it would \
              drop at once; begin with a phase with friction",
             first.name, packing.friction
         )

@@ -1,4 +1,4 @@
-//! When a phase is over, in the text.
+//! Conditions that end a phase, in the text.
 
 use crate::canonical::number;
 use crate::key::Key;
@@ -23,7 +23,7 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         one(r, &keys::UNTIL_PRESSURE_BELOW, &|v| Condition::AtMost(Measure::Pressure, v));
         one(r, &keys::UNTIL_PRESSURE_ABOVE, &|v| Condition::AtLeast(Measure::Pressure, v));
         by_component(r, &keys::UNTIL_STRAIN, &mut all, |c, v| {
-            // A strain is reached from the side of zero.
+            // A strain is reached starting from zero.
             if v < 0.0 {
                 Condition::AtMost(Measure::Strain(c), v)
             } else {

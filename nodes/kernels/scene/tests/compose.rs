@@ -1,8 +1,8 @@
-//! Scenes from a base: what they come to, and what is wrong with those that come to nothing.
+//! Scenes from a base: the composed scenes, and the faults of invalid ones.
 
 use grainlab_scene::{BUILT_IN, Draft, Scene, SceneError, Source, assignment, built_in};
 
-/// The scenes as they were written before they had a base.
+/// The scenes as written before they had a base.
 const FLAT_S2: &str = include_str!("../../../../tests/golden/scenes/flat/s2.toml");
 
 /// The files of this test; a base is looked up among them, and among the built-in scenes.
@@ -25,7 +25,7 @@ fn faults(of: Result<Draft, SceneError>) -> String {
 #[test]
 fn the_samples_of_the_paper_are_what_they_were_as_whole_files() {
     for (name, mu2) in [("s1", "0.05"), ("s2", "0.1"), ("s3", "0.3"), ("s4", "0.15")] {
-        // The six lines that set the friction from the unloading on, name and description.
+        // The six lines that set the friction from the unloading on, the name and the description.
         let mut lines: Vec<String> = FLAT_S2.lines().map(str::to_owned).collect();
         for at in [50, 59, 68, 92, 116, 140] {
             assert_eq!(lines[at - 1], "friction = 0.1");
@@ -38,6 +38,14 @@ fn the_samples_of_the_paper_are_what_they_were_as_whole_files() {
         assert_eq!(scene(&[], name), Scene::parse(&flat).unwrap(), "{name}");
         assert_eq!(Scene::parse(built_in(name).unwrap()).unwrap(), Scene::parse(&flat).unwrap());
     }
+}
+
+#[test]
+fn the_scene_with_resistance_to_rolling_is_the_demo_but_for_its_contact_law() {
+    let (rolling, demo) = (scene(&[], "rolling"), scene(&[], "demo"));
+    assert!(rolling.law.rolling.is_some() && rolling.law.springs == demo.law.springs);
+    let (name, description, law) = (demo.name.clone(), demo.description.clone(), demo.law);
+    assert_eq!(Scene { name, description, law, ..rolling }, demo);
 }
 
 #[test]
@@ -56,7 +64,7 @@ fn the_scenes_of_the_ensembles_are_what_they_were_as_whole_files() {
         ("isotropic.toml", include_str!("../../../../tests/golden/scenes/flat/isotropic.toml")),
     ] {
         assert_eq!(scene(&files, name), Scene::parse(flat).unwrap(), "{name}");
-        // What `ensemble.sh` sets is what it wrote into the lines marked mu2.
+        // `ensemble.sh` sets the values that it formerly wrote into the lines marked mu2.
         let mut draft = compose(&files, name).unwrap();
         draft.set(assignment("friction=0.3").unwrap()).unwrap();
         let turned: Vec<&str> =
@@ -86,7 +94,7 @@ fn the_canonical_text_of_a_scene_means_the_same_and_is_its_own() {
 }
 
 #[test]
-fn bases_form_a_chain_in_which_the_last_word_wins() {
+fn bases_form_a_chain_in_which_the_last_value_wins() {
     let files = [
         ("a", "base = 'demo'\nname = 'a'\ngrains.count = 300\nphase.rest.drag = 1e3"),
         ("b", "base = 'a'\nname = 'b'\nphase.rest.drag = 5e2\nphase.settle.until.hold = 'unset'"),
@@ -138,14 +146,14 @@ fn a_component_of_a_servo_is_one_value() {
 fn a_circle_of_bases_is_named_and_so_is_a_base_that_is_not_there() {
     let files = [("a", "base = 'b'"), ("b", "base = 'c'"), ("c", "base = 'b'"), ("d", "base = 'nowhere'")];
     let circle = faults(compose(&files, "a"));
-    assert!(circle.contains("base: goes in a circle: a -> b -> c -> b"), "{circle}");
+    assert!(circle.contains("base: is a circle: a -> b -> c -> b"), "{circle}");
     let missing = faults(compose(&files, "d"));
     assert!(missing.contains("base: is \"nowhere\": there is no such file"), "{missing}");
     assert!(faults(compose(&[("e", "base = 5")], "e")).contains("base: is 5; it must be"));
 }
 
 #[test]
-fn what_is_set_and_not_known_is_named_with_what_was_meant() {
+fn an_unknown_key_is_named_with_a_suggestion() {
     let set = |text: &str| {
         let mut draft = compose(&[], "s2").unwrap();
         faults(draft.set(assignment(text).unwrap()).map(|()| draft))

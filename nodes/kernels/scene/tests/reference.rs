@@ -1,4 +1,4 @@
-//! The page about the format, and the scene to start from.
+//! The page about the format, and the template of a scene.
 
 use grainlab_scene::{Draft, KEYS, Scene, reference, template};
 
@@ -6,7 +6,7 @@ use grainlab_scene::{Draft, KEYS, Scene, reference, template};
 fn the_page_beside_the_scenes_is_the_one_written_from_the_keys() {
     let page = include_str!("../../../scenes/README.md");
     assert!(page == reference(), "run `grainlab scene keys > nodes/scenes/README.md`");
-    for key in KEYS {
+    for key in KEYS.iter() {
         assert!(page.contains(&format!("| `{}` |", key.name())), "{} is missing", key.path);
     }
     let longest = page.lines().flat_map(|line| line.split(" | ")).map(str::len).max();

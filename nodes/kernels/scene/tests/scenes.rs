@@ -1,6 +1,6 @@
-//! Scenes as their authors write them, right and wrong.
+//! Valid and invalid scenes.
 
-use grainlab_core::contact::ContactLaw;
+use grainlab_core::contact::{ContactLaw, RollingResistance};
 use grainlab_core::{Cell, ComponentControl, Contact, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
 use grainlab_scene::{
     Condition, Draft, GasMethod, Measure, Observation, PathError, PathEvent, PathState, PhaseKind, Record,
@@ -66,7 +66,7 @@ fn cycles_unroll_into_numbered_phases() {
 }
 
 #[test]
-fn a_servo_phase_is_normalised_unless_it_says_otherwise() {
+fn a_servo_phase_is_normalised_by_default() {
     let law = |keys: &str| {
         let text = GOOD.replace("response_time = 2e-5", keys);
         match Scene::parse(&text)?.phases.swap_remove(3).kind {
@@ -130,7 +130,7 @@ fn every_fault_is_reported_at_once_with_its_place() {
 }
 
 #[test]
-fn a_gas_is_event_driven_unless_it_says_soft() {
+fn a_gas_is_event_driven_by_default() {
     let method = |text: &str| match Scene::parse(text).unwrap().phases[0].kind {
         PhaseKind::Gas { method, .. } => method,
         _ => panic!("a gas phase"),
@@ -146,7 +146,7 @@ fn a_gas_is_event_driven_unless_it_says_soft() {
 }
 
 #[test]
-fn an_event_driven_gas_refuses_what_only_the_contact_law_knows() {
+fn an_event_driven_gas_refuses_what_needs_the_contact_law() {
     let text = GOOD.replace("rate = -12.0", "rate = -12.0\ndamping = 0.002\nfriction = 0.1").replace(
         "until = { solid_fraction = 0.6 }",
         "until = { solid_fraction = 0.6, pressure_above = 1e3 }",
@@ -159,7 +159,7 @@ fn an_event_driven_gas_refuses_what_only_the_contact_law_knows() {
 }
 
 #[test]
-fn text_that_is_no_toml_is_refused_with_its_line() {
+fn invalid_toml_is_refused_with_its_line() {
     let error = Scene::parse("name = \n").unwrap_err();
     assert!(error.to_string().contains("line 1"), "{error}");
 }
@@ -170,7 +170,7 @@ fn a_phase_ends_only_after_its_conditions_held_for_the_hold_time() {
     let mut state = PathState { phase: 1, began: 1.0, holding_since: None };
     let at = |time: f64, speed: f64| Observation { speed, ..seen(time) };
     assert_eq!(state.observe(&scene, &at(1.0, 1e-4)), Ok(PathEvent::Stay));
-    // The condition fails once: the hold starts again.
+    // The condition fails once: the hold time restarts.
     assert_eq!(state.observe(&scene, &at(1.00005, 1.0)), Ok(PathEvent::Stay));
     assert_eq!(state.observe(&scene, &at(1.00009, 1e-4)), Ok(PathEvent::Stay));
     assert_eq!(state.observe(&scene, &at(1.00015, 1e-4)), Ok(PathEvent::Stay));
@@ -205,7 +205,7 @@ fn grains_have_one_size_or_a_law() {
     let two = "[{ diameter = 1e-4, share = 3 }, { diameter = 2e-4, share = 1 }]";
     let species = |diameter, share| Species { diameter, share };
     assert_eq!(sizes(two), Sizes::Mixture(vec![species(1e-4, 0.75), species(2e-4, 0.25)]));
-    // Counts are those of the list, or agree with it.
+    // Counts are those of the list, or equal to its sum.
     let list = "[{ diameter = 1e-4, count = 30 }, { diameter = 2e-4, count = 70 }]";
     assert_eq!(sizes(list), Sizes::Mixture(vec![species(1e-4, 0.3), species(2e-4, 0.7)]));
     let without = GOOD.replace("count = 100\ndiameter = 2e-4", &format!("diameter = {list}"));
@@ -267,6 +267,47 @@ fn a_run_that_starts_from_a_packing_takes_its_grains_and_its_material() {
     assert!(unread.contains("start: names a packing, which has not been read"), "{unread}");
 }
 
+/// A scene with these lines in its table of the contact law.
+fn with_contact(lines: &str) -> Result<Scene, grainlab_scene::SceneError> {
+    Scene::parse(&format!("{GOOD}\n[contact]\n{lines}\n"))
+}
+
+#[test]
+fn every_contact_law_is_read_by_its_own_parameters() {
+    for law in ContactLaw::examples() {
+        let keys = law.springs.parameter_list().iter().chain(&RollingResistance::PARAMETERS);
+        let pairs = keys.zip(law.parameters()).map(|(key, value)| format!("{} = {value:?}", key.key));
+        let lines =
+            [format!("law = '{}'", law.name())].into_iter().chain(pairs).collect::<Vec<_>>().join("\n");
+        let scene = with_contact(&lines).unwrap();
+        assert_eq!(scene.law, law, "{lines}");
+        let text = format!("{GOOD}\n[contact]\n{lines}\n");
+        let canonical = Draft::of_text(&text).unwrap().resolve().unwrap().toml;
+        assert_eq!(Scene::parse(&canonical).unwrap().law, law, "the canonical text means the same");
+    }
+}
+
+#[test]
+fn resistance_to_rolling_needs_a_stiffness_and_a_friction_and_may_lack_a_dashpot() {
+    let undamped = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+    let read = with_contact("rolling_stiffness = 1e4\nrolling_friction = 0.1").unwrap();
+    assert_eq!(read.law, ContactLaw::default().with_rolling(undamped));
+    for (wrong, place) in [
+        ("rolling_stiffness = 1e4", "contact.rolling_friction"),
+        ("rolling_friction = 0.1", "contact.rolling_stiffness"),
+        ("rolling_damping = 1e-3", "contact.rolling_friction"),
+        ("rolling_stiffness = 1e4\nrolling_friction = 0.0", "contact.rolling_friction"),
+        (
+            "rolling_stiffness = 1e4\nrolling_friction = 0.1\nrolling_damping = -1.0",
+            "contact.rolling_damping",
+        ),
+        ("normal_stiffness = 1e4", "contact.normal_stiffness"),
+    ] {
+        let error = with_contact(wrong).unwrap_err();
+        assert!(error.faults.iter().any(|f| f.place == place), "{wrong}: {error}");
+    }
+}
+
 /// Two unequal grains that touch, with a tangential force.
 fn pair() -> Packing {
     let overlap = 1e-8;
@@ -278,6 +319,7 @@ fn pair() -> Packing {
         normal: Vec3::x(),
         normal_force: 1e-4,
         tangential_force: Vec3::y() * 1e-6,
+        rolling_force: Vec3::zeros(),
     };
     Packing {
         step: 0,

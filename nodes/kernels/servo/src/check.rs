@@ -23,8 +23,8 @@ pub(crate) fn check(input: &ServoInput) -> Result<(), ServoError> {
     check_stability(&input.law, &input.tangent, &input.controls, input.control_interval)
 }
 
-/// Whether `law` is stable with `tangent` (C_iiii and C_ijij, Pa) and `control_interval` (s): a part of the checks of
-/// [`crate::control`], for callers that need to know before.
+/// Whether `law` is stable with `tangent` (C_iiii and C_ijij, Pa) and `control_interval` (s): a part of the
+/// checks of [`crate::control`], for callers that need the result earlier.
 ///
 /// Without a stress target there is no control loop, and any law is accepted.
 pub fn check_stability(

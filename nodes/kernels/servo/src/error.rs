@@ -1,14 +1,14 @@
-//! Why a request has no answer.
+//! Why a request is invalid.
 
-/// Why a request has no answer.
+/// Why a request is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ServoError {
     /// A component of a six-component quantity is not finite.
     #[error("{field}[{component}] = {value} is not finite; the simulation that sent it is unstable")]
     ComponentNotFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         field: &'static str,
-        /// Which component: xx, yy, zz, yz, xz or xy.
+        /// Name of the component: xx, yy, zz, yz, xz or xy.
         component: &'static str,
         /// Its value.
         value: f64,
@@ -16,7 +16,7 @@ pub enum ServoError {
     /// A number that must be positive and finite is not.
     #[error("{field} = {value:e} {unit} must be positive and finite")]
     NotPositive {
-        /// Which quantity.
+        /// Name of the quantity.
         field: &'static str,
         /// Its value.
         value: f64,
@@ -56,7 +56,7 @@ pub enum ServoError {
         "tangent[{component}] = {value:e} Pa is negative: send the affine stiffness of the contacts, or 0 for none"
     )]
     NegativeTangent {
-        /// Which component.
+        /// Name of the component.
         component: &'static str,
         /// The value found, Pa.
         value: f64,

@@ -1,9 +1,9 @@
 //! The stability limit of Eq. 1.
 //!
-//! Eq. 1, ε̇ ← ε̇ + g (σ − σ*) once each control interval h, makes the stress error accelerate the strain: ε̈ = (g/h)(σ
-//! − σ*). The cell has an inertia of h/g per volume and oscillates with the stiffness of its packing, as in a
-//! constant-stress ensemble (Andersen, J. Chem. Phys. 72, 2384 (1980); Parrinello and Rahman, J. Appl. Phys. 52, 7182
-//! (1981)), at ω = √(gK/h).
+//! Eq. 1, ε̇ ← ε̇ + g (σ − σ*) once per control interval h, makes the stress error accelerate the strain: ε̈
+//! = (g/h)(σ − σ*). The cell has an inertia of h/g per volume and oscillates with the stiffness of its
+//! packing, as in a constant-stress ensemble (Andersen, J. Chem. Phys. 72, 2384 (1980); Parrinello and
+//! Rahman, J. Appl. Phys. 52, 7182 (1981)), at ω = √(gK/h).
 //!
 //! The response of the packing to a small strain of frequency ω is C(ω) = A − Σ_k Ξ_k² (1 + iβω)/(ω_k² − ω² + iω(γ +
 //! βω_k²))/V, with A the affine stiffness, Ξ_k the coupling of mode k to the strain, γ the drag and β the contact

@@ -1,4 +1,4 @@
-//! One request, one answer.
+//! One request, one response.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_servo::{ServoError, ServoInput, control, critical_gain};
@@ -111,7 +111,7 @@ fn held_components_do_not_move_whatever_their_stress_and_rate() {
 }
 
 #[test]
-fn without_contacts_laws_that_know_the_stiffness_drive_at_the_limit_towards_the_target() {
+fn without_contacts_laws_that_use_the_stiffness_drive_at_the_limit_towards_the_target() {
     for law in [SCALED, NORMALISED] {
         let mut request = at_target(law);
         request.stress = SymTensor::default();
@@ -133,7 +133,7 @@ fn errors_and_stiffnesses_beyond_the_largest_number_do_not_make_nan() {
 }
 
 #[test]
-fn each_fault_has_its_own_error_and_names_the_culprit() {
+fn each_fault_has_its_own_error_and_names_the_value() {
     let fault = |change: &dyn Fn(&mut ServoInput)| {
         let mut request = at_target(SCALED);
         change(&mut request);
@@ -185,8 +185,8 @@ fn law() -> impl Strategy<Value = ServoLaw> {
 }
 
 proptest! {
-    /// `any::<f64>()` spans every normal and subnormal magnitude of both signs; magnitudes are taken of what must not
-    /// be negative, so that most requests are answered.
+    /// `any::<f64>()` covers every normal and subnormal magnitude of both signs. Quantities that must not be
+    /// negative take the magnitude, so that most requests are valid.
     #[test]
     fn any_answer_is_finite_within_the_limit_and_the_same_twice(
         stress in any::<[f64; 6]>(), rate in any::<[f64; 6]>(), tangent in any::<[f64; 6]>(),

@@ -1,4 +1,4 @@
-//! The laws closed around one elastic component without inertia: dσ = −K rate dt.
+//! The laws in a closed loop with one elastic component without inertia: dσ = −K rate dt.
 
 use grainlab_core::{ComponentControl, ServoLaw, SymTensor};
 use grainlab_servo::{ServoInput, control};
@@ -7,14 +7,14 @@ const K: f64 = 200.0e6;
 const TARGET: f64 = 50.0e3;
 const DT: f64 = 1.0e-6;
 
-/// Stress errors σ − σ* before each of `periods` control periods, Pa, from 1 kPa too little compression. Eq. 1 is told
-/// a tenth of the stiffness K that the others are, else it would be refused beyond its limit.
+/// Stress errors σ − σ* before each of `periods` control periods, Pa, starting with 1 kPa too little
+/// compression. Eq. 1 gets a tenth of the stiffness K; otherwise it would be refused beyond its limit.
 fn errors(law: ServoLaw, stiffness: f64, dt: f64, periods: usize) -> Vec<f64> {
     let known = if matches!(law, ServoLaw::Integral { .. }) { 0.1 * K } else { K };
     errors_with(law, stiffness, known, dt, periods)
 }
 
-/// The same, with the stiffness that the law is told.
+/// The same, with the stiffness given to the law.
 fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usize) -> Vec<f64> {
     let mut request = ServoInput {
         stress: SymTensor { zz: TARGET - 1.0e3, ..SymTensor::default() },
@@ -36,7 +36,7 @@ fn errors_with(law: ServoLaw, stiffness: f64, known: f64, dt: f64, periods: usiz
     errors
 }
 
-/// The error shrinks by exactly 1 − dt/τ a period, so |error| falls for every dt < 2τ.
+/// The error decreases by exactly 1 − dt/τ per period, so that |error| decreases for every dt < 2τ.
 #[test]
 fn scaled_law_converges_for_every_interval_below_twice_the_response_time() {
     for share in [1.0e-3, 0.1, 0.5, 1.0, 1.5, 1.99] {
@@ -48,7 +48,7 @@ fn scaled_law_converges_for_every_interval_below_twice_the_response_time() {
     }
 }
 
-/// A relaxed network is softer than the affine estimate: slower, never unstable.
+/// A relaxed network is softer than the affine estimate: slower, but never unstable.
 #[test]
 fn scaled_law_converges_without_overshoot_on_a_network_softer_than_estimated() {
     let e = errors(ServoLaw::Scaled { response_time: 10.0 * DT }, 0.4 * K, DT, 600);
@@ -78,13 +78,14 @@ fn leak_damps_eq_1_at_the_predicted_pace() {
     let e = errors(ServoLaw::Integral { gain, leak }, K, DT, 3000);
     let peak = |from: usize| e[from..from + 64].iter().fold(0.0f64, |m, e| m.max(e.abs()));
     let measured = (peak(2000) / peak(1000)).ln() / 1000.0;
-    // Windows of 64 periods hold one full swing; where in it the peak falls shifts the ratio by at most a few percent.
+    // Windows of 64 periods contain one full oscillation; the position of its peak changes the ratio by a few
+    // percent at most.
     assert!((measured / (0.5 * (1.0 - leak).ln()) - 1.0).abs() < 0.06, "{measured}");
     assert!(e[2999].abs() < 1e-3);
 }
 
-/// Without inertia or damping in the packing only the sampling can make it grow: |error| is bounded just below the
-/// critical gain and grows a thousandfold just above, with and without a leak.
+/// Without inertia or damping in the packing, only the sampling can make the error grow: |error| is bounded
+/// just below the critical gain and grows a thousandfold just above, with and without a leak.
 #[test]
 fn eq_1_on_a_spring_is_stable_up_to_the_critical_gain_and_no_further() {
     for leak in [0.0, 0.3, 0.9] {
@@ -102,7 +103,8 @@ fn eq_1_on_a_spring_is_stable_up_to_the_critical_gain_and_no_further() {
     }
 }
 
-/// The same number of intervals to 0.1 % of the error whatever spring and interval: nothing to tune.
+/// The number of intervals to 0.1 % of the error is the same for every stiffness and interval: no tuning is
+/// needed.
 #[test]
 fn the_normalised_law_settles_in_as_many_intervals_at_every_stiffness_and_interval() {
     let leak = 0.3;
@@ -114,7 +116,7 @@ fn the_normalised_law_settles_in_as_many_intervals_at_every_stiffness_and_interv
     let reference = settle(K, DT);
     assert!((10..100).contains(&reference), "{reference}");
     for (stiffness, dt) in [(0.01 * K, DT), (100.0 * K, DT), (K, 0.01 * DT), (3.0 * K, 7.0 * DT)] {
-        // One interval: rounding decides which side of the threshold an error falls on.
+        // ±1 interval: rounding decides on which side of the threshold an error falls.
         assert!(settle(stiffness, dt).abs_diff(reference) <= 1);
     }
 }

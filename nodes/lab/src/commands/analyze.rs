@@ -1,6 +1,6 @@
 //! `grainlab analyze`: measures packings from files, without DDS, or from a live topic.
 //!
-//! - [`live`]: a topic; files are read as [`super::packings`] does
+//! - [`live`]: a topic; files are read by [`super::packings`]
 //! - [`measure`]: one packing
 //! - [`outlet`]: results to stdout and into a recording
 
@@ -29,17 +29,17 @@ Examples:
   Every packing of a recorded run, or of all runs:
     grainlab analyze recordings/runs/demo-1-1
     grainlab analyze recordings/runs/* --format csv > all.csv
-  A LAMMPS dump (id type x y z radius ...), with what the file does not say:
+  A LAMMPS dump (id type x y z radius ...), with the properties that the file lacks:
     grainlab analyze settle.dump --shear-modulus 29e9 --poisson 0.2 --density 2500 --friction 0.3 --format json
-  A packing in YADE, contact forces included (run the script within YADE, it says how):
+  A packing in YADE, with contact forces (run the script within YADE; its first lines explain how):
     grainlab analyze --yade-script > grainlab_export.py
     grainlab analyze packing.csv
-  What a running simulator publishes, until Ctrl-C, and the messages of the analyzer node about it:
+  The packings of a running simulator, until Ctrl-C, with a recording of the messages of the analyzer node:
     grainlab analyze --live --record measured
-  The same stiffness by straining the packing itself, to see what the linear response leaves out:
+  The stiffness by straining the packing, which includes the nonlinear response:
     grainlab analyze recordings/runs/demo-1-1 --method probe";
 
-/// Files to measure, and what they do not say. A flag goes before what a file or its sidecar says.
+/// Files to measure, and data that they lack. A flag takes precedence over a file and its sidecar.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS),
@@ -51,10 +51,10 @@ pub(crate) struct Args {
     /// as .gz
     #[arg(required_unless_present_any = ["live", "yade_script"], value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Measure what is published on the topic instead of files, until Ctrl-C
+    /// Measure packings published on the topic instead of files, until Ctrl-C
     #[arg(long, conflicts_with_all = ["files", "contact_forces"])]
     live: bool,
-    /// Packings after which --live ends; with it, an earlier Ctrl-C ends with 130
+    /// Number of packings after which --live ends; with it, an earlier Ctrl-C ends with 130
     #[arg(long, value_name = "N", requires = "live", value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
     /// Also record the Fabric and Moduli messages that the node fabric_analyzer would publish, into this new directory
@@ -72,19 +72,19 @@ pub(crate) struct Args {
     /// Relative residual at which the stiffness solve stops
     #[arg(long, value_name = "REL", default_value_t = grainlab_micromechanics::Settings::default().tolerance)]
     tolerance: f64,
-    /// How the stiffness is found
+    /// Method of the stiffness
     #[arg(long, value_enum, default_value_t)]
     method: Method,
-    /// How the network's equations are solved
+    /// Solver of the equations of the network
     #[arg(long, value_enum, default_value_t)]
     solver: Solver,
-    /// Take tangential springs away: the response of smooth grains, where others stick
+    /// Remove tangential springs: the response of frictionless grains
     #[arg(long)]
     smooth: bool,
     /// Strain of the probe, forward and backward; far below overlap/diameter
     #[arg(long, value_name = "STRAIN", default_value_t = StrainProbe::default().amplitude)]
     amplitude: f64,
-    /// Probe with each of these strains, too, and find over which the response is linear
+    /// Also probe with each of these strains, and find the range with a linear response
     #[arg(long, value_name = "STRAIN", value_delimiter = ',')]
     scan: Vec<f64>,
     /// How to print the result
@@ -100,9 +100,9 @@ enum Method {
     /// Linear response of the frozen contact network
     #[default]
     Network,
-    /// The same of smooth grains, with the prestress term: normal forces turn with their branches
+    /// The same for smooth grains, with the prestress term: normal forces rotate with their branches
     Prestressed,
-    /// Explicit: strain the packing a little, relax, read the stress
+    /// Explicit: strain the packing slightly, relax it, evaluate the stress
     Probe,
 }
 

@@ -24,7 +24,7 @@ pub(crate) enum Command {
     Check(check::Args),
     /// Write the packings of a recording as LAMMPS dump or CSV files.
     Export(export::Args),
-    /// Complete the recording of a recorder that was killed, so that other tools read it.
+    /// Complete a recording whose recorder was killed, so that other tools read it.
     Recover(recover::Args),
 }
 

@@ -1,7 +1,7 @@
-//! `grainlab calibrate`: constants of the models, learned from packings that were measured.
+//! `grainlab calibrate`: constants of the models, learned from measured packings.
 //!
-//! - [`packings`]: from the rows of a table to what the kernel learns from
-//! - [`report`]: constants, errors and ranges for people
+//! - [`packings`]: from the rows of a table to samples
+//! - [`report`]: constants, errors and ranges as text
 
 mod packings;
 mod report;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  What the calibration grainlab was learned from:
+  The packings of the calibration grainlab:
     S=nodes/scenes/ensemble
     nodes/launch/ensemble.sh $S/isotropic.toml \"0.01 0.03 0.1 0.2 0.4 1.0\" 41 44 > isotropic.csv
     nodes/launch/ensemble.sh $S/uniaxial.toml \"0.05 0.1 0.15 0.3\" 11 26 > anisotropic.csv
@@ -23,9 +23,9 @@ Examples:
     grainlab calibrate --isotropic isotropic.csv --anisotropic anisotropic.csv --name mine --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 
-Tables are those that `grainlab analyze --format csv` prints: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
-moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact where they
-are known; and columns that say how each packing was prepared, and which of them it is.";
+Tables have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six
+moduli (g12_pa g13_pa theta_pa ti_c11_pa ti_c33_pa ti_c13_pa, or the stiffness), and g_total g_elastic g_contact if known;
+and columns that identify the preparation of each packing and the packing.";
 
 /// Packings to learn from.
 #[derive(Debug, clap::Args)]
@@ -34,19 +34,20 @@ pub(crate) struct Args {
     /// Isotropic packings of many coordination numbers and pressures, CSV; - is the standard input
     #[arg(long, value_name = "FILE.csv")]
     isotropic: PathBuf,
-    /// Packings that are not isotropic, CSV: without them there are Eqs. 21 and 22 alone, and nothing for the model relaxed
+    /// Anisotropic packings, CSV; without them only Eqs. 21 and 22 are fitted, not the model relaxed
     #[arg(long, value_name = "FILE.csv")]
     anisotropic: Option<PathBuf>,
-    /// Columns that say how a packing was prepared: the laws are judged on each preparation by the others
+    /// Columns that identify the preparation of a packing: the laws are tested on each preparation with those
+    /// learned from the others
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2")]
     preparation: Vec<String>,
-    /// Columns that say which packing it is: states of one at several pressures are no independent data
+    /// Columns that identify the packing: states of one packing at several pressures are not independent
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "preparation,mu2,seed")]
     packing: Vec<String>,
-    /// Name of the calibration, reported with every estimate [default: the name of the file written]
+    /// Name of the calibration, reported with every estimate [default: the name of the output file]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
-    /// Write the calibration here (TOML); - is the standard output, which is then nothing else
+    /// Write the calibration to this file (TOML); - is the standard output, without the report
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
@@ -70,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Some(path) => {
             std::fs::write(path, toml).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
             print(&report::text(&calibration, &isotropic, &anisotropic))?;
-            say!("grainlab: {} is written; take it with --calibration {0}", path.display());
+            say!("grainlab: {} is written; use it with --calibration {0}", path.display());
         }
         None => print(&report::text(&calibration, &isotropic, &anisotropic))?,
     }

@@ -1,10 +1,11 @@
 //! `grainlab invert`: moduli in, microstructure out.
 //!
-//! - [`state`]: what is known of one state; [`way`]: a model and the γ/Δ it is fed with; [`answer`]: what it says
-//! - [`inputs`]: what a table may say of a state; [`lines`], [`columns`], [`rows`]: a table as it comes, each row a state
-//! - [`table`], [`mod@print`]: answers in order, as text
-//! - [`explain`]: which datum decides which unknown; [`sampled`]: the posterior by sampling
-//! - [`judge`]: answers against the truth of a table
+//! - [`state`]: the data of one state; [`way`]: a model, its calibration and its γ/Δ; [`answer`]: the results
+//! - [`inputs`]: the inputs of a state; [`lines`], [`columns`], [`rows`]: a table, read in pieces, each row a
+//!   state
+//! - [`table`], [`mod@print`]: results in order, as text
+//! - [`explain`]: contributions of the data to the uncertainty; [`sampled`]: the posterior by sampling
+//! - [`judge`]: results against the truth in a table
 //! - [`calibrations`]: by name
 
 mod answer;
@@ -36,21 +37,21 @@ const EXAMPLES: &str = "\
 Examples:
   The first state of the paper's Table III (k = 5.73, k_hat = 5.63, eps = 0.016), with 1 % error on each modulus:
     grainlab invert --g12 121.7e6 --g13 127.4e6 --theta 144.4e6 --pressure 50e3 --gamma-over-delta -0.0623 --error 0.01
-  Many states at once, or what an analysis has measured:
+  Many states, or the output of an analysis:
     grainlab invert --table states.csv --format csv
     grainlab analyze recordings/runs/* --format csv | grainlab invert --table - --gamma contact --format csv
-  How good the models are on packings whose structure was counted:
+  Errors of the models on packings with counted structure:
     grainlab invert --table tests/golden/ensembles/held_out.csv --judge --calibration grainlab --gamma all --by mu2
 
-A table has a header line and one state a line; lines that begin with # are comments, empty cells are not known, other
-columns are ignored. The pressure is needed, and one modulus at least; k, z and eps are for --judge:
+A table has a header line and one state per line; lines that begin with # are comments, empty cells are unknown, other
+columns are ignored. The pressure and at least one modulus are required; k, z and eps are for --judge:
   sample, or source and step         kept with the result
-  c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on its medium isotropic about
-  reference_axis_x _y _z             this axis, which all other columns are about, too; without, e3
-{COLUMNS}A row that is no state, or that a model fails for, is reported with its line number, has the status failed or undetermined
-in the results, and does not stop the rest; the exit code is that of the worst row.";
+  c11_pa c12_pa ... c66_pa           all 36, or one half: a stiffness, projected on the medium isotropic about
+  reference_axis_x _y _z             this axis, to which all other columns refer, too; default e3
+{COLUMNS}An invalid row, or one without an estimate of a model, is reported with its line number and has the status failed or
+undetermined in the results; the other rows are processed. The exit code is that of the worst row.";
 
-/// What to invert. All quantities in SI units.
+/// The data to invert. All quantities in SI units.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES.replace("{COLUMNS}", &inputs::reference()), allow_negative_numbers = true)]
 pub(crate) struct Args {
@@ -75,7 +76,7 @@ pub(crate) struct Args {
     /// Longitudinal modulus along the axis, Pa
     #[arg(long, value_name = "PA", conflicts_with = "table")]
     c33: Option<f64>,
-    /// Modulus that couples the two, Pa; may be negative
+    /// Off-diagonal modulus C13, Pa; may be negative
     #[arg(long, value_name = "PA", conflicts_with = "table")]
     c13: Option<f64>,
     /// Shear modulus of the grains, Pa [default: that of the calibration]
@@ -87,41 +88,44 @@ pub(crate) struct Args {
     /// Solid fraction
     #[arg(long, value_name = "PHI", conflicts_with = "table")]
     phi: Option<f64>,
-    /// Relative one-sigma error of each modulus that has none of its own: 0.01 is one percent [default: unknown]
+    /// Relative one-sigma error of each modulus without its own error: 0.01 is one percent [default: unknown]
     #[arg(long, value_name = "REL")]
     error: Option<f64>,
     /// States from a CSV file, as described below; - is the standard input
     #[arg(long, value_name = "FILE.csv")]
     table: Option<PathBuf>,
-    /// Which gamma/Delta of a table feeds the models that use one [default: given, else total, else contact, else zero]
+    /// The gamma/Delta of a table for the models that use one [default: given, else total, else contact, else
+    /// zero]
     #[arg(long, value_enum, value_name = "WHICH", requires = "table")]
     gamma: Option<GammaChoice>,
-    /// These models alone, with commas between them [default: all of them]
+    /// Only these models, comma-separated [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     model: Vec<String>,
-    /// Which packings the constants of the models come from: a name, a file, or several, one after the other; default is
-    /// the paper's for the paper's models, grainlab for ours
+    /// Source of the constants of the models: a name, a file, or several; default is the paper's for the
+    /// paper's models, grainlab for the others
     #[arg(long, value_name = "NAME|FILE.toml", value_delimiter = ',', default_value = calibrations::DEFAULT)]
     calibration: Vec<String>,
-    /// Print how far the estimates are from the truth that the table says in its columns k, z, eps and eps_stiffness, for
-    /// each model and gamma/Delta: bias, scatter, rms error, and how many of the 95 % intervals have the truth in them
+    /// Compare the estimates with the truth in the columns k, z, eps and eps_stiffness of the table, for each
+    /// model and gamma/Delta: bias, scatter, rms error, and the fraction of the 95 % intervals that contain
+    /// the truth
     #[arg(long, requires = "table")]
     judge: bool,
-    /// Judge the rows with the same cells in these columns together; numbers that are not whole are the same to three digits
+    /// Group the rows with the same cells in these columns; numbers that are not whole are equal if they
+    /// agree to three digits
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', requires = "judge")]
     by: Vec<String>,
-    /// Draw the contact anisotropy inferred by each model against that of the table, into this file (SVG)
+    /// Plot the contact anisotropy inferred by each model against that of the table, into this file (SVG)
     #[arg(long, value_name = "FILE.svg", requires = "judge")]
     plot: Option<PathBuf>,
-    /// Also sample the distribution of the estimates by this many draws of the data: for errors that are large, where those
-    /// of the other columns, linear in the errors, are not to be trusted; 20000 is plenty
+    /// Also sample the distribution of the estimates by this number of draws of the data: for large errors,
+    /// for which linear error propagation is inaccurate; 20000 suffices
     #[arg(long, value_name = "N", conflicts_with = "table", requires = "error", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     samples: Option<u32>,
     /// Seed of the samples: the same one gives the same numbers
     #[arg(long, value_name = "SEED", requires = "samples", default_value_t = 0)]
     seed: u64,
-    /// Print which datum decides which unknown, and how much of the uncertainty is that of the data and how much is what
-    /// the model leaves out
+    /// Print the contribution of each datum to the uncertainty of each unknown, and the parts of the
+    /// uncertainty due to the data and to the model
     #[arg(long, conflicts_with = "table")]
     explain: bool,
     /// How to print the result
@@ -141,7 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         }
         return table::run(rows, &printer, args.format);
     }
-    // The parser of the command line waives what a flag requires where another one excludes it.
+    // With an exclusion, the parser of the command line does not enforce a required flag.
     for (flag, given) in
         [("--judge", args.judge), ("--by", !args.by.is_empty()), ("--gamma", args.gamma.is_some())]
     {
@@ -171,7 +175,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
 }
 
 impl Args {
-    /// What holds for every state.
+    /// Inputs common to all states.
     fn defaults(&self) -> Result<Defaults, Failure> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         in_range("grain-shear-modulus", self.grain_shear_modulus, "more than 0 and finite", positive)?;
@@ -184,7 +188,7 @@ impl Args {
         })
     }
 
-    /// The state that the flags tell.
+    /// The state given by the flags.
     fn state(&self, defaults: Defaults) -> Result<State, Failure> {
         let pressure = self.pressure.ok_or_else(|| Failure::usage("--pressure is needed, or --table"))?;
         let mut state = State::at(Measured::exact(pressure));

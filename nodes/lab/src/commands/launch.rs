@@ -24,16 +24,16 @@ Examples:
   grainlab                                  the demo scene
   grainlab launch --scene s2 --seed 3       a scene of the paper
   grainlab launch --scene s2 --set grains.count=500 --set friction=0.2 --set phase.rest.drag=1e3
-  grainlab launch acoustic                  the same, with wave speeds measured and inverted beside the moduli
+  grainlab launch acoustic                  the same, with wave speeds measured and inverted, too
   grainlab launch acoustic method:=standing_wave speed_noise:=0.01
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
   grainlab launch --resume recordings/runs/s2-1-1
 
-The run lands in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
+The run is stored in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
 
-/// What to launch.
+/// The run to launch.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
@@ -43,8 +43,8 @@ pub(crate) struct Args {
     words: Vec<String>,
     #[arg(long, value_name = "SCENE", help = scene_help())]
     scene: Option<String>,
-    /// Sets a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; repeat it for more. `grainlab scene keys`
-    /// lists the keys
+    /// Set a key of the scene, as in grains.count=500 or phase.rest.drag=1e3; may be repeated. `grainlab
+    /// scene keys` lists the keys
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Seed of every random choice [default: the one of the scene]
@@ -53,14 +53,14 @@ pub(crate) struct Args {
     /// Folder for the directory of the run
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
-    /// Continues this run from the last packing in its recording, with its own launch file, arguments, scene and seed;
-    /// the result is the same to the last byte as without the interruption
+    /// Continue this run from the last packing in its recording, with its launch file, arguments, scene and
+    /// seed; the result is the same to the last byte as without the interruption
     #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out"])]
     resume: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
     format: Format,
-    /// Print all that was measured of each packing, what each model infers, and the messages of each topic
+    /// Print all measurements of each packing, the estimate of each model, and the counts of each topic
     #[arg(long)]
     verbose: bool,
 }

@@ -1,6 +1,6 @@
-//! Packings from files through a measurement to a printed result: what `analyze` and `probe` share.
+//! Packings from files through a measurement to a printed result: the common part of `analyze` and `probe`.
 //!
-//! - [`import`]: what the files do not say
+//! - [`import`]: flags for data that files lack
 //! - [`files`]: many files at once
 //! - [`sink`]: results in order
 //! - [`printer`]: results, one after the other, as one table, one JSON array or one CSV
@@ -16,23 +16,23 @@ use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::Imported;
 
-/// What is done with one packing.
+/// The measurement of one packing.
 pub(crate) trait Measure: Sync {
-    /// What is found of it.
+    /// Its result.
     type Found: Send;
 
     /// Measures one packing of `source`; the error names both.
     fn measure(&self, source: &str, imported: &Imported) -> Result<Self::Found, String>;
 }
 
-/// Where results go.
+/// The destination of results.
 pub(crate) trait Outlet: Send {
-    /// What is found of one packing.
+    /// The result of one packing.
     type Found: Send;
 
-    /// Takes the next one. Lines on stderr make way for `bar`.
+    /// Takes the next result. `bar` is hidden while lines are printed.
     fn emit(&mut self, found: Self::Found, bar: &Bar) -> Result<Exit, Failure>;
 
-    /// Completes the output after the last one.
+    /// Completes the output after the last result.
     fn finish(self) -> Result<Exit, Failure>;
 }

@@ -21,16 +21,16 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  Wave speeds of every packing of a recorded run, and the moduli they mean, beside those of the contact network:
+  Wave speeds of every packing of a recorded run, and their moduli, compared with those of the contact network:
     grainlab probe recordings/runs/demo-1-1
-  A packing of LAMMPS through an instrument that errs by 0.3 %:
+  A packing of LAMMPS with an instrument error of 0.3 %:
     grainlab probe packing.data --shear-modulus 29e9 --poisson 0.2 --friction 0.3 --speed-noise 0.003
-  Bursts through the packing, their arrivals picked, the traces kept:
-    grainlab probe packing.csv --method cross_correlation --signal-to-noise 20 --shots 64 --record heard
-  What the inversion makes of the speeds, judged by what was counted:
+  Bursts through the packing, with picked arrivals and recorded traces:
+    grainlab probe packing.csv --method cross_correlation --signal-to-noise 20 --shots 64 --record traces
+  The inversion of the speeds, compared with the counted structure:
     grainlab probe recordings/runs/* --format csv | grainlab invert --table - --judge --model relaxed";
 
-/// Files to send waves through, and what they do not say.
+/// Files to send waves through, and data that they lack.
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS),

@@ -17,7 +17,7 @@ pub(crate) struct Args {
     rest: Vec<String>,
 }
 
-/// The last comma of a list as "or".
+/// The last comma of a list replaced by "or".
 fn one_of(names: &str) -> String {
     names.rsplit_once(", ").map_or_else(|| names.to_owned(), |(all, last)| format!("{all} or {last}"))
 }
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Prints what a recorder recorded, if one finished.
+/// Prints the counts of a recorder's recording, if one finished.
 pub(crate) fn print_recorded(recorded: &ResultSlot) -> Result<(), Failure> {
     let recorded = recorded.borrow();
     let Some(finished) = recorded.as_ref() else { return Ok(()) };

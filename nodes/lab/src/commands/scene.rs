@@ -1,4 +1,4 @@
-//! `grainlab scene`: what can be run, and whether it can.
+//! `grainlab scene`: scenes, and their faults.
 
 use clap::Subcommand;
 use grainlab_console::scenes;
@@ -10,28 +10,28 @@ use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// What to do with scenes.
+/// Commands for scenes.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// List the built-in scenes.
     List,
-    /// Show a scene as it would be run: bases applied, every default written out.
+    /// Show the complete scene: bases applied, every default written out.
     Show(Show),
-    /// Read scenes and name all that is wrong with them; exit 2 if anything is.
+    /// Read scenes and list all their faults; exit 2 if there are any.
     Check(Check),
-    /// Write a scene to start from, with comments.
+    /// Write a template of a scene, with comments.
     New(New),
     /// Show every key of the format with its unit, default and range, as Markdown.
     Keys,
 }
 
-/// A scene and what is set over it.
+/// A scene and its overrides.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Show {
     /// Scene: a built-in name or a file
     #[arg(value_name = "SCENE")]
     scene: String,
-    /// Sets a key of the scene, as in grains.count=500; repeat it for more
+    /// Set a key of the scene, as in grains.count=500; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Seed of every random choice [default: the one of the scene]
@@ -53,7 +53,7 @@ pub(crate) struct New {
     /// Name of the scene; the file is NAME.toml, which must not exist
     #[arg(value_name = "NAME")]
     name: String,
-    /// Changes this scene instead of being a whole one
+    /// Write changes of this scene instead of a complete one
     #[arg(long, value_name = "SCENE")]
     base: Option<String>,
 }
@@ -84,7 +84,7 @@ fn list() -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Reads every scene, also after one that has faults.
+/// Reads every scene, also after one with faults.
 fn check_all(names: &[String]) -> Result<Exit, Failure> {
     let mut table = Table::new(["scene", "grains", "phases", "packings"]);
     let (mut exit, mut sound) = (Exit::Done, false);
@@ -120,7 +120,7 @@ fn create(new: &New) -> Result<Exit, Failure> {
         }
     };
     let path = PathBuf::from(format!("{name}.toml"));
-    // A name that no scene may have is refused before there is a file.
+    // An invalid name is refused before the file is created.
     grainlab_scene::assignment(&format!("name={name}"))
         .and_then(|name| {
             let mut draft = grainlab_scene::Draft::of_text(&grainlab_scene::template("new"))?;

@@ -1,4 +1,4 @@
-//! Wave speeds of one packing, and the moduli of the medium whose waves they are.
+//! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
 use super::quantities::entries;
 use grainlab_core::quantities;
@@ -9,16 +9,16 @@ use grainlab_msgs::boundary::WaveSpeedsReading;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-/// Wave speeds, and the moduli that they tell.
+/// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct AcousticReport {
     pub(crate) reading: WaveSpeedsReading,
-    /// Of all grains, kg/m³.
+    /// Density of all grains, kg/m³.
     pub(crate) bulk_density: f64,
     pub(crate) medium: WaveModuli,
 }
 
-/// Every quantity of an [`AcousticReport`]. Those of the medium are null where the speeds do not determine them.
+/// Every quantity of an [`AcousticReport`]. Moduli that the speeds do not determine are null.
 pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "method" "" "" "how the speeds were measured; several if they are not all of one kind" Scalar, |a| a.method();
     "speed_count" "" "1" "number of speeds" Scalar, |a| a.reading.speeds.len();
@@ -27,13 +27,13 @@ pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { Acoustic
     "density_bulk" "" "kg/m3" "density of all grains" Scalar, |a| a.bulk_density;
     "pressure_pa" "p" "Pa" "confining pressure" Aside, |a| a.reading.pressure;
     "axis_named" "" "1" "axis that the rays were sent about" List, |a| a.reading.axis.map(<[f64; 3]>::from);
-    "axis" "" "1" "axis that the moduli are about: that one, else the one that the speeds tell, else e3"
+    "axis" "" "1" "axis of the moduli: that one, else the one inferred from the speeds, else e3"
         Vector, |a| a.medium.axis;
     "g12_pa" "G12" "Pa" "C66 about the axis, by Christoffel's equation" Scalar, |a| a.medium.modulus(Modulus::G12);
     "g12_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G12);
     "g13_pa" "G13" "Pa" "C44 about the axis" Scalar, |a| a.medium.modulus(Modulus::G13);
     "g13_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::G13);
-    "theta_pa" "Θ" "Pa" "bulk modulus, where all the others are known, from which it follows" Scalar, |a| a.theta();
+    "theta_pa" "Θ" "Pa" "bulk modulus, if all other moduli are known" Scalar, |a| a.theta();
     "theta_sigma_pa" "" "Pa" "its standard deviation" Aside, |a| a.medium.stddev(Modulus::Theta);
     "ti_c11_pa" "C11" "Pa" "P modulus across the axis" Scalar, |a| a.medium.modulus(Modulus::C11);
     "c11_sigma_pa" "" "Pa" "its standard deviation" Scalar, |a| a.medium.stddev(Modulus::C11);
@@ -46,12 +46,12 @@ pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { Acoustic
         Scalar, |a| a.medium.fitted.as_ref().ok().map(|f| f.degrees_of_freedom);
     "scatter" "" "1" "root mean square of the relative residuals of the speeds per degree of freedom"
         Scalar, |a| a.scatter();
-    "departure" "" "1" "relative scatter of rho v^2 that is the packing's own; half of it is an error of every speed"
+    "departure" "" "1" "relative scatter of rho v^2 that is due to the packing; half of it is an error of every speed"
         Aside, |a| a.departure();
 };
 
 impl AcousticReport {
-    /// Of the speeds of this packing.
+    /// From the speeds of this packing.
     pub(crate) fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
         let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(reading.pressure);
@@ -73,26 +73,27 @@ impl AcousticReport {
         Some(self.medium.fitted.as_ref().ok()?.anisotropy_scatter?.scatter)
     }
 
-    /// Θ, Pa, where all other moduli are known: a table cannot say that Θ follows from moduli of which one is missing.
+    /// Θ, Pa, if all other moduli are known: in a table Θ follows from the other moduli, which must therefore
+    /// be present.
     fn theta(&self) -> Option<f64> {
         let known = |m: &Modulus| self.medium.modulus(*m).is_some();
         Modulus::ALL.iter().all(known).then(|| self.medium.modulus(Modulus::Theta))?
     }
 
-    /// Mean of the relative standard deviations of the speeds that have one.
+    /// Mean relative standard deviation of the speeds that have one.
     pub(crate) fn relative_error(&self) -> Option<f64> {
         let speeds = self.reading.speeds.iter().map(|s| s.wave);
         let errors: Vec<f64> = speeds.filter_map(|s| Some(s.stddev? / s.speed)).collect();
         (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
     }
 
-    /// What a reader should know of the speeds and of their medium.
+    /// Notes on the speeds and their medium.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut warnings = self.reading.warnings.clone();
         warnings.extend(match &self.medium.fitted {
             Ok(fitted) => fitted.conflict.as_ref().map(|conflict| {
                 format!(
-                    "the wave speeds contradict each other: speeds[{}] is {:.1} sigma from what the others say",
+                    "the wave speeds contradict each other: speeds[{}] is {:.1} sigma from the prediction by the others",
                     conflict.worst, conflict.sigma
                 )
             }),
@@ -156,7 +157,7 @@ mod tests {
         residual: 0.0,
     };
 
-    /// A gas of one grain: nothing but its density is asked for.
+    /// A gas of one grain: only its density is used.
     fn packing() -> Packing {
         use grainlab_core::{Cell, Mat3, Material};
         Packing {
@@ -177,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Exact speeds of [`MEDIUM`] along these directions, each known to 0.3 %.
+    /// Exact speeds of [`MEDIUM`] along these directions, each with an error of 0.3 %.
     fn speeds(directions: &[Vec3]) -> WaveSpeedsReading {
         let density = 1500.0;
         let stiffness = MEDIUM.stiffness();
@@ -221,7 +222,7 @@ mod tests {
         ] {
             assert!((json[key].as_f64().unwrap() / truth - 1.0).abs() < 1e-6, "{key}: {json}");
         }
-        // A modulus of one speed: twice the speed's error, and the density's.
+        // A modulus from one speed: twice the error of the speed, and that of the density.
         let one = json["c33_sigma_pa"].as_f64().unwrap() / 400e6;
         assert!(one > 0.002 && one < 0.0064, "{one}");
         assert_eq!((&json["method"], &json["speed_count"]), (&"dispersion".into(), &9.into()));
@@ -231,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_speeds_leave_open_is_null_and_why_there_is_no_medium_is_said() {
+    fn undetermined_moduli_are_null_and_a_missing_medium_has_a_reason() {
         let one = AcousticReport::new(&packing(), speeds(&[Vec3::z()])).medium;
         assert!(one.modulus(Modulus::C33).is_some());
         assert!(one.modulus(Modulus::C11).is_none() && one.stddev(Modulus::C11).is_none());

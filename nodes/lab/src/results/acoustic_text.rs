@@ -1,4 +1,4 @@
-//! Wave speeds for people: what was measured, and its moduli beside those of the network.
+//! Wave speeds as text: the measured ones, and their moduli compared with those of the network.
 
 use super::acoustic::AcousticReport;
 use super::packing_text::indented;
@@ -7,14 +7,14 @@ use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
 use grainlab_emt::Modulus;
 
-/// What the speeds are, in a few words: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.
+/// Summary of the speeds: `wave speeds (dispersion, 27 speeds, each +- 0.30 %)`.
 pub(crate) fn heading(a: &AcousticReport) -> String {
     let method = a.method().map_or_else(String::new, |m| format!("{}, ", m.replace('_', " ")));
     let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {}", percent(e)));
     format!("wave speeds ({method}{} speeds{error})", a.reading.speeds.len())
 }
 
-/// The block of one packing: its density, its moduli beside the static ones of `report`, and what is to be known.
+/// The block of one packing: its density, its moduli compared with the static ones of `report`, and notes.
 pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
     let mut text = format!("  {}\n", heading(a));
     text += &format!(
@@ -26,26 +26,26 @@ pub(crate) fn text(a: &AcousticReport, report: &PackingReport) -> String {
     );
     if a.reading.axis.is_none() {
         let [x, y, z]: [f64; 3] = a.medium.axis.into();
-        text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), for no axis was named\n");
+        text += &format!("  moduli about ({x:.3}, {y:.3}, {z:.3}), since no axis was given\n");
     }
     text += &indented(&moduli(a, report.stiffness().map(|s| &s.tensor)).without_empty_columns().text());
     a.warnings().iter().for_each(|w| text += &format!("  note: {w}\n"));
     text
 }
 
-/// Two digits that mean something, of something small.
+/// Two significant digits of a small number.
 fn percent(share: f64) -> String {
     if share < 5e-5 { format!("{:.0e} %", 100.0 * share) } else { format!("{:.2} %", 100.0 * share) }
 }
 
-/// How far the speeds are from those of one medium, and what that does to the errors.
+/// Scatter of the speeds about one medium, and its effect on the errors.
 fn scatter(a: &AcousticReport) -> String {
     let Some(scatter) = a.scatter() else { return String::new() };
     let enlarged = if a.departure().is_some() { ", more than their errors, which were enlarged" } else { "" };
     format!("; speeds scatter by {:.2} % about one medium{enlarged}", 100.0 * scatter)
 }
 
-/// The projection of the stiffness on media isotropic about the axis taken, and the moduli from the speeds.
+/// The projection of the stiffness on media isotropic about the axis used, and the moduli from the speeds.
 fn moduli(a: &AcousticReport, stiffness: Option<&Stiffness>) -> Table {
     let medium = stiffness.map(|c| c.transverse_isotropy_about(&a.medium.axis));
     let mut t = Table::new(["modulus", "network/MPa", "acoustic/MPa", "sigma", "difference", "in sigma"]);

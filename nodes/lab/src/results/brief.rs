@@ -1,4 +1,4 @@
-//! A launched run in at most 20 lines: what was prepared, measured and inferred, and where it is.
+//! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
 use super::acoustic_text;
 use super::inference::{Inference, Origin, by_origin};
@@ -16,10 +16,13 @@ const PAPER: &str = "ratio";
 /// Sets of data, or nodes that infer, that are shown of one packing.
 const MOST_GROUPS: usize = 3;
 
+/// Notes on a packing that are shown.
+const MOST_NOTES: usize = 2;
+
 /// Rows of the table of states; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
 
-/// The end of a run, for people. `program` is how the command was called.
+/// The result of a run as text. `program` is the name of the binary on the command line.
 pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines = match s.states.as_slice() {
         [] => vec![row("Prepared", "no packing was published")],
@@ -48,6 +51,9 @@ fn one(state: &InvertedPacking) -> Vec<String> {
         None => lines.push(row("Measured", &measured(r))),
         Some(why) => lines.push(row("Measured", &format!("no stiffness: {why}"))),
     }
+    let told = r.elasticity.not_jammed().map(ToString::to_string);
+    let notes = state.packing.warnings.iter().filter(|w| Some(*w) != told.as_ref()).take(MOST_NOTES);
+    lines.extend(notes.map(|note| row("Note", note)));
     let groups = by_origin(&state.results);
     let shown = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
     for (origin, results) in &groups[..shown] {
@@ -73,7 +79,7 @@ fn recommended(e: &Inference, source: &str, truth: &PackingReport) -> Vec<String
     let title = format!("from {source} alone, by model {} ({}):", e.model, standing(e));
     let values = estimate(e, truth).map(|(name, value, sigma, error)| {
         let sigma = sigma.unwrap_or_else(|| "?".to_owned());
-        row("", &format!("{name:4}{value} +- {sigma:8}  error {error}"))
+        row("", &format!("{name:4}{value:6} +- {sigma:6}  error {error}"))
     });
     std::iter::once(row("Inferred", &title)).chain(values).collect()
 }
@@ -123,7 +129,7 @@ fn measured(r: &PackingReport) -> String {
     format!("G12 {g12} MPa, G13 {g13} MPa, Theta {theta} MPa")
 }
 
-/// What was inverted: `moduli`, or `wave speeds (…)`; and by which node, where several infer.
+/// The data inverted: `moduli`, or `wave speeds (…)`; and the node, if several infer.
 fn source(origin: &Origin, state: &InvertedPacking, several: bool) -> String {
     let data = match (origin.source.as_deref(), &state.acoustic) {
         (Some(name), Some(a)) if name == topics::WAVE_SPEEDS.name => acoustic_text::heading(a),
@@ -140,7 +146,7 @@ fn standing(r: &Inference) -> &'static str {
     if r.status == "ok" { "inside its range" } else { r.status }
 }
 
-/// Name, value, standard deviation, and error against what was counted, of each quantity of an estimate.
+/// Name, value, standard deviation, and error against the counted value, of each quantity of an estimate.
 fn estimate(
     e: &Inference,
     truth: &PackingReport,
@@ -222,7 +228,7 @@ fn pace(s: &Summary) -> String {
         text += &format!(", {} packings within phases", s.film.packings);
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("; {} was started again {} times", node.name, node.restarts);
+        text += &format!("; {} was restarted {} times", node.name, node.restarts);
     }
     text
 }

@@ -4,7 +4,7 @@ use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{from_cdr, topics};
 use grainlab_recordings::{ReadError, Recording, Selection};
 
-/// What is missing of a finished run, a line for each topic.
+/// Missing messages of a finished run, one line per topic.
 pub(crate) fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
     let stress =
         numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;

@@ -1,6 +1,7 @@
-//! What the models infer, with the stable keys of `results[]`.
+//! Results of the models, with the stable keys of `results[]`.
 
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Quantity, Status, recommended};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, Status, recommended};
 use grainlab_msgs::boundary::{EstimateReading, EstimateStatus};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -8,46 +9,46 @@ use std::collections::BTreeMap;
 /// One model's result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Inference {
-    /// Topic that the data came from; absent where they came from a command line or a file.
+    /// Topic of the data; absent if they came from a command line or a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<String>,
-    /// Node that inferred it; absent where that is not known.
+    /// Node that inferred it; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) by: Option<String>,
     /// Name of the model.
     pub(crate) model: String,
     /// Name of the calibration.
     pub(crate) calibration: String,
-    /// What it infers.
+    /// Inferred values.
     #[serde(flatten)]
     pub(crate) values: Quantities<Option<f64>>,
     /// Standard deviations, from data and model.
     pub(crate) sigma: Quantities<Option<f64>>,
-    /// The part of them that the model leaves out.
+    /// Their part due to the model.
     pub(crate) sigma_model: Quantities<Option<f64>>,
     /// Credible intervals.
     pub(crate) interval: Interval,
-    /// Misfit by the errors of data and model; null where there are as many data as unknowns.
+    /// Misfit by the errors of data and model; null without degrees of freedom.
     pub(crate) chi_square: Option<f64>,
-    /// Data less unknowns; null without a solution.
+    /// Number of data minus number of unknowns; null without a solution.
     pub(crate) degrees_of_freedom: Option<usize>,
-    /// How much more one combination suffers from errors of the data than another.
+    /// Condition number: how much the effects of errors of the data differ between combinations.
     pub(crate) condition_number: Option<f64>,
     /// `ok`, `extrapolated`, `undetermined` or `failed`.
     pub(crate) status: &'static str,
-    /// The strain ratio that the model was fed with, and where it is from; null if it takes none.
+    /// The strain ratio that the model used, and its source; null if it uses none.
     pub(crate) gamma_over_delta: Option<f64>,
     pub(crate) gamma_over_delta_source: Option<String>,
-    /// For a reader.
+    /// Notes.
     pub(crate) warnings: Vec<String>,
 }
 
-/// One value for each quantity of the microstructure.
+/// One value per quantity of the microstructure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Quantities<T> {
     /// Coordination number.
     pub(crate) k: T,
-    /// Coordination number of the equivalent isotropic packing, in the calibration's sense.
+    /// Coordination number of the equivalent isotropic packing, in the sense of the calibration.
     pub(crate) k_hat: T,
     /// Coordination number without rattlers.
     pub(crate) z: T,
@@ -58,15 +59,15 @@ pub(crate) struct Quantities<T> {
 }
 
 impl<T> Quantities<T> {
-    pub(super) fn of(value: impl FnMut(Quantity) -> T) -> Self {
-        let [k, k_hat, z, eps, eps_stiffness] = Quantity::ALL.map(value);
+    pub(super) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
+        let [k, k_hat, z, eps, eps_stiffness] = InferredQuantity::ALL.map(value);
         Self { k, k_hat, z, eps, eps_stiffness }
     }
 }
 
 impl<T: Copy> Quantities<T> {
-    /// In the order of [`Quantity::ALL`].
-    pub(super) fn all(&self) -> [T; grainlab_emt::QUANTITIES] {
+    /// In the order of [`InferredQuantity::ALL`].
+    pub(super) fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }
@@ -80,7 +81,7 @@ pub(crate) struct Interval {
     pub(crate) bounds: Quantities<Option<[f64; 2]>>,
 }
 
-/// Where results come from.
+/// Origin of results.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Origin {
     /// Topic of the data.
@@ -99,7 +100,7 @@ pub(crate) fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)>
 }
 
 impl Inference {
-    /// The recommended one of the results of all models from the same data.
+    /// The recommended one among the results of all models from the same data.
     pub(crate) fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
         let status = |r: &Self| match r.status {
             "ok" => Some(Status::Ok),
@@ -110,7 +111,7 @@ impl Inference {
         results.iter().find(|r| r.model == name).copied()
     }
 
-    /// A model that has no estimate, and why.
+    /// A model without an estimate, and the reason.
     pub(crate) fn failed(
         model: &str,
         calibration: &str,
@@ -136,7 +137,7 @@ impl Inference {
         }
     }
 
-    /// What was read from a recording, of data that came by the topic `source`.
+    /// From a recording, for data from the topic `source`.
     pub(crate) fn of_reading(source: &str, e: &EstimateReading) -> Self {
         let status = match e.status {
             EstimateStatus::Ok => "ok",
@@ -151,7 +152,7 @@ impl Inference {
             ..Self::failed(&e.model, &e.calibration, status, e.warnings.clone())
         };
         let Some(found) = &e.inferred else { return without_values };
-        let value = |q: Quantity| found.values[q as usize];
+        let value = |q: InferredQuantity| found.values[q as usize];
         let sigma = |covariance: Option<[f64; 25]>| {
             Quantities::of(|q| value(q).and(covariance).map(|c| c[6 * q as usize].sqrt()))
         };
@@ -170,14 +171,14 @@ impl Inference {
         }
     }
 
-    /// What a model of the kernel says.
+    /// From the result of a model of the kernel.
     pub(crate) fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
         let estimate = match outcome {
             Ok(estimate) => estimate,
             Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),
         };
         let known = estimate.covariance().is_some();
-        let of_model = |q: Quantity| {
+        let of_model = |q: InferredQuantity| {
             let i = q as usize;
             estimate.structure.get(q).and(estimate.model_covariance).map(|c| c[(i, i)].max(0.0).sqrt())
         };

@@ -1,15 +1,15 @@
-//! What the models infer, as cells of a table or of a CSV.
+//! Results of the models, as cells of a table or of CSV.
 
 use super::inference::Inference;
 use grainlab_console::{Table, exact, fixed};
-use grainlab_emt::Quantity;
+use grainlab_core::results::InferredQuantity;
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].
     pub(crate) const COLUMNS: [&str; 11] =
         ["model", "calibration", "k", "sigma", "k_hat", "sigma", "z", "sigma", "eps", "sigma", "status"];
 
-    /// As cells for people; a column that no row has a value for is better left out.
+    /// Cells of a text table; columns without values should be left out.
     pub(crate) fn cells(&self) -> Vec<String> {
         let (v, s) = (&self.values, &self.sigma);
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
@@ -23,7 +23,7 @@ impl Inference {
 
     /// Names of the cells of [`Inference::exact_cells`].
     pub(crate) fn exact_columns() -> Vec<String> {
-        let names = Quantity::ALL.map(Quantity::name);
+        let names = InferredQuantity::ALL.map(InferredQuantity::name);
         let with = |prefix: &'static str| names.into_iter().map(move |name| format!("{prefix}{name}"));
         let mut columns: Vec<String> = ["model", "calibration"].map(str::to_owned).into();
         columns.extend(["", "sigma_", "sigma_model_"].into_iter().flat_map(with));
@@ -48,7 +48,7 @@ impl Inference {
     }
 }
 
-/// The warnings of several results as lines, each with the models it comes from.
+/// The warnings of several results as lines, each with its models.
 pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for r in results {
@@ -62,7 +62,7 @@ pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>
     seen.iter().map(|(text, models)| format!("  {}: {text}\n", models.join(", "))).collect()
 }
 
-/// Results as a table for people, warnings below.
+/// Results as a text table, warnings below.
 pub(crate) fn table(results: &[Inference]) -> String {
     let mut t = Table::new(Inference::COLUMNS);
     results.iter().for_each(|r| t.row(r.cells()));
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_for_people_leaves_out_what_no_model_knows() {
+    fn the_text_table_leaves_out_what_no_model_infers() {
         let failed = || Inference::failed("ours", "paper", "failed", vec!["because".into()]);
         let text = table(&[s1(0.01), failed()]);
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();

@@ -1,4 +1,4 @@
-//! One measured packing: what `grainlab analyze` prints of it, and `summary.json` holds.
+//! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
 use super::probe::{ProbeView, ScanView};
 use super::quantities::{cells, columns, entries};
@@ -8,7 +8,7 @@ use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// A report, and where it is from.
+/// A report, and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MeasuredPacking {
     /// File, recording or topic.
@@ -16,16 +16,16 @@ pub(crate) struct MeasuredPacking {
     /// Step of the packing in its source.
     pub(crate) step: u64,
     pub(crate) report: PackingReport,
-    /// Wall time of the measurement, s; `None` where it was read from a recording.
+    /// Wall time of the measurement, s; `None` if it was read from a recording.
     pub(crate) seconds: Option<f64>,
     pub(crate) warnings: Vec<String>,
-    /// How the probe went, where the stiffness is a probe's.
+    /// Details of the probe, if the stiffness was measured by one.
     pub(crate) probe: Option<ProbeView>,
-    /// Probes of several amplitudes, where these were asked for.
+    /// Probes of several amplitudes, if set.
     pub(crate) scan: Option<ScanView>,
 }
 
-/// What is told of a packing before its quantities.
+/// Quantities that precede those of the packing.
 pub(crate) static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
     "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
     "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
@@ -51,7 +51,7 @@ impl Serialize for MeasuredPacking {
     }
 }
 
-/// Packings as a table, one a row, at full precision.
+/// Packings as a table, one per row, at full precision.
 pub(crate) fn table(packings: &[MeasuredPacking]) -> Table {
     let mut t = Table::new(columns(ORIGIN).chain(columns(QUANTITIES)));
     for p in packings {
@@ -66,13 +66,22 @@ pub(crate) mod tests {
     use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
 
-    /// One grain touching its own images along the three edges, or none.
+    /// One grain touching its own images along the three edges, or none of them.
     pub(crate) fn lattice(touching: bool) -> Packing {
         let contact = |axis: usize| {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
             let tangential_force = Vec3::zeros();
-            Contact { i: 0, j: 0, image, overlap: 1e-8, normal, normal_force: 1e-3, tangential_force }
+            Contact {
+                i: 0,
+                j: 0,
+                image,
+                overlap: 1e-8,
+                normal,
+                normal_force: 1e-3,
+                tangential_force,
+                rolling_force: Vec3::zeros(),
+            }
         };
         Packing {
             step: 12,
@@ -97,7 +106,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_lattice_says_its_structure_and_its_symmetry() {
+    fn the_text_of_a_lattice_has_its_structure_and_symmetry() {
         let s = serde_json::to_value(measured(&lattice(true))).unwrap();
         assert_eq!(s["symmetry"], "cubic");
         assert_eq!(s["orientation_contacts"], serde_json::json!([2, 0, 0, 0, 0, 0, 0, 0, 0, 1]));
@@ -110,7 +119,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_a_gas_has_not_is_null() {
+    fn quantities_undefined_for_a_gas_are_null() {
         let s = serde_json::to_value(measured(&lattice(false))).unwrap();
         for key in [
             "symmetry",

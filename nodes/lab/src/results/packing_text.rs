@@ -1,11 +1,11 @@
-//! A measured packing for people.
+//! A measured packing as text.
 
 use super::measured_packing::MeasuredPacking;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
 
-/// The block of one packing: structure in two lines, then the moduli, affine beside relaxed.
+/// The block of one packing: structure in two lines, then the moduli, affine and relaxed.
 pub(crate) fn text(m: &MeasuredPacking) -> String {
     let r = &m.report;
     let (c, f) = (&r.contacts, &r.fabric);
@@ -63,7 +63,7 @@ fn three_moduli(c: &Stiffness, axis: &Vec3) -> [f64; 3] {
     [t.g12, t.g13, c.bulk_voigt()]
 }
 
-/// The axis, the anisotropies, the networks and the forces, a line each.
+/// The axis, the anisotropies, the networks and the forces, one line each.
 fn structure(r: &PackingReport) -> String {
     let mut text = String::new();
     let (axis, d) = (&r.fabric.principal_axis, &r.stress_decomposition);
@@ -111,7 +111,7 @@ fn structure(r: &PackingReport) -> String {
     text
 }
 
-/// The class, and how far the stiffness is from the two that matter most.
+/// The symmetry class, and the residuals of the two most relevant ones.
 fn stiffness(s: &Symmetry) -> String {
     let percent = |v: f64| 100.0 * v;
     format!(
@@ -128,7 +128,7 @@ fn direction(v: &Vec3) -> String {
     format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2])
 }
 
-/// Every line two columns to the right.
+/// Indents every line by two columns.
 pub(crate) fn indented(text: &str) -> String {
     text.lines().map(|l| format!("  {l}\n")).collect()
 }

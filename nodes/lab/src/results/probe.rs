@@ -1,4 +1,4 @@
-//! How an explicit probe went, for the results of `grainlab analyze`.
+//! Details of an explicit probe, for the results of `grainlab analyze`.
 
 use grainlab_console::Table;
 use grainlab_core::Stiffness;
@@ -11,9 +11,9 @@ pub(crate) struct ProbeView {
     pub(crate) amplitude: f64,
     /// Largest |C_ab - C_ba| over the largest entry of C.
     pub(crate) asymmetry: f64,
-    /// Solver steps in all.
+    /// Total number of solver steps.
     pub(crate) steps: u32,
-    /// Contacts that either strain opened, made, or had at the Coulomb limit, over all columns.
+    /// Contacts that opened, formed, or were at the Coulomb limit under either strain, over all columns.
     pub(crate) opened: u32,
     pub(crate) closed: u32,
     pub(crate) sliding: u32,
@@ -50,7 +50,7 @@ pub(crate) struct ScanView {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ScannedView {
     pub(crate) amplitude: f64,
-    /// Null if it failed, and why.
+    /// Null if it failed; then there is a reason.
     pub(crate) probe: Option<ProbeView>,
     pub(crate) failure: Option<String>,
     /// Largest difference from the frozen network over its C11; null without a stiffness.
@@ -58,7 +58,7 @@ pub(crate) struct ScannedView {
 }
 
 impl ScanView {
-    /// With the stiffness of the frozen network, where there is one.
+    /// With the stiffness of the frozen network, if it has one.
     pub(crate) fn new(scan: &AmplitudeSweep, network: Option<&Stiffness>) -> Self {
         let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
             amplitude: *amplitude,
@@ -74,7 +74,7 @@ impl ScanView {
         Self { probes: probes.collect(), linear }
     }
 
-    /// A line an amplitude, and the linear regime.
+    /// One line per amplitude, and the linear regime.
     pub(crate) fn text(&self) -> String {
         let mut t = Table::new([
             "amplitude",

@@ -1,4 +1,4 @@
-//! A packing with its wave speeds: what `grainlab probe` prints of it.
+//! A packing with its wave speeds: the output of `grainlab probe`.
 
 use super::acoustic::{ACOUSTIC, AcousticReport};
 use super::acoustic_text;
@@ -11,17 +11,17 @@ use grainlab_core::quantity::{Quantity, by_key};
 use grainlab_core::results::{PackingReport, QUANTITIES};
 use serde::Serialize;
 
-/// What was measured on one packing.
+/// The measurements on one packing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Probed {
     #[serde(flatten)]
     pub(crate) packing: MeasuredPacking,
-    /// Null where nothing carries a wave.
+    /// Null if no wave propagates.
     pub(crate) acoustic: Option<AcousticReport>,
 }
 
-/// Of the packing, in CSV: what an inversion of the speeds needs beside them, and what it is judged by. The moduli are those
-/// of the speeds, under the names that `grainlab invert --table` reads.
+/// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli
+/// are those from the speeds, under the names that `grainlab invert --table` reads.
 const BESIDE: [&str; 10] = [
     "grains",
     "phi",

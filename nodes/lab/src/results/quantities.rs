@@ -1,4 +1,4 @@
-//! Results as JSON and CSV, from their table of quantities.
+//! Results as JSON and CSV, from the tables of quantities.
 
 use grainlab_console::exact;
 use grainlab_core::quantity::{Quantity, Shape, Value};
@@ -22,7 +22,7 @@ pub(crate) fn columns<'a, R: 'static>(
     quantities.into_iter().flat_map(Quantity::columns)
 }
 
-/// What stands in those columns, at full precision; cells of what is not known are empty.
+/// The values of these columns, at full precision; unknown values are empty.
 pub(crate) fn cells<'a, R: 'static>(
     quantities: impl IntoIterator<Item = &'a Quantity<R>>,
     result: &R,
@@ -43,7 +43,7 @@ pub(crate) fn cells<'a, R: 'static>(
     })
 }
 
-/// A value in JSON: null if it is not known, rows of a stiffness as arrays.
+/// A value in JSON: null if it is unknown, rows of a stiffness as arrays.
 struct Json {
     shape: Shape,
     value: Value,
@@ -67,7 +67,7 @@ impl Serialize for Json {
     }
 }
 
-/// A table in words, for the help of a command: key, symbol, unit and meaning, a line each.
+/// A table as text, for the help of a command: key, symbol, unit and meaning, one line each.
 pub(crate) fn help<R: 'static>(table: &[Quantity<R>]) -> String {
     let line = |q: &Quantity<R>| {
         let unit = if matches!(q.unit, "" | "1") { String::new() } else { format!(", {}", q.unit) };
@@ -101,7 +101,8 @@ mod tests {
     use crate::results::measured_packing::ORIGIN;
     use grainlab_core::results::QUANTITIES;
 
-    /// The reference in the repository is that of the tables. Where it is not, it is written anew, and the test fails once.
+    /// The reference in the repository equals that of the tables. If it differs, the test writes it and fails
+    /// once.
     #[test]
     fn the_written_reference_is_that_of_the_tables() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../quantities.md");

@@ -1,4 +1,4 @@
-//! What a recording of a run says: its states, and the counters of its nodes.
+//! The results in the recording of a run: its states, and the counters of its nodes.
 
 use super::acoustic::AcousticReport;
 use super::inference::Inference;
@@ -16,7 +16,7 @@ use grainlab_recordings::{Recording, Selection};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A packing and what was inferred from it.
+/// A packing and the estimates from it.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct InvertedPacking {
     #[serde(flatten)]
@@ -26,55 +26,55 @@ pub(crate) struct InvertedPacking {
     pub(crate) results: Vec<Inference>,
 }
 
-/// Topics of data that an inversion answers.
+/// Topics of data that an inversion reads.
 const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
 
-/// What was read back.
+/// The results read back.
 #[derive(Debug, Default)]
 pub(crate) struct ReadBack {
     /// Every packing, in order of steps.
     pub(crate) states: Vec<InvertedPacking>,
     /// The last report of each process, by node and process id.
     pub(crate) reports: BTreeMap<(String, u32), Report>,
-    /// Messages of packings.
+    /// Number of packing messages.
     pub(crate) packings: usize,
     /// Data of packings without a microstructure.
     pub(crate) not_inverted: usize,
     /// Packings without a structure.
     pub(crate) not_analysed: usize,
-    /// Packings published within phases, and those of them that were measured. They are in the recording alone.
+    /// Packings published within phases, and the number of those measured. They are only in the recording.
     pub(crate) film: Film,
     /// Microstructures, by the topic of their data and the step of the packing.
     pub(crate) inverted: BTreeSet<(String, u64)>,
-    /// Steps of the packings of which there is a result, by topic.
+    /// Steps of the packings with a result, by topic.
     pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
-    /// Who was on the bus beside the run.
+    /// Processes on the bus that are not part of the run.
     pub(crate) strangers: Vec<StrangerView>,
-    /// What could not be read.
+    /// Messages that could not be read.
     pub(crate) complaints: Vec<String>,
 }
 
 /// Packings published within phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct Film {
-    /// How many.
+    /// Number of packings.
     pub(crate) packings: usize,
-    /// Those with a structure.
+    /// Number with a structure.
     pub(crate) structures: usize,
-    /// Those with moduli.
+    /// Number with moduli.
     pub(crate) moduli: usize,
 }
 
-/// The messages about one packing; a repeated one says the same.
+/// The messages about one packing; repeated ones are equal.
 #[derive(Default)]
 struct About {
-    /// It was published within a phase: it need not be at rest, and may have nothing to measure.
+    /// Whether it was published within a phase: it need not be at rest, and may have no results.
     within: bool,
     packing: Option<Packing>,
     fabric: Option<FabricReading>,
     stiffness: Option<ElasticStiffness>,
     wave_speeds: Option<WaveSpeedsReading>,
-    /// In the order in which they came.
+    /// In the order of arrival.
     results: Vec<Inference>,
 }
 
@@ -140,10 +140,12 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
                 let report = reported(&packing, fabric, about.stiffness);
                 let mut measured = MeasuredPacking::new(source.clone(), report);
                 measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
+                let left_out = measured.report.stiffness().and_then(|s| s.method.leaves_out(&packing.law));
+                measured.warnings.extend(left_out.map(|left_out| left_out.to_string()));
                 let acoustic = about.wave_speeds.map(|reading| AcousticReport::new(&packing, reading));
                 back.states.push(InvertedPacking { packing: measured, acoustic, results: about.results });
             }
-            // An instrument's data are of no packing of the run.
+            // Data of an external instrument do not belong to a packing of the run.
             (None, None) if step == 0 => {}
             (None, _) => back.complaints.push(format!("the packing of step {step} is not in the recording")),
             (_, None) => {
@@ -164,7 +166,7 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
     back
 }
 
-/// The report that the messages about a packing add up to.
+/// The report from the messages about a packing.
 fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticStiffness>) -> PackingReport {
     let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
     let elasticity =
@@ -177,7 +179,7 @@ fn decoded<T: Message>(payload: &[u8]) -> Result<T, String> {
     from_cdr(payload).map_err(|e| e.to_string())
 }
 
-/// Takes one message in; the step of the packing that it is about.
+/// Adds one message; returns the step of its packing.
 fn enter(
     about: &mut BTreeMap<u64, About>,
     topic: &Topic,
@@ -220,7 +222,7 @@ fn enter(
             for estimate in &reading.estimates {
                 let by = by.map(str::to_owned);
                 let found = Inference { by, ..Inference::of_reading(&reading.source, estimate) };
-                // One that took another's place may have said it again.
+                // A restarted process may have sent it again.
                 if !known.contains(&found) {
                     known.push(found);
                 }
@@ -230,7 +232,7 @@ fn enter(
     }
 }
 
-/// Nodes by the messages that they wrote.
+/// Nodes by the messages that they sent.
 struct Names {
     authors: Authors,
     nodes: BTreeMap<String, String>,
@@ -244,7 +246,7 @@ impl Names {
         Self { authors: strangers::authors(recording), nodes }
     }
 
-    /// The node that wrote the message of a topic at this log time.
+    /// The node that sent the message of a topic at this log time.
     fn node(&self, topic: &str, log_time: u64) -> Option<&str> {
         self.nodes.get(self.authors.writer(topic, log_time)?).map(String::as_str)
     }

@@ -1,4 +1,4 @@
-//! What a launched run came to, with the stable keys of `summary.json`.
+//! The result of a launched run, with the stable keys of `summary.json`.
 
 use super::read_back::{Film, InvertedPacking, ReadBack};
 use grainlab_node_kit::{Exit, Report};
@@ -21,9 +21,9 @@ pub(crate) struct Summary {
     pub(crate) topics: Vec<TopicCount>,
     pub(crate) exchanges: Option<u64>,
     pub(crate) exchanges_per_second: Option<f64>,
-    /// Share of the run's time that the simulator waited for answers.
+    /// Fraction of the run's time that the simulator waited for answers.
     pub(crate) waiting_fraction: Option<f64>,
-    /// While computing.
+    /// Steps per second while computing.
     pub(crate) particle_steps_per_second: Option<f64>,
     pub(crate) states: Vec<InvertedPacking>,
     /// Packings published within phases.
@@ -37,7 +37,7 @@ pub(crate) struct Summary {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct NodeEnd {
     pub(crate) name: String,
-    /// Of its last process.
+    /// Process id of its last process.
     pub(crate) pid: u32,
     /// Exit code; null if a signal ended it.
     pub(crate) exit: Option<i32>,
@@ -67,7 +67,7 @@ impl From<&TopicTally> for TopicCount {
     }
 }
 
-/// What the simulator counted, by its last report.
+/// The counters of the simulator in its last report.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counters {
     exchanges: Option<f64>,
@@ -94,7 +94,7 @@ impl Counters {
 }
 
 impl Summary {
-    /// Puts together what the launcher knows and what the recording says.
+    /// Combines the data of the launcher with those of the recording.
     pub(crate) fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
         let counters = Counters::of(back.reports.values());
         let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
@@ -120,7 +120,7 @@ impl Summary {
     }
 }
 
-/// What the launcher knows of a run.
+/// The data that the launcher has of a run.
 #[derive(Debug)]
 pub(crate) struct Launched {
     pub(crate) scene: String,

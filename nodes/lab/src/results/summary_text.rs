@@ -1,4 +1,4 @@
-//! A launched run for people.
+//! A launched run as text.
 
 use super::acoustic_text;
 use super::inference::{Inference, Origin, by_origin};
@@ -49,12 +49,12 @@ pub(crate) fn text(s: &Summary) -> String {
         text += &indented(&t.text());
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("  {} was started again {} times\n", node.name, node.restarts);
+        text += &format!("  {} was restarted {} times\n", node.name, node.restarts);
     }
     text
 }
 
-/// What each model infers, a block for each kind of data.
+/// The results of each model, one block per kind of data.
 fn inferred(s: &InvertedPacking) -> String {
     let groups = by_origin(&s.results);
     let inversions: BTreeSet<_> = groups.iter().map(|(o, _)| &o.by).collect();
@@ -80,7 +80,7 @@ fn inferred(s: &InvertedPacking) -> String {
     text
 }
 
-/// What each model infers from one kind of data, with its error against what was measured.
+/// The results of each model from one kind of data, with errors against the measured values.
 fn block(results: &[&Inference], s: &InvertedPacking) -> String {
     let mut t = Table::new([
         "inferred by",

@@ -3,8 +3,8 @@
 use crate::{grainlab, text};
 use serde_json::Value;
 
-/// S1 at 50 kPa of the paper's Table III (k = 5.73, eps = 0.016) with these coordination numbers and anisotropies said to
-/// be the truth.
+/// S1 at 50 kPa of the paper's Table III (k = 5.73, eps = 0.016), with these coordination numbers and
+/// anisotropies as the truth.
 fn said(truths: &[(f64, f64)]) -> String {
     let mut input = String::from("mu,p_kpa,gamma_over_delta,g_total,g12_pa,g13_pa,theta_pa,k,eps\n");
     for (i, (k, eps)) in truths.iter().enumerate() {
@@ -78,7 +78,7 @@ fn every_strain_ratio_is_judged_and_one_that_is_not_there_solves_nothing() {
 }
 
 #[test]
-fn rows_that_are_none_are_named_and_not_judged() {
+fn invalid_rows_are_named_and_not_judged() {
     let input = said(&[(5.73, 0.016)]) + "0.1,50,none,,1,1,1,5,0\n";
     let output = grainlab(&["invert", "--table=-", "--judge", "--model=ratio"], input.as_bytes());
     let (out, err) = (text(&output.stdout), text(&output.stderr));

@@ -1,4 +1,4 @@
-//! `grainlab invert` as a user meets it.
+//! `grainlab invert` from the command line.
 
 mod judged;
 mod single;
@@ -25,7 +25,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// What `--table -` says: exit code, rows of the CSV by column name, stderr.
+/// The output of `--table -`: exit code, rows of the CSV by column name, stderr.
 fn table(input: &str, flags: &[&str]) -> (i32, Vec<Value>, String) {
     let flags = [&["invert", "--table", "-", "--format", "csv"], flags].concat();
     let output = grainlab(&flags, input.as_bytes());

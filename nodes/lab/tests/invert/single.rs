@@ -19,7 +19,7 @@ fn json(flags: &[&str]) -> Value {
 }
 
 #[test]
-fn every_model_that_can_answers_and_the_others_say_what_they_need() {
+fn every_model_with_its_inputs_has_a_result_and_the_others_name_what_they_need() {
     let answer = json(&S1);
     let results = answer["results"].as_array().unwrap();
     let result = |model: &str| results.iter().find(|r| r["model"] == model).unwrap();
@@ -48,7 +48,7 @@ fn several_calibrations_answer_one_after_the_other() {
 }
 
 #[test]
-fn explained_shares_are_all_of_the_variance_and_name_what_decides() {
+fn explained_shares_sum_to_the_variance() {
     let answer = json(&[&S1[..], &["--error=0.01", "--model=ratio", "--explain"]].concat());
     let explained = answer["explained"].as_array().unwrap();
     assert_eq!(explained.iter().map(|e| e["quantity"].clone()).collect::<Vec<_>>(), ["k", "k_hat", "eps"]);
@@ -73,7 +73,7 @@ fn explained_shares_are_all_of_the_variance_and_name_what_decides() {
 }
 
 #[test]
-fn what_the_model_leaves_out_is_told_apart_from_the_errors_of_the_data() {
+fn the_error_of_the_model_is_separate_from_the_errors_of_the_data() {
     let flags = ["--error=0.01", "--phi=0.636", "--model=relaxed", "--explain"];
     let answer = json(&[&S1[..], &flags].concat());
     for e in answer["explained"].as_array().unwrap() {
@@ -92,7 +92,7 @@ fn small_errors_sampled_agree_with_those_propagated_and_a_seed_repeats_them() {
     for s in sampled {
         let quantity = s["quantity"].as_str().unwrap();
         let linear = answer["results"][0]["sigma"][quantity].as_f64().unwrap();
-        // The standard deviation of 20,000 draws is known to half a percent.
+        // The standard deviation of 20,000 draws has an error of half a percent.
         assert!((s["sigma"].as_f64().unwrap() / linear - 1.0).abs() < 0.02, "{s}");
         assert_eq!((s["draws"].as_u64(), s["unsolved"].as_u64()), (Some(20000), Some(0)));
     }

@@ -1,4 +1,4 @@
-//! Tables of any quality in, results in order out.
+//! Valid and invalid tables; results are in order.
 
 use crate::{RATIO, grainlab, number, table, text};
 use serde_json::Value;
@@ -63,7 +63,7 @@ fn results_come_in_the_order_of_the_rows_however_many() {
     let mut input = String::from("sample,g12_pa,g13_pa,theta_pa,p_kpa\n");
     let rows = 20_000;
     for i in 0..rows {
-        // Every tenth takes longer, or less.
+        // Every tenth row takes longer, or less long.
         let g13 = if i % 10 == 0 { "3e8" } else { "1e8" };
         input += &format!("{i},1e8,{g13},{},50\n", 1.3e8 + f64::from(i));
     }
@@ -105,7 +105,7 @@ fn what_is_missing_leaves_undetermined_what_needs_it_and_no_more() {
     assert_eq!(result["eps"].to_string(), rows[0]["eps"].as_str().unwrap());
     assert!(result["k"].is_null() && answer["inputs"]["theta_pa"].is_null());
     let said = result["warnings"].to_string();
-    assert!(said.contains("does not determine k, k_hat"), "{said}");
+    assert!(said.contains("do not determine k, k_hat"), "{said}");
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn the_csv_of_analyze_is_a_table_of_states() {
 }
 
 #[test]
-fn a_table_that_is_none_says_what_is_missing() {
+fn an_invalid_table_is_refused_with_what_is_missing() {
     for (input, word) in [
         ("", "empty"),
         ("# only a comment\n", "empty"),
@@ -187,7 +187,7 @@ fn a_table_that_is_none_says_what_is_missing() {
 }
 
 #[test]
-fn thousands_of_states_are_no_table_for_people() {
+fn thousands_of_states_are_not_printed_as_a_text_table() {
     let input = "g12_pa,g13_pa,theta_pa,p_kpa\n".to_owned() + &"1e8,1e8,1.3e8,50\n".repeat(1001);
     let output = grainlab(&["invert", "--table", "-"], input.as_bytes());
     assert_eq!(output.status.code(), Some(2));

@@ -10,25 +10,13 @@ fn nodes(text: &str, values: &[(&'static str, &str)]) -> Result<Vec<NodePlan>, P
 }
 
 #[test]
-fn our_own_files_start_one_of_each_node_and_differ_in_their_scene_alone() {
-    let ours = [
-        ("demo", DEFAULT),
-        ("s1", include_str!("../../../launch/s1.launch.yaml")),
-        ("s2", include_str!("../../../launch/s2.launch.yaml")),
-        ("s3", include_str!("../../../launch/s3.launch.yaml")),
-        ("s4", include_str!("../../../launch/s4.launch.yaml")),
-    ];
-    for (scene, text) in ours {
-        let file = LaunchFile::parse(text).unwrap();
-        assert_eq!(file.default_of("scene"), Some(scene));
-        let plans = file.nodes(&BTreeMap::new()).unwrap();
-        let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
-        let expected = [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator];
-        assert_eq!(started, expected);
-        let same = nodes(DEFAULT, &[("scene", scene)]).unwrap();
-        assert_eq!(plans, same, "{scene}");
-        assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
-    }
+fn the_default_file_starts_one_of_each_node_on_the_demo() {
+    let file = LaunchFile::parse(DEFAULT).unwrap();
+    assert_eq!(file.default_of("scene"), Some("demo"));
+    let plans = file.nodes(&BTreeMap::new()).unwrap();
+    let started: Vec<NodeKind> = plans.iter().map(|p| p.node.unwrap()).collect();
+    assert_eq!(started, [Recorder, EmtInversion, FabricAnalyzer, ServoController, DemSimulator]);
+    assert!(plans.iter().all(|p| p.respawn != [Recorder, DemSimulator].contains(&p.node.unwrap())));
 }
 
 #[test]
@@ -58,7 +46,7 @@ fn a_value_with_blanks_stays_one_word() {
 }
 
 #[test]
-fn a_program_of_anybodys_gets_its_words_as_a_shell_would_split_them_and_values_without_quotes() {
+fn a_third_party_program_gets_its_words_as_a_shell_would_split_them_and_values_without_quotes() {
     let cmd = r#"python3 probe.py "two words" '' --scene $(var scene)"#;
     let text = format!("{DEFAULT}- executable:\n    cmd: {cmd}\n    name: probe\n");
     let plans = nodes(&text, &[("scene", r#""/a b/scene.toml""#)]).unwrap();
@@ -96,7 +84,7 @@ fn what_is_not_supported_is_refused_and_named() {
 }
 
 #[test]
-fn a_simulator_that_is_alone_looks_for_nobody_unless_it_is_told_to() {
+fn a_launched_simulator_does_not_look_for_duplicates_by_default() {
     let mut plans = nodes(DEFAULT, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);
     for plan in plans {

@@ -6,9 +6,9 @@
 //! first one that the slowest active reader lacks, and repeats lost parts. Bodies up to the limit are sent on the plain
 //! topic.
 //!
-//! Every active reader receives every body, in order, before the next one is sent. The writer stops waiting for a
-//! reader that sends no credit for `SILENCE`, with a warning, so that a crashed reader stops nobody. The latest body is
-//! kept for readers that join late, as on a latched topic.
+//! Every active reader receives every body, in order, before the next one is sent. The writer stops waiting
+//! for a reader that sends no credit for `SILENCE`, with a warning, so that a crashed reader does not stop
+//! the others. The latest body is kept for readers that join late, as on a latched topic.
 //!
 //! - `part`: one part and its checks; `assembly`: the parts of one body
 //! - `sender`, `receiver`: the two ends as state machines without a bus or a clock

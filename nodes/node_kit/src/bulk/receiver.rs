@@ -8,10 +8,10 @@ use grainlab_msgs::msg::{PackingChunk, PackingCredit};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Maximum number of writers; beyond it, the one silent for longest is forgotten.
+/// Maximum number of writers; beyond it, the one silent for longest is removed.
 const WRITERS: usize = 8;
 
-/// A writer that is not in the graph and has sent nothing for this long is forgotten.
+/// A writer that is not in the graph and has sent nothing for this long is removed.
 const FORGET: Duration = Duration::from_secs(10);
 
 /// A body is given up after it was complete and corrupt this many times.
@@ -150,7 +150,7 @@ impl Receiver {
         assemblies.map(|assembly| (assembly.parts(), assembly.shape.count)).next()
     }
 
-    /// Forgets writers that left.
+    /// Removes writers that left.
     pub(super) fn forget_absent(&mut self, now: Duration, present: &[WriterId]) {
         let stays = |id: &WriterId, source: &Source| {
             present.contains(id) || now.saturating_sub(source.latest_part) < FORGET

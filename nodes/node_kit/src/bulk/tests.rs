@@ -62,7 +62,7 @@ struct End {
     sequence: i64,
     bodies: Vec<Vec<u8>>,
     faults: Vec<PartError>,
-    deaf: bool,
+    suspended: bool,
 }
 
 struct World {
@@ -97,7 +97,7 @@ impl World {
     fn join(&mut self, name: u8) {
         let receiver = Receiver::new(self.now);
         let (bodies, faults) = (Vec::new(), Vec::new());
-        self.ends.push(End { id: reader(name), receiver, sequence: 0, bodies, faults, deaf: false });
+        self.ends.push(End { id: reader(name), receiver, sequence: 0, bodies, faults, suspended: false });
     }
 
     fn present(&self) -> Vec<WriterId> {
@@ -144,7 +144,7 @@ impl World {
                     self.sender.receive(self.now, from, sequence, &credit)
                 }
                 Packet::Part { to, from, part } => {
-                    let Some(end) = self.ends.iter_mut().find(|end| end.id == to && !end.deaf) else {
+                    let Some(end) = self.ends.iter_mut().find(|end| end.id == to && !end.suspended) else {
                         continue;
                     };
                     let outcome = end.receiver.receive(self.now, from, &part);
@@ -165,7 +165,7 @@ impl World {
         }
         for place in 0..self.ends.len() {
             let end = &mut self.ends[place];
-            if end.deaf {
+            if end.suspended {
                 continue;
             }
             let (from, credits) = (end.id, end.receiver.credits(self.now));
@@ -204,7 +204,7 @@ fn every_body_arrives_once_whole_and_in_order_whatever_the_network_does() {
     for seed in 0..20 {
         let weather = Weather { lost: 0.2, twice: 0.2, corrupt: 0.1, delay: 30 };
         let mut world = World::new(seed, 3, weather);
-        // Lengths around whole numbers of parts, and longer than what a credit can name.
+        // Lengths around multiples of a part, and longer than the range of one credit.
         let lengths = [STRIDE + 1, 9 * STRIDE, 20 * STRIDE - 7, STRIDE];
         let bodies: Vec<Vec<u8>> = (0..4).map(|n| body(seed + n, lengths[n as usize])).collect();
         for bytes in &bodies {
@@ -236,7 +236,7 @@ fn a_quiet_network_carries_every_part_once() {
 fn no_more_than_the_window_is_in_transit_to_the_slowest_active_reader() {
     let mut world = World::new(0, 2, Weather::default());
     (0..100).for_each(|_| world.tick());
-    world.ends[1].deaf = true;
+    world.ends[1].suspended = true;
     world.offer(&body(2, 40 * STRIDE));
     (0..2000).for_each(|_| world.tick());
     assert_eq!(world.most_ahead, WINDOW - 1, "the silent one counts as active");
@@ -250,14 +250,14 @@ fn the_sender_stops_waiting_for_a_silent_reader_and_the_others_receive_everythin
     let bodies = [body(3, 40 * STRIDE), body(4, 3 * STRIDE)];
     world.offer(&bodies[0]);
     (0..3).for_each(|_| world.tick());
-    world.ends[0].deaf = true;
-    let died = world.now;
+    world.ends[0].suspended = true;
+    let stopped = world.now;
     world.run_until("the silent one is no longer waited for", 60, |w| !w.is_busy());
-    assert!(world.now - died <= SILENCE + Duration::from_secs(1));
+    assert!(world.now - stopped <= SILENCE + Duration::from_secs(1));
     assert_eq!(world.left.len(), 1);
     assert!(world.left[0].contains("no credit for"), "{:?}", world.left);
-    // It was only suspended: it receives the latest.
-    world.ends[0].deaf = false;
+    // It was only suspended: it receives the latest body.
+    world.ends[0].suspended = false;
     world.offer(&bodies[1]);
     world.run_until("both have it", 10, |w| w.ends.iter().all(|end| end.bodies.last() == Some(&bodies[1])));
     assert_eq!(world.ends[1].bodies, bodies);
@@ -281,7 +281,7 @@ fn a_reader_without_a_credit_yet_is_waited_for_a_while() {
     assert!(!world.is_busy(), "nobody is there");
     assert!(world.sender.is_busy(world.now, &[], 1), "one is matched whose credits are not in the graph yet");
     world.join(1);
-    world.ends[0].deaf = true;
+    world.ends[0].suspended = true;
     assert!(world.is_busy());
     world.run_until("it is given up", 60, |w| !w.is_busy());
 }
@@ -294,7 +294,7 @@ fn a_late_or_restarted_reader_receives_the_latest_body_once() {
         let bodies = [body(5, 12 * STRIDE), body(6, 30 * STRIDE + 5)];
         world.offer(&bodies[0]);
         world.offer(&bodies[1]);
-        // One reader is replaced in the middle of it, another one joins after it.
+        // One reader is replaced during the transfer, another one joins after it.
         (0..20).for_each(|_| world.tick());
         world.ends.remove(0);
         world.join(3);
@@ -355,7 +355,7 @@ fn a_reader_that_is_not_ready_stops_the_writer_until_it_is() {
     assert_eq!(world.ends[0].bodies.len(), 1);
 }
 
-/// A part as a writer makes it, changed, with a crc that agrees with the change.
+/// A part from a writer, changed, with a CRC that matches the change.
 fn forged(change: impl Fn(&mut PackingChunk)) -> PartError {
     let bytes = body(11, 3 * STRIDE + 10);
     let mut part = Shape::of(1, &bytes).cut(&bytes, 1);

@@ -1,9 +1,10 @@
 //! Empties the readers while the node computes.
 //!
-//! RustDDS drops what a reliable reader has received but not yet handed over at the moment its writer leaves (the
-//! marker of what is complete leaves with the writer). A node that computes for seconds would lose the last packing of
-//! a simulator that ended meanwhile. The background reader moves samples into our own queues as soon as the node has
-//! not used the bus for a while; it does nothing for a node with short steps.
+//! When a writer leaves, RustDDS drops the samples of a reliable reader that were received but not yet taken
+//! (it removes the record of which samples are complete). A node that computes for seconds would lose the
+//! last packing of a simulator that ended meanwhile. The background reader moves samples into the queues of
+//! this process as soon as the node has not used the bus for a while; it does nothing for a node with short
+//! steps.
 
 use super::inbox::Inbox;
 use rustdds::mio1::Waker;
@@ -52,7 +53,7 @@ impl BackgroundReader {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Notes that the node uses the bus now.
+    /// Records that the node uses the bus now.
     pub(super) fn seen(&self) {
         self.shared.last_seen.store(self.shared.start.elapsed().as_nanos() as u64, Ordering::Relaxed);
     }

@@ -36,7 +36,7 @@ const STATUS: Token = Token(1);
 const WAKER: Token = Token(2);
 const FIRST_READER: usize = 3;
 
-/// One reader of ours, as the waiting thread knows it.
+/// One reader of this process, in the waiting thread.
 struct Reader {
     inbox: Arc<Mutex<Inbox>>,
     guid: GUID,
@@ -429,8 +429,8 @@ impl Bus for DdsBus {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
-        let tells = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
-        self.writers.iter().filter(tells).all(|writer| {
+        let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
+        self.writers.iter().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
             writer.data.wait_for_acknowledgments(left).unwrap_or(false)
         })

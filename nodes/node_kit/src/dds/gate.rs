@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Mutex;
 
-/// The rules of admission of one bus, and the topics of its readers. RustDDS asks it for each sample.
+/// The rules of admission of one bus, and the topics of its readers. RustDDS calls it for each sample.
 #[derive(Debug)]
 pub(super) struct Gate {
     identity: Identity,
@@ -63,7 +63,7 @@ impl Gate {
         <&Participant>::try_from(prefix).is_ok_and(|prefix| lock(&self.admission).admits(prefix))
     }
 
-    /// Notes a discovered participant and its addresses.
+    /// Records a discovered participant and its addresses.
     pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
         // The process of a participant is looked up only where admission or a message needs it.
@@ -76,7 +76,7 @@ impl Gate {
         }
     }
 
-    /// Forgets a participant that left.
+    /// Removes a participant that left.
     pub(super) fn lost(&self, participant: &Participant) {
         lock(&self.admission).lost(participant);
     }

@@ -6,7 +6,7 @@ use crate::sample::WriterId;
 use rustdds::{DomainParticipantStatusEvent as Event, GUID};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Endpoints of other processes, and the matches of ours.
+/// Endpoints of other processes, and the matches of those of this process.
 #[derive(Default)]
 pub(super) struct Graph {
     own: [u8; 12],
@@ -41,21 +41,21 @@ impl Graph {
             Event::ParticipantLost { id, .. } => self.lost(|g| g.prefix == id),
             Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => {
                 log::warn!(
-                    "a reader ({}) asks for more than we offer and will receive nothing: requested {requested_qos:?}, offered {offered_qos:?}",
+                    "a reader ({}) requests more than this process offers and receives nothing: requested {requested_qos:?}, offered {offered_qos:?}",
                     WriterId(remote_reader.to_bytes())
                 );
                 false
             }
             Event::RemoteWriterQosIncompatible { remote_writer, requested_qos, offered_qos, .. } => {
                 log::warn!(
-                    "a writer ({}) offers less than we request, so its samples are not received: requested {requested_qos:?}, offered {offered_qos:?}",
+                    "a writer ({}) offers less than this process requests, so that its samples are not received: requested {requested_qos:?}, offered {offered_qos:?}",
                     WriterId(remote_writer.to_bytes())
                 );
                 false
             }
             Event::InconsistentTopic { previous_topic_data, discovered_topic_data, .. } => {
                 log::warn!(
-                    "a peer uses a topic of ours with another type: {previous_topic_data:?} and {discovered_topic_data:?}"
+                    "a peer uses a topic of this process with another type: {previous_topic_data:?} and {discovered_topic_data:?}"
                 );
                 false
             }

@@ -15,7 +15,7 @@ pub enum Reach {
 /// Domain and range of discovery of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Network {
-    /// DDS domain, 0 to 232; participants of different domains do not see each other.
+    /// DDS domain, 0 to 232; participants of different domains do not discover each other.
     pub domain: u16,
     /// The range of discovery.
     pub reach: Reach,

@@ -34,7 +34,7 @@ pub(super) fn offered(topic: &Topic) -> QosPolicies {
 
 /// The policies that a reader requests; `demand` is within the topic's QoS already.
 pub(super) fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
-    // RustDDS keeps 64 samples unless told otherwise: too few for a recorder, too many for packings of megabytes.
+    // RustDDS keeps 64 samples by default: too few for a recorder, too many for packings of megabytes.
     policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
 }
 

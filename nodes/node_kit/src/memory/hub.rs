@@ -22,7 +22,7 @@ impl Hub {
         Self { state: Rc::new(RefCell::new(State::new(seed))) }
     }
 
-    /// A new participant for one node. Dropping it stands for a clean exit and for a crash.
+    /// A new participant for one node. Dropping it acts as a clean exit and as a crash.
     pub fn bus(&self, names: Names) -> MemoryBus {
         self.bus_as(names, Identity::default())
     }

@@ -70,7 +70,7 @@ fn flatten(prefix: &str, yaml: Yaml, values: &mut Vec<(String, ParameterValue)>)
     Ok(())
 }
 
-/// Whether a node key is for `node`: `*` stands for one token, `**` for any number of them.
+/// Whether a node key is for `node`: `*` matches one token, `**` for any number of them.
 fn matches(key: &str, node: &str) -> bool {
     fn tokens_match(key: &[&str], node: &[&str]) -> bool {
         match (key, node) {
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn misshapen_files_say_where() {
+    fn the_error_of_an_invalid_file_has_the_place() {
         for (text, needle) in [
             ("ros__parameters: {dt: 1}", "is at the top level"),
             ("- 1\n- 2\n", "node keys"),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The value of a parameter, one of the types ROS 2 knows.
+/// The value of a parameter, of one of the types of ROS 2.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterValue {
     /// `true` or `false`.

@@ -1,4 +1,4 @@
-//! The exchange over ros2-client as any program would write it.
+//! The exchange over ros2-client without the bus of this crate.
 
 use super::exchange::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
 use crate::bus_error::BusError;

@@ -1,4 +1,4 @@
-//! The exchange over our bus.
+//! The exchange over the bus of this crate.
 
 use super::exchange::{GIVE_UP, IDLE, REPEAT, WARM_UP, answer, question};
 use crate::bus::Bus;

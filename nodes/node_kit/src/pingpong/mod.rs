@@ -1,5 +1,5 @@
-//! The exchange of the lockstep alone, over our bus and over bare ros2-client, so that the two can be compared
-//! in one run.
+//! The exchange of the lockstep alone, over the bus of this crate and over bare ros2-client, so that both can
+//! be compared in one run.
 //!
 //! Each function is one role of one process: the pinging side publishes a `Stress`, the answering side a `StrainRate`
 //! with the same sequence. Writers are reliable, the partners read best effort and the pinging side repeats, as in the

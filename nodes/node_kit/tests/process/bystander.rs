@@ -1,4 +1,4 @@
-//! A reader that nobody waits for, stopped while a writer publishes far beyond its window.
+//! A reader that is not waited for, stopped while a writer publishes far beyond its window.
 
 use super::{PATIENCE, Role, claim};
 use grainlab_msgs::msg::StrainRate;
@@ -11,14 +11,14 @@ use rustdds::{
 use std::net::Ipv4Addr;
 use std::time::{Duration, Instant};
 
-/// Unacknowledged samples that the writer may have.
+/// Maximum number of unacknowledged samples of the writer.
 const WINDOW: i32 = 1000;
 
-/// Samples written while the reader stands still, and how long that takes at least.
+/// Samples written while the reader is stopped, and the minimum duration.
 const SAMPLES: u64 = 60_000;
 const STILL: Duration = Duration::from_secs(3);
 
-/// Samples written when it goes on.
+/// Samples written when it continues.
 const AFTERWARDS: u64 = 100;
 
 #[test]
@@ -55,7 +55,7 @@ fn a_stopped_reader_that_may_not_block_never_holds_up_a_writer() {
         assert!(start.elapsed() < PATIENCE, "no reader");
         std::thread::sleep(Duration::from_millis(1));
     }
-    // The match is ours; the reader's own follows.
+    // This match is seen by the writer; that seen by the reader follows.
     std::thread::sleep(Duration::from_secs(1));
     writer.write(StrainRate::default(), None).unwrap();
     std::thread::sleep(Duration::from_millis(200));
@@ -77,7 +77,7 @@ fn a_stopped_reader_that_may_not_block_never_holds_up_a_writer() {
         let rate = StrainRate { sequence: SAMPLES + sequence, ..StrainRate::default() };
         writer.write(rate, None).unwrap();
     }
-    // The listener ends when nothing comes for a while.
+    // The listener ends when no sample arrives for a while.
     let (code, out, err) = reader.end();
     assert_eq!(code, Some(0), "{err}");
     let count = |what: &str| -> u64 {

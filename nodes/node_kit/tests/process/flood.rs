@@ -1,4 +1,4 @@
-//! A flood of mutated and forged datagrams to every port of a domain of loopback.
+//! Mutated and forged datagrams to every port of a domain on loopback.
 
 use super::rtps::{Datagram, Random, heard, mutated, ports_in_use, send};
 use rustdds::{DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented};
@@ -6,13 +6,13 @@ use std::net::{Ipv4Addr, UdpSocket};
 use std::os::fd::OwnedFd;
 use std::time::{Duration, Instant};
 
-/// Numbers that a packet may claim.
+/// Numbers that a forged packet may contain.
 const CLAIMS: [i64; 9] = [-1, 0, 1, 2, 300, 1 << 20, 200_000_000, 1 << 40, i64::MAX];
 
 /// Endpoints of the domain, as 12 and 4 bytes.
 pub(super) type Endpoint = ([u8; 12], [u8; 4]);
 
-/// Readers and writers of a domain of loopback, as discovery shows them to anyone.
+/// Readers and writers of a domain on loopback, from discovery.
 pub(super) fn learn(domain: u16) -> (Vec<Endpoint>, Vec<Endpoint>) {
     let spy =
         DomainParticipantBuilder::new(domain).with_only_networks([Ipv4Addr::LOCALHOST]).build().unwrap();
@@ -45,7 +45,7 @@ pub(super) fn learn(domain: u16) -> (Vec<Endpoint>, Vec<Endpoint>) {
     (readers, writers)
 }
 
-/// One forged datagram with true identities.
+/// One forged datagram with existing identities.
 fn forged(readers: &[Endpoint], writers: &[Endpoint], random: &mut Random) -> Vec<u8> {
     let (prefix, writer) = random.of(writers);
     let (reader_prefix, reader) = random.of(readers);
@@ -80,13 +80,14 @@ pub(super) fn ports(domain: u16) -> std::ops::Range<u16> {
     first..first + 250
 }
 
-/// Datagrams that others sent in the domain and that wait in this socket; none without a right to hear them.
+/// Datagrams of other processes in the domain that are queued in this socket; none without the right to
+/// capture.
 pub(super) fn overheard(sniffer: Option<&OwnedFd>, domain: u16) -> Vec<Vec<u8>> {
     std::iter::from_fn(|| sniffer.and_then(|s| heard(s, ports(domain)))).collect()
 }
 
-/// Sends so many datagrams, every other one a mutated original where there are any, to the ports in use, some 20,000 a
-/// second.
+/// Sends `count` datagrams, every second one a mutated original if there are any, to the ports in use, about
+/// 20,000 per second.
 ///
 /// # Panics
 /// If no port of the domain is in use.

@@ -1,6 +1,7 @@
-//! Mutated and forged datagrams to every port of the domain: no memory, no end of exchange, no end that does not come.
+//! Mutated and forged datagrams to every port of the domain: memory stays bounded, exchanges continue, and
+//! processes end when stopped.
 //!
-//! `NODE_KIT_FUZZ=100000` sends so many instead of a few thousand.
+//! `NODE_KIT_FUZZ=100000` sends this number instead of a few thousand.
 
 use super::flood::{flood, learn, overheard, ports};
 use super::rtps::{Datagram, ports_in_use, send, sniffer};
@@ -10,13 +11,13 @@ use grainlab_node_kit::{DdsBus, Names, Network};
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
-/// Peak of the victim's resident memory.
+/// Maximum resident memory of the process under attack.
 const MEMORY_MB: u64 = 200;
 
-/// Datagrams unless told otherwise.
+/// Default number of datagrams.
 const FEW: usize = 6000;
 
-/// Time in which the victim ends after SIGINT.
+/// Time for the process to end after SIGINT.
 const END: Duration = Duration::from_secs(15);
 
 /// Kilobytes of a line of `/proc/PID/status`.
@@ -64,7 +65,7 @@ fn forged_heartbeats_gaps_and_fragments_cost_no_sample() {
     assert!(peak < MEMORY_MB, "{peak} MB");
     let (code, out, err) = listener.end();
     assert_eq!(code, Some(0), "{err}");
-    // Two topics, two rounds since it was there.
+    // Two topics, two rounds since the process has joined.
     let received = out.split("received ").nth(1).and_then(|r| r.split_whitespace().next()).unwrap();
     assert!(received.parse::<usize>().unwrap() >= 4 * exchanges, "{out}");
     assert!(out.contains("missing 0"), "{out}");
@@ -91,8 +92,8 @@ fn mutated_and_forged_datagrams_take_no_memory_and_end_nothing() {
     let pid = victim.child.id();
     let peak = memory_mb(pid, "VmHWM:");
     assert!(peak < MEMORY_MB, "the victim took {peak} MB");
-    // Forged announcements may have parted the two that knew each other; DDS has no means against that here. Someone
-    // who comes later is not concerned.
+    // Forged announcements may have separated two processes that knew each other; DDS has no protection
+    // against that. A process that joins later is not affected.
     let begin = Instant::now();
     asks(network, "newcomer");
     let newcomer = begin.elapsed();

@@ -1,4 +1,4 @@
-//! How processes end, and what their peers see of it.
+//! The end of processes, as observed by their peers.
 
 use super::{PATIENCE, Role, claim};
 use grainlab_msgs::msg::StrainRate;
@@ -9,7 +9,7 @@ use grainlab_node_kit::{
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Watches a child as the launcher and the recorder do.
+/// Observes a child like the launcher and the recorder.
 struct Observer {
     bus: DdsBus,
     watch: PeerWatch,
@@ -105,7 +105,7 @@ fn a_second_signal_ends_the_process_at_once() {
 }
 
 #[test]
-fn a_dead_dds_thread_ends_the_process_instead_of_leaving_it_deaf() {
+fn an_ended_dds_thread_ends_the_process() {
     let claimed = claim();
     let child = Role::start("talker_without_dds_thread", claimed.network());
     let (code, _, stderr) = child.end();
@@ -114,7 +114,7 @@ fn a_dead_dds_thread_ends_the_process_instead_of_leaving_it_deaf() {
 }
 
 #[test]
-fn a_panic_is_a_failure_that_peers_hear_of() {
+fn a_panic_is_a_failure_that_peers_are_informed_of() {
     let claimed = claim();
     let network = claimed.network();
     let child = Role::start("panicking_node", network);
@@ -138,7 +138,7 @@ fn a_killed_process_falls_silent_while_dds_still_shows_it() {
 }
 
 #[test]
-fn a_dead_reliable_reader_delays_a_writer_but_never_stops_it() {
+fn a_killed_reliable_reader_delays_a_writer_but_never_stops_it() {
     let claimed = claim();
     let network = claimed.network();
     let mut bus = DdsBus::open(network, Names::new("writer").unwrap()).unwrap();
@@ -164,7 +164,7 @@ fn a_dead_reliable_reader_delays_a_writer_but_never_stops_it() {
         assert!(accepted < 20_000, "the window never filled");
     };
     assert!(matches!(refusal.0, BusError::Full { .. }), "{}", refusal.0);
-    // The bounded wait is 20 ms; a loaded machine may add some scheduling.
+    // The bounded wait is 20 ms; scheduling on a loaded machine may add to it.
     assert!(refusal.1 >= Duration::from_millis(20) && refusal.1 < Duration::from_secs(2), "{:?}", refusal.1);
     assert!(accepted > 8000, "the window is 8192: {accepted}");
     assert_eq!(bus.published()[0].full, 1);

@@ -1,4 +1,4 @@
-//! Real processes: signals, exit codes, final counts, a dead DDS thread.
+//! Real processes: signals, exit codes, final counts, a failed DDS thread.
 //!
 //! A child is this test executable again, running one ignored test named by its role.
 
@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// Set for children.
 const CHILD: &str = "NODE_KIT_TEST_CHILD";
 
-/// Far above what discovery needs on a quiet machine (0.2 s): a loaded one must not fail.
+/// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn claim() -> ClaimedDomain {
@@ -31,7 +31,7 @@ fn claim() -> ClaimedDomain {
 struct Role {
     child: Child,
     name: &'static str,
-    /// Read all the time: a child that says much must not wait for us.
+    /// Read all the time, so that a child with much output does not block.
     out: Option<JoinHandle<String>>,
     err: Option<JoinHandle<String>>,
 }
@@ -63,7 +63,7 @@ impl Role {
     }
 
     fn signal(&self, signal: i32) {
-        // SAFETY: kill has no memory effects; the pid is our own child's, which was not reaped.
+        // SAFETY: kill accesses no memory; the pid is that of a child that was not reaped.
         assert_eq!(unsafe { libc::kill(self.child.id() as i32, signal) }, 0);
     }
 

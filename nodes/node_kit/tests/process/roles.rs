@@ -1,4 +1,4 @@
-//! What the children do. Each is ignored: it runs only when a test starts it by name.
+//! The roles of the children. Each is ignored: it runs only when a test starts it by name.
 
 use grainlab_msgs::msg::{RunState, StrainRate, Stress};
 use grainlab_msgs::topics;
@@ -14,12 +14,12 @@ fn is_child() -> bool {
     std::env::var_os(super::CHILD).is_some()
 }
 
-/// Publishes a state now and then.
+/// Publishes a state periodically.
 struct Talker {
     publisher: Publisher<RunState>,
     step: u64,
     at_end: Exit,
-    /// How long the farewell takes.
+    /// Duration of the final step.
     dawdle: Duration,
 }
 
@@ -90,17 +90,18 @@ fn talker_without_dds_thread() {
     talk("deaf_talker", Exit::Done, Duration::ZERO)
 }
 
-/// Ends the event loop's thread alone, as a bug in it would: its next signal handler leaves through `SYS_exit`.
+/// Ends only the event loop's thread, as a bug in it would: its next signal handler leaves through
+/// `SYS_exit`.
 fn end_dds_thread() {
     extern "C" fn leave(_: i32) {
-        // SAFETY: ends the calling thread without unwinding; that is the fault to be found.
+        // SAFETY: ends the calling thread without unwinding; that is the fault to detect.
         unsafe { libc::syscall(libc::SYS_exit, 0) };
     }
     for task in std::fs::read_dir("/proc/self/task").unwrap().flatten() {
         let name = std::fs::read_to_string(task.path().join("comm")).unwrap();
         if name.starts_with("RustDDS Partici") {
             let thread: i32 = task.file_name().to_str().unwrap().parse().unwrap();
-            // SAFETY: the handler is async-signal-safe, and the thread is one of ours.
+            // SAFETY: the handler is async-signal-safe, and the thread belongs to this process.
             unsafe {
                 libc::signal(libc::SIGUSR1, leave as *const () as libc::sighandler_t);
                 libc::syscall(libc::SYS_tgkill, std::process::id(), thread, libc::SIGUSR1);
@@ -164,7 +165,7 @@ impl Node for Victim {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         while let Some((stress, _)) = self.stress.take_valid(bus)? {
             let rate = StrainRate { sequence: stress.sequence, ..StrainRate::default() };
-            // A reader that never acknowledges may be invented; the question is asked again.
+            // A reader that never acknowledges may be forged; the request is repeated.
             if let Err(error) = self.rate.publish(bus, &rate) {
                 log::warn!("{error}");
             }

@@ -1,9 +1,9 @@
-//! RTPS datagrams as anyone can build them (RTPS 2.5, section 9.4), and those that others send.
+//! RTPS datagrams built by hand (RTPS 2.5, section 9.4), and those captured from other processes.
 
 use std::net::UdpSocket;
 use std::os::fd::{AsRawFd, FromRawFd, OwnedFd};
 
-/// A repeatable source of random numbers (xorshift).
+/// A reproducible random number generator (xorshift).
 pub(super) struct Random(pub(super) u64);
 
 impl Random {
@@ -27,7 +27,7 @@ impl Random {
 pub(super) struct Datagram(pub(super) Vec<u8>);
 
 impl Datagram {
-    /// The header, with the GUID prefix of whom it claims to come from.
+    /// The header, with the GUID prefix of the claimed sender.
     pub(super) fn from(prefix: &[u8]) -> Self {
         let mut bytes = b"RTPS\x02\x04\x01\x12".to_vec();
         bytes.extend_from_slice(prefix);
@@ -117,7 +117,7 @@ fn number_set(bits: u32) -> Vec<u8> {
 pub(super) fn mutated(original: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..=random.below(6) {
-        // The magic stays: without it nothing is looked at.
+        // The magic is kept: a datagram without it is ignored.
         let place = 4 + random.below(bytes.len().saturating_sub(4));
         let Some(byte) = bytes.get_mut(place) else { break };
         *byte = match random.below(4) {
@@ -135,18 +135,20 @@ pub(super) fn mutated(original: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// Hears the UDP datagrams that others send over loopback to these ports; `None` without the right to.
+/// Captures the UDP datagrams that other processes send over loopback to these ports; `None` without the
+/// right to.
 pub(super) fn sniffer(ports: std::ops::Range<u16>) -> Option<OwnedFd> {
     const ALL: i32 = (libc::ETH_P_IP as u16).to_be() as i32;
     // SAFETY: a new socket or -1, nothing else.
     let socket = unsafe { libc::socket(libc::AF_PACKET, libc::SOCK_DGRAM | libc::SOCK_NONBLOCK, ALL) };
-    // SAFETY: the descriptor is new and ours.
+    // SAFETY: the descriptor is new and has no other owner.
     let socket = (socket >= 0).then(|| unsafe { OwnedFd::from_raw_fd(socket) })?;
     keep_ports(&socket, ports);
     Some(socket)
 }
 
-/// Has the system drop everything but UDP to these ports: the traffic of other domains would fill the socket.
+/// Lets the system drop everything but UDP to these ports: the traffic of other domains would fill the
+/// socket.
 fn keep_ports(socket: &OwnedFd, ports: std::ops::Range<u16>) {
     let line = |code: u32, jt, jf, k| libc::sock_filter { code: code as u16, jt, jf, k };
     let (load, indexed, jump) = (libc::BPF_LD, libc::BPF_IND, libc::BPF_JMP);
@@ -161,7 +163,7 @@ fn keep_ports(socket: &OwnedFd, ports: std::ops::Range<u16>) {
         line(libc::BPF_RET, 0, 0, 0),
     ];
     let filter = libc::sock_fprog { len: program.len() as u16, filter: program.as_mut_ptr() };
-    // SAFETY: the program is ours, as long as said, and read before the call returns.
+    // SAFETY: the program has the stated length, and is read before the call returns.
     let done = unsafe {
         libc::setsockopt(
             socket.as_raw_fd(),
@@ -174,11 +176,11 @@ fn keep_ports(socket: &OwnedFd, ports: std::ops::Range<u16>) {
     assert_eq!(done, 0, "{}", std::io::Error::last_os_error());
 }
 
-/// The payload of the next UDP datagram to one of `ports`, if one was heard.
+/// The payload of the next captured UDP datagram to one of `ports`, if any.
 pub(super) fn heard(socket: &OwnedFd, ports: std::ops::Range<u16>) -> Option<Vec<u8>> {
     let mut frame = vec![0u8; 65_536];
     loop {
-        // SAFETY: the buffer is ours, and as long as said.
+        // SAFETY: the buffer has the stated length.
         let length = unsafe { libc::recv(socket.as_raw_fd(), frame.as_mut_ptr().cast(), frame.len(), 0) };
         let length = usize::try_from(length).ok()?;
         let header = usize::from(frame[0] & 15) * 4;
@@ -202,7 +204,7 @@ pub(super) fn ports_in_use(ports: std::ops::Range<u16>) -> Vec<u16> {
     found
 }
 
-/// Sends one datagram to a port of this host; what cannot be sent does not matter.
+/// Sends one datagram to a port of this host; errors are ignored.
 pub(super) fn send(socket: &UdpSocket, bytes: &[u8], port: u16) {
     let _ = socket.send_to(bytes, ("127.0.0.1", port));
 }

@@ -1,4 +1,4 @@
-//! A process that was stopped and continued (Ctrl-Z and fg, a debugger, job control) goes on where it was.
+//! A process that was stopped and continued (Ctrl-Z and fg, a debugger, job control) continues where it was.
 
 use super::{Role, claim};
 use grainlab_node_kit::pingpong::bus_ping;
@@ -9,7 +9,7 @@ const EXCHANGES: u64 = 20;
 
 #[test]
 fn a_process_stopped_for_a_moment_still_exchanges() {
-    // From before its participant exists to long after discovery; each moment is a process of its own.
+    // From before its participant exists to long after discovery; one process per moment.
     for moment in [0, 5, 20, 50, 120, 300, 1500] {
         let claimed = claim();
         let network = claimed.network();

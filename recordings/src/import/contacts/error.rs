@@ -9,7 +9,7 @@ pub enum SearchError {
     /// The image index does not fit its 8 bits.
     #[error("grains {0} and {1} touch across more than 127 cells")]
     FarImage(usize, usize),
-    /// The cell is so small, or the grains so large, that a search would not end.
+    /// The cell is so small, or the grains so large, that a search would take too long.
     #[error(
         "the cell is too small for its grains: they fill it {solid_fraction:.3e} times over, or one is many times as wide"
     )]
@@ -21,14 +21,14 @@ pub enum SearchError {
         /// Narrowest width of the cell, m.
         width: f64,
     },
-    /// The grains lie in so small a part of the cell that a search would not end.
+    /// The grains are in so small a part of the cell that a search would take too long.
     #[error(
-        "the grains lie in a small part of the cell, up to {together} of them in one box of the search: {pairs:.1e} pairs would have to be looked at"
+        "the grains lie in a small part of the cell, up to {together} of them in one box of the search: {pairs:.1e} pairs would have to be checked"
     )]
     Clustered {
-        /// Most grains in one box.
+        /// Largest number of grains in one box.
         together: usize,
-        /// Pairs to look at.
+        /// Number of pairs to check.
         pairs: f64,
     },
 }

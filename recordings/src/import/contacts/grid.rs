@@ -4,33 +4,34 @@ use grainlab_core::{Cell, Vec3};
 
 use super::error::SearchError;
 
-/// Spheres of a packing fill less than the cell; overlapping ones that fill it this often are in the wrong units.
+/// Maximum ratio of the volume of the spheres to that of the cell; more indicates wrong units.
 const MOST_FULL: f64 = 20.0;
 
-/// Cells that a grain may span.
+/// Maximum number of cells that a grain may span.
 const MOST_CELLS: f64 = 16.0;
 
-/// Pairs that may have to be looked at: about a minute.
+/// Maximum number of pairs to check: about a minute.
 const MOST_PAIRS: f64 = 2e10;
 
-/// Boxes a grain, about: what the boxes of an empty part of the cell may cost in memory.
+/// Approximate number of boxes per grain, which limits the memory for empty parts of the cell.
 const BOXES_A_GRAIN: f64 = 4.0;
 
-/// Boxes along one edge. Beyond it, rounding of a position within the cell could exceed the margin of the cutoff.
+/// Maximum number of boxes along one edge. With more, rounding of a position within the cell could exceed the
+/// margin of the cutoff.
 const MOST_BOXES: i64 = 1 << 20;
 
-/// Grains of one box that are no sign of a cluster.
+/// Number of grains in one box up to which there is no check for clusters.
 const CLUSTER: usize = 1000;
 
-/// The least edge of a box (m) with which there are no more than about four boxes a grain, in a cell of any shape:
-/// along an edge that is shorter than a box there is one box, and the others share what is allowed.
+/// The least edge of a box (m) for at most about four boxes per grain, in a cell of any shape: an edge
+/// shorter than a box has one box, and the other edges share the allowed number.
 fn least_edge(cell: &Cell, grains: usize) -> f64 {
     let mut widths: [f64; 3] = std::array::from_fn(|k| cell.width(k));
     widths.sort_by(f64::total_cmp);
     let [small, middle, large] = widths;
     let allowed = BOXES_A_GRAIN * grains.max(1) as f64;
     let one = large / allowed;
-    // Roots before products: the widths of an absurd cell may have no product.
+    // Roots before products: products of extreme widths overflow.
     let two = one.sqrt() * middle.sqrt();
     let three = one.cbrt() * middle.cbrt() * small.cbrt();
     one.max(two).max(three)
@@ -38,22 +39,22 @@ fn least_edge(cell: &Cell, grains: usize) -> f64 {
 
 /// Grains sorted into boxes of the cell.
 pub(super) struct Grid {
-    /// Boxes along each edge vector.
+    /// Number of boxes along each edge vector.
     boxes: [i64; 3],
-    /// How many boxes away, along each edge vector, a touching grain may be.
+    /// Distance in boxes, along each edge vector, at which a touching grain may be.
     reach: [i64; 3],
-    /// Which copy of the cell each grain's position lies in.
+    /// Image of the cell that contains each grain's position.
     pub(super) cells: Vec<[i64; 3]>,
-    /// Which box.
+    /// Box of each grain.
     homes: Vec<[i64; 3]>,
-    /// Grains by box, and where each box starts.
+    /// Grains by box, and the start of each box.
     sorted: Vec<usize>,
     starts: Vec<usize>,
 }
 
 impl Grid {
     pub(super) fn new(cell: &Cell, positions: &[Vec3], radii: &[f64]) -> Result<Self, SearchError> {
-        // A little more than two radii, so that rounding cannot put touching grains out of reach.
+        // Slightly more than two radii, so that rounding cannot move touching grains out of range.
         let cutoff = 2.0 * radii.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
         let edge = cutoff.max(least_edge(cell, positions.len()));
         let boxes: [i64; 3] =
@@ -102,13 +103,13 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Refuses what would take an hour: the estimate before took the grains for evenly spread.
+    /// Refuses a search that would take too long: the estimate above assumes a uniform distribution.
     fn require_end(&self) -> Result<(), SearchError> {
         let together = self.starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0);
         let neighbours: f64 = self.reach.iter().map(|r| (2 * r + 1) as f64).product();
         let squares: f64 = self.starts.windows(2).map(|w| ((w[1] - w[0]) as f64).powi(2)).sum();
         let pairs = squares * neighbours;
-        // Evenly spread grains were judged above; here many boxes are empty.
+        // Uniform distributions were checked above; here many boxes are empty.
         if pairs > MOST_PAIRS && together > CLUSTER {
             return Err(SearchError::Clustered { together, pairs });
         }
@@ -119,8 +120,8 @@ impl Grid {
         ((home[0] * self.boxes[1] + home[1]) * self.boxes[2] + home[2]) as usize
     }
 
-    /// Calls `each` with every grain in reach of grain `i`, and the copy of the cell in which it is seen from
-    /// the home of `i`.
+    /// Calls `each` with every grain in range of grain `i`, and its image of the cell relative to that of
+    /// `i`.
     pub(super) fn visit<E>(
         &self,
         i: usize,

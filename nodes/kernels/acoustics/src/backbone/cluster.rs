@@ -4,14 +4,16 @@ use grainlab_core::{Mat3, Vec3};
 use grainlab_micromechanics::network::{ContactSpring, SpringNetwork};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Largest number of contacts of a loosely held grain: with one more it cannot move without straining contacts.
+/// Largest number of contacts of a loosely held grain. With one more contact it cannot move without straining
+/// contacts.
 const FEW: usize = 3;
 
-/// Eigenvalue of a cluster's stiffness over the largest, below which the motion is floppy: rounding gives 1e-15, real
-/// contacts more than 1e-8.
+/// Ratio of an eigenvalue of a cluster's stiffness to the largest, below which the motion is floppy. Rounding
+/// gives 1e-15, real contacts more than 1e-8.
 const FREE: f64 = 1e-10;
 
-/// The same, below which motions are kept: others are no softer than a wave of some tens of grains.
+/// The same ratio, below which motions are kept. Motions above it are stiffer than a wave of some tens of
+/// grains.
 const SOFT: f64 = 1e-2;
 
 /// Maximum number of grains of a cluster; the grains of larger ones are treated one by one.
@@ -94,7 +96,7 @@ fn softest(
         for link in &links[*g as usize] {
             let place = |grain: u32| cluster.iter().position(|c| *c == grain);
             let (i, j) = (place(link.i), place(link.j));
-            // A contact inside the cluster is visited from both its grains.
+            // A contact inside the cluster is visited from both of its grains.
             if i.is_some() && j.is_some() && *g != link.i.min(link.j) {
                 continue;
             }

@@ -23,7 +23,7 @@ pub(super) fn completed(polarizations: &[Vec3]) -> Vec<Vec3> {
     all
 }
 
-/// Three polarizations rotated to those of the modes of `tensor`; one or two are returned as they are.
+/// Three polarizations rotated to those of the modes of `tensor`. One or two are returned unchanged.
 pub(super) fn aligned(polarizations: &[Vec3], alignment: Alignment, tensor: &Mat3) -> Vec<Vec3> {
     let Ok(all) = <[Vec3; 3]>::try_from(polarizations) else { return polarizations.to_vec() };
     let frame = Mat3::from_columns(&all);

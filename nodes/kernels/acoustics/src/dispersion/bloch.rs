@@ -114,7 +114,8 @@ impl<'a> Bloch<'a> {
         }
     }
 
-    /// Removes floppy modes from x. Those of several grains are Bloch waves, too: with a phase from grain to grain.
+    /// Removes floppy modes from x. Those of several grains are Bloch waves too, with a phase from grain to
+    /// grain.
     pub(crate) fn project_out_floppy_modes(&self, x: &mut [Amplitude]) {
         let backbone = self.backbone;
         for cluster in backbone.clusters.iter().filter(|c| c.motions.iter().any(|m| m.is_free)) {
@@ -200,7 +201,7 @@ impl BlochContact {
         let block = |on_i: bool, on_j: bool| -> Block {
             let own =
                 |moves: bool, force: &Amplitude, row: usize| if moves { force.re[row].0[0] } else { 0.0 };
-            // Columns are rows: real parts are symmetric.
+            // Columns equal rows: the real parts are symmetric.
             std::array::from_fn(|column| {
                 let (i, j) = self.forces(&unit(on_i, column), &unit(on_j, column));
                 std::array::from_fn(|row| own(on_i, &i, row) + own(on_j, &j, row))

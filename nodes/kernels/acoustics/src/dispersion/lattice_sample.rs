@@ -1,4 +1,4 @@
-//! A small packing without any symmetry.
+//! A small packing without symmetry.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 
@@ -49,6 +49,7 @@ pub(crate) fn lattice() -> Packing {
                 normal: branch.normalize(),
                 normal_force,
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }

@@ -1,9 +1,9 @@
 //! Acoustic modes at one wave vector.
 //!
-//! Inverse iteration on K x = ω² M x, from plane waves: each round solves K y = M x by conjugate gradients and takes
-//! the best combinations of x and y (Rayleigh–Ritz). The acoustic modes of a long wave are the softest modes, so that a
-//! round reduces the components along other modes by (ω/ω')², with ω' the softest of these; the error of ω² is the
-//! square of that.
+//! Inverse iteration on K x = ω² M x, from plane waves: each round solves K y = M x by conjugate gradients
+//! and takes the best combinations of x and y (Rayleigh–Ritz). The acoustic modes of a long wave are the
+//! softest modes. A round therefore reduces the components along other modes by (ω/ω')², where ω' is the
+//! softest of them; the error of ω² is the square of that.
 
 use crate::dispersion::bloch::Bloch;
 use crate::dispersion::error::SolveError;
@@ -57,7 +57,7 @@ pub(crate) fn modes(
         let solved = pulp::Arch::new().dispatch(solve)?;
         let before = ritz.squares;
         let mut subspace = Subspace::new(count);
-        // The change by the round and not its result, which is nearly parallel to the previous one.
+        // The change in this round, not its result, which is nearly parallel to the previous one.
         let mut step = solved;
         let squares = Row::of(ritz.squares);
         for (step, wave) in step.iter_mut().zip(&ritz.waves) {

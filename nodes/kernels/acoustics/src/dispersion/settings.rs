@@ -8,9 +8,9 @@ const MIN_WAVELENGTH: f64 = 2.0;
 /// Settings of the measurement by dispersion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Wavelengths in mean grain diameters, three or more different ones, each above 2. In packings of z = 5 waves
-    /// shorter than about 100 diameters leave behind loosely held grains that longer waves take along, and are faster
-    /// by up to a thousandth.
+    /// Wavelengths in mean grain diameters, three or more different ones, each above 2. In packings with a
+    /// coordination number of 5, loosely held grains do not follow waves shorter than about 100 diameters,
+    /// which are faster by up to 0.1 %.
     pub wavelengths: Vec<f64>,
     /// Relative error of ω², in [1e-12, 1e-2].
     pub tolerance: f64,

@@ -37,7 +37,7 @@ pub(crate) struct Ritz {
     pub(crate) waves: Block,
     /// Overlap of each mode (column) with each reference (row).
     pub(crate) overlaps: Complex3,
-    /// Softer modes, of unit kinetic energy: nearly floppy motions of a few grains, which have to be separated.
+    /// Softer modes, of unit kinetic energy: nearly floppy motions of a few grains, to be separated.
     pub(crate) softer: Vec<Block>,
 }
 
@@ -87,8 +87,8 @@ impl Subspace {
         self.blocks.push(Held { x, image, mass_times });
     }
 
-    /// Of the combinations that make ω² stationary, those with the largest overlap with the references, whose M x is
-    /// `references`; one per wave. `None` if there are too few, or one has no stiffness.
+    /// Among the combinations that make ω² stationary, those with the largest overlap with the references,
+    /// one per wave. `references` is their M x. `None` if there are too few, or if one has no stiffness.
     pub(crate) fn best(&self, references: &[Amplitude]) -> Option<Ritz> {
         let (waves, size) = (self.waves, self.waves * self.blocks.len());
         let at = |k: usize| (&self.blocks[k / waves], k % waves);

@@ -8,7 +8,7 @@ pub(crate) const WAVES: usize = 3;
 /// Numbers in a row.
 const LANES: usize = WAVES + 1;
 
-/// One number per wave, and a zero that fills a vector register.
+/// One number per wave, and a zero to fill a vector register.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(32))]
 pub(crate) struct Row(pub(crate) [f64; LANES]);

@@ -1,8 +1,8 @@
 //! Free vibration of a supercell that starts with the velocities of plane waves.
 //!
-//! A wave with m periods in `copies` copies has its own Bloch wave vector: while contacts respond linearly, waves of
-//! different m are independent of each other, and of motions that are the same in all copies. All waves are therefore
-//! excited at once, and the packing's own residual motion is in none of them.
+//! A wave with m periods in `copies` copies has its own Bloch wave vector. While contacts respond linearly,
+//! waves of different m are independent of each other and of motions that are the same in all copies. All
+//! waves are therefore excited at once, and the residual motion of the packing is in none of them.
 
 use crate::contact_changes::ContactChanges;
 use crate::error::AcousticsError;
@@ -17,7 +17,7 @@ pub(super) struct Excitation<'a> {
     pub(super) supercell: &'a Supercell,
     /// Mass of each grain of one copy, kg; 0 for rattlers.
     pub(super) mass: &'a [f64],
-    /// EngineSettings of the engine, with a fixed time step.
+    /// Engine settings, with a fixed time step.
     pub(super) setting: EngineSettings,
     /// Unit polarization.
     pub(super) polarization: Vec3,
@@ -94,7 +94,7 @@ impl<'a> FreeVibration<'a> {
         self.channels.first().map_or(0, Vec::len)
     }
 
-    /// Runs until there are `samples`, comparing the contacts `looks` times.
+    /// Runs until there are `samples`, and compares the contacts `looks` times.
     pub(super) fn run_until(&mut self, samples: usize, looks: usize) -> Result<(), AcousticsError> {
         let more = samples.saturating_sub(self.samples());
         let between = more.div_ceil(looks.max(1)).max(1);

@@ -16,7 +16,7 @@ use crate::wave_path::{PathResult, WavePath};
 use grainlab_core::{Vec3, WaveMethod};
 use std::f64::consts::TAU;
 
-/// Least number of copies per period: near two the packing reflects the wave.
+/// Least number of copies per period: near two copies per period the packing reflects the wave.
 const COPIES_PER_PERIOD: f64 = 2.5;
 
 /// Shortest wave, and shortest path, mean diameters.
@@ -29,7 +29,7 @@ const MAX_WAVES: u32 = 4;
 /// Samples per period of the longest wave at the affine speed.
 const SAMPLES_PER_PERIOD: f64 = 64.0;
 
-/// Number of looks at the contacts for each estimate of the duration.
+/// Number of comparisons of the contacts for each estimate of the duration.
 const LOOKS: usize = 6;
 
 /// Range of speeds that are searched, over the affine speed.
@@ -41,9 +41,9 @@ const TYPICAL_SPEED: f64 = 0.8;
 /// Part of the first period that is left out.
 const LEFT_OUT: f64 = 0.25;
 
-/// Part of the dispersion of the longest wave by which speeds depart from a smooth law, because waves couple to motions
-/// of a few loosely held grains at their own frequency. Confirmed on packings of 2,000 grains that were not used to
-/// determine it.
+/// Part of the dispersion of the longest wave by which speeds depart from a smooth law, because waves couple
+/// to motions of a few loosely held grains at the frequencies of these. Confirmed on packings of 2,000 grains
+/// that were not used to determine it.
 const STRUCTURE: f64 = 0.2;
 
 /// Relative change of the traces at half the amplitude above which the response is nonlinear.
@@ -109,7 +109,7 @@ impl StandingWave<'_> {
         let mut warnings = Vec::new();
         let (opened, closed) = (vibration.changes.opened(), vibration.changes.closed());
         if opened + closed > 0 {
-            // Without noise, so that the amplitude is the only difference.
+            // Without noise, so that only the amplitude differs.
             let half = Excitation { velocity: 0.5 * excitation.velocity, ..excitation };
             let mut half = FreeVibration::new(half)?;
             half.run_until(vibration.samples(), LOOKS)?;

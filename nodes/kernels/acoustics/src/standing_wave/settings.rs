@@ -3,7 +3,7 @@
 use crate::error::AcousticsError;
 use grainlab_core::contact::TangentialLaw;
 
-/// Least number of repetitions of the packing: two wavelengths fit in, from which to extrapolate.
+/// Least number of repetitions of the packing: two wavelengths fit in, the least for an extrapolation.
 pub const MIN_COPIES: u32 = 5;
 
 /// Settings of the measurement by standing waves.

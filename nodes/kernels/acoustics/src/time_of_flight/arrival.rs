@@ -44,9 +44,8 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// Picks the arrivals in `trace` of a burst of so many `cycles` under a Hann window, which the source starts at the
-    /// trigger.
-    /// `seed` is that of the noisy copies.
+    /// Picks the arrivals in `trace` of a burst of `cycles` periods under a Hann window, which the source
+    /// starts at the trigger. `seed` is that of the noisy copies.
     pub fn pick(trace: &Trace, cycles: f64, pick: ArrivalPick, seed: u64) -> Result<Self, AcousticsError> {
         let (burst, picker) = prepared(trace, cycles, pick)?;
         let missing = |reason| AcousticsError::NoSignal {
@@ -138,7 +137,7 @@ fn noise(trace: &Trace, quiet: usize) -> f64 {
     mean_square(trace.channels.iter().flat_map(|c| c.samples[..quiet].iter().copied())).sqrt()
 }
 
-/// Arrivals in noisy copies; an error if too many have none.
+/// Arrivals in noisy copies; an error if too many copies have no arrival.
 fn picks_with_noise(
     picker: &Picker,
     channels: &[&[f64]],

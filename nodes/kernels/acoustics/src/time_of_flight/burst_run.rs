@@ -9,7 +9,7 @@ use crate::supercell::Supercell;
 use grainlab_core::Vec3;
 use grainlab_dem::{Engine, EngineSettings};
 
-/// Number of looks at the contacts.
+/// Number of comparisons of the contacts.
 const LOOKS: usize = 8;
 
 /// Least number of samples per period of the centre frequency.
@@ -22,7 +22,7 @@ pub(crate) struct BurstRun<'a> {
     pub(crate) supercell: &'a Supercell,
     /// For each grain of one copy, whether it carries force.
     pub(crate) present: &'a [bool],
-    /// EngineSettings of the engine, with a fixed time step.
+    /// Engine settings, with a fixed time step.
     pub(crate) setting: EngineSettings,
     /// Unit polarization.
     pub(crate) polarization: Vec3,
@@ -49,9 +49,9 @@ pub(crate) struct BurstResponse {
     pub(crate) signals: ReceiverSignals,
     /// Distances from the middle of the source to that of each receiver, m.
     pub(crate) distances: Vec<f64>,
-    /// Number of contacts that were missing at some look.
+    /// Number of contacts that were missing in at least one comparison.
     pub(crate) opened: u32,
-    /// Number of contacts that were new at some look.
+    /// Number of contacts that were new in at least one comparison.
     pub(crate) closed: u32,
 }
 

@@ -60,7 +60,8 @@ impl TimeOfFlight<'_> {
         }
         let bursts: Vec<Burst> =
             frequencies.iter().map(|f| Burst { frequency: *f, cycles: settings.cycles }).collect();
-        // A path that is too short is an error before anything is sent, with the length that the longest wave needs.
+        // A path that is too short is refused before a burst is sent, with the length that the longest wave
+        // needs.
         let short = bursts.iter().filter_map(|b| self.plan(settings, b, speed).err());
         if let Some(worst) = short.max_by_key(copies_needed) {
             return Err(worst);
@@ -103,7 +104,7 @@ impl TimeOfFlight<'_> {
     fn plan(&self, settings: &Settings, burst: &Burst, speed: f64) -> Result<PathPlan, AcousticsError> {
         let indices = self.path.indices;
         let planes = self.sample.packing.cell.inverse().transpose() * Vec3::from(indices.map(f64::from));
-        // Planes (2 0 0) are every other one of (1 0 0).
+        // Planes (2 0 0) are every second plane of (1 0 0).
         let divisor = indices.iter().fold(0, |a, b| gcd(a, b.unsigned_abs()));
         let period = f64::from(divisor) / planes.norm();
         PathPlan::new(settings, burst, speed, self.sample.diameter, period)

@@ -12,10 +12,10 @@ const FINE: f64 = 64.0;
 /// independent samples of noise the largest does so once in thirty times.
 const STANDS_OUT: f64 = 4.0;
 
-/// Level of the onset of an envelope, over the maximum at the first receiver; higher where the noise requires it. It is
-/// not relative to each receiver's own maximum, since the front of a wave keeps its height where scattering reduces the
-/// peak. And it is not that of the signal itself, whose first lobe is a sixth of the next, so that dispersion moves it
-/// through any lower threshold.
+/// Level of the onset of an envelope, over the maximum at the first receiver; higher where the noise requires
+/// it. It is not relative to each receiver's own maximum, because the front of a wave keeps its height where
+/// scattering reduces the peak. It is a level of the envelope and not of the signal, whose first lobe is a
+/// sixth of the next one: dispersion moves that lobe through any lower threshold.
 const ONSET: f64 = 0.1;
 
 /// Least level of an onset in standard deviations of the noise, and its greatest level over the peak.
@@ -38,7 +38,7 @@ pub(crate) struct Picker {
 }
 
 impl Picker {
-    /// For traces of so many `samples` at the sampling rate `rate`, Hz.
+    /// For traces of `samples` samples at the sampling rate `rate`, Hz.
     pub(crate) fn new(pick: ArrivalPick, burst: Burst, rate: f64, samples: usize) -> Self {
         let finer = (FINE * burst.frequency / rate).ceil().max(1.0) as usize;
         let spectrum = Spectrum::new(samples, finer);

@@ -35,7 +35,8 @@ pub struct Settings {
     pub frequencies: Option<Vec<f64>>,
     /// Periods of a burst, under a Hann window; 1 or more.
     pub cycles: f64,
-    /// Repetitions of the packing along the path; `None`: as many as keep the wave in the opposite direction apart.
+    /// Repetitions of the packing along the path; `None`: as many as keep the wave in the opposite direction
+    /// away from the receivers.
     pub copies: Option<u32>,
     /// Thickness of source and receivers along the ray, mean grain diameters.
     pub thickness: f64,

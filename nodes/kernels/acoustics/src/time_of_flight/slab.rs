@@ -16,8 +16,8 @@ pub(crate) struct Slab {
 }
 
 impl Slab {
-    /// The grains about the position `middle` of the path that are `present`, without rattlers; `thickness` is the full
-    /// width at half maximum of the weights, m. `None` if there is no such grain.
+    /// The grains near the position `middle` of the path that are `present`, without rattlers. `thickness` is
+    /// the full width at half maximum of the weights, m. `None` if there is no such grain.
     pub(crate) fn new(supercell: &Supercell, present: &[bool], middle: f64, thickness: f64) -> Option<Self> {
         let path = supercell.path;
         let packing = &supercell.packing;

@@ -17,8 +17,8 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// For signals of so many samples, interpolated to `finer` times as many. They are padded with as many zeros, so
-    /// that their ends do not interact.
+    /// For signals of `samples` samples, interpolated to `finer` times as many. Zeros of the same number are
+    /// appended, so that the ends of a signal do not interact.
     pub(crate) fn new(samples: usize, finer: usize) -> Self {
         let padded = (2 * samples).next_power_of_two();
         let mut planner = FftPlanner::new();

@@ -7,7 +7,7 @@ use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
 const DIAMETER: f64 = 2e-4;
 const OVERLAP: f64 = 4e-4 * DIAMETER;
 
-/// `grains` along e3, which touch each other and the next cell's, and nothing beside them.
+/// `grains` along e3 that touch each other and those of the next cell, and no other grains.
 fn chain(grains: u32) -> Packing {
     let spacing = DIAMETER - OVERLAP;
     let material = Material::GLASS;
@@ -18,7 +18,16 @@ fn chain(grains: u32) -> Packing {
         let (i, j, image, normal) =
             if last { (0, i, [0, 0, -1], -Vec3::z()) } else { (i, i + 1, [0; 3], Vec3::z()) };
         let normal_force = material.normal_force(0.5 * radius, OVERLAP);
-        Contact { i, j, image, overlap: OVERLAP, normal, normal_force, tangential_force: Vec3::zeros() }
+        Contact {
+            i,
+            j,
+            image,
+            overlap: OVERLAP,
+            normal,
+            normal_force,
+            tangential_force: Vec3::zeros(),
+            rolling_force: Vec3::zeros(),
+        }
     };
     let mut contacts: Vec<Contact> = (0..grains).map(contact).collect();
     contacts.sort_by_key(|c| (c.i, c.j, c.image));
@@ -59,7 +68,7 @@ fn a_chain_rings_at_the_frequencies_of_a_chain() {
     for point in &curve.points {
         let omega = 2.0 * (stiffness / mass).sqrt() * (0.5 * point.wavenumber * spacing).sin();
         let found = point.speed * point.wavenumber;
-        // The steps of the engine make up for a part in 10⁴ at the shortest.
+        // The time step of the engine adds up to 1e-4 at the shortest wave.
         assert!((found / omega - 1.0).abs() < 5e-4, "{found:e} {omega:e}");
     }
     let longest = &curve.points[0];
@@ -73,7 +82,7 @@ fn a_chain_rings_at_the_frequencies_of_a_chain() {
 }
 
 #[test]
-fn a_motion_that_meets_no_resistance_is_left_out() {
+fn a_polarization_without_stiffness_is_left_out() {
     let packing = chain(12);
     let settings = Settings::default();
     let both = ray(&[Vec3::z(), Vec3::x()]);

@@ -1,7 +1,8 @@
 //! Crystals of equal springs have dispersion relations in closed form.
 //!
-//! With c = cos(q d/2) and s = sin(q d/2) of the spacing d of planes along the wave, lever λ, mass m and moment of
-//! inertia I. Transverse waves mix with rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ, ± i K_uφ.
+//! c = cos(q d/2) and s = sin(q d/2), with the spacing d of planes along the wave, the lever λ, mass m and
+//! moment of inertia I. Transverse waves couple to rotations: m ω² and I ω² of the 2 × 2 problem K_uu, K_φφ,
+//! ± i K_uφ.
 
 use grainlab_acoustics::dispersion::{Settings, curves};
 use grainlab_acoustics::{DispersionCurve, Ray};
@@ -11,7 +12,8 @@ use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 const RADIUS: f64 = 1e-4;
 const OVERLAP: f64 = 1e-8;
 
-/// `positions` in units of the columns of `cell` (m), every contact of length `branch` with one overlap.
+/// `positions` in units of the columns of `cell` (m); every contact has the length `branch` and the same
+/// overlap.
 fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
     let cell = Cell::new(cell).unwrap();
     let n = positions.len();
@@ -46,6 +48,7 @@ fn crystal(cell: Mat3, positions: &[Vec3], branch: f64) -> Packing {
                 normal: l.normalize(),
                 normal_force: p.material.normal_force(0.5 * RADIUS, OVERLAP),
                 tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
             });
         }
     }
@@ -65,7 +68,7 @@ fn measured(packing: &Packing, direction: Vec3, polarization: Vec3) -> Dispersio
     curves(packing, &[ray], &settings).unwrap().remove(0)
 }
 
-/// Softer of the two frequencies that u and φ make, and the constants of all contacts.
+/// The lower frequency of the coupled u and φ, and the constants of all contacts.
 struct Springs {
     normal: f64,
     tangential: f64,
@@ -83,7 +86,8 @@ impl Springs {
 
     fn softer(&self, uu: f64, phi: f64, coupling: f64) -> f64 {
         let (a, b, c) = (uu / self.mass, phi / self.inertia, coupling.powi(2) / (self.mass * self.inertia));
-        // Of the roots of w² − (a + b) w + ab − c, the product over the larger one, which loses no digits.
+        // Of the roots of w² − (a + b) w + ab − c, the product over the larger one, which avoids
+        // cancellation.
         (a * b - c) / (0.5 * (a + b) + (0.25 * (a - b).powi(2) + c).sqrt())
     }
 }

@@ -1,4 +1,4 @@
-//! Dispersion of real packings goes to the static stiffness at long waves.
+//! The dispersion of real packings has the static stiffness as its long-wave limit.
 
 use crate::sample;
 use grainlab_acoustics::dispersion::{self, curves};
@@ -18,7 +18,7 @@ fn stiffness(packing: &Packing) -> Stiffness {
         .tensor
 }
 
-/// The whole survey of both packings, by default settings, beside their static stiffness.
+/// The speeds of both packings with default settings agree with their static stiffness.
 fn surveys() -> &'static [(Measurement, Stiffness); 2] {
     static SURVEYS: LazyLock<[(Measurement, Stiffness); 2]> = LazyLock::new(|| {
         [sample::isotropic(), sample::anisotropic()]
@@ -27,7 +27,7 @@ fn surveys() -> &'static [(Measurement, Stiffness); 2] {
     &SURVEYS
 }
 
-/// ρ v² of the stiffness for this curve's direction and motion, Pa.
+/// ρ v² from the stiffness for the direction and polarization of this curve, Pa.
 fn modulus(c: &Stiffness, curve: &DispersionCurve) -> f64 {
     curve.polarization.dot(&(c.christoffel(&curve.direction) * curve.polarization))
 }
@@ -75,7 +75,7 @@ fn the_law_of_the_extrapolation_holds_at_all_long_waves() {
     let (far, near) = (curves(&packing, &rays, &far).unwrap(), curves(&packing, &rays, &near).unwrap());
     for (law, seen) in far.iter().zip(&near) {
         for point in &seen.points {
-            // Soft grains are left behind, one after the other, from 100 diameters down.
+            // Below 100 diameters, loosely held grains stop following the wave one by one.
             let allowed = if point.wavenumber * 2e-4 < 0.06 { 5e-5 } else { 2e-3 };
             let off = point.speed / law.at(point.wavenumber) - 1.0;
             assert!(off.abs() < allowed, "{off:e} {point:?} {law:?}");
@@ -134,7 +134,7 @@ fn what_carries_no_wave_is_refused_with_the_reason() {
     gas.contacts.clear();
     let error = measure(&gas, &Settings::default()).unwrap_err();
     assert!(error.to_string().contains("none of the 2000 grains touches another"), "{error}");
-    // A chain of grains of which each touches the next, and no more than that.
+    // A chain in which each grain touches only the next.
     let mut loose = sample::isotropic();
     loose.contacts.truncate(3);
     let error = measure(&loose, &Settings::default()).unwrap_err();

@@ -1,4 +1,4 @@
-//! Claims about the instrument.
+//! Tests of the instrument.
 
 use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::Instrument;
@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 const FREQUENCY: f64 = 1e5;
 
-/// A sine from the trigger on, 200 moments a period, at two receivers.
+/// A sine that starts at the trigger, 200 samples per period, at two receivers.
 fn sine() -> ReceiverSignals {
     let interval = 1.0 / (200.0 * FREQUENCY);
     let tone = |phase: f64| {
@@ -26,7 +26,7 @@ fn rms(of: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn a_silent_instrument_writes_down_what_is_heard() {
+fn without_noise_the_record_is_the_signal() {
     let samples = Instrument::default().record(&sine(), &window(), 1.0, &[0]);
     for (channel, phase) in samples.iter().zip([0.0, 1.0]) {
         for (k, sample) in channel.iter().enumerate() {
@@ -48,17 +48,17 @@ fn noise_has_the_stated_level_and_shots_average_it() {
         let noisy = instrument.record(&sine(), &window(), 0.5, &[3]);
         let off = rms(noisy.iter().flatten().zip(quiet.iter().flatten()).map(|(a, b)| a - b));
         let stated = 0.5 * 10f64.powf(-decibel / 20.0) / f64::from(shots).sqrt();
-        // Of 2,000 samples the level is known to 1.6 %.
+        // 2,000 samples determine the level to 1.6 %.
         assert!((off / stated - 1.0).abs() < 0.06, "{decibel} dB, {shots} shots: {off} for {stated}");
     }
 }
 
 #[test]
-fn a_trigger_that_jitters_wears_an_average_down_as_a_gaussian_does() {
+fn jitter_attenuates_an_average_like_a_gaussian() {
     let jitter = 0.15 / FREQUENCY;
     let instrument = Instrument { jitter, shots: 2000, ..Instrument::default() };
     let samples = instrument.record(&sine(), &window(), 1.0, &[0]);
-    // Away from the trigger, where the jitter also cuts.
+    // Away from the trigger, where the jitter also truncates the signal.
     let level = |s: &[f64]| rms(s[200..860].iter().copied());
     let quiet = Instrument::default().record(&sine(), &window(), 1.0, &[0]);
     let expected = (-0.5 * (TAU * FREQUENCY * jitter).powi(2)).exp();
@@ -78,7 +78,7 @@ fn noise_is_that_of_seed_and_place() {
     assert_eq!(first, record(1, &[0, 1, 2]));
     for other in &others {
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        // Before the trigger there is noise alone, and it is not the same noise.
+        // Before the trigger there is only noise, and it differs between receivers.
         let (a, b) = (&first[0][..8], &other[0][..8]);
         assert!(product(a, b).abs() < 0.95 * (product(a, a) * product(b, b)).sqrt());
         assert_ne!(&first, other);

@@ -1,4 +1,4 @@
-//! Claims about the virtual acoustic measurement.
+//! Tests of the virtual acoustic measurement.
 
 mod chain;
 mod crystals;

@@ -1,4 +1,4 @@
-//! Claims about arrivals, on traces made on paper.
+//! Tests of picked arrivals, on synthetic traces.
 
 use grainlab_acoustics::AcousticsError;
 use grainlab_acoustics::Channel;
@@ -15,7 +15,7 @@ const DIAMETER: f64 = 2e-4;
 const CYCLES: f64 = 2.0;
 const PICKS: [ArrivalPick; 3] = [ArrivalPick::FirstArrival, ArrivalPick::CrossCorrelation, ArrivalPick::Peak];
 
-/// Wave number at the angular frequency `w` along a path that is a chain of grains, or no grains at all.
+/// Wave number at the angular frequency `w` along a chain of grains, or along a path without dispersion.
 type Law = fn(f64) -> f64;
 
 fn chain(w: f64) -> f64 {
@@ -26,7 +26,7 @@ fn even(w: f64) -> f64 {
     w / SPEED
 }
 
-/// A burst of waves of so many diameters, 1 to 3 wavelengths from its source, sum of its harmonics.
+/// A burst with a wavelength of so many diameters, 1 to 3 wavelengths from its source, as a sum of harmonics.
 fn signals(law: Law, wavelength: f64) -> (f64, Vec<f64>, ReceiverSignals) {
     let frequency = SPEED / (wavelength * DIAMETER);
     let duration = CYCLES / frequency;
@@ -38,7 +38,7 @@ fn signals(law: Law, wavelength: f64) -> (f64, Vec<f64>, ReceiverSignals) {
     let distances: Vec<f64> = (0..5).map(|k| (1.0 + 0.5 * f64::from(k)) * SPEED / frequency).collect();
     let moments = 160 * 6;
     let interval = 1.0 / (160.0 * frequency);
-    // Above four times the centre there is nothing.
+    // The spectrum vanishes above four times the centre frequency.
     let lines: Vec<(f64, f64, f64)> = (1..64)
         .map(|n| {
             let w = TAU * f64::from(n) / span;
@@ -69,14 +69,14 @@ fn signals(law: Law, wavelength: f64) -> (f64, Vec<f64>, ReceiverSignals) {
     (frequency, distances, ReceiverSignals { start: 0.0, interval, channels })
 }
 
-/// As an instrument writes it down.
+/// The trace that an instrument records.
 fn trace(of: &(f64, Vec<f64>, ReceiverSignals), instrument: &Instrument, place: &[u64]) -> Trace {
     let (frequency, distances, signals) = of;
     let rate = instrument.rate(*frequency).unwrap();
     let before = (CYCLES * rate / frequency).ceil();
     let window =
         SamplingWindow { start: -before / rate, rate, samples: (before + 5.6 * rate / frequency) as usize };
-    // A Hann window takes 3/8 of the square of a sine, whose mean is 1/2.
+    // A Hann window reduces the mean square of a sine, 1/2, by 3/8.
     let samples = instrument.record(signals, &window, (3.0f64 / 16.0).sqrt(), place);
     let channels = distances.iter().zip(samples).map(|(d, samples)| Channel { distance: *d, samples });
     Trace {
@@ -111,7 +111,8 @@ fn crests_go_at_phase_speed_and_peaks_at_group_speed() {
         let w = TAU * burst.0;
         let (phase, group) = (chain(w) / w, 1.0 / (SPEED * (0.5 * chain(w) * DIAMETER).cos()));
         let found = |pick| Arrivals::pick(&trace, CYCLES, pick, 1).unwrap().slowness;
-        // A short burst has a broad spectrum: its mean bends by more than its centre, by a fourth for crests.
+        // A short burst has a broad spectrum: its mean is more dispersed than its centre, by a quarter for
+        // crests.
         let long = 1.0 / SPEED;
         for (pick, truth, slack) in
             [(ArrivalPick::CrossCorrelation, phase, 0.35), (ArrivalPick::Peak, group, 0.15)]

@@ -1,4 +1,4 @@
-//! Packings to send waves through.
+//! Packings for the measurements.
 
 use flate2::read::GzDecoder;
 use grainlab_core::Contact;
@@ -8,7 +8,7 @@ use std::io::Read;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/golden/packings");
 
-/// 2,000 grains at 50 kPa with contacts in all directions alike.
+/// 2,000 grains at 50 kPa with an isotropic contact network.
 pub(crate) fn isotropic() -> Packing {
     read("isotropic_2000")
 }
@@ -68,7 +68,7 @@ fn read(name: &str) -> Packing {
         let (i, j) = (index[&(v[0] as u32)], index[&(v[1] as u32)]);
         let apart = p.cell.fractional(&(p.positions[j] - p.positions[i]));
         let normal = -Vec3::new(v[2], v[3], v[4]);
-        // The image whose branch the normal is.
+        // The periodic image whose branch vector is parallel to the normal.
         let branch = p.cell.fractional(&(normal * (p.radii[i] + p.radii[j] - v[5])));
         p.contacts.push(Contact {
             i: i as u32,
@@ -78,6 +78,7 @@ fn read(name: &str) -> Packing {
             normal,
             normal_force: v[6],
             tangential_force: Vec3::new(v[7], v[8], v[9]),
+            rolling_force: Vec3::zeros(),
         });
     }
     p.validated().unwrap()

@@ -1,4 +1,4 @@
-//! Standing waves tell the stiffness.
+//! Standing waves give the stiffness.
 
 use crate::sample;
 use grainlab_acoustics::standing_wave::{Settings, curves};
@@ -13,7 +13,7 @@ fn ray(packing: &Packing, indices: [i32; 3], polarizations: &[usize]) -> Ray {
     Ray { direction, indices: Some(indices), polarizations: polarizations.iter().map(|m| all[*m]).collect() }
 }
 
-/// Short and cheap.
+/// Settings for a short run.
 const QUICK: Settings = Settings {
     copies: 6,
     periods: 2.0,
@@ -44,7 +44,7 @@ fn compared(packing: &Packing, curves: &[DispersionCurve]) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn what_rings_has_the_stiffness_of_the_frozen_network() {
+fn standing_waves_have_the_stiffness_of_the_frozen_network() {
     for packing in [sample::isotropic(), sample::anisotropic()] {
         let rays = [
             ray(&packing, [0, 0, 1], &[0, 1]),
@@ -60,7 +60,7 @@ fn what_rings_has_the_stiffness_of_the_frozen_network() {
             curves.iter().zip(polarizations).zip(compared(&packing, &curves))
         {
             assert_eq!(curve.polarization, *polarization);
-            // One part in 400; the largest is 0.16 %.
+            // At most 0.25 %; the largest found is 0.16 %.
             assert!(off.abs() < 2.5e-3, "{off:e} {curve:?}");
             assert!(off.abs() < 2.5 * stddev && stddev < 2e-3, "{off:e} {stddev:e} {curve:?}");
             // Longer waves are faster.
@@ -73,14 +73,14 @@ fn what_rings_has_the_stiffness_of_the_frozen_network() {
 }
 
 #[test]
-fn waves_that_ring_at_once_do_not_know_of_each_other() {
+fn waves_excited_at_once_are_independent() {
     let packing = sample::isotropic();
     let (few, _) = quick(&packing, 1, &QUICK);
     let (many, _) = quick(&packing, 1, &Settings { copies: 12, ..QUICK });
     assert_eq!((few.points.len(), many.points.len()), (2, 4));
     for (one, other) in few.points.iter().zip(many.points.iter().skip(1).step_by(2)) {
         assert!((one.wavenumber / other.wavenumber - 1.0).abs() < 1e-12);
-        // Sampled at other moments.
+        // Sampled at other times.
         assert!((one.speed / other.speed - 1.0).abs() < 3e-5, "{one:?} {other:?}");
     }
 }
@@ -97,7 +97,7 @@ fn the_amplitude_does_not_matter_while_it_is_small() {
 }
 
 #[test]
-fn an_amplitude_that_opens_contacts_is_told_and_widens_the_uncertainty() {
+fn an_amplitude_that_opens_contacts_gives_a_warning_and_a_larger_uncertainty() {
     let packing = sample::anisotropic();
     let (small, _) = quick(&packing, 1, &QUICK);
     for amplitude in [1e-6, 1e-4] {
@@ -111,7 +111,7 @@ fn an_amplitude_that_opens_contacts_is_told_and_widens_the_uncertainty() {
 }
 
 #[test]
-fn noise_widens_the_uncertainty_by_what_it_does() {
+fn noise_widens_the_uncertainty_by_its_effect() {
     let packing = sample::isotropic();
     let rays = [ray(&packing, [0, 0, 1], &[0])];
     let measured = |instrument: &Instrument| curves(&packing, &rays, &QUICK, instrument).unwrap();
@@ -126,7 +126,7 @@ fn noise_widens_the_uncertainty_by_what_it_does() {
     assert!(squares < 4.0 * 2.0, "{squares}");
     let (once, again, other) = (measured(&noisy(7)), measured(&noisy(7)), measured(&noisy(8)));
     assert!(once == again && once.1 != other.1);
-    // So much of it that nothing is left.
+    // Noise that hides the signal.
     let loud = Instrument { signal_to_noise: -60.0, ..Instrument::default() };
     let found = curves(&packing, &rays, &QUICK, &loud);
     assert!(matches!(found, Err(AcousticsError::NoSignal { .. })), "{found:?}");
@@ -143,7 +143,7 @@ fn the_trace_is_what_the_instrument_samples() {
         assert!((TAU / point.wavenumber / channel.distance - 1.0).abs() < 1e-12);
     }
     assert!((trace.frequency / (curve.points[0].speed / trace.channels[0].distance) - 1.0).abs() < 1e-2);
-    // Half the strain goes into each of two waves.
+    // Each of the two waves has half of the strain.
     let expected = 0.5 * QUICK.amplitude * curve.speed;
     assert!((trace.channels[0].samples[0] / expected - 1.0).abs() < 0.15, "{expected:e}");
 
@@ -176,7 +176,7 @@ fn settings_out_of_range_are_refused_by_name() {
 }
 
 #[test]
-fn rays_that_are_no_normals_and_packings_without_network_are_refused() {
+fn rays_not_normal_to_planes_and_packings_without_network_are_refused() {
     let packing = sample::isotropic();
     let good = ray(&packing, [0, 0, 1], &[0]);
     let none = Ray { indices: None, ..good.clone() };

@@ -1,4 +1,4 @@
-//! Packings repeated along a path are the same packings.
+//! A packing repeated along a path has the properties of the packing.
 
 use crate::sample;
 use grainlab_acoustics::{AcousticsError, Ray, supercell};
@@ -8,10 +8,10 @@ use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
 const PLANES: [[i32; 3]; 6] = [[0, 0, 1], [1, 0, 0], [1, 0, 1], [1, -1, 0], [1, 1, 1], [2, -1, 3]];
 
-/// The first packing, in a cell whose edges are others of the same lattice, so that it is skewed.
+/// The first packing, in a skewed cell of the same lattice.
 fn skewed(packing: Packing) -> Packing {
     let mut packing = packing;
-    // a, b + a, c − b: what is touched at k edges of the old is touched at M⁻¹ k of the new.
+    // Edges a, b + a, c − b: the image k of the old cell is the image M⁻¹ k of the new one.
     let m = Mat3::new(1.0, 1.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 1.0);
     packing.cell = Cell::new(packing.cell.matrix() * m).unwrap();
     let inverse = m.try_inverse().unwrap();
@@ -64,7 +64,7 @@ fn a_repeated_packing_has_the_stress_and_the_stiffness_of_the_packing() {
         let many = supercell(&packing, indices, 2).unwrap().packing;
         let found = stress(&many).tensor.matrix();
         assert!((found - expected).amax() < 1e-12 * expected.amax(), "{indices:?}");
-        // One solve is enough for the slow part.
+        // One solve suffices for the slow part of the test.
         if indices == [1, 0, 1] || indices == [1, 1, 1] {
             let moduli =
                 *grainlab_micromechanics::analyze(&many, &settings).unwrap().report.stiffness().unwrap();

@@ -1,4 +1,4 @@
-//! Claims about time of flight through the particle engine.
+//! Tests of the time of flight through the particle engine.
 
 use crate::sample;
 use grainlab_acoustics::AcousticsError;
@@ -14,8 +14,8 @@ use std::f64::consts::{PI, TAU};
 const DIAMETER: f64 = 2e-4;
 const GRAINS: u32 = 8;
 
-/// A chain of equal grains along e3, alone in its cell, pressed by an overlap of a thousandth; `aside` adds a grain
-/// that touches nothing.
+/// A chain of equal grains along e3, alone in its cell, with overlaps of a thousandth; `aside` adds a
+/// rattler.
 fn chain(aside: bool) -> Packing {
     let step = DIAMETER * (1.0 - 1e-3);
     let length = step * f64::from(GRAINS);
@@ -33,6 +33,7 @@ fn chain(aside: bool) -> Packing {
         normal,
         normal_force: 0.0,
         tangential_force: Vec3::zeros(),
+        rolling_force: Vec3::zeros(),
     };
     let mut contacts: Vec<Contact> = (0..last).map(|k| pair(k, k + 1, 0, Vec3::z())).collect();
     contacts.push(pair(0, last, -1, -Vec3::z()));
@@ -79,7 +80,7 @@ fn refused(settings: Settings) -> AcousticsError {
 }
 
 #[test]
-fn a_pulse_along_a_chain_goes_as_the_closed_form_says() {
+fn a_pulse_along_a_chain_has_the_speed_of_the_closed_form() {
     let packing = chain(false);
     let (step, speed) = closed_form();
     let settings = Settings::default();
@@ -104,7 +105,7 @@ fn a_pulse_along_a_chain_goes_as_the_closed_form_says() {
 }
 
 #[test]
-fn a_grain_that_touches_nothing_is_not_heard() {
+fn a_grain_without_contacts_does_not_change_the_signal() {
     let signals = |packing: &Packing| {
         curves(packing, &up(packing), &Settings::default(), &Instrument::default()).unwrap()
     };
@@ -124,12 +125,12 @@ fn the_same_bits_whatever_the_threads() {
     };
     let one = measured(1);
     assert_eq!(one, measured(3));
-    // Another ray has other noise.
+    // Another ray has different noise.
     assert_ne!(one.1[0].channels, one.1[3].channels);
 }
 
 #[test]
-fn a_path_too_short_says_how_long_it_must_be() {
+fn the_error_of_a_short_path_has_the_length_needed() {
     let packing = chain(false);
     let short = |copies| refused(Settings { copies: Some(copies), ..Settings::default() });
     let AcousticsError::PathTooShort { enough, path, needed, .. } = short(3) else {
@@ -152,7 +153,7 @@ fn a_frequency_above_the_band_is_refused_with_the_cutoff() {
     let error = send(1.5 * edge);
     let AcousticsError::CutOff { cutoff, frequency, .. } = error else { panic!("{error:?}") };
     assert!((cutoff / edge - 1.0).abs() < 0.02 && frequency == 1.5 * edge, "{cutoff} {edge}");
-    // It is the edge of the band: 2√(k/m)/2π.
+    // The edge of the band is 2√(k/m)/2π.
     let packing = chain(false);
     let (stiffness, _) = packing.contact_stiffness(&packing.contacts[0]);
     let omega = 2.0 * (stiffness / packing.material.sphere_mass(0.5 * DIAMETER)).sqrt();
@@ -160,7 +161,7 @@ fn a_frequency_above_the_band_is_refused_with_the_cutoff() {
 }
 
 #[test]
-fn one_frequency_gives_a_speed_and_says_how_little_that_is() {
+fn one_frequency_gives_a_speed_with_a_large_uncertainty() {
     let packing = chain(false);
     let (_, speed) = closed_form();
     let frequency = speed / (25.0 * DIAMETER);
@@ -195,8 +196,8 @@ fn settings_out_of_range_are_refused_by_name() {
         assert!(matches!(found, AcousticsError::Setting { name: n, .. } if n == name), "{name} {found:?}");
     }
     let packing = chain(false);
-    let deaf = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
-    assert!(curves(&packing, &up(&packing), &good(), &deaf).is_err());
+    let noisy = Instrument { signal_to_noise: f64::NAN, ..Instrument::default() };
+    assert!(curves(&packing, &up(&packing), &good(), &noisy).is_err());
 }
 
 #[test]
@@ -210,7 +211,7 @@ fn grains_that_do_not_touch_carry_no_wave() {
         matches!(found, Err(AcousticsError::NotJammed(NotJammed::NoContacts { grains: 8 }))),
         "{found:?}"
     );
-    // A chain with a gap: all its grains are rattlers, one after the other.
+    // A chain with a gap: all its grains become rattlers, one after the other.
     let mut packing = chain(false);
     packing.contacts.truncate(3);
     let found = sent(&packing);
@@ -218,7 +219,7 @@ fn grains_that_do_not_touch_carry_no_wave() {
 }
 
 #[test]
-fn rays_that_are_none_are_refused() {
+fn invalid_rays_are_refused() {
     let packing = chain(false);
     let [good] = up(&packing);
     let sent = |ray: Ray| curves(&packing, &[ray], &Settings::default(), &Instrument::default());
@@ -250,7 +251,7 @@ fn a_wave_that_opens_contacts_is_called_nonlinear() {
 }
 
 #[test]
-fn a_wave_that_noise_hides_is_no_speed() {
+fn a_wave_hidden_by_noise_gives_no_speed() {
     let packing = chain(false);
     let sent = |signal_to_noise: f64| {
         let instrument = Instrument { signal_to_noise, ..Instrument::default() };
@@ -281,7 +282,8 @@ fn square_speed(packing: &Packing, ray: &Ray) -> f64 {
 
 #[test]
 fn speeds_through_packings_are_those_of_the_frozen_network() {
-    // Two wavelengths, not as long as by default, which leave the peaks of P uncertain, and take half of the time.
+    // Two wavelengths, shorter than the default ones, which leave the peaks of P uncertain, but need half of
+    // the time.
     for (packing, indices, speed, waves) in [
         (sample::anisotropic(), [0, 0, 1], 440.0, [26.0, 34.0]),
         (sample::isotropic(), [1, 0, 0], 280.0, [20.0, 28.0]),

@@ -1,144 +1,146 @@
-//! Contact laws: one file each, and the list of them.
+//! Contact laws: springs, dashpots and sliders of a contact.
 //!
 //! A law is its springs ([`ContactSprings`]). Dashpots, tangential history and the Coulomb limit are the same for all
-//! ([`SpringDashpotSlider`]). To add a law: write its file, and add it to [`ContactLaw`] here.
+//! ([`SpringDashpotSlider`]), and so is the resistance to rolling, which any law may have ([`RollingResistance`]). The
+//! springs are listed in `laws`.
 
-mod hertz_mindlin;
-mod linear;
+mod law_parameter;
+mod laws;
+mod rolling;
+mod rolling_resistance;
 mod spring_dashpot_slider;
 mod springs;
 mod tangential;
 
-pub use hertz_mindlin::HertzMindlin;
-pub use linear::Linear;
+pub use law_parameter::LawParameter;
+pub use laws::*;
+pub use rolling::{RollingForce, RollingSprings};
+pub use rolling_resistance::RollingResistance;
 pub use spring_dashpot_slider::{ContactForces, ContactKinematics, HistoryStep, SpringDashpotSlider};
-pub use springs::{ContactSprings, LawParameter};
+pub use springs::{ContactSprings, LawVisitor};
 pub use tangential::TangentialLaw;
 
 use crate::material::Material;
 use std::fmt;
 use std::str::FromStr;
 
-/// The contact law of a packing, with the parameters that do not follow from the material.
+/// The contact law of a packing: springs, and resistance to rolling if there is any.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum ContactLaw {
-    /// Hertz's normal spring with Mindlin's tangential spring; its stiffnesses follow from the material.
-    #[default]
-    HertzMindlin,
-    /// Linear springs.
-    Linear(Linear),
-}
-
-/// Work that is compiled for each law.
-pub trait LawVisitor {
-    /// The result.
-    type Output;
-    /// Does the work.
-    fn visit<S: ContactSprings>(self, springs: S) -> Self::Output;
+pub struct ContactLaw {
+    /// The normal and the tangential spring.
+    pub springs: SpringLaw,
+    /// The resistance to rolling.
+    pub rolling: Option<RollingResistance>,
 }
 
 /// A name and parameters that belong to no contact law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UnknownLaw {
     /// The name is unknown.
-    #[error("unknown contact law \"{0}\"; known are {known}", known = known())]
+    #[error("unknown contact law \"{0}\"; known are {known}", known = SpringLaw::NAMES.join(", "))]
     Name(String),
     /// The parameters are invalid.
     #[error(
-        "parameters {found:?} of contact law {law} are invalid; it needs [{required}], each positive and finite"
+        "parameters {found:?} of contact law {law} are invalid; it needs [{springs}], and with resistance to rolling \
+         [{rolling}] after them, each positive and finite (a damping may be 0)"
     )]
     Parameters {
         /// Name of the law.
         law: &'static str,
         /// The parameters given.
         found: Vec<f64>,
-        /// Keys of the parameters required.
-        required: String,
+        /// Keys of the parameters of its springs.
+        springs: String,
+        /// Keys of the parameters of a resistance to rolling.
+        rolling: String,
     },
 }
 
-fn known() -> String {
-    ContactLaw::examples().map(|law| law.name()).join(", ")
+/// Visits springs with the resistance to rolling, if there is any.
+struct WithRolling<V> {
+    rolling: Option<RollingResistance>,
+    visitor: V,
+}
+
+impl<V: LawVisitor> LawVisitor for WithRolling<V> {
+    type Output = V::Output;
+
+    fn visit<S: ContactSprings>(self, springs: S) -> V::Output {
+        match self.rolling {
+            None => self.visitor.visit(springs),
+            Some(rolling) => self.visitor.visit(RollingSprings { springs, rolling }),
+        }
+    }
 }
 
 impl ContactLaw {
-    /// One law of each kind, for tests and help.
-    pub fn examples() -> [Self; 2] {
-        [Self::HertzMindlin, Self::Linear(Linear { normal_stiffness: 1e4, stiffness_ratio: 0.5 })]
+    /// A law without resistance to rolling.
+    pub const fn of(springs: SpringLaw) -> Self {
+        Self { springs, rolling: None }
     }
 
-    /// Name, as in scenes and messages.
+    /// The law with this resistance to rolling.
+    #[must_use]
+    pub const fn with_rolling(self, rolling: RollingResistance) -> Self {
+        Self { rolling: Some(rolling), ..self }
+    }
+
+    /// One law of each kind, for tests: all springs, first without and then with resistance to rolling.
+    pub fn examples() -> Vec<Self> {
+        let plain = SpringLaw::EXAMPLES.map(Self::of);
+        let rolling = RollingResistance { stiffness: 1e4, damping: 1e-3, friction: 0.1 };
+        plain.into_iter().chain(plain.map(|law| law.with_rolling(rolling))).collect()
+    }
+
+    /// Name of the springs, as in scenes and messages.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::HertzMindlin => "hertz_mindlin",
-            Self::Linear(_) => "linear",
-        }
+        self.springs.name()
     }
 
-    /// What the parameters of laws of this kind are. All must be positive and finite.
-    pub fn parameter_list(&self) -> &'static [LawParameter] {
-        match self {
-            Self::HertzMindlin => &[],
-            Self::Linear(_) => &Linear::PARAMETERS,
-        }
-    }
-
-    /// Parameters, in the order of the list.
+    /// Parameters as in messages: those of the springs, then those of the resistance to rolling if there is any.
     pub fn parameters(&self) -> Vec<f64> {
-        match self {
-            Self::HertzMindlin => Vec::new(),
-            Self::Linear(l) => vec![l.normal_stiffness, l.stiffness_ratio],
-        }
+        let rolling = self.rolling.iter().flat_map(RollingResistance::parameters);
+        self.springs.parameters().into_iter().chain(rolling).collect()
     }
 
-    /// The law of the same kind with these parameters, as many as the list has.
-    fn with_parameters(&self, p: &[f64]) -> Self {
-        match self {
-            Self::HertzMindlin => Self::HertzMindlin,
-            Self::Linear(_) => Self::Linear(Linear { normal_stiffness: p[0], stiffness_ratio: p[1] }),
-        }
-    }
-
-    /// The law with this name and these parameters.
+    /// The law with springs of this name and these parameters, in the order of [`ContactLaw::parameters`].
     ///
     /// # Errors
     /// The name is unknown, or the number of parameters or their range is wrong.
     pub fn new(name: &str, parameters: &[f64]) -> Result<Self, UnknownLaw> {
-        let kind = Self::examples().into_iter().find(|law| law.name() == name);
+        let kind = SpringLaw::EXAMPLES.into_iter().find(|springs| springs.name() == name);
         let kind = kind.ok_or_else(|| UnknownLaw::Name(name.to_owned()))?;
-        let list = kind.parameter_list();
-        if parameters.len() == list.len() && parameters.iter().all(|p| *p > 0.0 && p.is_finite()) {
-            return Ok(kind.with_parameters(parameters));
+        let own = kind.parameter_list();
+        let all: Vec<&LawParameter> = own.iter().chain(&RollingResistance::PARAMETERS).collect();
+        let count = parameters.len();
+        let complete = count == own.len() || count == all.len();
+        if complete && all.iter().zip(parameters).all(|(parameter, value)| parameter.admits(*value)) {
+            let (springs, rolling) = parameters.split_at(own.len());
+            let rolling = rolling.try_into().ok().map(RollingResistance::from_parameters);
+            return Ok(Self { springs: kind.with_parameters(springs), rolling });
         }
-        let required: Vec<&str> = list.iter().map(|p| p.key).collect();
-        let found = parameters.to_vec();
-        Err(UnknownLaw::Parameters { law: kind.name(), found, required: required.join(", ") })
+        let keys = |list: &[LawParameter]| list.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
+        Err(UnknownLaw::Parameters {
+            law: kind.name(),
+            found: parameters.to_vec(),
+            springs: keys(own),
+            rolling: keys(&RollingResistance::PARAMETERS),
+        })
     }
 
     /// Does work that is compiled for each law, with the springs of this one.
     pub fn visit<V: LawVisitor>(&self, material: &Material, visitor: V) -> V::Output {
-        match self {
-            Self::HertzMindlin => visitor.visit(HertzMindlin::new(material)),
-            Self::Linear(springs) => visitor.visit(*springs),
-        }
+        self.springs.visit(material, WithRolling { rolling: self.rolling, visitor })
     }
 
     /// Elastic normal force, N, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
     pub fn normal_force(&self, material: &Material, r_eff: f64, overlap: f64) -> f64 {
-        match self {
-            Self::HertzMindlin => material.normal_force(r_eff, overlap),
-            Self::Linear(l) => l.normal_stiffness * overlap,
-        }
+        self.springs.normal_force(material, r_eff, overlap)
     }
 
     /// Stiffnesses (k_n, k_t), N/m, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
     pub fn stiffnesses(&self, material: &Material, r_eff: f64, overlap: f64) -> (f64, f64) {
-        match self {
-            Self::HertzMindlin => {
-                (material.normal_stiffness(r_eff, overlap), material.tangential_stiffness(r_eff, overlap))
-            }
-            Self::Linear(l) => (l.normal_stiffness, l.normal_stiffness * l.stiffness_ratio),
-        }
+        self.springs.stiffnesses(material, r_eff, overlap)
     }
 }
 
@@ -176,5 +178,11 @@ mod tests {
         }
         assert!(ContactLaw::new("hooke", &[]).unwrap_err().to_string().contains("hooke"));
         assert!(ContactLaw::new("linear", &[1e4, -1.0]).is_err());
+        // Resistance to rolling may lack a dashpot, but no parameter.
+        let undamped = ContactLaw::new("hertz_mindlin", &[1e4, 0.0, 0.1]).unwrap();
+        assert_eq!(undamped.rolling, Some(RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 }));
+        for wrong in [&[0.0, 1e-3, 0.1][..], &[1e4, 1e-3, 0.0], &[1e4, 1e-3], &[1e4, -1.0, 0.1]] {
+            assert!(ContactLaw::new("hertz_mindlin", wrong).is_err(), "{wrong:?}");
+        }
     }
 }

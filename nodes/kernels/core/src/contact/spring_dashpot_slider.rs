@@ -26,6 +26,20 @@ pub struct ContactKinematics<L> {
     pub spin_sum: LaneVec3<L>,
 }
 
+impl<L: Lanes> ContactKinematics<L> {
+    /// Velocity of `j` relative to `i` across the normal, m/s.
+    #[inline(always)]
+    fn across(&self) -> LaneVec3<L> {
+        self.relative_velocity.sub_scaled(self.normal, self.relative_velocity.dot(self.normal))
+    }
+
+    /// The normal half a step of `dt` (s) ago.
+    #[inline(always)]
+    pub(super) fn mean_normal(&self, dt: f64) -> LaneVec3<L> {
+        self.normal.sub_scaled(self.across(), L::splat(0.5 * dt) * self.inverse_distance)
+    }
+}
+
 /// Forces of a contact, in each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForces<L> {
@@ -125,9 +139,7 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
         history: LaneVec3<L>,
         dt: f64,
     ) -> HistoryStep<L> {
-        let n = c.normal;
-        let across = c.relative_velocity.sub_scaled(n, c.relative_velocity.dot(n));
-        let mean = n.sub_scaled(across, L::splat(0.5 * dt) * c.inverse_distance);
+        let (n, across, mean) = (c.normal, c.across(), c.mean_normal(dt));
         let mut carried = rotate_history(history, c, mean, dt);
         if RESCALED {
             carried = carried.scale(self.springs.unloading(c.contact_radius_before, c.contact_radius));
@@ -142,7 +154,7 @@ impl<S: ContactSprings> SpringDashpotSlider<S> {
 
 /// Scales a force down to Coulomb's limit where it exceeds it.
 #[inline(always)]
-fn coulomb_limit<L: Lanes>(f: LaneVec3<L>, limit: L) -> LaneVec3<L> {
+pub(super) fn coulomb_limit<L: Lanes>(f: LaneVec3<L>, limit: L) -> LaneVec3<L> {
     let square = f.dot(f);
     let sliding = square.gt(limit * limit);
     if !L::any(sliding) {
@@ -156,7 +168,7 @@ fn coulomb_limit<L: Lanes>(f: LaneVec3<L>, limit: L) -> LaneVec3<L> {
 /// With m the mean of the old and new normal, f − (f·n) m is that rotation. Norm and perpendicularity are kept to third
 /// order in the angle of one step (1e-7 rad at most in practice).
 #[inline(always)]
-fn rotate_history<L: Lanes>(
+pub(super) fn rotate_history<L: Lanes>(
     f: LaneVec3<L>,
     c: &ContactKinematics<L>,
     mean: LaneVec3<L>,

@@ -1,23 +1,22 @@
-//! What a contact law provides: its springs and parameters.
+//! What a contact law provides: its springs.
 
+use super::rolling_resistance::RollingResistance;
 use crate::lanes::Lanes;
-
-/// A parameter of a contact law, which does not follow from the material. It must be positive and finite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LawParameter {
-    /// Key in scenes.
-    pub key: &'static str,
-    /// Meaning and unit.
-    pub meaning: &'static str,
-    /// Value in scenes that do not give it; `None` if they must.
-    pub default: Option<f64>,
-}
 
 /// The elastic part of a contact law, with its coefficients: a normal and a tangential spring.
 ///
 /// Written for any number of lanes: with `f64` it is the scalar specification; the force kernel runs it in the lanes of an
 /// instruction set. The contact radius is a = √(R* δ) for every law, with δ the full overlap.
 pub trait ContactSprings: Copy + Send + Sync {
+    /// Whether contacts resist rolling.
+    const ROLLS: bool = false;
+
+    /// The resistance to rolling; without effect unless [`ContactSprings::ROLLS`].
+    #[inline(always)]
+    fn rolling(&self) -> RollingResistance {
+        RollingResistance::NONE
+    }
+
     /// Normal stiffness k_n = dF/dδ, N/m, from the contact radius, m.
     fn normal_stiffness<L: Lanes>(&self, contact_radius: L) -> L;
 
@@ -42,4 +41,12 @@ pub trait ContactSprings: Copy + Send + Sync {
 
     /// Largest overlap of an elastic collision, m, from effective radius (m), effective mass (kg) and relative speed (m/s).
     fn collision_overlap(&self, r_eff: f64, m_eff: f64, speed: f64) -> f64;
+}
+
+/// Work that is compiled for each law.
+pub trait LawVisitor {
+    /// The result.
+    type Output;
+    /// Does the work.
+    fn visit<S: ContactSprings>(self, springs: S) -> Self::Output;
 }

@@ -5,7 +5,7 @@ use crate::stiffness::Stiffness;
 /// How a stiffness was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StiffnessMethod {
-    /// Linear response of the frozen contact network.
+    /// Linear response of the frozen contact network: normal and tangential springs, no rolling springs.
     FrozenNetwork,
     /// The same with the prestress term.
     PrestressedNetwork,

@@ -6,6 +6,7 @@
 //! - [`StrainRatios`]: deviatoric over volumetric strain
 //! - [`ElasticStiffness`]: the stiffness, its bounds, and how it was found
 //! - [`PackingReport`]: all of it for one packing
+//! - [`Microstructure`]: what an inversion infers
 //!
 //! Tensors are in the frame of the cell. h is the reference axis ([`Fabric::reference_axis`]), n a contact normal and
 //! x = |n·h|. What is undefined (no contacts, no forces, no Coulomb limit) is `None`; tensors whose weights sum to nothing
@@ -14,6 +15,8 @@
 mod contact_statistics;
 mod elastic_stiffness;
 mod fabric;
+mod left_out;
+mod microstructure;
 mod packing_report;
 mod quantities;
 mod strain_ratios;
@@ -27,6 +30,8 @@ pub use fabric::{
     Fabric, FourthOrderFabric, ORIENTATION_BINS, OrientationFit, OrientationHistogram, OverlapAnisotropyFit,
     PrincipalAxis, contact_anisotropy,
 };
+pub use left_out::LeftOut;
+pub use microstructure::{InferredQuantity, Microstructure, MicrostructureCovariance};
 pub use packing_report::PackingReport;
 pub use quantities::QUANTITIES;
 pub use strain_ratios::StrainRatios;

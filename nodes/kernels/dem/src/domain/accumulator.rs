@@ -225,7 +225,7 @@ pub(crate) struct AccumulatorBuilder {
     /// Grains of the present part.
     part: Range<usize>,
     rows: u32,
-    /// Row of each grain of a later part; below the rows of the present part if the grain has none yet.
+    /// Row of each grain of a later part; below the rows of the present part while the grain has no row of that part.
     row_of: Vec<u32>,
     /// (chunk, grain, row) of owned grains that earlier parts act on.
     remote: Vec<(u32, u32, u32)>,

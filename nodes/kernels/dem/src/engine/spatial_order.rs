@@ -2,7 +2,7 @@
 
 use crate::domain::state::{State, vector};
 use crate::pairs::contacts::Contacts;
-use crate::pairs::types::SavedContact;
+use crate::pairs::types::{History, SavedContact};
 
 /// The order of grains along a space-filling (Morton) curve through the cell: a function of positions and ids alone. Grains
 /// of one bin are sorted by id.
@@ -31,17 +31,18 @@ pub(super) fn reorder(state: &mut State, contacts: &Contacts, order: &[u32]) -> 
     for (new, old) in order.iter().enumerate() {
         new_index[*old as usize] = new as u32;
     }
-    let renumbered = |(i, j, image, contact_radius, history): SavedContact| {
-        let (i, j) = (new_index[i as usize], new_index[j as usize]);
-        // Seen from the other grain, the image is on the other side and the force is opposite.
+    let renumbered = |c: SavedContact| {
+        let (i, j) = (new_index[c.i as usize], new_index[c.j as usize]);
         if i <= j {
-            (i, j, image, contact_radius, history)
-        } else {
-            (j, i, image.map(|k| -k), contact_radius, -history)
+            return SavedContact { i, j, ..c };
         }
+        // Seen from the other grain, the image is on the other side and the tangential force is opposite. The rolling force
+        // is the same: normal and torque are both opposite.
+        let history = History { tangential: -c.history.tangential, ..c.history };
+        SavedContact { i: j, j: i, image: c.image.map(|k| -k), history }
     };
     let mut pairs: Vec<SavedContact> = contacts.saved().map(renumbered).collect();
-    pairs.sort_unstable_by_key(|p| (p.0, p.1, p.2));
+    pairs.sort_unstable_by_key(|p| (p.i, p.j, p.image));
     let count = pairs.len();
     Contacts::from_saved(state, pairs.into_iter(), count)
 }

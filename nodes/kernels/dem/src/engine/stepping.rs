@@ -92,7 +92,7 @@ impl Engine {
         self.pass(PassKind::Motion, false).1
     }
 
-    /// Evaluates forces, with the losses of tangential springs added to the energy balance.
+    /// Evaluates forces, with the works along the paths of contacts added to the energy balance.
     fn evaluate_forces(&mut self, kind: PassKind, with_virial: bool) -> (Virial, SpeedStats) {
         if let Some(meter) = &mut self.energy {
             meter.save_history(&self.contacts);
@@ -103,7 +103,7 @@ impl Engine {
         }
         let Self { state, contacts, settings, energy, .. } = self;
         if let Some(meter) = energy {
-            meter.add_history(state, contacts, settings);
+            meter.add_paths(state, contacts, settings);
         }
         results
     }
@@ -170,10 +170,10 @@ impl Engine {
         let too_fast = |v: Vec3| !v.norm().is_finite() || v.norm() > limit;
         let grain = s.velocities().position(too_fast).unwrap_or(0);
         let at_grain = self.contacts.touching().filter(|p| p.i as usize == grain || p.j as usize == grain);
-        let largest = at_grain.max_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius));
+        let largest = at_grain.max_by(|a, b| a.history.contact_radius.total_cmp(&b.history.contact_radius));
         let cause = largest.map_or(String::new(), |p| {
             let (i, j) = (p.i as usize, p.j as usize);
-            let overlap = p.contact_radius * p.contact_radius / effective_radius(s.radius[i], s.radius[j]);
+            let overlap = p.history.contact_radius.powi(2) / effective_radius(s.radius[i], s.radius[j]);
             format!(", pushed hardest at its contact of grains {} and {}", s.ids[i], s.ids[j])
                 + &format!(" with an overlap of {overlap:e} m")
         });

@@ -1,21 +1,13 @@
 //! The force kernel: forces and torques of the pairs of a chunk of grains, summed on the grains.
-//!
-//! It has three stages: geometry, contact law, scatter. Each stage waits long for the roots, quotients and sums of the one
-//! before. So the stages of three consecutive blocks run interleaved, and the processor always has independent work.
 
-use super::geometry::{ForceInput, Geometry, GrainIndices};
-use super::virial::{self, Virial};
+use super::geometry::{ForceInput, GrainIndices};
+use super::stages::{BlockScratch, LawStage, Rolling, run_stages};
+use super::virial::Virial;
 use crate::pairs::types::{PairBlock, PairChunk, PairSizes};
 use crate::simd::kernel::Kernel;
-use crate::simd::simd_f64::{BLOCK_SIZE, CheckedIndices, F64x8, SimdF64, load_vector, store_vector};
+use crate::simd::simd_f64::{SimdF64, load_vector, store_vector};
 use grainlab_core::contact::{ContactKinematics, ContactSprings};
 use grainlab_core::lanes::{LaneVec3, Lanes};
-
-/// Packings with more grains than this prefetch the rows of second grains: smaller ones stay in the cache.
-const PREFETCH_MIN_GRAINS: usize = 8000;
-
-/// Blocks ahead of the present one that are prefetched.
-const PREFETCH_DISTANCE: usize = 6;
 
 /// Contacts without friction: no spins, no tangential springs.
 pub(crate) struct FrictionlessKernel<'a, P, const SIZES: bool> {
@@ -39,161 +31,6 @@ pub(crate) struct FrictionalKernel<
     pub(crate) chunk: PairChunk<'a>,
     /// Whether to sum the virial of periodic pairs.
     pub(crate) with_virial: bool,
-}
-
-type BlockScalars = [f64; BLOCK_SIZE];
-type BlockVectors = [BlockScalars; 3];
-
-/// Intermediate results of a block between stages.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-struct BlockScratch {
-    normal: BlockVectors,
-    overlap: BlockScalars,
-    inverse_distance: BlockScalars,
-    /// On the second grain of each pair, N.
-    force: BlockVectors,
-    /// On both grains, N m. Where sizes differ it is still to be multiplied by the levers of the second and the first grain.
-    moment: BlockVectors,
-    levers: [BlockScalars; 2],
-}
-
-impl BlockScratch {
-    const ZERO: Self = {
-        let zero = [0.0; BLOCK_SIZE];
-        Self {
-            normal: [zero; 3],
-            overlap: zero,
-            inverse_distance: zero,
-            force: [zero; 3],
-            moment: [zero; 3],
-            levers: [zero; 2],
-        }
-    };
-}
-
-/// The law stage of a phase.
-trait LawStage {
-    /// Whether contacts exert moments.
-    const MOMENTS: bool;
-    /// Whether grains differ in size.
-    const SIZES: bool;
-    /// The springs of the contact law.
-    type Springs: ContactSprings;
-
-    /// Second stage: forces of some lanes of a block.
-    fn law<L: SimdF64>(
-        input: &ForceInput<'_, Self::Springs>,
-        block: &mut PairBlock,
-        sizes: Option<&PairSizes>,
-        scratch: &mut BlockScratch,
-        lane: usize,
-    );
-}
-
-/// All pairs of a chunk.
-#[inline(always)]
-fn run_stages<S: LawStage, L: SimdF64>(
-    input: &ForceInput<'_, S::Springs>,
-    chunk: PairChunk<'_>,
-    with_virial: bool,
-) -> Virial {
-    let PairChunk { blocks, sizes, mut periodic, sums } = chunk;
-    let mut virial = Virial::default();
-    let prefetch = input.position.len() > PREFETCH_MIN_GRAINS;
-    let units_per_block = BLOCK_SIZE / L::WIDTH;
-    let end = blocks.len() * units_per_block;
-    // A unit is as many pairs as lanes. Units pass the stages one after the other; two blocks are in work at a time.
-    let mut scratch = [BlockScratch::ZERO; 2];
-    let (mut has_forces, mut touches) =
-        (false, end > 0 && geometry::<S, L>(input, blocks, sizes, &mut scratch, 0));
-    for u in 0..=end {
-        let (touched, before) = (touches, has_forces);
-        let (b, lane) = (u / units_per_block, u % units_per_block * L::WIDTH);
-        if touched {
-            S::law::<L>(input, &mut blocks[b], sizes.get(b), &mut scratch[b % 2], lane);
-        } else if with_virial {
-            store_vector(LaneVec3::<L>::splat(0.0), &mut scratch[b % 2].force, lane);
-        }
-        touches = u + 1 < end && geometry::<S, L>(input, blocks, sizes, &mut scratch, u + 1);
-        if before {
-            let (b, lane) = ((u - 1) / units_per_block, (u - 1) % units_per_block * L::WIDTH);
-            scatter::<S, L>(input.position.len(), &blocks[b], &scratch[b % 2], lane, sums);
-        }
-        has_forces = touched;
-        if u > 0 && u % units_per_block == 0 {
-            let b = u / units_per_block - 1;
-            if with_virial {
-                let force = &scratch[b % 2].force;
-                periodic = virial::add_periodic(&mut virial, periodic, b, input.offset, force);
-            }
-            if prefetch && let Some(ahead) = blocks.get(b + PREFETCH_DISTANCE) {
-                L::prefetch(input.position, &ahead.j);
-                L::prefetch(input.twist, &ahead.j);
-                L::prefetch(sums, &ahead.accumulator_row);
-            }
-        }
-    }
-    virial
-}
-
-/// First stage: geometry of the pairs of unit `u`. Returns whether any touch. If none does, their history is cleared.
-#[inline(always)]
-fn geometry<S: LawStage, L: SimdF64>(
-    input: &ForceInput<'_, S::Springs>,
-    blocks: &mut [PairBlock],
-    sizes: &[PairSizes],
-    scratch: &mut [BlockScratch; 2],
-    u: usize,
-) -> bool {
-    let units_per_block = BLOCK_SIZE / L::WIDTH;
-    let (b, lane) = (u / units_per_block, u % units_per_block * L::WIDTH);
-    let (block, scratch) = (&mut blocks[b], &mut scratch[b % 2]);
-    let geometry = if S::SIZES {
-        Geometry::<L>::new::<_, true>(input, block, sizes.get(b), lane)
-    } else {
-        Geometry::<L>::new::<_, false>(input, block, None, lane)
-    };
-    match geometry {
-        Some(g) => {
-            store_vector(g.normal, &mut scratch.normal, lane);
-            g.overlap.store(&mut scratch.overlap, lane);
-            g.inverse_distance.store(&mut scratch.inverse_distance, lane);
-            true
-        }
-        None => {
-            let zero = LaneVec3::<L>::splat(0.0);
-            zero.x.store(&mut block.contact_radius, lane);
-            store_vector(zero, &mut block.history, lane);
-            false
-        }
-    }
-}
-
-/// Last stage: adds forces and moments to the sums of grains.
-#[inline(always)]
-fn scatter<S: LawStage, L: SimdF64>(
-    grains: usize,
-    block: &PairBlock,
-    scratch: &BlockScratch,
-    lane: usize,
-    sums: &mut [F64x8],
-) {
-    let (rows, zero) = (sums.len(), L::splat(0.0));
-    let to = CheckedIndices::<L>::new(&block.accumulator_row, lane, rows);
-    let from = CheckedIndices::<L>::new(&block.i, lane, grains);
-    let f = load_vector::<L>(&scratch.force, lane);
-    let m = if S::MOMENTS { load_vector::<L>(&scratch.moment, lane) } else { LaneVec3::splat(0.0) };
-    let mut levers = [zero; 2];
-    if S::SIZES && S::MOMENTS {
-        levers = [L::load(&scratch.levers[0], lane), L::load(&scratch.levers[1], lane)];
-    }
-    let components = [f.x, f.y, f.z, levers[0], m.x, m.y, m.z, levers[1]];
-    match (S::MOMENTS, S::SIZES) {
-        (false, _) => L::scatter_add::<false, false>(components, from, to, sums),
-        (true, false) => L::scatter_add::<true, false>(components, from, to, sums),
-        (true, true) => L::scatter_add::<true, true>(components, from, to, sums),
-    }
 }
 
 /// Radii, R* and effective mass of some lanes of a block.
@@ -225,6 +62,49 @@ fn affine_velocity<P, L: Lanes>(input: &ForceInput<'_, P>, l: LaneVec3<L>) -> La
         .add_scaled(LaneVec3::splat_vector(z), l.z)
 }
 
+/// Some lanes of a block as the contact law needs them.
+struct LaneContact<'a, L: SimdF64> {
+    grains: GrainIndices<'a, L>,
+    radius: [L; 2],
+    r_eff: L,
+    m_eff: L,
+    normal: LaneVec3<L>,
+    overlap: L,
+    contact_radius: L,
+    /// Affine part included, m/s.
+    relative_velocity: LaneVec3<L>,
+    /// rad/s.
+    spin_sum: LaneVec3<L>,
+}
+
+impl<'a, L: SimdF64> LaneContact<'a, L> {
+    #[inline(always)]
+    fn new<P, const SIZES: bool>(
+        input: &ForceInput<'_, P>,
+        block: &'a PairBlock,
+        sizes: Option<&PairSizes>,
+        scratch: &BlockScratch,
+        lane: usize,
+    ) -> Self {
+        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
+        let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
+        let grains = GrainIndices::<L>::new(input, &block.i, &block.j, lane);
+        let distance = radius[0] + radius[1] - overlap;
+        let [velocity, spin_sum] = L::gather_relative_motion(input.twist, grains.j, grains.i);
+        Self {
+            grains,
+            radius,
+            r_eff,
+            m_eff,
+            normal,
+            overlap,
+            contact_radius: (r_eff * overlap).sqrt(),
+            relative_velocity: velocity + affine_velocity(input, normal.scale(distance)),
+            spin_sum,
+        }
+    }
+}
+
 impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P, SIZES> {
     const MOMENTS: bool = false;
     const SIZES: bool = SIZES;
@@ -234,22 +114,17 @@ impl<P: ContactSprings, const SIZES: bool> LawStage for FrictionlessKernel<'_, P
     fn law<L: SimdF64>(
         input: &ForceInput<'_, P>,
         block: &mut PairBlock,
+        _: Option<Rolling<'_>>,
         sizes: Option<&PairSizes>,
         scratch: &mut BlockScratch,
         lane: usize,
     ) {
-        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
-        let grains = GrainIndices::<L>::new(input, &block.i, &block.j, lane);
-        let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
-        let contact_radius = (r_eff * overlap).sqrt();
-        let distance = radius[0] + radius[1] - overlap;
-        let [velocity, _] = L::gather_relative_motion(input.twist, grains.j, grains.i);
-        let relative_velocity = velocity + affine_velocity(input, normal.scale(distance));
-        let separation_speed = relative_velocity.dot(normal);
-        let force = input.law.normal_force(overlap, contact_radius, m_eff, separation_speed);
-        contact_radius.store(&mut block.contact_radius, lane);
-        let touching = overlap.gt(L::splat(0.0));
-        let force = LaneVec3::select(touching, normal.scale(force), LaneVec3::splat(0.0));
+        let c = LaneContact::<L>::new::<P, SIZES>(input, block, sizes, scratch, lane);
+        let separation_speed = c.relative_velocity.dot(c.normal);
+        let force = input.law.normal_force(c.overlap, c.contact_radius, c.m_eff, separation_speed);
+        let touching = c.overlap.gt(L::splat(0.0));
+        let force = LaneVec3::select(touching, c.normal.scale(force), LaneVec3::splat(0.0));
+        c.contact_radius.store(&mut block.contact_radius, lane);
         store_vector(force, &mut scratch.force, lane);
     }
 }
@@ -274,38 +149,55 @@ impl<P: ContactSprings, const ADVANCE: bool, const SLIDING: bool, const RESCALED
     fn law<L: SimdF64>(
         input: &ForceInput<'_, P>,
         block: &mut PairBlock,
+        rolling: Option<Rolling<'_>>,
         sizes: Option<&PairSizes>,
         scratch: &mut BlockScratch,
         lane: usize,
     ) {
         let (half, zero) = (L::splat(0.5), LaneVec3::splat(0.0));
-        let (radius, r_eff, m_eff) = sizes_of::<P, L, SIZES>(input, sizes, lane);
-        let (normal, overlap) = (load_vector::<L>(&scratch.normal, lane), L::load(&scratch.overlap, lane));
-        let (contact_radius, before) = ((r_eff * overlap).sqrt(), L::load(&block.contact_radius, lane));
-        let lever = [half.neg_mul_add(overlap, radius[0]), half.neg_mul_add(overlap, radius[1])];
-        let grains = GrainIndices::<L>::new(input, &block.i, &block.j, lane);
-        let [velocity, spin_sum] = L::gather_relative_motion(input.twist, grains.j, grains.i);
+        let c = LaneContact::<L>::new::<P, SIZES>(input, block, sizes, scratch, lane);
+        let (grains, normal, contact_radius) = (c.grains, c.normal, c.contact_radius);
+        let lever = [half.neg_mul_add(c.overlap, c.radius[0]), half.neg_mul_add(c.overlap, c.radius[1])];
+        let spins = || [L::gather_spins(input.twist, grains.i), L::gather_spins(input.twist, grains.j)];
         let spin_velocity = if SIZES {
-            let spins = [L::gather_spins(input.twist, grains.i), L::gather_spins(input.twist, grains.j)];
+            let spins = spins();
             spins[0].scale(lever[0]) + spins[1].scale(lever[1])
         } else {
-            spin_sum.scale(lever[0])
+            c.spin_sum.scale(lever[0])
         };
-        let distance = radius[0] + radius[1] - overlap;
         let kinematics = ContactKinematics {
             normal,
             inverse_distance: L::load(&scratch.inverse_distance, lane),
-            overlap,
+            overlap: c.overlap,
             contact_radius,
-            contact_radius_before: before,
-            m_eff,
-            relative_velocity: velocity + affine_velocity(input, normal.scale(distance)),
+            contact_radius_before: L::load(&block.contact_radius, lane),
+            m_eff: c.m_eff,
+            relative_velocity: c.relative_velocity,
             spin_velocity,
-            spin_sum,
+            spin_sum: c.spin_sum,
         };
         let history = load_vector(&block.history, lane);
         let forces = input.law.full_force::<L, ADVANCE, SLIDING, RESCALED>(&kinematics, history, input.dt);
-        let touching = overlap.gt(L::splat(0.0));
+        let touching = c.overlap.gt(L::splat(0.0));
+        if P::ROLLS
+            && let Some((block, rolling_moment)) = rolling
+        {
+            let [first, second] = spins();
+            let velocity = (second - first).cross(normal).scale(c.r_eff);
+            let history = load_vector(&block.history, lane);
+            let force = input.law.rolling_force::<L, ADVANCE>(
+                &kinematics,
+                velocity,
+                forces.elastic,
+                history,
+                input.dt,
+            );
+            if ADVANCE {
+                store_vector(LaneVec3::select(touching, force.history, zero), &mut block.history, lane);
+            }
+            let moment = LaneVec3::select(touching, normal.cross(force.total).scale(c.r_eff), zero);
+            store_vector(moment, rolling_moment, lane);
+        }
         contact_radius.store(&mut block.contact_radius, lane);
         if ADVANCE {
             store_vector(LaneVec3::select(touching, forces.history, zero), &mut block.history, lane);

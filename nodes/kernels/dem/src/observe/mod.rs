@@ -1,6 +1,10 @@
 //! What the present contacts show: stress, tangent stiffness, force balance; and the running energy balance.
 
 mod contact_sums;
+mod contact_works;
 pub(crate) mod energy;
+pub(crate) mod energy_meter;
 pub(crate) mod observables;
+mod pair_motion;
+mod path_works;
 mod rattlers;

@@ -95,7 +95,7 @@ impl LawVisitor for SumContacts<'_> {
 /// Names the contact with the largest overlap relative to its smaller grain.
 fn overlap_error(state: &State, contacts: &Contacts) -> DemError {
     let radii = |p: &Pair| (state.radius[p.i as usize], state.radius[p.j as usize]);
-    let overlap = |p: &Pair| p.contact_radius * p.contact_radius / effective_radius(radii(p).0, radii(p).1);
+    let overlap = |p: &Pair| p.history.contact_radius.powi(2) / effective_radius(radii(p).0, radii(p).1);
     let depth = |p: &Pair| overlap(p) / radii(p).0.min(radii(p).1);
     let worst = contacts.touching().max_by(|a, b| depth(a).total_cmp(&depth(b)));
     let (first, second, overlap) =

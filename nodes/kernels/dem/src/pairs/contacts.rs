@@ -2,7 +2,7 @@
 
 use super::images::Images;
 use super::subdomain_pairs::{PairsBuilder, SubdomainPairs};
-use super::types::{Pair, PairBlock, SavedContact};
+use super::types::{History, Pair, PairBlock, SavedContact};
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::{State, vector};
 use crate::simd::simd_f64::BLOCK_SIZE;
@@ -35,9 +35,9 @@ impl Contacts {
     ) -> Self {
         let mut images = Images::new(state);
         let mut pairs = PairsBuilder::new(state, Subdomain::whole(state.len()), expected);
-        for (i, j, image, contact_radius, history) in saved {
+        for SavedContact { i, j, image, history } in saved {
             let image = images.index(image, &state.cell);
-            pairs.push(state, &images, Pair { i, j, image, contact_radius, history });
+            pairs.push(state, &images, Pair { i, j, image, history });
         }
         Self { images, subdomains: vec![pairs.finish()] }
     }
@@ -46,7 +46,12 @@ impl Contacts {
     pub(crate) fn from_packing(packing: &Packing, state: &State) -> Self {
         let saved = packing.contacts.iter().map(|c| {
             let (r_i, r_j) = (state.radius[c.i as usize], state.radius[c.j as usize]);
-            (c.i, c.j, c.image, (effective_radius(r_i, r_j) * c.overlap).sqrt(), c.tangential_force)
+            let history = History {
+                contact_radius: (effective_radius(r_i, r_j) * c.overlap).sqrt(),
+                tangential: c.tangential_force,
+                rolling: c.rolling_force,
+            };
+            SavedContact { i: c.i, j: c.j, image: c.image, history }
         });
         Self::from_saved(state, saved, packing.contacts.len())
     }
@@ -61,15 +66,24 @@ impl Contacts {
         self.subdomains.iter().map(|s| s.owned_blocks().len()).sum::<usize>() * BLOCK_SIZE
     }
 
+    /// The pair in each place, in the order of the sum; `None` where it only pads a block.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = Option<Pair>> {
+        self.subdomains.iter().flat_map(SubdomainPairs::owned_pairs)
+    }
+
     /// Pairs that touch, in the order of the sum.
     pub(crate) fn touching(&self) -> impl Iterator<Item = Pair> {
-        let pairs = self.blocks().flat_map(|b| (0..BLOCK_SIZE).filter_map(|lane| b.pair(lane)));
-        pairs.filter(Pair::touches)
+        self.pairs().flatten().filter(Pair::touches)
     }
 
     /// Pairs that touch, to be saved.
     pub(crate) fn saved(&self) -> impl Iterator<Item = SavedContact> {
-        self.touching().map(|p| (p.i, p.j, self.images.number(p.image), p.contact_radius, p.history))
+        self.touching().map(|p| SavedContact {
+            i: p.i,
+            j: p.j,
+            image: self.images.number(p.image),
+            history: p.history,
+        })
     }
 
     /// Branch vector of a pair, from `i` to the image of `j`, m.
@@ -94,17 +108,16 @@ impl Contacts {
                 overlap,
                 normal: branch / distance,
                 normal_force: state.law.normal_force(&state.material, r_eff, overlap),
-                tangential_force: p.history,
+                tangential_force: p.history.tangential,
+                rolling_force: p.history.rolling,
             })
         };
         self.touching().filter_map(contact).collect()
     }
 
-    /// Sets all tangential forces to zero.
+    /// Sets all tangential and rolling forces to zero.
     pub(crate) fn clear_history(&mut self) {
-        for block in self.subdomains.iter_mut().flat_map(|s| &mut s.blocks) {
-            block.history = [[0.0; BLOCK_SIZE]; 3];
-        }
+        self.subdomains.iter_mut().for_each(SubdomainPairs::clear_history);
     }
 }
 

@@ -7,14 +7,14 @@
 use super::contacts::Contacts;
 use super::grid::Grid;
 use super::images::Images;
-use super::subdomain_pairs::{PairsBuilder, SubdomainPairs};
-use super::types::{Pair, PairBlock};
+use super::subdomain_pairs::PairsBuilder;
+use super::types::{History, Pair, PairBlock, RollingBlock};
 use crate::domain::compute::Compute;
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::{State, vector};
 use crate::error::DemError;
 use crate::simd::simd_f64::BLOCK_SIZE;
-use grainlab_core::{Cell, Vec3};
+use grainlab_core::Cell;
 use std::ops::Range;
 
 /// All pairs closer than R_i + R_j + skin when they were found, sorted by (i, j, image). Self-images are included; each pair
@@ -104,8 +104,8 @@ impl Neighbours {
             }
             for &q in &near[..count] {
                 let (j, image) = (self.j[q], self.image[q]);
-                let (contact_radius, history) = old.take(i as u32, j, images.number(image));
-                pairs.push(state, images, Pair { i: i as u32, j, image, contact_radius, history });
+                let history = old.take(i as u32, j, images.number(image));
+                pairs.push(state, images, Pair { i: i as u32, j, image, history });
             }
         }
     }
@@ -114,8 +114,8 @@ impl Neighbours {
 /// Reads the history of touching pairs, in order.
 struct HistoryCursor<'a> {
     images: &'a Images,
-    /// The blocks with pairs that may be asked for, in order.
-    blocks: Vec<&'a [PairBlock]>,
+    /// The blocks with pairs that may be asked for, in order, with their rolling forces.
+    blocks: Vec<(&'a [PairBlock], &'a [RollingBlock])>,
     /// The next pair may be in this run of blocks, at this slot.
     run: usize,
     slot: usize,
@@ -125,16 +125,16 @@ impl<'a> HistoryCursor<'a> {
     /// For the pairs of subdomain `k`.
     fn new(old: &'a Contacts, k: usize, subdomain: &Subdomain) -> Self {
         let blocks = match old.subdomains.get(k) {
-            Some(pairs) if pairs.subdomain() == subdomain => vec![&pairs.blocks[..]],
-            _ => old.subdomains.iter().map(SubdomainPairs::owned_blocks).collect(),
+            Some(pairs) if pairs.subdomain() == subdomain => vec![(&pairs.blocks[..], &pairs.rolling[..])],
+            _ => old.subdomains.iter().map(|s| (s.owned_blocks(), s.owned_rolling())).collect(),
         };
         Self { images: &old.images, blocks, run: 0, slot: 0 }
     }
 
-    /// Contact radius and history of a pair, zero where it did not touch. Pairs must be asked for in order.
+    /// What a pair remembers, zero where it did not touch. Pairs must be asked for in order.
     #[inline]
-    fn take(&mut self, i: u32, j: u32, image: [i8; 3]) -> (f64, Vec3) {
-        while let Some(blocks) = self.blocks.get(self.run) {
+    fn take(&mut self, i: u32, j: u32, image: [i8; 3]) -> History {
+        while let Some((blocks, rolling)) = self.blocks.get(self.run) {
             let Some(block) = blocks.get(self.slot / BLOCK_SIZE) else {
                 (self.run, self.slot) = (self.run + 1, 0);
                 continue;
@@ -147,21 +147,21 @@ impl<'a> HistoryCursor<'a> {
                     break;
                 }
                 if order.is_eq() {
+                    let rolling = rolling.get(self.slot / BLOCK_SIZE);
                     self.slot += 1;
-                    let h = &block.history;
-                    return (block.contact_radius[lane], Vec3::new(h[0][lane], h[1][lane], h[2][lane]));
+                    return block.history(rolling, lane);
                 }
             }
             self.slot += 1;
         }
-        (0.0, Vec3::zeros())
+        History::default()
     }
 }
 
 /// A table of images with direct access to the near ones.
 struct ImageRows {
     images: Images,
-    /// Rows of images up to [`NEAR`] cells away; 0 where there is none yet.
+    /// Rows of images up to [`NEAR`] cells away; 0 for images that have no row yet.
     near: [u32; (2 * NEAR as usize + 1).pow(3)],
 }
 

@@ -1,7 +1,7 @@
 //! The pairs that one thread works on.
 
 use super::images::Images;
-use super::types::{PADDING, Pair, PairBlock, PairChunk, PairSizes, PeriodicPair};
+use super::types::{PADDING, Pair, PairBlock, PairChunk, PairSizes, PeriodicPair, RollingBlock};
 use crate::domain::accumulator::{AccumulatorBuilder, ForceAccumulator, PartAccumulator, StoredForces};
 use crate::domain::decomposition::Subdomain;
 use crate::domain::state::State;
@@ -17,6 +17,8 @@ use grainlab_core::effective_radius;
 pub(crate) struct SubdomainPairs {
     subdomain: Subdomain,
     pub(crate) blocks: Vec<PairBlock>,
+    /// Beside each block; empty where contacts do not resist rolling.
+    pub(crate) rolling: Vec<RollingBlock>,
     sizes: Vec<PairSizes>,
     /// First block of each chunk up to the last owned one, and the end.
     chunk_start: Vec<u32>,
@@ -32,6 +34,7 @@ pub(crate) struct SubdomainPairs {
 /// The pairs of one part, to be evaluated chunk after chunk.
 pub(crate) struct PartPairs<'a> {
     blocks: &'a mut [PairBlock],
+    rolling: &'a mut [RollingBlock],
     /// Sizes in all parts.
     sizes: &'a [PairSizes],
     /// Pairs across the faces in all parts.
@@ -52,9 +55,11 @@ impl PartPairs<'_> {
     pub(crate) fn chunk(&mut self, c: usize) -> PairChunk<'_> {
         let blocks = self.chunk_start[c] as usize..self.chunk_start[c + 1] as usize;
         let first = self.chunk_start[0] as usize;
+        let own = blocks.start - first..blocks.end - first;
         PairChunk {
-            sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks.clone()] },
-            blocks: &mut self.blocks[blocks.start - first..blocks.end - first],
+            sizes: if self.sizes.is_empty() { &[] } else { &self.sizes[blocks] },
+            rolling: if self.rolling.is_empty() { &mut [] } else { &mut self.rolling[own.clone()] },
+            blocks: &mut self.blocks[own],
             periodic: &self.periodic[self.periodic_start[c] as usize..self.periodic_start[c + 1] as usize],
             sums: self.accumulator.rows(),
         }
@@ -83,7 +88,29 @@ impl SubdomainPairs {
 
     /// The blocks of pairs whose first grain is owned.
     pub(crate) fn owned_blocks(&self) -> &[PairBlock] {
-        &self.blocks[self.chunk_start[self.subdomain.chunks().start] as usize..]
+        &self.blocks[self.first_owned()..]
+    }
+
+    /// The rolling forces of those blocks; empty where contacts do not resist rolling.
+    pub(crate) fn owned_rolling(&self) -> &[RollingBlock] {
+        self.rolling.get(self.first_owned()..).unwrap_or(&[])
+    }
+
+    /// The pair in each place of those blocks; `None` where it only pads a block.
+    pub(crate) fn owned_pairs(&self) -> impl Iterator<Item = Option<Pair>> {
+        let rolling = self.owned_rolling();
+        let blocks = self.owned_blocks().iter().enumerate();
+        blocks.flat_map(move |(b, block)| (0..BLOCK_SIZE).map(move |lane| block.pair(rolling.get(b), lane)))
+    }
+
+    fn first_owned(&self) -> usize {
+        self.chunk_start[self.subdomain.chunks().start] as usize
+    }
+
+    /// Sets all tangential and rolling forces to zero.
+    pub(crate) fn clear_history(&mut self) {
+        self.blocks.iter_mut().for_each(|block| block.history = [[0.0; BLOCK_SIZE]; 3]);
+        self.rolling.fill(RollingBlock::default());
     }
 
     /// The pairs of one part. Earlier parts must be complete.
@@ -93,6 +120,7 @@ impl SubdomainPairs {
         let (chunk_start, periodic_start) = (&self.chunk_start[chunks.clone()], &self.periodic_start[chunks]);
         let blocks = chunk_start[0] as usize..chunk_start[chunk_start.len() - 1] as usize;
         PartPairs {
+            rolling: if self.rolling.is_empty() { &mut [] } else { &mut self.rolling[blocks.clone()] },
             blocks: &mut self.blocks[blocks],
             sizes: &self.sizes,
             periodic: &self.periodic,
@@ -115,6 +143,7 @@ pub(crate) struct PairsBuilder {
     /// Pairs in the last block.
     filled: usize,
     is_monodisperse: bool,
+    resists_rolling: bool,
 }
 
 impl PairsBuilder {
@@ -124,6 +153,7 @@ impl PairsBuilder {
         let pairs = SubdomainPairs {
             subdomain: subdomain.clone(),
             blocks: Vec::with_capacity(blocks),
+            rolling: Vec::new(),
             sizes: Vec::new(),
             chunk_start: vec![0],
             periodic: Vec::new(),
@@ -132,7 +162,13 @@ impl PairsBuilder {
             accumulator: ForceAccumulator::default(),
         };
         let accumulator = AccumulatorBuilder::new(subdomain, state.len());
-        Self { pairs, accumulator, filled: BLOCK_SIZE, is_monodisperse: state.is_monodisperse() }
+        Self {
+            pairs,
+            accumulator,
+            filled: BLOCK_SIZE,
+            is_monodisperse: state.is_monodisperse(),
+            resists_rolling: state.law.rolling.is_some(),
+        }
     }
 
     /// Adds a pair. Pairs must come sorted by (i, j, image).
@@ -160,12 +196,17 @@ impl PairsBuilder {
             pairs.periodic.push(PeriodicPair { slot, image: pair.image });
         }
         if let Some(block) = pairs.blocks.last_mut() {
-            block.contact_radius[lane] = pair.contact_radius;
+            block.contact_radius[lane] = pair.history.contact_radius;
             for k in 0..3 {
-                block.history[k][lane] = pair.history[k];
+                block.history[k][lane] = pair.history.tangential[k];
             }
             (block.i[lane], block.j[lane]) = (pair.i, pair.j);
             (block.image[lane], block.accumulator_row[lane]) = (pair.image, accumulator_row);
+        }
+        if let Some(rolling) = pairs.rolling.last_mut() {
+            for k in 0..3 {
+                rolling.history[k][lane] = pair.history.rolling[k];
+            }
         }
         if let Some(sizes) = pairs.sizes.last_mut() {
             let (r_i, r_j) = (state.radius[i], state.radius[j]);
@@ -186,6 +227,9 @@ impl PairsBuilder {
             image: [PADDING; BLOCK_SIZE],
             accumulator_row: [(i % CHUNK_SIZE) as u32; BLOCK_SIZE],
         });
+        if self.resists_rolling {
+            self.pairs.rolling.push(RollingBlock::default());
+        }
         if !self.is_monodisperse {
             let r = state.radius[i];
             self.pairs.sizes.push(PairSizes {

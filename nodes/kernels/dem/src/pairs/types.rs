@@ -22,6 +22,13 @@ pub(crate) struct PairBlock {
     pub(crate) accumulator_row: [u32; BLOCK_SIZE],
 }
 
+/// Elastic rolling forces of eight pairs, N; stored only where contacts resist rolling.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub(crate) struct RollingBlock {
+    pub(crate) history: [[f64; BLOCK_SIZE]; 3],
+}
+
 /// Sizes of eight pairs; stored only where grains differ in size.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -48,18 +55,34 @@ pub(crate) struct Pair {
     pub(crate) j: u32,
     /// Row in the table of periodic images.
     pub(crate) image: u32,
+    pub(crate) history: History,
+}
+
+/// What a contact remembers of the steps before.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct History {
     /// Contact radius √(R* δ), m; 0 where the pair does not touch.
     pub(crate) contact_radius: f64,
     /// Elastic tangential force on `i`, N.
-    pub(crate) history: Vec3,
+    pub(crate) tangential: Vec3,
+    /// Elastic rolling force, N: its torque on `i` is R* n × it. Zero without resistance to rolling.
+    pub(crate) rolling: Vec3,
 }
 
-/// A contact as it is saved: grains, image, contact radius √(R* δ) (m) and elastic tangential force (N).
-pub(crate) type SavedContact = (u32, u32, [i8; 3], f64, Vec3);
+/// A contact as it is saved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SavedContact {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    pub(crate) image: [i8; 3],
+    pub(crate) history: History,
+}
 
 /// The pairs of one chunk, for the force kernel.
 pub(crate) struct PairChunk<'a> {
     pub(crate) blocks: &'a mut [PairBlock],
+    /// Empty where contacts do not resist rolling.
+    pub(crate) rolling: &'a mut [RollingBlock],
     /// Empty where grains are of one size.
     pub(crate) sizes: &'a [PairSizes],
     /// Pairs across the faces of the cell.
@@ -70,21 +93,30 @@ pub(crate) struct PairChunk<'a> {
 
 impl Pair {
     pub(crate) fn touches(&self) -> bool {
-        self.contact_radius > 0.0
+        self.history.contact_radius > 0.0
     }
 }
 
 impl PairBlock {
+    /// What the contact in a lane remembers.
+    #[inline(always)]
+    pub(crate) fn history(&self, rolling: Option<&RollingBlock>, lane: usize) -> History {
+        let vector = |h: &[[f64; BLOCK_SIZE]; 3]| Vec3::new(h[0][lane], h[1][lane], h[2][lane]);
+        History {
+            contact_radius: self.contact_radius[lane],
+            tangential: vector(&self.history),
+            rolling: rolling.map_or_else(Vec3::zeros, |r| vector(&r.history)),
+        }
+    }
+
     /// The pair in a lane; `None` where it only pads the block.
     #[inline(always)]
-    pub(crate) fn pair(&self, lane: usize) -> Option<Pair> {
-        let h = &self.history;
+    pub(crate) fn pair(&self, rolling: Option<&RollingBlock>, lane: usize) -> Option<Pair> {
         (self.image[lane] != PADDING).then(|| Pair {
             i: self.i[lane],
             j: self.j[lane],
             image: self.image[lane],
-            contact_radius: self.contact_radius[lane],
-            history: Vec3::new(h[0][lane], h[1][lane], h[2][lane]),
+            history: self.history(rolling, lane),
         })
     }
 }

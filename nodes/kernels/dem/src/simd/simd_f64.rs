@@ -101,6 +101,34 @@ pub(crate) trait SimdF64: Lanes {
         to: CheckedIndices<'_, Self>,
         sums: &mut [F64x8],
     );
+    /// Adds forces and moments of pairs to their grains, pair after pair: the force to row `to` of the sums, the opposite one
+    /// to row `from` modulo [`CHUNK_SIZE`], and the second moment to `to`, the first to `from`.
+    #[inline(always)]
+    fn scatter_add_each(
+        force: LaneVec3<Self>,
+        moments: [LaneVec3<Self>; 2],
+        from: CheckedIndices<'_, Self>,
+        to: CheckedIndices<'_, Self>,
+        sums: &mut [F64x8],
+    ) {
+        let mut components = [[[0.0; BLOCK_SIZE]; 3]; 3];
+        for (v, stored) in [force, moments[0], moments[1]].into_iter().zip(&mut components) {
+            store_vector(v, stored, 0);
+        }
+        for k in 0..Self::WIDTH {
+            let [f, first, second] = components.map(|v| [v[0][k], v[1][k], v[2][k]]);
+            let row = &mut sums[to.get(k)].0;
+            for c in 0..3 {
+                row[c] += f[c];
+                row[4 + c] += second[c];
+            }
+            let row = &mut sums[from.get(k) % CHUNK_SIZE].0;
+            for c in 0..3 {
+                row[c] -= f[c];
+                row[4 + c] += first[c];
+            }
+        }
+    }
     /// Adds eight components to `sum`, lane after lane.
     #[inline(always)]
     fn reduce_add(components: [Self; 8], sum: &mut [f64; 8]) {

@@ -4,7 +4,8 @@ use crate::domain::state::State;
 use crate::pairs::contacts::Contacts;
 use crate::pairs::types::Pair;
 use crate::settings::{EngineSettings, Features};
-use grainlab_core::contact::{ContactSprings, LawVisitor};
+use grainlab_core::contact::{ContactSprings, LawVisitor, RollingResistance};
+use grainlab_core::effective_radius;
 
 /// m R²/I of a sphere.
 const INERTIA_RATIO: f64 = 2.5;
@@ -13,13 +14,15 @@ const INERTIA_RATIO: f64 = 2.5;
 ///
 /// With velocities half a step behind, grains of stiffness K and damping C (per mass) are stable while
 /// 4 − h² K − 2 h C ≥ 0: the roots of a mode x are those of the scalar step with k = x·Kx and c = x·Cx. The relative
-/// displacement B_i u_i + B_j u_j of a contact obeys |B u|² ≤ (1 + θ) |B_i u_i|² + (1 + 1/θ) |B_j u_j|² for any θ > 0. This
-/// leaves one block of 6 × 6 per grain, translations and rotations:
+/// displacement at a contact is B u = B_i u_i + B_j u_j. Its square |B u|² is at most (1 + θ) |B_i u_i|² + (1 + 1/θ) |B_j u_j|²,
+/// for any θ > 0. This leaves one block of 6 × 6 per grain, translations and rotations:
 ///
 /// 4 − Σ_c (1 + s_j/s_i) B_iᵀ (h² k_c + 2 h c_c) B_i/m_i ≥ 0.
 ///
 /// θ = s_j/s_i, with s_i the sum of h² k_c + 2 h c_c over the contacts of a grain (per mass) at an h near the result: a grain
 /// gains from its softer and heavier neighbours, as in Merris, Linear Algebra Appl. 285, 33 (1998) for graphs.
+///
+/// A rolling spring adds the relative displacement R* (ω_j − ω_i) × n to B u, with its own stiffness and dashpot.
 ///
 /// A rigorous bound for contacts that stick, for any damping and sizes. It is 0.75 to 0.95 of the true limit in packings of
 /// equal grains, and 0.66 to 0.93 for sizes from 1 to 5; lower with more damping. (Tests check 0.7 and 0.6.)
@@ -61,9 +64,17 @@ impl Load {
     }
 }
 
-/// Σ w (1, n, n ⊗ n) over the contacts of a grain. In the first row w is k_n, in the second the coefficient of the normal
-/// dashpot, both per mass. n points outward; n ⊗ n is in the order xx, yx, yy, zx, zy, zz.
-type GrainBlock = [[f64; 10]; 2];
+/// Σ w (1, n, n ⊗ n) over the contacts of a grain. n points outward; n ⊗ n is in the order xx, yx, yy, zx, zy, zz.
+type DirectionSums = [f64; 10];
+
+/// The springs and dashpots of a grain, per mass.
+#[derive(Clone, Copy, Default)]
+struct GrainBlock {
+    /// With w = k_n, and with that of the normal dashpot.
+    contact: [DirectionSums; 2],
+    /// With w = (R*/R)² k of the rolling springs, and of the rolling dashpots.
+    rolling: [DirectionSums; 2],
+}
 
 /// The contacts present as springs and dashpots.
 struct Springs<'a> {
@@ -73,6 +84,8 @@ struct Springs<'a> {
     list: Vec<(Pair, f64, f64)>,
     /// k_t/k_n, and its square root c_t/c_n.
     ratios: [f64; 2],
+    /// Stiffness (N/m) and coefficient of the dashpot (N s/m) of rolling; zero where nothing resists it.
+    rolling: [f64; 2],
 }
 
 /// The springs and dashpots of the present contacts, under any law.
@@ -90,13 +103,15 @@ impl<'a> LawVisitor for CollectSprings<'a> {
         let twice = 2.0 * settings.damping;
         let mut list = Vec::with_capacity(contacts.slots());
         list.extend(contacts.touching().map(|p| {
-            let (k, m) = (springs.normal_stiffness(p.contact_radius), &state.inverse_mass);
+            let (k, m) = (springs.normal_stiffness(p.history.contact_radius), &state.inverse_mass);
             let dashpot = twice * (k / (m[p.i as usize] + m[p.j as usize])).sqrt();
             (p, k, dashpot)
         }));
         let frictional = settings.features() != Features::Frictionless;
         let ratio = if frictional { springs.stiffness_ratio() } else { 0.0 };
-        Springs { state, contacts, list, ratios: [ratio, ratio.sqrt()] }
+        let resistance = if frictional { springs.rolling() } else { RollingResistance::NONE };
+        let rolling = [resistance.stiffness, resistance.damping];
+        Springs { state, contacts, list, ratios: [ratio, ratio.sqrt()], rolling }
     }
 }
 
@@ -105,30 +120,41 @@ impl Springs<'_> {
     fn load(&self, block: &GrainBlock) -> Load {
         // The largest eigenvalue of one contact is that along it, or that across it, which also rotates the grain.
         let [stiffest, thickest] = self.ratios.map(|ratio| ((1.0 + INERTIA_RATIO) * ratio).max(1.0));
-        Load { stiffness: stiffest * block[0][0], damping: thickest * block[1][0] }
+        let [k, c] = block.rolling.map(|sums| INERTIA_RATIO * sums[0]);
+        Load { stiffness: stiffest * block.contact[0][0] + k, damping: thickest * block.contact[1][0] + c }
+    }
+
+    /// (R*/R)² for both grains of a pair.
+    fn rolling_levers(&self, p: &Pair) -> [f64; 2] {
+        let radius = [p.i, p.j].map(|grain| self.state.radius[grain as usize]);
+        let r_eff = effective_radius(radius[0], radius[1]);
+        radius.map(|r| (r_eff / r) * (r_eff / r))
     }
 
     /// The load of each grain with θ = 1.
     fn loads(&self) -> Vec<Load> {
         let mut sums = vec![[0.0; 2]; self.state.len()];
+        let mut rolling = vec![0.0; self.state.len()];
         for (p, k, c) in &self.list {
-            for grain in [p.i as usize, p.j as usize] {
+            for (grain, lever) in [p.i as usize, p.j as usize].into_iter().zip(self.rolling_levers(p)) {
                 sums[grain][0] += k;
                 sums[grain][1] += c;
+                rolling[grain] += lever;
             }
         }
         let [stiffest, thickest] = self.ratios.map(|ratio| 2.0 * ((1.0 + INERTIA_RATIO) * ratio).max(1.0));
-        let load = |(sum, m): (&[f64; 2], &f64)| Load {
-            stiffness: stiffest * sum[0] * m,
-            damping: thickest * sum[1] * m,
+        let [k, c] = self.rolling.map(|w| 2.0 * INERTIA_RATIO * w);
+        let load = |((sum, rolling), m): ((&[f64; 2], &f64), &f64)| Load {
+            stiffness: (stiffest * sum[0] + k * rolling) * m,
+            damping: (thickest * sum[1] + c * rolling) * m,
         };
-        sums.iter().zip(&self.state.inverse_mass).map(load).collect()
+        sums.iter().zip(&rolling).zip(&self.state.inverse_mass).map(load).collect()
     }
 
     /// The block of each grain, θ = s_j/s_i.
     fn blocks(&self, s: &[f64]) -> Vec<GrainBlock> {
         let state = self.state;
-        let mut blocks = vec![[[0.0; 10]; 2]; state.len()];
+        let mut blocks = vec![GrainBlock::default(); state.len()];
         for (p, k, c) in &self.list {
             let (i, j) = (p.i as usize, p.j as usize);
             let branch = self.contacts.branch(p, state);
@@ -136,14 +162,23 @@ impl Springs<'_> {
             let n = branch / distance;
             let half = 0.5 * (state.radius[i] + state.radius[j] - distance);
             let both = s[i] + s[j];
-            for (grain, n) in [(i, n), (j, -n)] {
+            for ((grain, n), rolling) in [(i, n), (j, -n)].into_iter().zip(self.rolling_levers(p)) {
                 let weight = both / s[grain] * state.inverse_mass[grain];
                 // The lever is R − δ/2. With l = 1 − δ/2R convexity has (t + l r)² ≤ (t + r)² + (1 − l) t².
                 let whole = 1.0 + half / state.radius[grain];
                 let row =
                     [whole, n.x, n.y, n.z, n.x * n.x, n.y * n.x, n.y * n.y, n.z * n.x, n.z * n.y, n.z * n.z];
-                for (sum, w) in blocks[grain].iter_mut().zip([weight * k, weight * c]) {
+                let add = |sum: &mut DirectionSums, w: f64| {
                     sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += w * x);
+                };
+                let block = &mut blocks[grain];
+                for (sum, w) in block.contact.iter_mut().zip([*k, *c]) {
+                    add(sum, weight * w);
+                }
+                if self.rolling[0] > 0.0 {
+                    for (sum, w) in block.rolling.iter_mut().zip(self.rolling) {
+                        add(sum, weight * rolling * w);
+                    }
                 }
             }
         }
@@ -169,12 +204,14 @@ impl Springs<'_> {
 
     /// Whether 4 − h² K − 2 h C is positive definite. Rotations are scaled so that their inertia is the mass.
     fn is_stable(&self, block: &GrainBlock, h: f64) -> bool {
-        // Sums with the tangential coefficients, and the excess of the normal ones.
-        let (mut across, mut excess) = ([0.0; 10], [0.0; 10]);
-        for ((sums, ratio), power) in block.iter().zip(self.ratios).zip([h * h, 2.0 * h]) {
+        // Sums with the tangential coefficients, the excess of the normal ones, and all that resists rotation.
+        let (mut across, mut excess, mut turning) = ([0.0; 10], [0.0; 10], [0.0; 10]);
+        for (which, power) in [h * h, 2.0 * h].into_iter().enumerate() {
+            let (sums, ratio) = (&block.contact[which], self.ratios[which]);
             for k in 0..10 {
                 across[k] += power * ratio * sums[k];
                 excess[k] += power * (1.0 - ratio) * sums[k];
+                turning[k] += power * (ratio * sums[k] + block.rolling[which][k]);
             }
         }
         let mut m = [[0.0; 6]; 6];
@@ -182,11 +219,11 @@ impl Springs<'_> {
         for row in 0..3 {
             for column in 0..=row {
                 m[row][column] = -excess[k];
-                m[row + 3][column + 3] = INERTIA_RATIO * across[k];
+                m[row + 3][column + 3] = INERTIA_RATIO * turning[k];
                 k += 1;
             }
             m[row][row] += 4.0 - across[0];
-            m[row + 3][row + 3] += 4.0 - INERTIA_RATIO * across[0];
+            m[row + 3][row + 3] += 4.0 - INERTIA_RATIO * turning[0];
         }
         let [_, x, y, z, ..] = across.map(|v| INERTIA_RATIO.sqrt() * v);
         m[3][..3].copy_from_slice(&[0.0, z, -y]);
@@ -231,7 +268,14 @@ pub(crate) fn collision(state: &State, speed: f64, damping: f64) -> f64 {
     let radius = state.smallest_radius;
     let (r_eff, m_eff) = (0.5 * radius, 0.5 * state.material.sphere_mass(radius));
     let stiffness = state.law.visit(&state.material, CollisionStiffness { r_eff, m_eff, speed });
-    2.0 * (m_eff / stiffness).sqrt() * ((1.0 + damping * damping).sqrt() - damping)
+    let normal = 2.0 * (m_eff / stiffness).sqrt() * ((1.0 + damping * damping).sqrt() - damping);
+    // Relative rolling: 4 − h² K − 2 h C with K = R*² k (1/I + 1/I) = INERTIA_RATIO k/m, and so C.
+    let mass = 2.0 * m_eff;
+    let load = |r: RollingResistance| Load {
+        stiffness: 0.5 * INERTIA_RATIO * r.stiffness / mass,
+        damping: 0.5 * INERTIA_RATIO * r.damping / mass,
+    };
+    state.law.rolling.map_or(normal, |r| normal.min(load(r).step()))
 }
 
 /// Normal stiffness at the largest overlap of a collision, N/m, under any law.

@@ -224,7 +224,16 @@ impl Sample {
             let overlap = a + b - branch.norm();
             let normal_force = p.material.normal_force(effective_radius(a, b), overlap);
             let (normal, tangential_force) = (branch.normalize(), vector(&r[5..]));
-            p.contacts.push(Contact { i, j, image, overlap, normal, normal_force, tangential_force });
+            p.contacts.push(Contact {
+                i,
+                j,
+                image,
+                overlap,
+                normal,
+                normal_force,
+                tangential_force,
+                rolling_force: Vec3::zeros(),
+            });
         }
         p.validated().unwrap()
     }

@@ -4,7 +4,7 @@
 //! damping feeds a limit cycle) stays finite; never a number that is not one.
 
 use crate::support::*;
-use grainlab_core::contact::TangentialLaw;
+use grainlab_core::contact::{RollingResistance, TangentialLaw};
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Contact, Mat3, Packing, Vec3};
 use grainlab_dem::{DemError, Engine, TimeStep};
@@ -63,7 +63,7 @@ fn two_grains_at_105_hundredths_of_the_exact_limit_are_caught_and_stay_finite() 
     }
 }
 
-/// The packing's contacts as springs and dashpots between grains that stick, or, without friction, only push.
+/// The packing's contacts as springs and dashpots between grains that stick, rolling ones too; without friction, they only push.
 struct Linear<'a> {
     packing: &'a Packing,
     frictional: bool,
@@ -71,15 +71,15 @@ struct Linear<'a> {
 }
 
 impl Linear<'_> {
-    /// y = Σ Bᵀ w B x, with weights w (normal, tangential) of each contact, in coordinates in which inertia is 1.
-    fn apply(&self, weights: impl Fn(&Contact) -> [f64; 2], x: &[[Vec3; 2]]) -> Vec<[Vec3; 2]> {
+    /// y = Σ Bᵀ w B x, with weights w (normal, tangential, rolling) of each contact, in coordinates in which inertia is 1.
+    fn apply(&self, weights: impl Fn(&Contact) -> [f64; 3], x: &[[Vec3; 2]]) -> Vec<[Vec3; 2]> {
         let p = self.packing;
         let root = |i: u32| p.material.sphere_mass(p.radii[i as usize]).sqrt();
         let turn = |i: u32| 0.4f64.sqrt() * p.radii[i as usize] * root(i);
         let lever = |i: u32, c: &Contact| p.radii[i as usize] - 0.5 * c.overlap;
         let mut y = vec![[Vec3::zeros(); 2]; x.len()];
         for c in &p.contacts {
-            let [w_n, w_t] = weights(c);
+            let [w_n, w_t, w_r] = weights(c);
             let velocity = |i: u32| x[i as usize][0] / root(i);
             let mut relative = velocity(c.j) - velocity(c.i);
             for i in [c.i, c.j] {
@@ -92,6 +92,14 @@ impl Linear<'_> {
                 y[i as usize][0] += force * (sign / root(i));
                 y[i as usize][1] -= c.normal.cross(&force) * (lever(i, c) / turn(i));
             }
+            if self.frictional {
+                let spin = |i: u32| x[i as usize][1] / turn(i);
+                let r_eff = p.effective_radius(c);
+                let rolling = (spin(c.j) - spin(c.i)).cross(&c.normal) * (w_r * r_eff);
+                for (i, sign) in [(c.i, -1.0), (c.j, 1.0)] {
+                    y[i as usize][1] += c.normal.cross(&rolling) * (sign * r_eff / turn(i));
+                }
+            }
         }
         y
     }
@@ -101,12 +109,13 @@ impl Linear<'_> {
         let p = self.packing;
         let springs = |c: &Contact| {
             let (k_n, k_t) = p.contact_stiffness(c);
-            [k_n, k_t]
+            [k_n, k_t, p.law.rolling.map_or(0.0, |r| r.stiffness)]
         };
         let dashpots = |c: &Contact| {
             let mass = |i: u32| p.material.sphere_mass(p.radii[i as usize]);
             let m_eff = mass(c.i) * mass(c.j) / (mass(c.i) + mass(c.j));
-            springs(c).map(|k| 2.0 * self.damping * (m_eff * k).sqrt())
+            let [c_n, c_t, _] = springs(c).map(|k| 2.0 * self.damping * (m_eff * k).sqrt());
+            [c_n, c_t, p.law.rolling.map_or(0.0, |r| r.damping)]
         };
         let dot = |a: &[[Vec3; 2]], b: &[[Vec3; 2]]| -> f64 {
             a.iter().zip(b).map(|(a, b)| a[0].dot(&b[0]) + a[1].dot(&b[1])).sum()
@@ -243,6 +252,31 @@ fn the_time_step_of_unequal_grains_is_below_the_true_limit_and_not_far_below() {
     }
     assert!(shares.len() >= 20, "contacts set the step in most cases: {}", shares.len());
     assert!(shares.iter().any(|s| *s > 0.87), "{shares:?}");
+}
+
+/// Expected: as without resistance to rolling, where rolling is soft and where it alone sets the step.
+#[test]
+fn the_time_step_with_resistance_to_rolling_is_below_the_true_limit_and_not_far_below() {
+    let p = unequal(0.7, 1, 0.3);
+    let (k_n, _) = p.contact_stiffness(&p.contacts[0]);
+    for stiffness in [0.1, 1.0, 10.0, 100.0] {
+        for damping in [0.0, 0.3] {
+            let mass = p.material.sphere_mass(RADIUS);
+            let rolling = RollingResistance {
+                stiffness: stiffness * k_n,
+                damping: 2.0 * damping * (stiffness * k_n * mass).sqrt(),
+                friction: 0.1,
+            };
+            let law = p.law.with_rolling(rolling);
+            let mut s = setting(0.3, 0.0);
+            (s.time_step, s.damping) = (TimeStep::FractionOfStable(1.0), damping);
+            let mut e = Engine::from_packing(&Packing { time_step: 0.0, law, ..p.clone() }, s);
+            e.initialise().unwrap();
+            let critical = Linear { packing: &packing(&e), frictional: true, damping }.critical();
+            let share = e.time_step() / critical;
+            assert!((0.6..=1.0).contains(&share), "{share} at {stiffness} k_n, damping {damping}");
+        }
+    }
 }
 
 /// Expected: with the bound itself for a time step, contact damping brings every mode to rest.

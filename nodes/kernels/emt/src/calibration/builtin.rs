@@ -1,7 +1,7 @@
 //! The calibrations that come with the crate.
 
 use super::constants::Calibration;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
@@ -9,14 +9,15 @@ impl Calibration {
     /// The names of [`Calibration::builtin`].
     pub const BUILTIN: [&str; 3] = ["paper", "grainlab", "grainlab-z"];
 
-    /// `paper`: the paper's constants. `grainlab`: learned from simulated packings of 2,000 grains, with k̂ and k counted over
-    /// all grains. `grainlab-z`: learned from the same packings, with rattlers left out of the count.
+    /// `paper`: the constants of the paper. `grainlab`: learned from simulated packings of 2,000 grains, with
+    /// k̂ and k counted over all grains. `grainlab-z`: learned from the same packings, with rattlers left out
+    /// of the count.
     pub fn builtin(name: &str) -> Option<&'static Self> {
         static PAPER: Calibration = Calibration::PAPER;
         static BY_K: LazyLock<Option<Calibration>> =
             LazyLock::new(|| Calibration::parse(include_str!("grainlab.toml")).ok());
         static BY_Z: LazyLock<Option<Calibration>> = LazyLock::new(|| {
-            let by_z = BY_K.as_ref()?.with_coordination_kind(Quantity::Z)?;
+            let by_z = BY_K.as_ref()?.with_coordination_kind(InferredQuantity::Z)?;
             Some(Calibration { name: Cow::Borrowed("grainlab-z"), ..by_z })
         });
         match name {

@@ -4,8 +4,8 @@ use super::discrepancy::ModelDiscrepancy;
 use super::isotropic::IsotropicCalibration;
 use super::relaxation::RelaxationCalibration;
 use crate::conditions::StrainRatioSource;
-use crate::structure::{Quantity, StructureCovariance};
 use grainlab_core::Material;
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
 use std::borrow::Cow;
 
 /// Constants of the models, measured on packings of one material.
@@ -22,7 +22,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The paper's isotropic constants alone.
+    /// Only the isotropic constants of the paper.
     pub const PAPER: Calibration = Calibration {
         name: Cow::Borrowed("paper"),
         isotropic: IsotropicCalibration::PAPER,
@@ -65,12 +65,12 @@ impl Calibration {
         self.pressures
     }
 
-    /// Constants of the model `relaxed`; `None` if the calibration has none.
+    /// Constants of the model `relaxed`; `None` if the calibration lacks them.
     pub fn network(&self) -> Option<&RelaxationCalibration> {
         self.network.as_deref()
     }
 
-    /// Eqs. 21 and 22 for the calibration's own material.
+    /// Eqs. 21 and 22 for the material of the calibration.
     pub fn isotropic(&self) -> &IsotropicCalibration {
         &self.isotropic
     }
@@ -88,8 +88,9 @@ impl Calibration {
         material.map_or(1.0, |m| (m.effective_young() / own).cbrt().powi(2))
     }
 
-    /// The same with this coordination number for its isotropic packings; `None` if the calibration has no such fit.
-    pub fn with_coordination_kind(&self, kind: Quantity) -> Option<Self> {
+    /// The same with this coordination number for the isotropic packings; `None` if the calibration lacks
+    /// such a fit.
+    pub fn with_coordination_kind(&self, kind: InferredQuantity) -> Option<Self> {
         if self.isotropic.coordination_kind == kind {
             return Some(self.clone());
         }
@@ -97,20 +98,21 @@ impl Calibration {
         Some(Self { isotropic, other: Some(self.isotropic.clone()), ..self.clone() })
     }
 
-    /// Covariance of the error of a model that is given this γ/Δ and infers this ε; `None` if it was not learned.
+    /// Covariance of the error of a model that takes this γ/Δ and infers this ε; `None` if it was not
+    /// learned.
     pub(crate) fn discrepancy(
         &self,
         model: &str,
         gamma: Option<StrainRatioSource>,
         eps: Option<f64>,
-    ) -> Option<StructureCovariance> {
+    ) -> Option<MicrostructureCovariance> {
         let kind = self.isotropic.coordination_kind;
         let learned = self
             .discrepancies
             .iter()
             .find(|d| d.model == model && d.gamma == gamma && d.coordination_kind == kind)?;
-        let mut covariance = StructureCovariance::zeros();
-        let order = [kind, Quantity::KHat, Quantity::Eps];
+        let mut covariance = MicrostructureCovariance::zeros();
+        let order = [kind, InferredQuantity::KHat, InferredQuantity::Eps];
         for (a, row) in order.into_iter().zip(learned.at(eps)) {
             for (b, value) in order.into_iter().zip(row) {
                 covariance[(a as usize, b as usize)] = value;

@@ -1,25 +1,25 @@
-//! The error of a model itself.
+//! The error of a model.
 
 use super::error::{CalibrationError, constant};
 use super::names::{coordination_kind, strain_ratio};
 use crate::conditions::StrainRatioSource;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use serde::{Deserialize, Serialize};
 
-/// How far a model is from the packings of the calibration.
+/// The difference of a model from the packings of the calibration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelDiscrepancy {
     /// Name of the model.
     pub model: String,
-    /// The coordination number of the isotropic packings: [`Quantity::K`] or [`Quantity::Z`].
+    /// The coordination number of the isotropic packings: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
     #[serde(rename = "abscissa", with = "coordination_kind")]
-    pub coordination_kind: Quantity,
-    /// The γ/Δ given to the model; `None` if it uses none.
+    pub coordination_kind: InferredQuantity,
+    /// The γ/Δ that the model takes; `None` if it uses none.
     #[serde(with = "strain_ratio")]
     pub gamma: Option<StrainRatioSource>,
-    /// Means of the products of the errors (bias included) of the coordination number, k̂ and ε; zero for k̂ where the
-    /// model has none.
+    /// Means of the products of the errors (bias included) of the coordination number, k̂ and ε; zero for k̂
+    /// where the model does not use it.
     pub mean_square: [[f64; 3]; 3],
     /// f0 and f1: where ε is inferred, the mean square of its error is multiplied by f0 + f1 ε², which is 1 in the
     /// mean.

@@ -1,6 +1,6 @@
-//! Why there is no calibration.
+//! Why a calibration is invalid or cannot be learned.
 
-/// Why there is no calibration.
+/// Why a calibration is invalid or cannot be learned.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
     /// A constant is out of range.
@@ -13,17 +13,17 @@ pub enum CalibrationError {
         /// What is required.
         requirement: &'static str,
     },
-    /// The text is not a calibration file.
+    /// The text is not a valid calibration file.
     #[error("{0}")]
     Text(String),
     /// The packings do not determine the constants.
     #[error("{found} {what}, {needed} or more are needed: prepare more packings, or more different ones")]
     Packings {
-        /// What is too few.
+        /// The kind of data of which there are too few.
         what: &'static str,
-        /// How many there are.
+        /// The number found.
         found: usize,
-        /// How many are needed.
+        /// The number needed.
         needed: usize,
     },
 }

@@ -2,7 +2,7 @@
 
 use super::error::CalibrationError;
 use super::names::coordination_kind;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 const MEGA: f64 = 1.0e6;
@@ -14,9 +14,9 @@ const MEGA: f64 = 1.0e6;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
 pub struct IsotropicCalibration {
-    /// Which coordination number k̂ is: [`Quantity::K`] or [`Quantity::Z`].
+    /// Which coordination number k̂ is: [`InferredQuantity::K`] or [`InferredQuantity::Z`].
     #[serde(rename = "abscissa", with = "coordination_kind")]
-    pub coordination_kind: Quantity,
+    pub coordination_kind: InferredQuantity,
     alpha: f64,
     beta: f64,
     rho: f64,
@@ -46,7 +46,7 @@ impl<'de> Deserialize<'de> for IsotropicCalibration {
 impl IsotropicCalibration {
     /// The paper's: α = 170, β = −3.66, ρ = 75, ζ = −0.5, fitted for k̂ > 4.8.
     pub const PAPER: IsotropicCalibration = IsotropicCalibration {
-        coordination_kind: Quantity::K,
+        coordination_kind: InferredQuantity::K,
         alpha: 170.0,
         beta: -3.66,
         rho: 75.0,
@@ -59,7 +59,7 @@ impl IsotropicCalibration {
     /// `alpha` and `rho` in MPa^⅔, `beta` and `zeta` dimensionless, `fitted` the lowest and highest k̂ of the packings.
     pub fn new(
         [alpha, beta, rho, zeta]: [f64; 4],
-        coordination_kind: Quantity,
+        coordination_kind: InferredQuantity,
         fitted: [f64; 2],
     ) -> Result<Self, CalibrationError> {
         Self { coordination_kind, alpha, beta, rho, zeta, fitted, scatter: None, covariance: None }.checked()

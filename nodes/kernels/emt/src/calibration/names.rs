@@ -1,20 +1,20 @@
 //! Coordination numbers and strain ratios in calibration files, by name.
 
 use crate::conditions::StrainRatioSource;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
 /// A coordination number: `k` or `z`.
 pub(super) mod coordination_kind {
-    use super::{Deserialize, Deserializer, Error, Quantity, Serializer};
+    use super::{Deserialize, Deserializer, Error, InferredQuantity, Serializer};
 
-    pub(crate) fn serialize<S: Serializer>(kind: &Quantity, to: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(kind: &InferredQuantity, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(kind.name())
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Quantity, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<InferredQuantity, D::Error> {
         let name = String::deserialize(from)?;
-        let known = [Quantity::K, Quantity::Z].into_iter().find(|q| q.name() == name);
+        let known = [InferredQuantity::K, InferredQuantity::Z].into_iter().find(|q| q.name() == name);
         known.ok_or_else(|| D::Error::custom(format!("abscissa = {name:?}: it must be \"k\" or \"z\"")))
     }
 }

@@ -1,4 +1,4 @@
-//! What the moduli of relaxed contact networks depend on.
+//! The scaling laws for the moduli of relaxed contact networks.
 
 use super::error::{CalibrationError, constant};
 use nalgebra::SMatrix;
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 /// freedom per grain. Its response to a change of coordination diverges there.
 pub(crate) const ISOSTATIC: f64 = 4.0;
 
-/// (z − 4)/z below which the scatter is taken as constant: no packing of the calibration is nearer to the isostatic
-/// point.
+/// (z − 4)/z below which the scatter is taken as constant: no packing of the calibration is closer to the
+/// isostatic point.
 const MIN_EXCESS: f64 = 0.1;
 
 /// Number of quantities whose scatter is known: five invariants of the stiffness, ε weighted by stiffness, and k.
 pub(crate) const SCATTERED: usize = 7;
 
-/// Covariance of the scatter of packings of one structure.
+/// Covariance of the scatter of packings with the same structure.
 pub(crate) type Scatter = SMatrix<f64, SCATTERED, SCATTERED>;
 
 /// Constants of the model `relaxed`, for moduli in units of E*^⅔ p^⅓, the scaling of Hertz contacts.
@@ -123,12 +123,12 @@ impl AmplitudeLaw {
 }
 
 impl RelaxationCalibration {
-    /// The z that the model predicts for: slightly more than the range of the packings, where the laws still rise.
+    /// Range of z of the model: slightly wider than that of the packings, where the laws still rise.
     pub(crate) fn domain(&self) -> [f64; 2] {
         [(self.z[0] - 0.05).max(ISOSTATIC + 0.05), self.z[1] + 0.3]
     }
 
-    /// The ε that the model predicts for: twice the range of the packings, since the model is linear in ε.
+    /// Range of ε of the model: twice that of the packings, since the model is linear in ε.
     pub(crate) fn domain_of_eps(&self) -> [f64; 2] {
         let reach = 2.0 * self.eps[0].abs().max(self.eps[1].abs());
         [-reach, reach]
@@ -157,7 +157,8 @@ impl RelaxationCalibration {
         level + by_z * z + by_phi * ln_phi + by_p * ln_p
     }
 
-    /// What makes the inversion unique: moduli that rise with z, a stiff network, and a scatter that is a covariance.
+    /// Conditions for a unique inversion: moduli that rise with z, a stiff network, and a valid covariance of
+    /// the scatter.
     pub(super) fn check(&self) -> Result<(), CalibrationError> {
         const RANGE: &str = "it must be a range, low and high";
         let [low, high] = self.z;

@@ -1,4 +1,4 @@
-//! How well speeds agree with one medium.
+//! Agreement of the speeds with one medium.
 
 use super::chance::is_beyond_chance;
 
@@ -6,11 +6,11 @@ use super::chance::is_beyond_chance;
 /// packings of 2,000 grains it is 1 to 4 %, and it is inversely proportional to the root of their number.
 pub(super) const OWN_SCATTER: f64 = 0.05;
 
-/// Number of standard deviations by which a speed must be off to be the outlier where all others agree.
+/// Number of standard deviations from which a speed is an outlier if all others agree.
 const STANDS_OUT: f64 = 10.0;
 
-/// Speeds that contradict each other (by chance less than once in a thousand times): they scatter more than those of a
-/// packing, or all but one agree.
+/// Speeds that contradict each other (less than once in a thousand times by chance): they scatter more than
+/// those of a packing, or all but one agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedConflict {
     /// Index of the speed furthest from its prediction by the others.
@@ -23,13 +23,14 @@ pub struct SpeedConflict {
 /// sample of finitely many grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnisotropyScatter {
-    /// Root mean square of the relative differences of ρ v² that belong to the sample. Half of it is added in
-    /// quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R. C. Paule &
-    /// J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate speeds.
+    /// Root mean square of the relative differences of ρ v² that are due to the sample. Half of it is added
+    /// in quadrature to the relative error of every speed, which makes χ² equal to the degrees of freedom (R.
+    /// C. Paule & J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982)). It bounds the weight of very accurate
+    /// speeds.
     pub scatter: f64,
 }
 
-/// How well speeds agree.
+/// Agreement of the speeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Agreement {
     /// Within their errors.
@@ -53,7 +54,7 @@ pub(super) fn agreement(
     if !is_beyond_chance(chi_square, degrees_of_freedom.max(1)) {
         return Agreement::Within;
     }
-    // A speed pulls the fit towards itself: its residual is smaller than its error by its leverage.
+    // A speed attracts the fit: its residual is smaller than its error by its leverage.
     let own = sigmas.zip(leverages).map(|(s, h)| s / (1.0 - h).max(1e-6).sqrt());
     let Some((worst, sigma)) = own.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Agreement::Within;

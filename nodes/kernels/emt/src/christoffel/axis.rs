@@ -1,4 +1,4 @@
-//! The axis of symmetry, from the speeds themselves.
+//! The axis of symmetry, from the speeds.
 //!
 //! For every axis of a grid on the hemisphere the best medium is fitted linearly; from the best axes, moduli and axis
 //! are refined together. An axis is found if it fits better than isotropy, and better than every other axis, beyond
@@ -162,7 +162,8 @@ impl Noise {
         }
     }
 
-    /// How improbable it is, in standard deviations, that so many superfluous unknowns lower the sum of squares by `gain`.
+    /// Significance of the decrease `gain` of the sum of squares by superfluous unknowns, in standard
+    /// deviations.
     fn score(&self, gain: f64, unknowns: usize) -> f64 {
         score(gain / unknowns as f64 / self.variance, unknowns, self.freedom)
     }

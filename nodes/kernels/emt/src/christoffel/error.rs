@@ -3,13 +3,13 @@
 /// Why wave speeds give no moduli.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChristoffelError {
-    /// Nothing was measured.
+    /// The list of speeds is empty.
     #[error("there are no wave speeds: give at least one")]
     NoSpeeds,
     /// The axis of symmetry is not known.
     #[error("the symmetry axis is not known: give it, or find it first")]
     AxisUnknown,
-    /// A vector that should be a unit vector.
+    /// A vector that is not a unit vector.
     #[error("{vector} has the length {length}, and must be a unit vector")]
     NotUnit {
         /// Which vector, with its index in the list of speeds.
@@ -68,7 +68,7 @@ pub enum ChristoffelError {
         /// The moduli, as text.
         moduli: String,
     },
-    /// The search for the medium ended without one.
+    /// The search for the medium did not converge.
     #[error("no medium was found for these speeds: check for a speed of another mode, axis or state")]
     NoMedium,
 }

@@ -15,7 +15,7 @@ const UNCOUPLED: f64 = 1e-2;
 
 /// The nearest medium.
 pub(super) struct Fit {
-    /// Specific moduli C11, C33, C13, C44, C66, m²/s²; undetermined ones have an arbitrary value.
+    /// Specific moduli C11, C33, C13, C44, C66, m²/s². Undetermined ones have arbitrary values.
     pub(super) specific: Column,
     /// Per speed: measured minus fitted over measured.
     pub(super) residuals: Vec<f64>,
@@ -23,7 +23,7 @@ pub(super) struct Fit {
     pub(super) shares: Vec<f64>,
     /// Per speed: its leverage on the fit, from 0 to 1.
     pub(super) leverages: Vec<f64>,
-    /// Covariance of the specific moduli for errors of one relative weight unit, m⁴/s⁴.
+    /// Covariance of the specific moduli for relative errors of 1 at weight 1, m⁴/s⁴.
     pub(super) covariance: Square,
     /// Changes of the specific moduli, m²/s², that the speeds do not determine: one scale along each undetermined
     /// direction, and the differences to other media that fit as well.
@@ -52,7 +52,7 @@ pub(super) fn fit(rays: &[Ray], weights: &[f64], unit: Option<f64>) -> Result<Fi
     points.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let limit = points[0].cost + ALLOWED * unit.unwrap_or(TYPICAL).powi(2);
     points.retain(|point| point.cost <= limit);
-    // Of media that fit equally well, those whose modes have the measured polarizations.
+    // Among media that fit equally well, those whose modes have the measured polarizations.
     let is_clear = |point: &Point| point.shares.iter().all(|share| is_clear(*share));
     if points.iter().any(is_clear) {
         points.retain(is_clear);

@@ -12,12 +12,13 @@
 //! P and S speeds along and across the axis thus give C33, C11, C44 and C66. C13, and with it the bulk modulus, needs a
 //! speed in an oblique direction. Those depend on (C13 + C44)²; C13 + C44 > 0 is assumed, which holds in every packing.
 //!
-//! Moduli that the speeds do not determine are undetermined in the result; overdetermined ones are a weighted
-//! least-squares fit, and the result says how well the speeds agree. Several media may have the same speeds, for
-//! example without P speeds along and across the axis; moduli in which they differ are undetermined, too. A packing is
-//! not exactly isotropic about any axis: if the speeds scatter more than their errors, but not more than those of a
-//! packing, they do not conflict, and the scatter is taken as their error. The axis is given, or found by [`find_axis`]
-//! from speeds in enough directions. The density is that of the mass that moves with the wave, without rattlers.
+//! Moduli that the speeds do not determine are undetermined in the result. Overdetermined ones are a weighted
+//! least-squares fit, and the result states how well the speeds agree. Several media may have the same
+//! speeds, for example without P speeds along and across the axis; moduli in which they differ are
+//! undetermined, too. A packing is not exactly isotropic about any axis: if the speeds scatter more than
+//! their errors, but not more than those of a packing, they do not conflict, and the scatter is taken as
+//! their error. The axis is given, or found by [`find_axis`] from speeds in enough directions. The density is
+//! that of the mass that moves with the wave, without rattlers.
 
 mod agreement;
 mod axis;

@@ -42,7 +42,7 @@ pub(super) struct Tilts {
 }
 
 impl<'a> Speeds<'a> {
-    /// The speeds in the frame of this axis, which may be the wrong one.
+    /// The speeds in the frame of a trial axis.
     pub(super) fn rays(&self, axis: &Vec3) -> Result<Vec<Ray>, ChristoffelError> {
         let ray = |(index, (speed, paired)): (usize, (&WaveSpeed, &bool))| {
             let (ray, _) = Ray::about(index, speed, axis)?;
@@ -51,8 +51,8 @@ impl<'a> Speeds<'a> {
         self.measured.iter().zip(self.paired).enumerate().map(ray).collect()
     }
 
-    /// The medium from the linear problem, which takes every polarization for exactly that of a mode, and its sum of
-    /// squares.
+    /// The medium from the linear problem, in which every polarization is exactly that of a mode, and its sum
+    /// of squares.
     pub(super) fn linear(&self, axis: &Vec3) -> Option<(Column, f64)> {
         Problem::new(&self.rays(axis).ok()?, self.weights).linear()
     }

@@ -1,4 +1,4 @@
-//! One speed in the frame of the axis: direction, polarization, and the speed that a medium gives it.
+//! One speed in the frame of the axis: direction, polarization, and the speed predicted by a medium.
 
 use super::error::ChristoffelError;
 use grainlab_core::{Vec3, WaveSpeed};
@@ -70,8 +70,8 @@ impl Ray {
         }
     }
 
-    /// The same about an axis that may be the wrong one: a polarization between two modes is taken for the nearest.
-    /// With cos² of the angle to the nearest polarization that the direction has in any medium.
+    /// The same about a trial axis: a polarization between two modes is assigned to the nearest one. Also
+    /// returns cos² of the angle to the nearest polarization that the direction has in any medium.
     pub(super) fn about(
         index: usize,
         measured: &WaveSpeed,
@@ -94,7 +94,7 @@ impl Ray {
         let cos = n.dot(axis).min(1.0);
         let across = n - cos * axis;
         let sin = across.norm();
-        // Along the axis any plane is possible: take that of the polarization.
+        // Along the axis the plane is arbitrary: take that of the polarization.
         let radial = (across.try_normalize(1e-9))
             .or_else(|| (p - p.dot(axis) * axis).try_normalize(1e-9))
             .unwrap_or_else(|| axis.cross(&least(axis)).normalize());

@@ -1,13 +1,13 @@
 //! The search for the medium: damped Gauss-Newton on relative speeds.
 //!
-//! Unknowns are the specific moduli, each divided by a scale of its own (the v² of P or S waves), so that they are of
+//! Unknowns are the specific moduli, each divided by its scale (the v² of P or S waves), so that they are of
 //! order one.
 
 use super::ray::{Column, Ray, UNKNOWNS};
 use nalgebra::{Const, SMatrix, SymmetricEigen};
 
-/// Relative change of the speeds per relative change of a combination of moduli, below which the combination counts as
-/// undetermined: speeds known to 0.1 % give no information about it.
+/// Relative change of the speeds per relative change of a combination of moduli, below which the combination
+/// counts as undetermined: speeds with errors of 0.1 % contain no information about it.
 const BLIND: f64 = 1e-3;
 
 /// The same, below which other media may have the same speeds.
@@ -49,7 +49,7 @@ impl<'a> Problem<'a> {
             let (sum, count) = squares.fold((0.0, 0.0), |(s, n), r| (s + r.speed * r.speed, n + 1.0));
             (count > 0.0).then(|| sum / count)
         };
-        // If one kind is missing: the ratio in isotropic packings.
+        // If there are no speeds of one kind: the ratio in isotropic packings.
         let (p, s) = match (mean_square(true), mean_square(false)) {
             (Some(p), Some(s)) => (p, s),
             (Some(p), None) => (p, p / 3.0),
@@ -153,7 +153,7 @@ impl<'a> Problem<'a> {
                     here = next;
                     damping *= 0.01;
                 }
-                // Changes of the cost are rounding.
+                // Changes of the cost are due to rounding.
                 _ if damping > 1e8 || step.amax() < 1e-9 => break,
                 _ => damping = 10.0 * damping.max(1e-8),
             }

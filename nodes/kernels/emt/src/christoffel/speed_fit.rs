@@ -29,8 +29,8 @@ pub struct SpeedFit {
     /// Number of speeds without an uncertainty, where others have one. They are given the largest relative one of the
     /// others.
     pub assumed: usize,
-    /// Set if the speeds contradict each other beyond their uncertainty and beyond the deviation of a sample of some
-    /// thousand grains from a transversely isotropic medium; with the speed that deviates most.
+    /// Set if the speeds contradict each other beyond their uncertainty and beyond the deviation of a sample
+    /// of some thousand grains from a transversely isotropic medium. Contains the speed that deviates most.
     pub conflict: Option<SpeedConflict>,
     /// Set if they differ beyond their uncertainty, but not more than those of such a sample. The covariance is then
     /// that of their scatter.

@@ -6,10 +6,10 @@ use crate::conditions::{StrainRatio, StrainRatioSource};
 use crate::error::EmtError;
 use crate::model::Model;
 use crate::registry::models;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 
-/// The errors of every model that does not compute its own, for each γ/Δ and coordination number. Of isotropic packings
-/// only the errors of ε are used, since every model is fitted to the rest.
+/// The errors of every model without its own error estimate, for each γ/Δ and coordination number. Isotropic
+/// packings contribute only errors of ε, because every model is fitted to their moduli.
 pub(super) fn discrepancies(
     isotropic: &[CalibrationSample],
     anisotropic: &[CalibrationSample],
@@ -22,7 +22,7 @@ pub(super) fn discrepancies(
         StrainRatioSource::Contact,
     ];
     let mut learned = Vec::new();
-    for kind in [Quantity::K, Quantity::Z] {
+    for kind in [InferredQuantity::K, InferredQuantity::Z] {
         let Some(calibration) = calibration.with_coordination_kind(kind) else { continue };
         for model in models() {
             let sources = if model.uses_gamma() { &SOURCES[..] } else { &SOURCES[..1] };
@@ -53,7 +53,7 @@ fn errors(
     model: &dyn Model,
     samples: &[CalibrationSample],
     gamma: StrainRatioSource,
-    kind: Quantity,
+    kind: InferredQuantity,
     calibration: &Calibration,
 ) -> Option<Errors> {
     let error = |s: &CalibrationSample| -> Result<Option<(f64, [f64; 3])>, EmtError> {
@@ -62,7 +62,7 @@ fn errors(
             return Ok(None);
         }
         let found = point.structure;
-        let truth = if kind == Quantity::Z { s.z } else { s.k };
+        let truth = if kind == InferredQuantity::Z { s.z } else { s.k };
         let k_hat = found.k_hat.map_or(0.0, |k_hat| k_hat - truth);
         let both = found.get(kind).zip(found.eps);
         Ok(both.map(|(n, eps)| (eps, [n - truth, k_hat, eps - s.eps])))

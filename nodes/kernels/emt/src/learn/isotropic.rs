@@ -4,16 +4,16 @@ use super::regression::linear;
 use super::sample::{CalibrationSample, bounds};
 use crate::calibration::{CalibrationError, IsotropicCalibration};
 use crate::invariants::Invariants;
-use crate::structure::Quantity;
+use grainlab_core::results::InferredQuantity;
 use std::collections::BTreeSet;
 
 /// Fits Eqs. 21 and 22 by relative residuals. States of one packing at several pressures are not independent: the
 /// covariance counts packings, not states.
 pub(super) fn of_isotropic(
     samples: &[CalibrationSample],
-    kind: Quantity,
+    kind: InferredQuantity,
 ) -> Result<IsotropicCalibration, CalibrationError> {
-    let coordination = |s: &CalibrationSample| if kind == Quantity::Z { s.z } else { s.k };
+    let coordination = |s: &CalibrationSample| if kind == InferredQuantity::Z { s.z } else { s.k };
     let packings = samples.iter().map(|s| &s.packing).collect::<BTreeSet<_>>().len();
     let fit = |modulus: fn(&Invariants) -> f64| {
         let rows: Vec<_> = samples

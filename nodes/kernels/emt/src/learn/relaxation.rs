@@ -164,7 +164,7 @@ fn coefficients<const N: usize>(found: &[f64]) -> [f64; N] {
     std::array::from_fn(|i| found[i])
 }
 
-/// The difference of a packing from the laws, times (z − 4)/z.
+/// The difference between a packing and the laws, times (z − 4)/z.
 fn residual(network: &RelaxationCalibration, row: &Reduced<'_>) -> [f64; SCATTERED] {
     let CalibrationSample { k, z, eps, eps_stiffness, .. } = *row.sample;
     let i = &row.invariants;

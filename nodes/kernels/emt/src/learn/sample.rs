@@ -36,7 +36,7 @@ pub struct CalibrationSample {
 }
 
 impl CalibrationSample {
-    /// The observation of an experimenter who knows this γ/Δ.
+    /// The observation with this γ/Δ.
     pub fn observation(&self, gamma: StrainRatioSource) -> Observation {
         let conditions = Conditions {
             gamma: StrainRatio::of(&self.gamma, gamma),

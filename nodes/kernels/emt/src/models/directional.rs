@@ -1,10 +1,11 @@
 //! Each modulus with its own coordination number: G_ij = α(k·3 m_ij + β) p^⅓, Θ = ρ(k + ζ) p^⅓ with the constants of
 //! Eqs. 21 and 22, and 3 m_ij the fraction of contacts that carry shear in the plane ij, 1 in an isotropic packing.
 //!
-//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies the
-//! effect of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε; with all three, k and ε
-//! minimise the sum of squares of the relative deviations. On the paper's own rows this is the best of the models that
-//! use three moduli; on packings of the calibration `grainlab` the amplification is too large.
+//! The constants α and β contain the effect of the network's relaxation on the shear modulus, which amplifies
+//! the effect of ε on G13/G12 by k/(k + β); γ/Δ is not needed. Two of G12, G13 and Θ give k and ε. With all
+//! three, k and ε minimise the sum of squares of the relative deviations. On the rows of the paper this is
+//! the best model that uses three moduli; on packings of the calibration `grainlab` the amplification is too
+//! large.
 
 use crate::calibration::{Calibration, IsotropicCalibration};
 use crate::checks::outside_fit;
@@ -15,7 +16,7 @@ use crate::model::Model;
 use crate::moduli::{MODULI, Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Jacobian, PointEstimate};
-use crate::structure::{QUANTITIES, Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use nalgebra::{Matrix2x3, Matrix3x2, Vector2, Vector3};
 
 /// Directional coordination numbers: model `directional`.
@@ -42,22 +43,22 @@ impl Model for Directional {
     fn domain(&self, calibration: &Calibration) -> Domain {
         let isotropic = calibration.isotropic();
         let weakest = shares(MAX_EPS)[0].min(shares(-MAX_EPS)[1]);
-        let mut structure = [None; QUANTITIES];
+        let mut structure = [None; InferredQuantity::COUNT];
         structure[isotropic.coordination_kind as usize] =
             Some([-1.05 * isotropic.constants()[1] / weakest, 12.0]);
-        structure[Quantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
+        structure[InferredQuantity::Eps as usize] = Some([-MAX_EPS, MAX_EPS]);
         Domain::new(NAME, structure)
     }
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).validate(structure, conditions)?;
         let isotropic = calibration.isotropic_for(conditions.material);
-        let [k, eps] = [isotropic.coordination_kind, Quantity::Eps].map(|q| found[q as usize]);
+        let [k, eps] = [isotropic.coordination_kind, InferredQuantity::Eps].map(|q| found[q as usize]);
         let (moduli, _) = forward(&isotropic, conditions.pressure.value, k, eps);
         Ok(Moduli::paper(moduli[0], moduli[1], moduli[2]))
     }
@@ -80,14 +81,15 @@ impl Model for Directional {
         })?;
         let (k, eps) = (found[0], found[1]);
         let mut jacobian = Jacobian::zeros();
-        for (row, quantity) in [isotropic.coordination_kind, Quantity::Eps].into_iter().enumerate() {
+        for (row, quantity) in [isotropic.coordination_kind, InferredQuantity::Eps].into_iter().enumerate() {
             for i in 0..3 {
                 jacobian[(quantity as usize, i)] = gain[(row, i)];
                 // All moduli are proportional to the cube root of the pressure.
                 jacobian[(quantity as usize, MODULI)] -= gain[(row, i)] / 3.0;
             }
         }
-        let structure = Structure::default().with(isotropic.coordination_kind, k).with(Quantity::Eps, eps);
+        let structure =
+            Microstructure::default().with(isotropic.coordination_kind, k).with(InferredQuantity::Eps, eps);
         let warnings = outside_fit(isotropic.coordination_kind, k, calibration).into_iter().collect();
         Ok(PointEstimate { jacobian: Some(jacobian), warnings, ..PointEstimate::exact(structure) })
     }

@@ -1,7 +1,7 @@
 //! The plain effective medium: absolute moduli, Eqs. 10–15, at the volume strain that gives the pressure.
 //!
-//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of real
-//! packings several times and therefore infers k far too low, which is why there are the ratio models.
+//! It needs no calibration, only grains, solid fraction and pressure. It over-predicts the shear moduli of
+//! real packings several times and therefore infers k far too low; the ratio models avoid this.
 //!
 //! With r = G13/G12 and g, ε follows as in the ratio model; at given pressure the moduli are proportional to k^⅔, so
 //! that G12 gives k (the paper's k_EMT, but with the Δ that gives the pressure). Θ, C11, C33 and C13 would each give
@@ -22,10 +22,10 @@ use crate::moments::eps_of_spin;
 use crate::observation::Observation;
 use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
-use crate::structure::{QUANTITIES, Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
-/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. Of the calibration it uses the material alone, where that of the
-/// grains is not known.
+/// Eqs. 12–15 with Eq. 13 corrected: model `emt`. It uses only the material of the calibration, where that of
+/// the grains is not known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EffectiveMedium;
 
@@ -37,20 +37,20 @@ impl Model for EffectiveMedium {
     }
 
     fn domain(&self, _: &Calibration) -> Domain {
-        let mut structure = [None; QUANTITIES];
-        structure[Quantity::K as usize] = Some([0.1, MAX_COORDINATION]);
-        structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
+        let mut structure = [None; InferredQuantity::COUNT];
+        structure[InferredQuantity::K as usize] = Some([0.1, MAX_COORDINATION]);
+        structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
         Domain { gamma: [-0.5, 0.25], needs_solid_fraction: true, ..Domain::new(NAME, structure) }
     }
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).validate(structure, conditions)?;
-        let [k, eps] = [Quantity::K, Quantity::Eps].map(|q| found[q as usize]);
+        let [k, eps] = [InferredQuantity::K, InferredQuantity::Eps].map(|q| found[q as usize]);
         let moduli = medium(k, eps, conditions, calibration)?.moduli(Eq16Reading::Corrected);
         Ok(Moduli::of_medium(&moduli.stiffness().transverse_isotropy()))
     }
@@ -67,7 +67,8 @@ impl Model for EffectiveMedium {
             return Err(EmtError::NoAnisotropy { ratio, g });
         }
         let k = (g12 / one_contact.moduli(Eq16Reading::Corrected).psi3).powf(1.5);
-        let structure = Structure::default().with(Quantity::K, k).with(Quantity::Eps, eps);
+        let structure =
+            Microstructure::default().with(InferredQuantity::K, k).with(InferredQuantity::Eps, eps);
         Ok(PointEstimate { warnings: ratio_warnings(ratio), ..PointEstimate::exact(structure) })
     }
 }

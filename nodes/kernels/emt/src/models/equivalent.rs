@@ -13,9 +13,10 @@ use crate::error::EmtError;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::PointEstimate;
-use crate::structure::{QUANTITIES, Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
-/// Highest coordination number of the domain: more than the neighbours that equal spheres can touch.
+/// Highest coordination number of the domain: larger than the number of neighbours that equal spheres can
+/// have.
 pub(super) const MAX_COORDINATION: f64 = 15.0;
 
 /// Moduli over those of an isotropic packing with as many contacts.
@@ -31,16 +32,16 @@ pub(super) struct Factors {
 
 impl Factors {
     /// The moduli of a packing with the coordination numbers of `found`, a structure of [`domain`] in the order of
-    /// [`Quantity::ALL`].
+    /// [`InferredQuantity::ALL`].
     pub(super) fn moduli(
         &self,
-        found: &[f64; QUANTITIES],
+        found: &[f64; InferredQuantity::COUNT],
         power: f64,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Moduli {
         let isotropic = calibration.isotropic_for(conditions.material);
-        let [k, k_hat] = [isotropic.coordination_kind, Quantity::KHat].map(|q| found[q as usize]);
+        let [k, k_hat] = [isotropic.coordination_kind, InferredQuantity::KHat].map(|q| found[q as usize]);
         let pressure = conditions.pressure.value;
         let denser = (k / k_hat).powf(power);
         let shear = denser * isotropic.shear_modulus(k_hat, pressure);
@@ -57,7 +58,7 @@ impl Factors {
         observation: &Observation,
         calibration: &Calibration,
     ) -> Result<PointEstimate, EmtError> {
-        let structure = Structure::default().with(Quantity::Eps, eps);
+        let structure = Microstructure::default().with(InferredQuantity::Eps, eps);
         let [g12, g13, theta] =
             [Modulus::G12, Modulus::G13, Modulus::Theta].map(|m| observation.moduli.get(m));
         let mut warnings = g12.zip(g13).map_or(Vec::new(), |(g12, g13)| ratio_warnings(g13 / g12));
@@ -77,8 +78,8 @@ impl Factors {
         let k_hat = isotropic.coordination(s);
         let denser = theta / (isotropic.bulk_modulus(k_hat, observation.pressure()) * self.bulk);
         let k = k_hat * if power == 1.0 { denser } else { denser.powf(1.0 / power) };
-        warnings.extend(outside_fit(Quantity::KHat, k_hat, calibration));
-        let structure = structure.with(isotropic.coordination_kind, k).with(Quantity::KHat, k_hat);
+        warnings.extend(outside_fit(InferredQuantity::KHat, k_hat, calibration));
+        let structure = structure.with(isotropic.coordination_kind, k).with(InferredQuantity::KHat, k_hat);
         Ok(PointEstimate { warnings, ..PointEstimate::exact(structure) })
     }
 }
@@ -87,10 +88,11 @@ impl Factors {
 /// shear modulus, and ε.
 pub(super) fn domain(model: &'static str, calibration: &Calibration) -> Domain {
     let isotropic = calibration.isotropic();
-    let mut structure = [None; QUANTITIES];
+    let mut structure = [None; InferredQuantity::COUNT];
     structure[isotropic.coordination_kind as usize] = Some([0.1, MAX_COORDINATION]);
     // At the zero of shear itself nothing can be inverted.
-    structure[Quantity::KHat as usize] = Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
-    structure[Quantity::Eps as usize] = Some([-0.5, 1.0]);
+    structure[InferredQuantity::KHat as usize] =
+        Some([-isotropic.constants()[1] * (1.0 + 1e-3), MAX_COORDINATION]);
+    structure[InferredQuantity::Eps as usize] = Some([-0.5, 1.0]);
     Domain { model, structure, gamma: [-0.5, 0.25], poisson_ratio: [0.0, 0.5], needs_solid_fraction: false }
 }

@@ -17,7 +17,7 @@ use crate::moments::{Moments, eps_of_spin};
 use crate::observation::Observation;
 use crate::overlap::check_eq_10;
 use crate::point_estimate::PointEstimate;
-use crate::structure::{Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// The ratio model in one reading of Eqs. 16–18.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ pub(crate) const CORRECTED: Ratio = Ratio { name: "ratio", reading: Eq16Reading:
 pub(crate) const AS_PRINTED: Ratio =
     Ratio { name: "ratio-as-printed", reading: Eq16Reading::AsPrinted, power: 1.0 };
 
-/// With moduli ∝ k^⅔ instead of ∝ k, as Hertz contacts have them at the same pressure and volume, which is what the
+/// With moduli ∝ k^⅔ instead of ∝ k, as for Hertz contacts at the same pressure and volume, the case that the
 /// text of the paper compares: model `ratio-volume`.
 pub(crate) const FIXED_VOLUME: Ratio =
     Ratio { name: "ratio-volume", reading: Eq16Reading::Corrected, power: 2.0 / 3.0 };
@@ -51,12 +51,12 @@ impl Model for Ratio {
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let found = self.domain(calibration).validate(structure, conditions)?;
-        let (eps, g) = (found[Quantity::Eps as usize], conditions.gamma.value);
+        let (eps, g) = (found[InferredQuantity::Eps as usize], conditions.gamma.value);
         let factors = self.factors(eps, Moments::new(eps, g).spin(), g);
         Ok(factors.moduli(&found, self.power, conditions, calibration))
     }
@@ -76,7 +76,7 @@ impl Model for Ratio {
 }
 
 impl Ratio {
-    /// Brackets of Eqs. 16–18, with a as a variable of its own.
+    /// Brackets of Eqs. 16–18, with a as an independent variable.
     fn factors(&self, eps: f64, a: f64, g: f64) -> Factors {
         let g12 = 3.0 * Moments::new(eps, g).m1;
         Factors { g12, g13: g12 * (1.0 + a), bulk: self.reading.bulk(eps, a, g) }

@@ -7,7 +7,7 @@
 //! model, the most probable one with a flat prior for z and ε. k and the ε weighted by contact stiffness follow from z,
 //! ε and the residual of the moduli.
 //!
-//! The constants come from packings ([`crate::Calibration`]); only the form is derived.
+//! The constants are learned from packings ([`crate::Calibration`]); only the form of the laws is derived.
 
 mod fit;
 mod scan;
@@ -21,9 +21,9 @@ use crate::model::Model;
 use crate::moduli::{Moduli, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::{Misfit, PointEstimate};
-use crate::structure::{QUANTITIES, Quantity, Structure};
 use crate::warning::Warning;
 use fit::{Data, Fit};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use state::State;
 
 /// The relaxed network: model `relaxed`.
@@ -32,7 +32,7 @@ pub struct Relaxed;
 
 const NAME: &str = "relaxed";
 
-/// Standard deviation of ε from which on ε counts as undetermined: more than the ε of any packing.
+/// Standard deviation of ε above which ε counts as undetermined: larger than the ε of any packing.
 const UNDETERMINED: f64 = 0.2;
 
 impl Model for Relaxed {
@@ -45,23 +45,23 @@ impl Model for Relaxed {
     }
 
     fn domain(&self, calibration: &Calibration) -> Domain {
-        let mut structure = [None; QUANTITIES];
+        let mut structure = [None; InferredQuantity::COUNT];
         if let Some(network) = calibration.network() {
-            structure[Quantity::Z as usize] = Some(network.domain());
-            structure[Quantity::Eps as usize] = Some(network.domain_of_eps());
+            structure[InferredQuantity::Z as usize] = Some(network.domain());
+            structure[InferredQuantity::Eps as usize] = Some(network.domain_of_eps());
         }
         Domain::new(NAME, structure)
     }
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         let network = network(calibration)?;
         let found = self.domain(calibration).validate(structure, conditions)?;
-        let [z, eps] = [Quantity::Z, Quantity::Eps].map(|q| found[q as usize]);
+        let [z, eps] = [InferredQuantity::Z, InferredQuantity::Eps].map(|q| found[q as usize]);
         let state = State::of(conditions, None, network, calibration);
         let moduli = state.invariants(network, z, eps).moduli().map(|m| m * state.unit);
         for (modulus, value) in Modulus::ALL.into_iter().zip(moduli) {
@@ -83,7 +83,7 @@ impl Model for Relaxed {
         let fit = match both {
             Some(Ok(fit)) if fit.eps_stddev() < UNDETERMINED => fit,
             Some(Err(error)) if data.used > 2 => return Err(error),
-            // The coordination number alone, with ε distributed as in the packings of the calibration.
+            // Only the coordination number, with ε distributed as in the packings of the calibration.
             _ => scan::best(&data, network, &state, calibration.name(), true)?,
         };
         Ok(point_estimate(&fit, &data, network, &state))
@@ -108,7 +108,7 @@ fn point_estimate(fit: &Fit, data: &Data, network: &RelaxationCalibration, state
     }
     if !(network.z[0]..=network.z[1]).contains(&fit.z) {
         warnings.push(Warning::CoordinationOutsideFit {
-            quantity: Quantity::Z,
+            quantity: InferredQuantity::Z,
             value: fit.z,
             range: network.z,
         });

@@ -18,7 +18,7 @@ use crate::observation::Observation;
 use crate::overlap::{self, Integrals};
 use crate::point_estimate::PointEstimate;
 use crate::root::bracketed;
-use crate::structure::{Quantity, Structure};
+use grainlab_core::results::{InferredQuantity, Microstructure};
 
 /// The ratio model with K_N ≠ K_T and one overlap law.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ pub(crate) const LINEAR: UnequalSprings = UnequalSprings { name: "full", integra
 /// With the overlap law not linear in g: model `sqrt`.
 pub(crate) const NONLINEAR: UnequalSprings = UnequalSprings { name: "sqrt", integrals: overlap::nonlinear };
 
-/// The ε for which Eq. 6 gives no direction a negative contact density.
+/// Range of ε in which Eq. 6 gives no direction a negative contact density.
 const EPS: [f64; 2] = [-0.5, 1.0];
 
 /// Rounding of a G13/G12 at the very ends of [`EPS`].
@@ -51,14 +51,15 @@ impl Model for UnequalSprings {
 
     fn predict(
         &self,
-        structure: &Structure,
+        structure: &Microstructure,
         conditions: &Conditions,
         calibration: &Calibration,
     ) -> Result<Moduli, EmtError> {
         conditions.check()?;
         let integrals = (self.integrals)(conditions.gamma.value)?;
         let found = self.domain(calibration).validate(structure, conditions)?;
-        let factors = factors(&integrals, found[Quantity::Eps as usize], kappa(conditions, calibration));
+        let factors =
+            factors(&integrals, found[InferredQuantity::Eps as usize], kappa(conditions, calibration));
         Ok(factors.moduli(&found, 1.0, conditions, calibration))
     }
 

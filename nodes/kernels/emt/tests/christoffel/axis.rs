@@ -1,4 +1,4 @@
-//! The axis, from the speeds.
+//! The axis inferred from the speeds.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, every_mode, thirteen};
 use grainlab_core::{TransverseIsotropy, Vec3, WaveSpeed};
@@ -20,13 +20,13 @@ fn is_compressional(speed: &WaveSpeed) -> bool {
     speed.direction.dot(&speed.polarization).abs() > 0.7
 }
 
-/// The axis found less the true one, and its square by its covariance.
+/// The difference between the axis found and the true one, and its square weighted by its inverse covariance.
 fn error(found: &AxisEstimate, truth: &Vec3) -> (Vec3, f64) {
     assert!((found.axis.norm() - 1.0).abs() < 1e-12 && found.axis.z >= 0.0, "{found:?}");
     let error = found.axis * found.axis.dot(truth).signum() - truth;
     let eigen = SymmetricEigen::new(found.covariance);
     let parts = eigen.eigenvectors.column_iter().zip(eigen.eigenvalues.iter());
-    // The least is that along the axis.
+    // The smallest eigenvalue is that along the axis.
     let known = parts.filter(|(_, variance)| **variance > 1e-9 * eigen.eigenvalues.max());
     (error, known.map(|(towards, variance)| error.dot(&towards).powi(2) / variance).sum())
 }
@@ -35,7 +35,7 @@ fn error(found: &AxisEstimate, truth: &Vec3) -> (Vec3, f64) {
 fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_within_theirs() {
     const DRAWS: usize = 60;
     let mut numbers = Numbers::new(1);
-    // Root mean square in degrees: the axis is known as well as the speeds.
+    // Root mean square in degrees: the relative error of the axis is that of the speeds.
     for (relative, degrees) in [(0.0005, 0.18), (0.003, 1.2), (0.01, 3.5)] {
         let (mut square, mut scaled, mut of_moduli) = (0.0, 0.0, 0.0);
         for _ in 0..DRAWS {
@@ -65,7 +65,7 @@ fn axes_of_packings_are_found_within_their_stated_error_and_moduli_about_them_wi
     }
 }
 
-/// Squared distance of the moduli from the truth by their covariance; of chance it is 5.
+/// Squared distance of the moduli from the truth, weighted by their inverse covariance; its expectation is 5.
 fn distance(sample: &Sample, fitted: &christoffel::SpeedFit) -> f64 {
     const FIVE: [Modulus; 5] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G13, Modulus::G12];
     let error =
@@ -89,7 +89,7 @@ fn exact_speeds_give_the_exact_axis_whether_or_not_their_errors_are_known() {
 }
 
 #[test]
-fn compression_alone_tells_the_axis_of_a_strongly_anisotropic_medium() {
+fn p_speeds_alone_determine_the_axis_of_a_strongly_anisotropic_medium() {
     let mut numbers = Numbers::new(3);
     for _ in 0..10 {
         let sample = Sample::new(PACKING, numbers.frame());
@@ -103,7 +103,7 @@ fn compression_alone_tells_the_axis_of_a_strongly_anisotropic_medium() {
 }
 
 #[test]
-fn a_medium_that_is_isotropic_within_the_noise_has_no_axis_and_that_is_said() {
+fn a_medium_that_is_isotropic_within_the_noise_gives_an_error_instead_of_an_axis() {
     let mut numbers = Numbers::new(4);
     for relative in [0.0005, 0.003, 0.01] {
         for _ in 0..20 {
@@ -116,7 +116,7 @@ fn a_medium_that_is_isotropic_within_the_noise_has_no_axis_and_that_is_said() {
 }
 
 #[test]
-fn too_few_speeds_are_told_how_many_are_missing_and_where() {
+fn the_error_of_too_few_speeds_has_their_number_and_a_direction() {
     let mut numbers = Numbers::new(5);
     let sample = Sample::new(PACKING, Rotation3::identity());
     let axes = [Vec3::x(), Vec3::z()];
@@ -126,15 +126,15 @@ fn too_few_speeds_are_told_how_many_are_missing_and_where() {
         panic!("{fault}")
     };
     assert!(unknowns == 7 && direction.y.abs() > 0.95, "{fault}");
-    // Without errors their scatter is one unknown more.
+    // Without errors, their scatter is one more unknown.
     speeds.iter_mut().for_each(|s| s.stddev = None);
     let fault = christoffel::find_axis(&speeds).unwrap_err();
     assert!(matches!(fault, AxisError::TooFew { scatter: true, unknowns: more, .. } if more == unknowns + 1));
     assert!(fault.to_string().contains("6 wave speeds cannot determine"), "{fault}");
 }
 
-/// P speeds in one plane are as many numbers as it has harmonics up to the fourth, five: media about several axes have
-/// them all, and each has a mirror image.
+/// P speeds in one plane give as many numbers as there are harmonics up to the fourth, five: media about
+/// several axes fit them, and each has a mirror image.
 #[test]
 fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_true_one() {
     let mut numbers = Numbers::new(6);
@@ -167,7 +167,7 @@ fn rays_in_one_plane_leave_several_axes_and_the_directions_advised_lead_to_the_t
 }
 
 #[test]
-fn speeds_that_are_none_are_refused_as_such() {
+fn invalid_speeds_are_refused_before_the_search() {
     assert_eq!(christoffel::find_axis(&[]), Err(ChristoffelError::NoSpeeds.into()));
     let sample = Sample::new(PACKING, Rotation3::identity());
     let speeds = every_mode(&sample.stiffness, &thirteen(), 0.003, &mut Numbers::new(7));

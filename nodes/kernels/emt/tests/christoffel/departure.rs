@@ -1,4 +1,4 @@
-//! Packings, which are not quite isotropic about any axis.
+//! Packings that are not exactly isotropic about any axis.
 
 use super::laboratory::{DENSITY, Numbers, every_mode, thirteen};
 use grainlab_core::{Stiffness, Vec3, WaveSpeed};
@@ -6,8 +6,8 @@ use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, Measured, Modulus};
 use nalgebra::Matrix6;
 
-/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, as `grainlab analyze` measures
-/// it.
+/// Stiffness in MPa of `anisotropic_2000` and `isotropic_2000` of the golden packings, measured by `grainlab
+/// analyze`.
 #[rustfmt::skip]
 const ANISOTROPIC: [f64; 36] = [
     267.923, 62.331, 65.989, -2.193, -0.769, 2.731,
@@ -36,7 +36,7 @@ fn fit(speeds: &[WaveSpeed]) -> SpeedFit {
     christoffel::moduli_from_speeds(speeds, density, Some(Vec3::z()), Conditions::at(50e3)).unwrap()
 }
 
-/// Measured to 0.05 %.
+/// Speeds with errors of 0.05 %.
 fn sharp(packing: &Stiffness, directions: &[Vec3]) -> Vec<WaveSpeed> {
     every_mode(packing, directions, 0.0005, &mut Numbers::new(1))
 }
@@ -57,7 +57,7 @@ fn the_scatter_of_a_packing_is_a_departure_and_no_conflict_and_the_moduli_are_wi
         assert_eq!((fitted.conflict, fitted.undetermined.len()), (None, 0));
         let departure = fitted.anisotropy_scatter.expect("a packing is no medium");
         assert!((departure.scatter / scatter - 1.0).abs() < 0.05, "{departure:?}");
-        // All speeds have the same error of their own, 0.05 %.
+        // All speeds have the same error, 0.05 %.
         let whole = (0.5 * departure.scatter).hypot(0.0005);
         assert!((whole / fitted.scatter().unwrap() - 1.0).abs() < 1e-3, "{departure:?}");
         for (modulus, sigma) in deviations(&fitted, &packing) {
@@ -78,7 +78,7 @@ fn a_departure_is_an_error_of_every_speed_but_not_of_the_density() {
     let exact = Measured::exact(DENSITY);
     let (departed, moduli) = variances(&speeds, exact);
     let stated = fit(&speeds).chi_square.unwrap() / fit(&speeds).degrees_of_freedom as f64;
-    // With errors as large as the scatter nothing departs, and the covariance is the same.
+    // With errors as large as the scatter there is no departure, and the covariance is the same.
     speeds.iter_mut().for_each(|s| s.stddev = s.stddev.map(|e| e * stated.sqrt()));
     assert_eq!(fit(&speeds).anisotropy_scatter, None);
     let (agreed, _) = variances(&speeds, exact);
@@ -118,13 +118,14 @@ fn one_speed_that_is_off_where_all_others_agree_is_no_departure() {
     let medium = packing(&ANISOTROPIC).transverse_isotropy().stiffness();
     let mut speeds = every_mode(&medium, &thirteen(), 0.0005, &mut Numbers::new(3));
     assert_eq!((fit(&speeds).conflict, fit(&speeds).anisotropy_scatter), (None, None));
-    // 1 % is 20 of its sigma, and less than a packing scatters.
+    // 1 % is 20 standard deviations, and less than the scatter of a packing.
     speeds[9].speed *= 1.01;
     let conflict = fit(&speeds).conflict.expect("38 speeds say otherwise");
     assert!(conflict.worst == 9 && conflict.sigma > 15.0, "{conflict:?}");
 }
 
-/// The S modes of a packing move as its own scatter turns them; one of them alone could be either of the medium's.
+/// The scatter of a packing turns its S modes. A single one of them could belong to either S mode of the
+/// medium.
 #[test]
 fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_alone_may_not() {
     let mut numbers = Numbers::new(4);
@@ -141,7 +142,7 @@ fn two_s_waves_of_one_direction_may_be_turned_from_those_of_the_medium_and_one_a
             speeds[i].polarization = p;
         }
     };
-    // Two S waves across the axis, at 45° between its modes.
+    // Two S waves across the axis, at 45° to its modes.
     let across: Vec<usize> = (0..speeds.len())
         .filter(|i| {
             let s = &speeds[*i];

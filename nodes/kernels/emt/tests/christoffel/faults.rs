@@ -1,4 +1,4 @@
-//! What is refused.
+//! Invalid speeds are refused.
 
 use super::laboratory::{DENSITY, Numbers, PACKING, Sample, Wave};
 use grainlab_core::{Vec3, WaveSpeed};
@@ -18,7 +18,7 @@ fn speeds() -> Vec<WaveSpeed> {
     WAVES.iter().map(|w| sample.named(*w, 0.0)).collect()
 }
 
-/// The error that sound speeds give once they are spoilt.
+/// The error after valid speeds are changed.
 fn fault(spoil: impl Fn(&mut Vec<WaveSpeed>)) -> ChristoffelError {
     let mut speeds = speeds();
     assert!(sample().fit(&speeds).is_ok());
@@ -31,7 +31,7 @@ fn about(axis: Option<Vec3>, density: Measured) -> Result<SpeedFit, ChristoffelE
 }
 
 #[test]
-fn no_speeds_are_no_data() {
+fn an_empty_list_of_speeds_is_refused() {
     assert_eq!(fault(Vec::clear), ChristoffelError::NoSpeeds);
 }
 
@@ -61,7 +61,7 @@ fn directions_and_motions_have_unit_length() {
     let error = fault(|s| s[5].polarization = Vec3::zeros()).to_string();
     assert!(error.starts_with("speeds[5].polarization has the length 0"), "{error}");
     assert!(matches!(fault(|s| s[0].direction.x = f64::NAN), ChristoffelError::NotUnit { .. }));
-    // The rounding of a file is no fault.
+    // The rounding of a file is accepted.
     let mut speeds = speeds();
     speeds[4].polarization = Vec3::new(0.6, 0.0, 0.8);
     speeds[4].direction = Vec3::new(0.6, 0.0, 0.7999998);
@@ -69,7 +69,7 @@ fn directions_and_motions_have_unit_length() {
 }
 
 #[test]
-fn the_density_is_that_of_something() {
+fn the_density_is_positive_and_finite() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = about(Some(Vec3::z()), Measured::exact(value)).unwrap_err();
         assert!(matches!(error, ChristoffelError::Density { .. }), "{error}");
@@ -84,8 +84,8 @@ fn is_ambiguous(error: &ChristoffelError, at: usize) -> bool {
     matches!(error, ChristoffelError::Ambiguous { index, degrees } if *index == at && *degrees > 30.0)
 }
 
-/// Across the axis the S modes differ by G13/G12, and only equal moduli would make 45° between them a mode's motion:
-/// that is what is to be found out.
+/// Across the axis the S modes differ by G13/G12. A polarization at 45° between them is that of a mode only
+/// if the moduli are equal, which is not known beforehand.
 #[test]
 fn a_shear_motion_between_the_modes_is_refused_though_the_medium_may_be_isotropic() {
     let error = fault(|s| s[2].polarization = Vec3::new(0.0, 1.0, 1.0).normalize());
@@ -106,7 +106,7 @@ fn along_the_axis_every_shear_motion_is_a_modes() {
 
 #[test]
 fn a_motion_between_compression_and_shear_is_refused() {
-    // Along the axis, at 45°, where the modes are the medium's, and out of every plane.
+    // Along the axis, at 45° (where the modes are those of the medium), and out of every plane.
     let error = fault(|s| s[0].polarization = Vec3::new(1.0, 0.0, 1.0).normalize());
     assert!(is_ambiguous(&error, 0), "{error}");
     let error = fault(|s| s[4].polarization = Vec3::x());
@@ -131,14 +131,14 @@ fn a_motion_within_thirty_degrees_of_its_mode_will_do() {
 
 #[test]
 fn speeds_that_no_stable_medium_has_are_refused() {
-    // P across the axis slower than S in that plane.
+    // P across the axis is slower than S in that plane.
     let error = fault(|s| {
         s.truncate(4);
         (s[1].speed, s[2].speed) = (s[2].speed, s[1].speed);
     });
     assert!(matches!(error, ChristoffelError::Unstable { .. }) && !error.is_input_error(), "{error}");
     assert!(error.to_string().contains("C11 = 67.000 MPa"), "{error}");
-    // SH at 45° slower than half of G13 allows.
+    // SH at 45° is slower than half of G13 allows.
     let slow = |s: &mut Vec<WaveSpeed>| {
         s[2] = sample().named(Wave::Sh(45.0), 0.0);
         s[2].speed *= 0.6;

@@ -16,7 +16,7 @@ fn fit(waves: &[Wave]) -> SpeedFit {
     sample.fit(&speeds).unwrap()
 }
 
-/// These moduli are known, to rounding, and no others.
+/// Only these moduli are determined, to rounding.
 fn knows(waves: &[Wave], moduli: &[Modulus]) {
     let fitted = fit(waves);
     let known: Vec<_> = fitted.observation.moduli.known().map(|(m, _)| m).collect();
@@ -73,7 +73,7 @@ fn two_shear_speeds_are_enough_for_eps_and_not_for_k() {
     assert!(estimate.structure.eps.is_some() && estimate.structure.k.is_none());
 }
 
-/// A transducer a degree off the axis measures C33 to 0.1 %, and nothing of C13.
+/// A transducer one degree off the axis measures C33 to 0.1 %, and does not determine C13.
 #[test]
 fn a_direction_that_misses_the_axis_by_a_degree_tells_nothing_new() {
     let fitted = fit(&[Wave::P(1.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0)]);
@@ -82,7 +82,7 @@ fn a_direction_that_misses_the_axis_by_a_degree_tells_nothing_new() {
     assert!((c33 / PACKING.c33 - 1.0).abs() < 1e-3, "{c33}");
 }
 
-/// ρ v² of a P wave at 45° is never below (C11 + C33)/4 + C44/2 with half their difference added.
+/// ρ v² of a P wave at 45° is at least (C11 + C33)/4 + C44/2 plus half of their difference.
 #[test]
 fn a_speed_that_is_too_slow_for_any_c13_leaves_it_open_and_is_a_conflict() {
     let sample = sample();

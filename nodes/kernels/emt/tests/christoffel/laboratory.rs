@@ -1,4 +1,4 @@
-//! Waves in media that are known, by a dense eigenvalue solve of the full Christoffel tensor.
+//! Waves in known media, by a dense eigenvalue solve of the full Christoffel tensor.
 
 use grainlab_core::{Stiffness, TransverseIsotropy, Vec3, WaveSpeed};
 use grainlab_emt::christoffel::{self, ChristoffelError, SpeedFit};
@@ -16,7 +16,7 @@ pub(crate) enum Wave {
     Sh(f64),
 }
 
-/// A medium about an axis of its own, in a frame of its own.
+/// A medium with its axis, in a rotated frame.
 pub(crate) struct Sample {
     pub(crate) moduli: TransverseIsotropy,
     pub(crate) stiffness: Stiffness,
@@ -32,7 +32,8 @@ impl Sample {
         self.frame * Vec3::z()
     }
 
-    /// Direction, and the motion that someone would name who knows the axis and no moduli; `azimuth` in degrees.
+    /// Direction, and the polarization that follows from the axis without knowledge of the moduli; `azimuth`
+    /// in degrees.
     pub(crate) fn nominal(&self, wave: Wave, azimuth: f64) -> (Vec3, Vec3) {
         let (Wave::P(angle) | Wave::Sv(angle) | Wave::Sh(angle)) = wave;
         let (sin, cos) = angle.to_radians().sin_cos();
@@ -47,19 +48,19 @@ impl Sample {
         (self.frame * n, self.frame * p)
     }
 
-    /// The speed of a wave, with its exact motion.
+    /// The speed of a wave, with its exact polarization.
     pub(crate) fn exact(&self, wave: Wave, azimuth: f64) -> WaveSpeed {
         let (direction, nominal) = self.nominal(wave, azimuth);
         let mode = self.mode(wave, direction, nominal);
         WaveSpeed { direction, polarization: mode.1, speed: (mode.0 / DENSITY).sqrt(), stddev: None }
     }
 
-    /// The same with the motion of someone who does not know the moduli.
+    /// The same with the polarization assumed without knowledge of the moduli.
     pub(crate) fn named(&self, wave: Wave, azimuth: f64) -> WaveSpeed {
         WaveSpeed { polarization: self.nominal(wave, azimuth).1, ..self.exact(wave, azimuth) }
     }
 
-    /// ρ v² and motion; of the two modes in the plane, P is the stiffer.
+    /// ρ v² and polarization; of the two modes in the plane, P is the stiffer.
     fn mode(&self, wave: Wave, direction: Vec3, nominal: Vec3) -> (f64, Vec3) {
         let waves = self.stiffness.plane_waves(&direction);
         if let Wave::Sh(_) = wave {
@@ -74,7 +75,7 @@ impl Sample {
             _ => (0..3).rfind(|k| in_plane(&waves.polarizations[*k])),
         };
         let k = k.expect("two modes move in the plane");
-        // On the axis any transverse motion is a mode's.
+        // Along the axis any transverse polarization is that of a mode.
         let polarization = if across.is_none() { nominal } else { waves.polarizations[k] };
         (waves.moduli[k], polarization)
     }
@@ -89,7 +90,7 @@ impl Sample {
     }
 }
 
-/// The medium of a packing: the paper's S3, closely.
+/// The medium of a packing, close to the paper's S3.
 pub(crate) const PACKING: TransverseIsotropy =
     TransverseIsotropy { c11: 245e6, c12: 111e6, c13: 98e6, c33: 274e6, g13: 72e6, g12: 67e6, residual: 0.0 };
 
@@ -100,7 +101,7 @@ pub(crate) fn thirteen() -> Vec<Vec3> {
     all.filter(|v| *v > [0.0; 3]).map(|v| Vec3::from(v).normalize()).collect()
 }
 
-/// P and both S along each direction, with the motions of the modes and this relative error.
+/// P and both S along each direction, with the polarizations of the modes and this relative error.
 pub(crate) fn every_mode(
     stiffness: &Stiffness,
     directions: &[Vec3],
@@ -119,7 +120,7 @@ pub(crate) fn every_mode(
     speeds
 }
 
-/// Numbers that look random, the same every time.
+/// Pseudorandom numbers, the same in every run.
 pub(crate) struct Numbers(u64);
 
 impl Numbers {

@@ -1,4 +1,4 @@
-//! What the moduli from wave speeds claim, one file a subject.
+//! Tests of the moduli from wave speeds, one file per subject.
 
 mod axis;
 mod departure;

@@ -6,11 +6,11 @@ use grainlab_emt::christoffel::{self, SpeedFit};
 use grainlab_emt::{Conditions, MODULI, Measured, ModuliCovariance, Modulus};
 use nalgebra::{Rotation3, SMatrix, SVector};
 
-/// The least that determines everything once more than needed: speeds along the axes, and a pair between them.
+/// The smallest set with redundancy for every modulus: speeds along the axes, and a pair between them.
 const SIX: [Wave; 6] =
     [Wave::P(0.0), Wave::P(90.0), Wave::Sh(90.0), Wave::Sv(0.0), Wave::P(45.0), Wave::Sv(45.0)];
 
-/// C11, C33, C13, G13 and G12, of which Θ is a sum.
+/// C11, C33, C13, G13 and G12, from which Θ follows.
 const FIVE: [Modulus; 5] = [Modulus::C11, Modulus::C33, Modulus::C13, Modulus::G13, Modulus::G12];
 
 fn sample() -> Sample {
@@ -22,7 +22,7 @@ fn exact(waves: &[Wave]) -> Vec<WaveSpeed> {
     waves.iter().enumerate().map(|(i, w)| sample.named(*w, 50.0 * i as f64)).collect()
 }
 
-/// The same with relative errors of these standard deviations, which are stated.
+/// The same with relative errors of these standard deviations, stated as uncertainties.
 fn with_errors(speeds: &[WaveSpeed], relative: &[f64], numbers: &mut Numbers) -> Vec<WaveSpeed> {
     let measure = |(speed, relative): (&WaveSpeed, &f64)| {
         let stddev = relative * speed.speed;
@@ -44,8 +44,8 @@ fn five<const C: usize>(m: &SMatrix<f64, MODULI, C>) -> SMatrix<f64, 5, C> {
     SMatrix::from_fn(|i, j| m[(FIVE[i] as usize, j)])
 }
 
-/// Means over many draws of χ² and of the squared distance of the moduli from the truth by their covariance, and the
-/// share of conflicts.
+/// Means over many draws of χ² and of the squared distance of the moduli from the truth weighted by their
+/// inverse covariance, and the fraction of conflicts.
 fn scatter(waves: &[Wave], relative: &[f64]) -> [f64; 3] {
     const DRAWS: usize = 3000;
     let (mut numbers, speeds) = (Numbers::new(7), exact(waves));
@@ -93,7 +93,7 @@ fn both_modes_between_the_axes_give_the_bulk_modulus_half_again_as_well_as_one()
         covariance(&fitted)[(i, i)].sqrt() / sample().truth(Modulus::Theta)
     };
     let (pair, alone) = (relative(&SIX), relative(&SIX[..5]));
-    // 0.3 % of every speed is 0.66 % of the bulk modulus.
+    // An error of 0.3 % of every speed is one of 0.66 % of the bulk modulus.
     assert!((pair - 0.0066).abs() < 0.0003, "{pair}");
     assert!((alone / pair - 1.45).abs() < 0.05, "{alone} {pair}");
 }
@@ -111,7 +111,7 @@ fn an_error_of_the_density_moves_all_moduli_together() {
     let moduli = SVector::from(Modulus::ALL.map(|m| sharp.observation.moduli.get(m).unwrap()));
     let expected = covariance(&sharp) + moduli * moduli.transpose() * 0.02f64.powi(2);
     assert!((covariance(&blurred) - expected).amax() < 1e-12 * expected.amax());
-    // So 2 % of density is 2 % of each modulus, and nothing of a ratio.
+    // An error of 2 % of the density is one of 2 % of each modulus, and none of a ratio.
     let correlation = |a: Modulus, b: Modulus| {
         let c = covariance(&blurred);
         let (i, j) = (a as usize, b as usize);
@@ -182,7 +182,7 @@ fn a_speed_of_another_state_is_a_conflict_and_is_named() {
     assert!(conflict.worst == 6 && conflict.sigma > 8.0, "{conflict:?}");
 }
 
-/// At 30 % nothing holds; it must still be an answer, or an error that says why.
+/// At 30 % no claim holds; the result must still be an estimate, or an error with its reason.
 #[test]
 fn useless_speeds_do_no_harm() {
     let mut numbers = Numbers::new(6);

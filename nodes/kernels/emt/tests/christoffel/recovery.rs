@@ -51,13 +51,14 @@ fn slopes(sample: &Sample, waves: &[Wave], scale: &[f64; 5]) -> Vec<[f64; 5]> {
     slopes
 }
 
-/// What part of each modulus, in the order of `Modulus::ALL`, is open to the speeds in the medium's neighbourhood;
-/// `None` if it is hard to say, because something has little influence on any speed, but some.
+/// The part of each modulus, in the order of `Modulus::ALL`, that the speeds leave undetermined near this
+/// medium; `None` if it is not clear, because some combination has a small but finite influence on the
+/// speeds.
 fn open_parts(sample: &Sample, waves: &[Wave]) -> Option<[f64; 6]> {
     let m = sample.moduli;
     let scale = [m.c11, m.c33, m.c13 + m.g13, m.g13, m.g12];
     let slopes = slopes(sample, waves, &scale);
-    // Square at least, so that the decomposition has all five directions.
+    // At least square, so that the decomposition has all five directions.
     let jacobian = DMatrix::from_fn(waves.len().max(5), 5, |i, j| slopes.get(i).map_or(0.0, |row| row[j]));
     let svd: SVD<f64, Dyn, Dyn> = SVD::new(jacobian, false, true);
     let directions = svd.v_t.expect("asked for");
@@ -77,8 +78,9 @@ fn open_parts(sample: &Sample, waves: &[Wave]) -> Option<[f64; 6]> {
     Some(parts)
 }
 
-/// Every subset of the waves gives back, from its speeds, what it determines, and leaves the rest open. `speed` makes
-/// the wave; at most `rivalled` of all subsets may leave more open, because another medium has the same speeds.
+/// The moduli that a subset of the waves determines are recovered from its speeds; the others are
+/// undetermined. `speed` makes the wave. At most `rivalled` of all subsets may leave more undetermined,
+/// because another medium has the same speeds.
 fn every_subset_gives_back(
     numbers: &mut Numbers,
     anisotropy: f64,
@@ -95,7 +97,7 @@ fn every_subset_gives_back(
             let fitted =
                 sample.fit(&speeds).unwrap_or_else(|e| panic!("{e}: {waves:?} of {:?}", sample.moduli));
             let all_known = open.iter().all(|o| *o == 0.0);
-            // Where something is open, up to 0.3 % of a modulus may be.
+            // Where a combination is undetermined, up to 0.3 % of a modulus may be undetermined.
             let allowed = if all_known { 1e-10 } else { 3e-3 };
             let mut rivalled = false;
             for (modulus, open) in Modulus::ALL.into_iter().zip(open) {
@@ -109,7 +111,7 @@ fn every_subset_gives_back(
                     None => rivalled |= open < 1e-3,
                 }
             }
-            // With both P speeds along the axes, one medium is left.
+            // With both P speeds along the axes, only one medium fits.
             let unique = waves.contains(&Wave::P(0.0)) && waves.contains(&Wave::P(90.0)) && all_known;
             assert!(!(rivalled && unique), "open without need: {waves:?} of {:?}", sample.moduli);
             tried += 1;
@@ -192,7 +194,7 @@ fn an_isotropic_medium_gives_isotropic_moduli() {
     };
     let mut numbers = Numbers::new(5);
     let sample = Sample::new(glass, numbers.frame());
-    // The dense solve turns the S motions of an isotropic medium as it likes, so they are named.
+    // The dense solve gives arbitrary S polarizations in an isotropic medium, so they are given.
     let speeds: Vec<_> = WAVES
         .iter()
         .map(|wave| {
@@ -208,8 +210,8 @@ fn an_isotropic_medium_gives_isotropic_moduli() {
     }
 }
 
-/// Four azimuths see the projection of a stiffness that is a little orthotropic: what is not isotropic about the axis
-/// enters with its square only.
+/// Four azimuths determine the projection of a slightly orthotropic stiffness: its departure from isotropy
+/// about the axis enters only squared.
 #[test]
 fn equivalent_directions_average_to_the_projection_on_an_isotropic_plane() {
     for asymmetry in [0.04, 0.02, 0.01] {
@@ -258,11 +260,14 @@ fn a_fit_is_an_observation_that_every_model_takes() {
     let direct =
         grainlab_emt::model("ratio").unwrap().infer(&direct, &grainlab_emt::Calibration::PAPER).unwrap();
     let [found, expected] = [&estimate, &direct].map(|e| e.structure.k.unwrap());
-    assert!((found - expected).abs() < 1e-9 && estimate.stddev(grainlab_emt::Quantity::K).unwrap() > 0.0);
+    assert!(
+        (found - expected).abs() < 1e-9
+            && estimate.stddev(grainlab_core::results::InferredQuantity::K).unwrap() > 0.0
+    );
 }
 
-/// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one number is
-/// left for an SV at 70°, and its speed is no function of that number that only grows.
+/// P and SV at 45° fix (C11 + C33)/2 + C44 and ((C11 − C33)/2)² + (C13 + C44)². With P along the axis one
+/// number remains for an SV at 70°, and its speed is not a monotone function of that number.
 #[test]
 fn what_two_media_with_the_same_speeds_differ_in_is_left_open() {
     let m = TransverseIsotropy {
@@ -304,7 +309,7 @@ fn what_two_media_with_the_same_speeds_differ_in_is_left_open() {
         let value = fitted.observation.moduli.get(Modulus::G12).unwrap();
         assert!((value / m.g12 - 1.0).abs() < 1e-10);
     }
-    // An S speed along the axis decides.
+    // An S speed along the axis selects one.
     let more: Vec<_> = waves.iter().chain(&[Wave::Sv(0.0)]).map(|w| sample.exact(*w, 0.0)).collect();
     assert!(sample.fit(&more).unwrap().undetermined.is_empty());
 }

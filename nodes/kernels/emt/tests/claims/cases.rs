@@ -1,15 +1,15 @@
 //! Random structures and states, the same in every run.
 
 use grainlab_core::Material;
-use grainlab_emt::{
-    Calibration, Conditions, Domain, IsotropicCalibration, Measured, Quantity, StrainRatio, Structure,
-};
+use grainlab_core::results::{InferredQuantity, Microstructure};
+use grainlab_emt::{Calibration, Conditions, Domain, IsotropicCalibration, Measured, StrainRatio};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// The paper's calibration, one of other constants whose coordination number leaves rattlers out, and our own.
+/// The paper's calibration, one with other constants and a coordination number without rattlers, and the
+/// built-in one.
 pub(crate) fn calibrations() -> Vec<Calibration> {
-    let own = IsotropicCalibration::new([150.0, -3.5, 80.0, -0.2], Quantity::Z, [4.2, 6.5]).unwrap();
+    let own = IsotropicCalibration::new([150.0, -3.5, 80.0, -0.2], InferredQuantity::Z, [4.2, 6.5]).unwrap();
     let grains = Material { shear_modulus: 25.0e9, poisson_ratio: 0.25, density: 2600.0 };
     let relaxed = Calibration::builtin("grainlab").unwrap().clone();
     vec![Calibration::PAPER, Calibration::of_isotropic("own", own, grains), relaxed]
@@ -29,12 +29,12 @@ impl Random {
         (low + (high - low) * unit).min(high)
     }
 
-    /// Of mean 0 and variance 1: a sum of twelve uniform numbers, near enough to normal.
+    /// Of mean 0 and variance 1: a sum of twelve uniform numbers, approximately normal.
     pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.within([0.0, 1.0])).sum::<f64>() - 6.0
     }
 
-    /// Uniform in a range, and one time in eight one of its ends.
+    /// Uniform in a range; with a probability of one in eight, one of its ends.
     fn with_ends(&mut self, range: [f64; 2]) -> f64 {
         match self.0.next_u64() >> 60 {
             0 => range[0],
@@ -43,9 +43,9 @@ impl Random {
         }
     }
 
-    /// A structure and a state of a domain: pressures from 100 Pa to 100 MPa, solid fractions from 0.5 to 0.7, the
-    /// calibration's grains or others.
-    pub(crate) fn case(&mut self, domain: &Domain) -> (Structure, Conditions) {
+    /// A structure and a state of a domain: pressures from 100 Pa to 100 MPa, solid fractions from 0.5 to
+    /// 0.7, the grains of the calibration or others.
+    pub(crate) fn case(&mut self, domain: &Domain) -> (Microstructure, Conditions) {
         let structure = domain.structure.map(|range| range.map(|r| self.with_ends(r)));
         let other = Material {
             shear_modulus: 10f64.powf(self.within([9.0, 11.5])),
@@ -58,6 +58,6 @@ impl Random {
             solid_fraction: Some(Measured::exact(self.within([0.5, 0.7]))),
             material: (self.0.next_u64() >> 63 == 0).then_some(other),
         };
-        (Structure::of_values(structure), conditions)
+        (Microstructure::of_values(structure), conditions)
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::{PAPER_MODELS, model};
 use grainlab_core::results::StrainRatios;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Mat3, Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::{
     Calibration, CalibrationError, Conditions, EmtError, Estimate, IsotropicCalibration, Measured, Moduli,
-    ModuliCovariance, Modulus, Observation, Quantity, Status, StrainRatio, StrainRatioSource, Structure,
-    Warning,
+    ModuliCovariance, Modulus, Observation, Status, StrainRatio, StrainRatioSource, Warning,
 };
 
 fn sound() -> Observation {
@@ -20,7 +20,7 @@ fn set(o: &mut Observation, modulus: Modulus, value: f64) {
     o.moduli = o.moduli.with(modulus, value);
 }
 
-/// What every model says to a changed observation; they must agree.
+/// The result of every model for a changed observation; all must agree.
 fn fault(change: impl Fn(&mut Observation)) -> EmtError {
     let mut o = sound();
     change(&mut o);
@@ -36,11 +36,12 @@ fn estimate(o: &Observation) -> Estimate {
     model("ratio").infer(o, &Calibration::PAPER).unwrap()
 }
 
-/// The estimate from what a structure is predicted to have.
+/// The estimate from the moduli predicted for a structure.
 fn of_structure(k: f64, k_hat: f64, eps: f64, g: f64) -> Estimate {
     let conditions = Conditions { gamma: StrainRatio::given(g), ..Conditions::at(100.0e3) };
-    let moduli =
-        model("ratio").predict(&Structure::paper(k, k_hat, eps), &conditions, &Calibration::PAPER).unwrap();
+    let moduli = model("ratio")
+        .predict(&Microstructure::paper(k, k_hat, eps), &conditions, &Calibration::PAPER)
+        .unwrap();
     estimate(&Observation::new(moduli, conditions))
 }
 
@@ -99,7 +100,7 @@ fn states_that_no_packing_has_are_refused() {
     }
 }
 
-/// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33 leaves Θ no choice where the others are known.
+/// 9 Θ = 4 C11 − 4 G12 + 4 C13 + C33 determines Θ if the others are known.
 #[test]
 fn moduli_that_leave_another_one_no_stable_value_are_refused_by_its_name() {
     let e = fault(|o| {
@@ -120,19 +121,19 @@ fn uncertainties_must_be_uncertainties() {
     assert!(fault(|o| o.clone_from(&skew)).to_string().contains("symmetric"));
     let indefinite = of(Mat3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0));
     assert!(fault(|o| o.clone_from(&indefinite)).to_string().contains("negative eigenvalue"));
-    // Fully correlated errors are a covariance, of rank one.
-    assert!(estimate(&of(Mat3::from_element(1.0))).stddev(Quantity::K).is_some());
+    // The covariance of fully correlated errors, of rank one.
+    assert!(estimate(&of(Mat3::from_element(1.0))).stddev(InferredQuantity::K).is_some());
 }
 
 #[test]
-fn strain_ratios_that_turn_contacts_inside_out_are_refused() {
+fn strain_ratios_that_open_contacts_are_refused() {
     for g in [-1.0, -1.5, 0.5, 3.0] {
         assert!(matches!(fault(|o| o.conditions.gamma.value = g), EmtError::GammaOutOfRange { .. }));
     }
 }
 
-/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is no contact distribution at all. `sqrt`
-/// has no such state.
+/// At g = −0.9 the formula has its pole at a = 0.89; beyond it the solution is not a contact distribution.
+/// `sqrt` has no such state.
 #[test]
 fn ratios_that_no_anisotropy_gives_at_that_strain_are_refused() {
     let mut o = Observation::from_g12_g13_theta(100.0e6, 195.0e6, 144.4e6, 50.0e3, StrainRatio::given(-0.9));
@@ -166,7 +167,7 @@ fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
         assert_eq!(e.status, Status::Extrapolated);
     };
     warned(of_structure(4.9, 4.79, 0.0, 0.0), |w| {
-        matches!(w, Warning::CoordinationOutsideFit { quantity: Quantity::KHat, range: [4.8, _], .. })
+        matches!(w, Warning::CoordinationOutsideFit { quantity: InferredQuantity::KHat, range: [4.8, _], .. })
     });
     warned(of_structure(5.5, 5.5, 0.1, -0.35), |w| matches!(w, Warning::GammaLarge { .. }));
     let with = |change: fn(&mut Observation)| {
@@ -186,7 +187,7 @@ fn each_warning_fires_outside_its_range_and_marks_the_estimate_extrapolated() {
     assert_eq!((inside.status, inside.warnings.len()), (Status::Ok, 0));
 }
 
-/// Shear of 60 MPa beside a P modulus of 50 MPa: a strain E11 = −E22 would cost no energy.
+/// With shear moduli of 60 MPa and a P modulus of 50 MPa, a strain E11 = −E22 would cost no energy.
 #[test]
 fn moduli_of_no_stable_medium_are_used_with_a_warning() {
     let mut o = sound();
@@ -197,7 +198,7 @@ fn moduli_of_no_stable_medium_are_used_with_a_warning() {
 
 /// C22 = 1.5 C11 is far from any medium isotropic about e3; the moduli taken are those of the nearest one.
 #[test]
-fn an_orthotropic_stiffness_is_used_with_a_warning_that_tells_its_asymmetry() {
+fn an_orthotropic_stiffness_is_used_with_a_warning_that_has_its_asymmetry() {
     let medium = TransverseIsotropy {
         c11: 240.0e6,
         c12: 60.0e6,
@@ -252,12 +253,12 @@ fn a_calibration_that_could_not_be_inverted_is_refused_by_field() {
         ([170.0, -3.66, f64::NAN, -0.5], "rho"),
         ([170.0, -3.66, 75.0, -3.66], "zeta"),
     ] {
-        let refused = IsotropicCalibration::new(constants, Quantity::K, [4.8, 6.0]).unwrap_err();
+        let refused = IsotropicCalibration::new(constants, InferredQuantity::K, [4.8, 6.0]).unwrap_err();
         let CalibrationError::Constant { field, .. } = refused else { panic!("{refused}") };
         assert_eq!(field, at_fault);
     }
     let upside_down =
-        IsotropicCalibration::new([170.0, -3.66, 75.0, -0.5], Quantity::K, [6.0, 4.8]).unwrap_err();
+        IsotropicCalibration::new([170.0, -3.66, 75.0, -0.5], InferredQuantity::K, [6.0, 4.8]).unwrap_err();
     assert!(matches!(upside_down, CalibrationError::Constant { field: "fitted", .. }));
 }
 

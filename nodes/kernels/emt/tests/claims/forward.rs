@@ -1,18 +1,19 @@
-//! What every model predicts, against a sum over contacts in every direction of the sphere.
+//! The predictions of every model against a sum over contacts in every direction of the sphere.
 
 use crate::cases::calibrations;
 use crate::sphere::{contact_density, directions, stiffness};
 use crate::{PAPER_MODELS, model};
+use grainlab_core::results::Microstructure;
 use grainlab_core::{Material, Stiffness, Vec3};
-use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio, Structure};
+use grainlab_emt::{Conditions, Measured, Moduli, Modulus, StrainRatio};
 use std::f64::consts::PI;
 
-/// ε and g with both ends and what is next to them, and where the overlap is all but linear.
+/// Values of ε and g: both ends and their neighbours, and values where the overlap is almost linear.
 const EPS: [f64; 6] = [-0.5, -0.2, 0.0, 0.08, 0.45, 1.0];
 const G: [f64; 13] = [-0.5, -0.4999, -0.45, -0.3, -0.1, -0.075, -1e-3, 0.0, 1e-9, 0.08, 0.12, 0.2499, 0.25];
 const NU: [f64; 4] = [0.0, 0.2, 0.35, 0.5];
 
-/// Diameter of the grains, m: falls out of every result.
+/// Diameter of the grains, m: cancels in every result.
 const D: f64 = 2.0e-4;
 
 /// Root of the overlap over that of the isotropic part, Eq. 10.
@@ -25,10 +26,10 @@ fn root(g: f64, x: f64) -> f64 {
     (1.0 + 2.0 * g - 6.0 * g * x * x).max(0.0).sqrt()
 }
 
-/// What models say of the contacts, and the models that say it with the power of k/k̂.
+/// The contacts assumed by the models, and the models with these contacts and their power of k/k̂.
 struct Theory {
     law: fn(f64, f64) -> f64,
-    /// Whether K_N is not taken as K_T.
+    /// Whether K_N and K_T differ.
     full: bool,
     models: &'static [(&'static str, f64)],
 }
@@ -43,7 +44,8 @@ const RATIOS: [Theory; 3] = [
     Theory { law: root, full: true, models: &[("sqrt", 1.0)] },
 ];
 
-/// G12, G13 and Θ of one contact a grain, by Hertz and Mindlin, for an overlap of the isotropic part of 30 nm.
+/// G12, G13 and Θ of one contact per grain, by Hertz and Mindlin, for an overlap of the isotropic part of 30
+/// nm.
 fn paper_moduli(sphere: &[(Vec3, f64)], theory: &Theory, grains: &Material, eps: f64, g: f64) -> [f64; 3] {
     let c = stiffness(sphere, |x| {
         let overlap = 3.0e-8 * (theory.law)(g, x).powi(2);
@@ -81,7 +83,7 @@ fn ratios_are_those_of_the_integral_with_the_spin_that_keeps_stress_symmetric() 
                         over[2] += 0.4 * eps * (2.0 - over[1] / over[0]);
                     }
                     let fitted = calibration.isotropic_for(Some(grains));
-                    let structure = Structure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
+                    let structure = Microstructure::paper(k, k_hat, eps).with(fitted.coordination_kind, k);
                     let conditions = Conditions {
                         gamma: StrainRatio::given(g),
                         material: Some(grains),
@@ -101,8 +103,8 @@ fn ratios_are_those_of_the_integral_with_the_spin_that_keeps_stress_symmetric() 
     }
 }
 
-/// All six moduli at the pressure that the Hertz forces of the same contacts make: Eq. 4 before any algebra, with the
-/// force of the overlap whose root is Eq. 10.
+/// All six moduli at the pressure from the Hertz forces of the same contacts: Eq. 4 before any algebra, with
+/// the force for the overlap whose root is Eq. 10.
 #[test]
 fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
     let sphere = directions();
@@ -123,7 +125,7 @@ fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
             });
             let expected = Moduli::of_medium(&Stiffness(c).transverse_isotropy());
 
-            let structure = Structure { k: Some(k), eps: Some(eps), ..Structure::default() };
+            let structure = Microstructure { k: Some(k), eps: Some(eps), ..Microstructure::default() };
             let conditions = Conditions {
                 gamma: StrainRatio::given(g),
                 solid_fraction: Some(Measured::exact(phi)),
@@ -148,7 +150,7 @@ fn the_effective_medium_has_the_moduli_and_the_pressure_of_its_contacts() {
     }
 }
 
-/// What makes the root that `full` and `sqrt` look for the only one.
+/// The condition for the root of `full` and `sqrt` to be unique.
 #[test]
 fn g13_over_g12_rises_with_eps_at_every_g_and_nu() {
     for name in PAPER_MODELS {
@@ -162,8 +164,8 @@ fn g13_over_g12_rises_with_eps_at_every_g_and_nu() {
                 };
                 let ratio = |i: i32| {
                     let eps = -0.5 + 0.015 * f64::from(i);
-                    let structure =
-                        Structure::paper(5.0, 5.0, eps.min(1.0)).with(grainlab_emt::Quantity::Z, 5.0);
+                    let structure = Microstructure::paper(5.0, 5.0, eps.min(1.0))
+                        .with(grainlab_core::results::InferredQuantity::Z, 5.0);
                     let m = model(name).predict(&structure, &conditions, &calibration).unwrap();
                     m.get(Modulus::G13).unwrap() / m.get(Modulus::G12).unwrap()
                 };

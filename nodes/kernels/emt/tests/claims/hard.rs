@@ -1,11 +1,11 @@
-//! Cases at the edges of what the models can be asked, by name, with what comes out.
+//! Cases at the edges of the domains of the models, by name, with their results.
 
 use crate::cases::Random;
 use crate::{PAPER_MODELS, model};
 use grainlab_core::Material;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Modulus, Observation, Quantity, Status,
-    StrainRatio, Structure, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Modulus, Observation, Status, StrainRatio, Warning,
 };
 
 /// G12, G13 = `ratio` G12 and Θ of a packing of some k̂ near 5.
@@ -20,8 +20,8 @@ fn infer(name: &str, o: &Observation) -> Result<Estimate, EmtError> {
     model(name).infer(o, &Calibration::PAPER)
 }
 
-/// The estimate from what a structure is predicted to have.
-fn there_and_back(name: &str, structure: Structure, g: f64, nu: f64) -> Estimate {
+/// The estimate from the moduli predicted for a structure.
+fn there_and_back(name: &str, structure: Microstructure, g: f64, nu: f64) -> Estimate {
     let conditions = Conditions {
         gamma: StrainRatio::given(g),
         solid_fraction: Some(Measured::exact(0.636)),
@@ -36,8 +36,8 @@ fn eps_of(name: &str, ratio: f64) -> f64 {
     infer(name, &with_ratio(ratio)).unwrap().structure.eps.unwrap()
 }
 
-/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one does not
-/// move.
+/// At g = 0 the two ends of ε, and its middle. With K_N ≠ K_T the upper end lies beyond 3/2, the lower one is
+/// unchanged.
 #[test]
 fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_eps() {
     for name in PAPER_MODELS {
@@ -52,11 +52,12 @@ fn shear_ratios_of_two_thirds_1_and_three_halves_are_the_ends_and_the_middle_of_
     }
 }
 
-/// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: said to be outside, or, where ε is looked for in its range only, refused.
+/// ε = 35 a/(21 − 7 a) = 2.46 at r = 1.99: a warning that it is outside or, in models that search only their
+/// range, an error.
 #[test]
-fn a_shear_ratio_of_1_99_is_outside_every_range_and_said_to_be() {
+fn a_shear_ratio_of_1_99_is_outside_every_range_and_reported() {
     for name in PAPER_MODELS {
-        // Beside the usual Θ the shear is too stiff for any k̂ there.
+        // With the usual Θ, no k̂ gives so large a shear modulus.
         let mut o = with_ratio(1.99);
         o.moduli = o.moduli.with(Modulus::Theta, 50.0 * 160.0e6);
         match infer(name, &o) {
@@ -112,13 +113,13 @@ fn as_s_goes_to_1_k_hat_grows_without_bound_and_from_1_on_there_is_none() {
 }
 
 #[test]
-fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
+fn k_hat_of_3_67_and_4_79_come_back_with_a_warning() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
         for k_hat in [3.67, 4.79] {
-            let e = there_and_back(name, Structure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
+            let e = there_and_back(name, Microstructure::paper(5.0, k_hat, 0.05), -0.05, 0.2);
             assert!((e.structure.k_hat.unwrap() - k_hat).abs() < 1e-12, "{name}");
             let below = Warning::CoordinationOutsideFit {
-                quantity: Quantity::KHat,
+                quantity: InferredQuantity::KHat,
                 value: e.structure.k_hat.unwrap(),
                 range: [4.8, f64::INFINITY],
             };
@@ -127,11 +128,11 @@ fn k_hat_of_3_67_and_4_79_come_back_and_are_said_to_be_below_the_fit() {
     }
 }
 
-/// Inside, everything comes back; outside, Eq. 10 goes on with a warning, and contacts of an overlap that is not linear
-/// are open.
+/// Inside, every value is recovered. Outside, Eq. 10 continues with a warning, and contacts of a nonlinear
+/// overlap law are open.
 #[test]
 fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
-    let truth = Structure::paper(5.2, 5.4, 0.1);
+    let truth = Microstructure::paper(5.2, 5.4, 0.1);
     for name in PAPER_MODELS {
         for g in [0.25, -0.5] {
             let found = there_and_back(name, truth, g, 0.2).structure;
@@ -166,18 +167,18 @@ fn g_of_a_quarter_and_minus_a_half_are_the_last_ones() {
 fn eps_of_minus_a_half_and_1_come_back() {
     for name in PAPER_MODELS {
         for (eps, g) in [-0.5, 1.0].into_iter().flat_map(|eps| [-0.5, 0.0, 0.25].map(|g| (eps, g))) {
-            let found = there_and_back(name, Structure::paper(5.2, 5.4, eps), g, 0.2).structure;
+            let found = there_and_back(name, Microstructure::paper(5.2, 5.4, eps), g, 0.2).structure;
             assert!((found.eps.unwrap() - eps).abs() < 1e-12, "{name} eps {eps} g {g}");
         }
     }
 }
 
-/// Towards ν = 1/2, where K_N/K_T is 3/2, nothing is singular; beyond there is no such material.
+/// Towards ν = 1/2, where K_N/K_T is 3/2, nothing is singular; beyond, there is no such material.
 #[test]
 fn nu_of_a_half_is_the_last_one() {
     for name in PAPER_MODELS {
         for nu in [0.5 - 1e-9, 0.5] {
-            let found = there_and_back(name, Structure::paper(5.2, 5.4, 0.1), -0.07, nu).structure;
+            let found = there_and_back(name, Microstructure::paper(5.2, 5.4, 0.1), -0.07, nu).structure;
             assert!(
                 (found.eps.unwrap() - 0.1).abs() < 1e-12 && (found.k.unwrap() - 5.2).abs() < 1e-12,
                 "{name}"
@@ -190,7 +191,7 @@ fn nu_of_a_half_is_the_last_one() {
 }
 
 #[test]
-fn a_bulk_modulus_or_pressure_that_is_none_is_refused_by_name() {
+fn an_invalid_bulk_modulus_or_pressure_is_refused_by_name() {
     for name in PAPER_MODELS {
         for value in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut theta = with_ratio(1.02);
@@ -212,7 +213,7 @@ fn a_bulk_modulus_or_pressure_that_is_none_is_refused_by_name() {
     }
 }
 
-/// Nothing of k or k̂ is guessed; ε is the same as with Θ.
+/// k and k̂ are undetermined; ε is the same as with Θ.
 #[test]
 fn without_theta_eps_alone_is_determined() {
     let all = with_ratio(1.02).with_relative_error(0.01);
@@ -222,18 +223,22 @@ fn without_theta_eps_alone_is_determined() {
         let (e, with_theta) = (infer(name, &o).unwrap(), infer(name, &all).unwrap());
         assert_eq!(e.structure.eps, with_theta.structure.eps);
         if name == "emt" {
-            // It has no use for Θ.
+            // It does not use Θ.
             assert_eq!(e.structure, with_theta.structure);
             continue;
         }
-        assert_eq!(e.structure, Structure { eps: e.structure.eps, ..Structure::default() }, "{name}");
-        assert!(e.stddev(Quantity::Eps).unwrap() > 0.01);
-        assert!(e.stddev(Quantity::K).is_none() && e.information(Quantity::KHat).is_none());
+        assert_eq!(
+            e.structure,
+            Microstructure { eps: e.structure.eps, ..Microstructure::default() },
+            "{name}"
+        );
+        assert!(e.stddev(InferredQuantity::Eps).unwrap() > 0.01);
+        assert!(e.stddev(InferredQuantity::K).is_none() && e.information(InferredQuantity::KHat).is_none());
         assert_eq!(e.condition_number(), Some(1.0));
     }
 }
 
-/// The one modulus that the others leave no choice for is as good as given.
+/// The one modulus that follows from the others may be left out.
 #[test]
 fn theta_follows_from_the_p_moduli() {
     let mut o = with_ratio(1.02);
@@ -254,7 +259,8 @@ fn theta_follows_from_the_p_moduli() {
     }
 }
 
-/// 0 %, 1 %, 5 % and 30 % noise on each modulus: an error, or numbers with an uncertainty. Up to 5 % it is an estimate.
+/// 0 %, 1 %, 5 % and 30 % noise on each modulus: an error, or numbers with an uncertainty. Up to 5 % it is an
+/// estimate.
 #[test]
 fn noise_of_30_percent_gives_an_error_or_numbers_never_a_nan() {
     let mut random = Random::new(30);
@@ -270,7 +276,9 @@ fn noise_of_30_percent_gives_an_error_or_numbers_never_a_nan() {
                     Ok(e) => {
                         let numbers = e.structure.values().into_iter().flatten();
                         assert!(numbers.chain(e.covariance().unwrap().iter().copied()).all(f64::is_finite));
-                        assert!(Quantity::ALL.into_iter().all(|q| e.stddev(q).is_none_or(|s| s >= 0.0)));
+                        assert!(
+                            InferredQuantity::ALL.into_iter().all(|q| e.stddev(q).is_none_or(|s| s >= 0.0))
+                        );
                     }
                     Err(e) => {
                         assert!(relative > 0.05 || matches!(e, EmtError::NoAnisotropy { .. }), "{name}: {e}")

@@ -2,11 +2,12 @@
 
 use crate::{PAPER_MODELS, model, table3};
 use grainlab_core::Material;
+use grainlab_core::results::Microstructure;
 use grainlab_emt::{
-    Calibration, Conditions, Eq16Reading, Measured, Medium, Observation, StrainRatio, Structure, models,
+    Calibration, Conditions, Eq16Reading, Measured, Medium, Observation, StrainRatio, models,
 };
 
-/// 1e-6 is what is promised; the moduli are kept to 1 mPa, which costs 1e-9 at most.
+/// The accuracy claimed is 1e-6; the moduli are stored to 1 mPa, which adds at most 1e-9.
 #[test]
 fn every_row_of_table_iii_comes_back_from_its_implied_moduli() {
     let rows = table3::rows();
@@ -22,7 +23,7 @@ fn every_row_of_table_iii_comes_back_from_its_implied_moduli() {
     }
 }
 
-/// The other way round: what mixing the two readings of Eq. 16 costs (up to 0.29 in k, on S3 at 50 kPa).
+/// The inverse case: the error from mixing the two readings of Eq. 16 (up to 0.29 in k, on S3 at 50 kPa).
 #[test]
 fn mixing_the_two_readings_shifts_k_by_the_known_amount() {
     let row = &table3::rows()[8];
@@ -31,7 +32,7 @@ fn mixing_the_two_readings_shifts_k_by_the_known_amount() {
     assert!((s.eps.unwrap() - row.printed[2]).abs() < 1e-6);
 }
 
-/// At the same pressure and volume k/k̂ counts with the power 2/3: the k of S3 at 50 kPa moves from 4.92 to 5.15.
+/// At the same pressure and volume k/k̂ has the power 2/3: the k of S3 at 50 kPa changes from 4.92 to 5.15.
 #[test]
 fn the_power_of_two_thirds_shifts_k_by_the_known_amount() {
     let row = &table3::rows()[8];
@@ -41,8 +42,8 @@ fn the_power_of_two_thirds_shifts_k_by_the_known_amount() {
     assert!((s.eps.unwrap() - row.printed[2]).abs() < 1e-6);
 }
 
-/// Table III's k_EMT is G12 over ψ3 for one contact a grain, Δ = ln(0.636/0.607): S1 agrees within the two printed
-/// digits and 2 %. (S3 and S4 do not: the table is inconsistent there.)
+/// Table III's k_EMT is G12 over ψ3 for one contact per grain, Δ = ln(0.636/0.607): S1 agrees within the two
+/// printed digits and 2 %. (S3 and S4 do not: the table is inconsistent there.)
 #[test]
 fn absolute_theory_gives_k_emt_of_sample_s1() {
     for (row, k_emt) in table3::rows().iter().zip([0.31, 0.41, 0.58, 0.75]) {
@@ -71,20 +72,20 @@ fn k_hat_of_the_corrected_model_depends_on_neither_g_nor_eps() {
     assert!((a.1 - b.1).abs() > 0.2);
 }
 
-/// The ε that `taken` finds in the moduli that `true_model` predicts, glass but for ν.
+/// The ε that `taken` infers from the moduli that `true_model` predicts, for glass with another ν.
 fn eps_taken(true_model: &str, taken: &str, eps: f64, g: f64, nu: f64) -> f64 {
     let conditions = Conditions {
         gamma: StrainRatio::given(g),
         material: Some(Material { poisson_ratio: nu, ..Material::GLASS }),
         ..Conditions::at(100.0e3)
     };
-    let truth = Structure::paper(5.2, 5.1, eps);
+    let truth = Microstructure::paper(5.2, 5.1, eps);
     let moduli = model(true_model).predict(&truth, &conditions, &Calibration::PAPER).unwrap();
     let found = model(taken).infer(&Observation::new(moduli, conditions), &Calibration::PAPER).unwrap();
     found.structure.eps.unwrap()
 }
 
-/// Known to four digits from quadrature apart from this code.
+/// Four digits, from quadrature independent of this code.
 #[test]
 fn taking_k_n_as_k_t_costs_what_is_known() {
     let small = [0.08, 0.0820, 0.0843, 0.0872, 0.0907, 0.0952];
@@ -98,7 +99,8 @@ fn taking_k_n_as_k_t_costs_what_is_known() {
     }
 }
 
-/// What moves in ε when Eq. 10 is given up, known to three digits from quadrature apart from this code.
+/// The change of ε without the linearisation of Eq. 10, three digits, from quadrature independent of this
+/// code.
 #[test]
 fn the_linear_overlap_law_costs_what_is_known() {
     let known = [
@@ -116,7 +118,7 @@ fn the_linear_overlap_law_costs_what_is_known() {
     }
 }
 
-/// Without a Poisson ratio K_N is K_T, and without γ/Δ both overlap laws are one.
+/// At ν = 0, K_N equals K_T, and at γ/Δ = 0 both overlap laws agree.
 #[test]
 fn full_is_ratio_at_nu_0_and_sqrt_is_full_at_g_0() {
     for i in 0..=30 {
@@ -130,7 +132,7 @@ fn full_is_ratio_at_nu_0_and_sqrt_is_full_at_g_0() {
     }
 }
 
-/// ε of Table III with both corrections, from quadrature apart from this code.
+/// ε of Table III with both corrections, from quadrature independent of this code.
 #[test]
 fn both_corrections_together_move_eps_of_table_iii_by_what_is_known() {
     let known = [

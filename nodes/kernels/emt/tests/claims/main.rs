@@ -1,4 +1,4 @@
-//! What the crate claims, one file a subject.
+//! Tests of the models, one file per subject.
 
 mod cases;
 mod faults;
@@ -13,7 +13,7 @@ mod sampling;
 mod sphere;
 mod table3;
 
-/// The models of the paper, its slips and its approximations: all that read G12 and G13 and are fed with γ/Δ.
+/// The models of the paper, with its errata and approximations: all that use G12, G13 and γ/Δ.
 const PAPER_MODELS: [&str; 6] = ["emt", "ratio", "ratio-as-printed", "ratio-volume", "full", "sqrt"];
 
 /// The model of this name.

@@ -3,9 +3,10 @@
 use crate::cases::{Random, calibrations};
 use crate::{model, table3};
 use grainlab_core::Mat3;
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, INPUTS, Jacobian, Measured, Modulus, Observation, QUANTITIES,
-    Quantity, StrainRatio, StrainRatioSource, models,
+    Calibration, Conditions, EmtError, INPUTS, Jacobian, Measured, Modulus, Observation, StrainRatio,
+    StrainRatioSource, models,
 };
 use nalgebra::SVector;
 use proptest::prelude::*;
@@ -13,8 +14,8 @@ use proptest::prelude::*;
 const PRESSURE: usize = 6;
 const GAMMA: usize = 7;
 
-/// The slopes of (k, k̂, ε) of the ratio model with the paper's constants by hand, where k/k̂ counts with this power.
-/// With N and D of ε = N/D, r = 1 + a = G13/G12 and s = (k̂+β)/(k̂+ζ):
+/// The slopes of (k, k̂, ε) of the ratio model with the paper's constants, derived by hand, for this power of
+/// k/k̂. With N and D of ε = N/D, r = 1 + a = G13/G12 and s = (k̂+β)/(k̂+ζ):
 /// dε = (N_a D − N D_a)/D² dr + (N_g D − N D_g)/D² dg, dr = r (dlnG13 − dlnG12),
 /// dk̂ = (k̂+ζ)²/(ζ−β) s {dlnG12 − dlnΘ + [1/(2−r) − 1/(4−r)] dr},
 /// (k/k̂)^power = Θ/[ρ (k̂+ζ) p^⅓ (1 − 4εg/5)].
@@ -44,15 +45,16 @@ fn slopes_by_hand(o: &Observation, [k, k_hat, eps]: [f64; 3], power: f64) -> Jac
     let d_k = (d_k_hat / k_hat + d_ln_denser / power) * k;
 
     let mut slopes = Jacobian::zeros();
-    slopes.set_row(Quantity::K as usize, &d_k);
-    slopes.set_row(Quantity::KHat as usize, &d_k_hat);
-    slopes.set_row(Quantity::Eps as usize, &d_eps);
+    slopes.set_row(InferredQuantity::K as usize, &d_k);
+    slopes.set_row(InferredQuantity::KHat as usize, &d_k_hat);
+    slopes.set_row(InferredQuantity::Eps as usize, &d_eps);
     slopes
 }
 
 proptest! {
-    /// Correlated errors of all five inputs. Central differences with step h = 1e-5 are off by h² times a third
-    /// derivative, which reaches some 1e3 times the value where s is near 1: 1e-6 of the largest entry.
+    /// Correlated errors of all five inputs. The error of central differences with step h = 1e-5 is h² times
+    /// a third derivative, which reaches some 1e3 times the value where s is near 1: 1e-6 of the largest
+    /// entry.
     #[test]
     fn slopes_and_covariance_are_those_of_the_closed_form(
         k in 3.0..8.0f64, k_hat in 4.0..8.0f64, eps in -0.45..0.9f64, g in -0.4..0.2f64,
@@ -64,7 +66,7 @@ proptest! {
                 gamma: StrainRatio { value: g, stddev: g_error, source: StrainRatioSource::Given },
                 ..Conditions::at(80.0e3)
             };
-            let truth = grainlab_emt::Structure::paper(k, k_hat, eps);
+            let truth = grainlab_core::results::Microstructure::paper(k, k_hat, eps);
             let moduli = model(name).predict(&truth, &conditions, &Calibration::PAPER).unwrap();
             let o = Observation::new(moduli, conditions);
             let [g12, g13, theta, ..] = moduli.values().map(|m| m.unwrap_or(0.0));
@@ -88,9 +90,9 @@ proptest! {
     }
 }
 
-/// What comes back when the moduli move as the forward map says they do: the slopes of every model times the forward
-/// map's own are the unit matrix, and a change of γ/Δ, pressure or solid fraction that moduli follow changes nothing.
-/// Cases keep a tenth of each range away from its ends, where one-sided differences are first order only.
+/// The slopes of every model times those of its forward map are the unit matrix. A change of γ/Δ, pressure or
+/// solid fraction together with the moduli predicted for it changes nothing. Cases keep a tenth of each range
+/// away from its ends, where one-sided differences are only of first order.
 #[test]
 fn slopes_of_every_model_undo_those_of_its_forward_map() {
     const STEP: f64 = 1e-3;
@@ -100,7 +102,7 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
             let inner = |[low, high]: [f64; 2]| [0.9 * low + 0.1 * high, 0.1 * low + 0.9 * high];
             let mut random = Random::new(7);
             for _ in 0..200 {
-                let structure = grainlab_emt::Structure::of_values(
+                let structure = grainlab_core::results::Microstructure::of_values(
                     domain.structure.map(|r| r.map(|r| random.within(inner(r)))),
                 );
                 let conditions = Conditions {
@@ -108,15 +110,17 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                     solid_fraction: Some(Measured::exact(random.within([0.5, 0.7]))),
                     ..Conditions::at(10f64.powf(random.within([2.0, 8.0])))
                 };
-                let predict = |s: &grainlab_emt::Structure, c: &Conditions| model.predict(s, c, &calibration);
+                let predict = |s: &grainlab_core::results::Microstructure, c: &Conditions| {
+                    model.predict(s, c, &calibration)
+                };
                 let moduli = match predict(&structure, &conditions) {
                     Err(EmtError::NotCalibrated { .. }) => continue,
                     moduli => moduli.unwrap(),
                 };
                 let slopes =
                     model.infer(&Observation::new(moduli, conditions), &calibration).unwrap().jacobian;
-                // Relative change of the moduli along one variable, five points, and of what else it is.
-                let along = |moved: &dyn Fn(f64) -> (grainlab_emt::Structure, Conditions),
+                // Relative change of the moduli along one variable by five points, and the other variables.
+                let along = |moved: &dyn Fn(f64) -> (grainlab_core::results::Microstructure, Conditions),
                              own: Option<usize>| {
                     let at = |by: f64| {
                         let (s, c) = moved(by);
@@ -131,14 +135,15 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
                     own.into_iter().for_each(|i| change[i] = 1.0);
                     change
                 };
-                let near = |found: SVector<f64, QUANTITIES>, expected: SVector<f64, QUANTITIES>| {
+                let near = |found: SVector<f64, { InferredQuantity::COUNT }>,
+                            expected: SVector<f64, { InferredQuantity::COUNT }>| {
                     for (i, used) in domain.structure.iter().enumerate() {
                         let off = (found[i] - expected[i]).abs();
                         let what = || format!("{}: {structure:?} {conditions:?} {found}", model.name());
                         assert!(used.is_none() || off < 1e-5, "{}", what());
                     }
                 };
-                for quantity in Quantity::ALL {
+                for quantity in InferredQuantity::ALL {
                     let Some(value) = structure.get(quantity) else { continue };
                     let change = along(&|by| (structure.with(quantity, value + by), conditions), None);
                     let mut unit = SVector::zeros();
@@ -163,15 +168,16 @@ fn slopes_of_every_model_undo_those_of_its_forward_map() {
     }
 }
 
-/// One percent on each modulus, independent: extremes over the rows of Table III, computed apart from this code by
-/// finite differences and rounded to the digits given.
+/// Errors of one percent of each modulus, independent: extremes over the rows of Table III, computed by
+/// finite differences independent of this code and rounded to the digits given.
 #[test]
 fn one_percent_on_each_modulus_costs_what_is_known() {
     let mut extremes = [[f64::INFINITY, 0.0]; 3];
     for row in table3::rows() {
         let o = row.observation().with_relative_error(0.01);
         let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
-        let sigma = [Quantity::K, Quantity::KHat, Quantity::Eps].map(|q| e.stddev(q).unwrap());
+        let sigma = [InferredQuantity::K, InferredQuantity::KHat, InferredQuantity::Eps]
+            .map(|q| e.stddev(q).unwrap());
         for (found, [low, high]) in sigma.into_iter().zip(&mut extremes) {
             (*low, *high) = (low.min(found), high.max(found));
         }
@@ -189,7 +195,7 @@ fn an_error_of_g_reaches_eps_and_k_but_not_the_corrected_k_hat() {
         let mut o = row.observation().with_relative_error(0.0);
         o.conditions.gamma.stddev = 0.05;
         let e = model(name).infer(&o, &Calibration::PAPER).unwrap();
-        [Quantity::KHat, Quantity::Eps].map(|q| e.stddev(q).unwrap())
+        [InferredQuantity::KHat, InferredQuantity::Eps].map(|q| e.stddev(q).unwrap())
     };
     let [k_hat, eps] = sigma("ratio");
     // Rounding over the step of the differences, 1e-5, times the error of g.
@@ -202,35 +208,38 @@ fn unknown_uncertainty_stays_unknown_and_a_known_one_gives_the_95_percent_interv
     let o = table3::rows()[0].observation();
     let unknown = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
     assert!(unknown.covariance().is_none());
-    assert!(unknown.stddev(Quantity::K).is_none() && unknown.interval(Quantity::K).is_none());
+    assert!(unknown.stddev(InferredQuantity::K).is_none() && unknown.interval(InferredQuantity::K).is_none());
     let known = model("ratio").infer(&o.with_relative_error(0.01), &Calibration::PAPER).unwrap();
     assert_eq!(grainlab_emt::CREDIBLE_LEVEL, 0.95);
-    for quantity in [Quantity::K, Quantity::KHat, Quantity::Eps] {
+    for quantity in [InferredQuantity::K, InferredQuantity::KHat, InferredQuantity::Eps] {
         let (middle, sigma) = (known.structure.get(quantity).unwrap(), known.stddev(quantity).unwrap());
         let [low, high] = known.interval(quantity).unwrap();
         assert!(((high - low) / (2.0 * sigma) - 1.959_964).abs() < 1e-6);
         assert!((low + high - 2.0 * middle).abs() < 1e-14);
     }
-    // Of what is no part of the model nothing is said.
-    assert!(known.interval(Quantity::Z).is_none() && known.stddev(Quantity::EpsStiffness).is_none());
+    // Quantities that are not part of the model are left out.
+    assert!(
+        known.interval(InferredQuantity::Z).is_none()
+            && known.stddev(InferredQuantity::EpsStiffness).is_none()
+    );
 }
 
-/// ε follows G13 and G12 alike and nothing else; k follows the bulk modulus almost alone.
+/// ε depends on G13 and G12 equally and on no other modulus; k depends almost only on the bulk modulus.
 #[test]
-fn information_says_which_datum_decides_which_unknown() {
+fn information_is_the_contribution_of_each_datum() {
     let o = table3::rows()[0].observation().with_relative_error(0.01);
     let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
-    let [g12, g13, theta, others @ ..] = e.information(Quantity::Eps).unwrap();
+    let [g12, g13, theta, others @ ..] = e.information(InferredQuantity::Eps).unwrap();
     assert!((g12 - 0.5).abs() < 1e-6 && (g13 - 0.5).abs() < 1e-6 && theta < 1e-6, "{g12} {g13} {theta}");
     assert_eq!(others, [0.0; INPUTS - 3]);
-    let of_k = e.information(Quantity::K).unwrap();
+    let of_k = e.information(InferredQuantity::K).unwrap();
     assert!(
         of_k[Modulus::Theta as usize] > 0.95 && (of_k.iter().sum::<f64>() - 1.0).abs() < 1e-12,
         "{of_k:?}"
     );
 }
 
-/// A sum of two moduli that share their error does not help, their ratio does.
+/// A common error of two moduli does not cancel in their sum, but does in their ratio.
 #[test]
 fn an_error_that_both_shear_moduli_share_does_not_reach_eps() {
     let row = &table3::rows()[0];
@@ -239,5 +248,7 @@ fn an_error_that_both_shear_moduli_share_does_not_reach_eps() {
     let shared = nalgebra::Vector3::new(0.05 * g12, 0.05 * g13, 0.0);
     let o = o.with_g12_g13_theta_covariance(&(shared * shared.transpose()));
     let e = model("ratio").infer(&o, &Calibration::PAPER).unwrap();
-    assert!(e.stddev(Quantity::Eps).unwrap() < 1e-6 && e.stddev(Quantity::KHat).unwrap() > 0.1);
+    assert!(
+        e.stddev(InferredQuantity::Eps).unwrap() < 1e-6 && e.stddev(InferredQuantity::KHat).unwrap() > 0.1
+    );
 }

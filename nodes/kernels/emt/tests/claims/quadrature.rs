@@ -1,4 +1,4 @@
-//! The closed forms against brute integration over the sphere.
+//! The closed forms against numerical integration over the sphere.
 
 use crate::sphere::{contact_density, directions, stiffness};
 use grainlab_core::{Mat3, Material, Stiffness};
@@ -60,7 +60,7 @@ fn stiffness_of_the_medium_is_the_integral_with_the_spin_that_keeps_stress_symme
     }
 }
 
-/// The printed Eqs. 13 and 16 miss a factor a on one term each: the excess is (4ε/5)(1−a) and (2ε/5)(1−a).
+/// The printed Eqs. 13 and 16 lack a factor a in one term each: the excess is (4ε/5)(1−a) and (2ε/5)(1−a).
 #[test]
 fn printed_forms_exceed_the_corrected_ones_by_the_missing_factor() {
     for (eps, g) in grid() {
@@ -72,7 +72,7 @@ fn printed_forms_exceed_the_corrected_ones_by_the_missing_factor() {
     }
 }
 
-/// a as the paper prints it beneath Eq. 15.
+/// a as printed below Eq. 15.
 #[test]
 fn spin_is_the_printed_a() {
     for (e, g) in grid() {

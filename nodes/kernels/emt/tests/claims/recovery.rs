@@ -1,16 +1,17 @@
-//! Every model of the list against its own forward map. A new model is tested by being listed.
+//! Every model of the list against its own forward map. A new model in the list is tested automatically.
 
 use crate::cases::{Random, calibrations};
 use grainlab_core::Material;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_emt::{
-    Calibration, Conditions, Domain, EmtError, Measured, Model, Observation, Quantity, StrainRatio,
-    Structure, models,
+    Calibration, Conditions, Domain, EmtError, Measured, Model, Observation, StrainRatio, models,
 };
 use proptest::prelude::*;
 
 const CASES: usize = 100_000;
 
-/// Every model with every calibration that holds its constants, and its domain there; each has one at least.
+/// Every model with every calibration that contains its constants, and its domain there; each has at least
+/// one.
 fn calibrated() -> Vec<(&'static dyn Model, Calibration, Domain)> {
     let mut all = Vec::new();
     for model in models() {
@@ -40,7 +41,7 @@ fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() 
                 .unwrap_or_else(|e| panic!("{}: {e}", here()));
             let observed = Observation::new(moduli, conditions).checked().unwrap();
             let solution = model.solve(&observed, &calibration).unwrap_or_else(|e| panic!("{}: {e}", here()));
-            for quantity in Quantity::ALL {
+            for quantity in InferredQuantity::ALL {
                 let Some(expected) = truth.get(quantity) else { continue };
                 let found = solution.structure.get(quantity).unwrap();
                 assert!((found - expected).abs() < 1e-9, "{}: {quantity} {found}", here());
@@ -49,18 +50,18 @@ fn every_model_inverts_its_own_prediction_over_its_whole_domain_ends_included() 
     }
 }
 
-/// A little beyond each end of each range, one at a time.
+/// Values slightly beyond each end of each range, one at a time.
 #[test]
-fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
+fn outside_its_domain_a_model_predicts_nothing_and_names_the_quantity() {
     for (model, calibration, domain) in calibrated() {
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
-        let inside = Structure::of_values(domain.structure.map(|r| r.map(middle)));
+        let inside = Microstructure::of_values(domain.structure.map(|r| r.map(middle)));
         let conditions = Conditions {
             gamma: StrainRatio::given(middle(domain.gamma)),
             solid_fraction: Some(Measured::exact(0.63)),
             ..Conditions::at(100.0e3)
         };
-        let refused = |structure: &Structure, conditions: &Conditions, what: &str| {
+        let refused = |structure: &Microstructure, conditions: &Conditions, what: &str| {
             let e = model.predict(structure, conditions, &calibration).unwrap_err();
             let named = match &e {
                 EmtError::OutsideDomain { quantity, .. } => *quantity == what,
@@ -72,7 +73,7 @@ fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
         };
         model.predict(&inside, &conditions, &calibration).unwrap();
         let beyond = |[low, high]: [f64; 2]| [low - 1e-6, high + 1e-6, f64::NEG_INFINITY, f64::NAN];
-        for (quantity, range) in Quantity::ALL.into_iter().zip(domain.structure) {
+        for (quantity, range) in InferredQuantity::ALL.into_iter().zip(domain.structure) {
             let Some(range) = range else { continue };
             for value in beyond(range) {
                 refused(&inside.with(quantity, value), &conditions, quantity.name());
@@ -86,7 +87,7 @@ fn outside_its_domain_a_model_predicts_nothing_and_says_what_is_outside() {
             let other = Conditions { material: Some(grains), ..conditions };
             refused(&inside, &other, "the Poisson ratio of the grains");
         }
-        let e = model.predict(&Structure::default(), &conditions, &calibration).unwrap_err();
+        let e = model.predict(&Microstructure::default(), &conditions, &calibration).unwrap_err();
         assert!(matches!(e, EmtError::Missing { .. }), "{}: {e}", model.name());
         if domain.needs_solid_fraction {
             let unknown = Conditions { solid_fraction: None, ..conditions };
@@ -111,7 +112,7 @@ proptest! {
         o.conditions.solid_fraction = Some(Measured { value: 0.63, stddev: 0.01 });
         for (model, calibration, _) in calibrated() {
             if let Ok(e) = model.infer(&o, &calibration) {
-                for quantity in Quantity::ALL {
+                for quantity in InferredQuantity::ALL {
                     let Some(value) = e.structure.get(quantity) else { continue };
                     prop_assert!(value.is_finite(), "{}: {:?}", model.name(), e.structure);
                     let interval = e.interval(quantity).unwrap();

@@ -1,11 +1,11 @@
-//! The relaxed network: what any set of moduli tells, and how sure it is.
+//! The relaxed network: the estimate from any set of moduli, and its uncertainty.
 
 use crate::cases::Random;
+use grainlab_core::results::{InferredQuantity, Microstructure};
 use grainlab_core::{Material, Stiffness, TransverseIsotropy};
 use grainlab_emt::Relaxed;
 use grainlab_emt::{
-    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Quantity,
-    Structure, Warning,
+    Calibration, Conditions, EmtError, Estimate, Measured, Model, Moduli, Modulus, Observation, Warning,
 };
 use nalgebra::Matrix6;
 
@@ -21,8 +21,8 @@ fn conditions() -> Conditions {
     }
 }
 
-fn structure(z: f64, eps: f64) -> Structure {
-    Structure { z: Some(z), eps: Some(eps), ..Structure::default() }
+fn structure(z: f64, eps: f64) -> Microstructure {
+    Microstructure { z: Some(z), eps: Some(eps), ..Microstructure::default() }
 }
 
 fn moduli(z: f64, eps: f64) -> Moduli {
@@ -38,7 +38,7 @@ fn only(all: &Moduli, kept: &[Modulus]) -> Moduli {
 }
 
 #[test]
-fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
+fn missing_moduli_leave_the_rest_and_undetermined_quantities_are_listed() {
     use Modulus::{C11, C33, G12, G13, Theta};
     let all = moduli(5.3, 0.05);
     for set in [&[G12, G13, Theta][..], &[C11, C33], &[G12, G13], &[C11, C33, G12, G13], &[C33, Theta]] {
@@ -46,14 +46,14 @@ fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
         assert!((found.structure.z.unwrap() - 5.3).abs() < 1e-9, "{set:?}: {:?}", found.structure);
         assert!((found.structure.eps.unwrap() - 0.05).abs() < 1e-9, "{set:?}: {:?}", found.structure);
     }
-    // One modulus has nothing to say of ε, and says z less well than two.
+    // One modulus does not determine ε, and determines z less well than two.
     for one in [G12, Theta, C33] {
         let found = infer(only(&all, &[one])).unwrap();
         assert_eq!((found.structure.eps, found.structure.eps_stiffness), (None, None), "{one}");
         let off = (found.structure.z.unwrap() - 5.3).abs();
-        assert!(off < 2.0 * found.stddev(Quantity::Z).unwrap(), "{one}: {found:?}");
+        assert!(off < 2.0 * found.stddev(InferredQuantity::Z).unwrap(), "{one}: {found:?}");
         let together = infer(all).unwrap();
-        assert!(found.stddev(Quantity::Z) > together.stddev(Quantity::Z), "{one}");
+        assert!(found.stddev(InferredQuantity::Z) > together.stddev(InferredQuantity::Z), "{one}");
     }
     let nothing = Relaxed.infer(&Observation::new(Moduli::NONE, conditions()), ours()).unwrap_err();
     assert!(matches!(nothing, EmtError::Missing { .. }), "{nothing}");
@@ -63,16 +63,17 @@ fn what_is_missing_leaves_the_rest_and_what_is_undetermined_is_said() {
 fn more_moduli_are_never_worse() {
     use Modulus::{C11, C33, G12, G13, Theta};
     let all = moduli(5.1, 0.04);
-    let sigma = |set: &[Modulus]| infer(only(&all, set)).unwrap().stddev(Quantity::Eps).unwrap();
+    let sigma = |set: &[Modulus]| infer(only(&all, set)).unwrap().stddev(InferredQuantity::Eps).unwrap();
     let (three, four, five) = (sigma(&[G12, G13, Theta]), sigma(&[G12, G13, C11, C33]), infer(all).unwrap());
     assert!(three > 1.5 * four, "{three} {four}: P moduli carry more of eps than the ratio of shear moduli");
-    assert!(four >= five.stddev(Quantity::Eps).unwrap());
+    assert!(four >= five.stddev(InferredQuantity::Eps).unwrap());
 }
 
-/// Samples drawn as the model says that packings scatter, measured with these errors: the intervals hold what they
-/// promise, and data of 30 % error give a wide interval or a typed error, never a wrong number that looks sure.
+/// Samples drawn from the scatter of packings assumed by the model, with these measurement errors: the
+/// intervals have their stated coverage. Data with 30 % error give a wide interval or a typed error, never a
+/// wrong estimate with a small uncertainty.
 #[test]
-fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
+fn intervals_contain_the_truth_as_often_as_stated_at_any_noise() {
     let network = ours().network().unwrap();
     let mut random = Random::new(7);
     for (noise, at_least_solved) in [(0.0, 1.0), (0.01, 1.0), (0.05, 0.999), (0.3, 0.5)] {
@@ -89,7 +90,9 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
             solved += 1.0;
             let warned = found.warnings.iter().any(|w| matches!(w, Warning::ErrorsLarge { .. }));
             assert_eq!(warned, noise > 0.1);
-            for (i, (q, truth)) in [(Quantity::Z, z), (Quantity::Eps, eps)].into_iter().enumerate() {
+            for (i, (q, truth)) in
+                [(InferredQuantity::Z, z), (InferredQuantity::Eps, eps)].into_iter().enumerate()
+            {
                 let Some([low, high]) = found.interval(q) else {
                     held[i] += 1.0;
                     continue;
@@ -108,13 +111,13 @@ fn the_intervals_hold_the_truth_as_often_as_they_say_at_any_noise() {
                 );
             }
         } else {
-            // Far beyond first order, which every one of them was warned of.
+            // Far outside first order, for which every estimate has a warning.
             assert!(held.iter().all(|h| h / solved > 0.6), "noise {noise}: {held:?} of {solved}");
         }
     }
 }
 
-/// The five independent moduli of a sample of this mean, in the order of [`Modulus::ALL`] and without Θ.
+/// The five independent moduli of a sample with this mean, in the order of [`Modulus::ALL`] and without Θ.
 fn scattered(
     mean: &Moduli,
     network: &grainlab_emt::RelaxationCalibration,
@@ -135,7 +138,7 @@ fn scattered(
 }
 
 #[test]
-fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
+fn contradictory_data_give_a_warning_that_names_the_outlier() {
     let sound = moduli(5.2, 0.03);
     let conflict = |m: Moduli| {
         let found = infer(m).unwrap();
@@ -152,9 +155,9 @@ fn data_that_contradict_each_other_are_told_with_the_one_to_blame() {
     }
 }
 
-/// Six moduli are one more than a medium has: the sixth is a check, and is not thrown away.
+/// Six moduli are one more than a medium has: the sixth is a check, and is used.
 #[test]
-fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nobody_gave() {
+fn a_theta_that_contradicts_the_other_five_gives_a_warning_about_given_moduli_only() {
     let sound = moduli(5.2, 0.03);
     let wrong = sound.with(Modulus::Theta, 1.3 * sound.get(Modulus::Theta).unwrap());
     let imbalance = |w: &Warning| matches!(w, Warning::Imbalance { .. });
@@ -162,7 +165,7 @@ fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nob
     assert!(!infer(sound).unwrap().warnings.iter().any(imbalance));
     let found = infer(wrong).unwrap();
     assert!(found.warnings.iter().any(imbalance) && found.warnings.iter().any(conflict), "{found:?}");
-    // Without errors nothing can be weighed, and the five are taken; it is told all the same.
+    // Without errors there are no weights, and the five are taken; the warning is still given.
     let exact = Relaxed.infer(&Observation::new(wrong, conditions()), ours()).unwrap();
     assert!(exact.warnings.iter().any(imbalance));
     assert!((exact.structure.eps.unwrap() - 0.03).abs() < 1e-9);
@@ -173,7 +176,7 @@ fn a_theta_at_odds_with_the_other_five_is_told_and_no_modulus_is_blamed_that_nob
         _ => None,
     });
     assert!(blamed.is_some_and(|m| m != Modulus::C13), "{:?}", found.warnings);
-    assert_eq!(found.information(Quantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
+    assert_eq!(found.information(InferredQuantity::Z).unwrap()[Modulus::C13 as usize], 0.0);
 }
 
 #[test]
@@ -212,19 +215,20 @@ fn an_unknown_solid_fraction_is_assumed_and_costs_certainty() {
     o.conditions.solid_fraction = None;
     let assumed = Relaxed.infer(&o, ours()).unwrap();
     assert!(assumed.warnings.iter().any(|w| matches!(w, Warning::SolidFractionAssumed { .. })));
-    assert!(assumed.stddev(Quantity::Z) > known.stddev(Quantity::Z));
+    assert!(assumed.stddev(InferredQuantity::Z) > known.stddev(InferredQuantity::Z));
     let off = (assumed.structure.z.unwrap() - 5.3).abs();
-    assert!(off < 2.0 * assumed.stddev(Quantity::Z).unwrap());
+    assert!(off < 2.0 * assumed.stddev(InferredQuantity::Z).unwrap());
 }
 
 #[test]
-fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
+fn fewer_grains_scatter_more_and_a_looser_packing_gives_a_warning() {
     let sigma = |grains| {
         let exact = Observation::new(moduli(5.3, 0.05), conditions()).with_relative_error(0.0);
         let o = Observation { grains, ..exact };
-        Relaxed.infer(&o, ours()).unwrap().stddev(Quantity::Eps).unwrap()
+        Relaxed.infer(&o, ours()).unwrap().stddev(InferredQuantity::Eps).unwrap()
     };
-    // A quarter of the grains, twice the standard deviation; more grains than in the calibration promise no more.
+    // A quarter of the grains, twice the standard deviation. More grains than in the calibration do not
+    // reduce it.
     assert!((sigma(Some(500)) / sigma(Some(2000)) - 2.0).abs() < 1e-9);
     assert_eq!(sigma(Some(1_000_000)), sigma(None));
 
@@ -235,7 +239,7 @@ fn fewer_grains_scatter_more_and_a_looser_packing_than_any_is_told() {
     assert!(found.warnings.iter().any(told) && found.status == grainlab_emt::Status::Extrapolated);
 }
 
-/// Hertz contacts know no length and no pressure but in units of E*.
+/// Hertz contacts have no length scale, and no pressure scale but E*.
 #[test]
 fn stiffer_grains_at_as_much_higher_a_pressure_are_the_same_packing() {
     let (z, eps) = (5.4, -0.02);
@@ -259,7 +263,9 @@ fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
             Relaxed.solve(&Observation { moduli: m, ..exact.clone() }, ours()).unwrap().structure
         };
         let (up, down) = (at(STEP), at(-STEP));
-        for q in [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness] {
+        for q in
+            [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness]
+        {
             let numerical = (up.get(q).unwrap() - down.get(q).unwrap()) / (2.0 * STEP);
             let stated = slopes[(q as usize, modulus as usize)];
             assert!((numerical - stated).abs() < 1e-4, "{q} by {modulus}: {numerical} {stated}");
@@ -270,7 +276,7 @@ fn k_and_eps_by_stiffness_follow_the_data_as_their_slopes_say() {
         o.conditions.pressure.value *= 1.0 + by;
         Relaxed.solve(&o, ours()).unwrap().structure
     };
-    for q in [Quantity::K, Quantity::Z, Quantity::Eps] {
+    for q in [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps] {
         let numerical = (at(STEP).get(q).unwrap() - at(-STEP).get(q).unwrap()) / (2.0 * STEP);
         assert!((numerical - slopes[(q as usize, 6)]).abs() < 1e-4, "{q} by pressure");
     }

@@ -1,18 +1,18 @@
-//! The sampled distribution against the first-order one, and where they part.
+//! The sampled distribution against the first-order one, and where they differ.
 
 use crate::cases::calibrations;
 use crate::{PAPER_MODELS, model, table3};
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use grainlab_emt::{
     Calibration, Conditions, Domain, EmtError, Jacobian, Measured, Model, Moduli, ModuliCovariance, Modulus,
-    Observation, PointEstimate, QUANTITIES, Quantity, SamplingSettings, StrainRatio, StrainRatioSource,
-    Structure, StructureCovariance, models, monte_carlo,
+    Observation, PointEstimate, SamplingSettings, StrainRatio, StrainRatioSource, models, monte_carlo,
 };
 
 const DRAWS: usize = 40_000;
 
-/// A packing as they are, in the state that every model may ask for, known to `relative`.
+/// A typical packing, in a state that every model accepts, with the relative error `relative`.
 fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Option<Observation> {
-    let structure = Structure {
+    let structure = Microstructure {
         k: Some(5.2),
         k_hat: Some(5.4),
         z: Some(5.35),
@@ -32,8 +32,8 @@ fn observed(model: &dyn Model, calibration: &Calibration, relative: f64) -> Opti
     }
 }
 
-/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). What slopes leave
-/// out is a thousandth of σ here.
+/// Five standard errors of 40,000 draws: of a mean σ/√N, of a covariance √((C_ii C_jj + C_ij²)/N). The error
+/// of the linear slopes is a thousandth of σ here.
 #[test]
 fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
     let settings = SamplingSettings { draws: DRAWS, seed: 1 };
@@ -46,7 +46,7 @@ fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
             assert_eq!((sampled.model, sampled.calibration.as_str()), (model.name(), calibration.name()));
             let (c, expected) = (sampled.covariance.unwrap(), linear.covariance().unwrap());
             let error = 5.0 / (DRAWS as f64).sqrt();
-            for quantity in Quantity::ALL {
+            for quantity in InferredQuantity::ALL {
                 let (i, name) = (quantity as usize, model.name());
                 let Some(value) = linear.structure.get(quantity) else {
                     assert!(sampled.mean.get(quantity).is_none() && sampled.interval(quantity).is_none());
@@ -57,7 +57,7 @@ fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
                     (sampled.mean.get(quantity).unwrap() - value).abs() < error * sigma,
                     "{name} {quantity}"
                 );
-                for j in 0..QUANTITIES {
+                for j in 0..InferredQuantity::COUNT {
                     let scale = (expected[(i, i)] * expected[(j, j)] + expected[(i, j)].powi(2)).sqrt();
                     assert!(
                         (c[(i, j)] - expected[(i, j)]).abs() <= error * scale,
@@ -74,10 +74,10 @@ fn at_a_tenth_of_a_percent_samples_and_slopes_of_every_model_agree() {
     }
 }
 
-/// At 30 % slopes know nothing of the wall that k̂ runs into: the samples are lopsided, wider, and part of them has no
-/// solution.
+/// At 30 % the linear slopes ignore the upper bound of k̂: the samples are asymmetric, wider, and a part of
+/// them has no solution.
 #[test]
-fn at_30_percent_they_part_and_the_samples_say_so() {
+fn at_30_percent_samples_and_slopes_differ() {
     for name in PAPER_MODELS.into_iter().filter(|name| *name != "emt") {
         let o = observed(model(name), &Calibration::PAPER, 0.3).unwrap();
         let linear = model(name).infer(&o, &Calibration::PAPER).unwrap();
@@ -86,9 +86,11 @@ fn at_30_percent_they_part_and_the_samples_say_so() {
                 .unwrap();
         assert!(sampled.failed_fraction() > 0.02, "{name}: {}", sampled.failed_fraction());
         assert!(sampled.first_fault.as_ref().is_some_and(|e| !matches!(e, EmtError::Missing { .. })));
-        let ([low, high], [_, taken]) =
-            (sampled.interval(Quantity::KHat).unwrap(), linear.interval(Quantity::KHat).unwrap());
-        let skewness = sampled.skewness(Quantity::KHat).unwrap();
+        let ([low, high], [_, taken]) = (
+            sampled.interval(InferredQuantity::KHat).unwrap(),
+            linear.interval(InferredQuantity::KHat).unwrap(),
+        );
+        let skewness = sampled.skewness(InferredQuantity::KHat).unwrap();
         assert!(
             skewness > 0.3 && low > 3.66 && high > taken + 1.0,
             "{name}: {skewness} {low} {high} {taken}"
@@ -117,9 +119,9 @@ fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
     let missing = EmtError::Missing { model: "ratio", missing: "the covariance of the moduli" };
     assert_eq!(of(&o).unwrap_err(), missing);
     let exact = of(&o.with_relative_error(0.0)).unwrap();
-    let [low, high] = exact.interval(Quantity::K).unwrap();
-    assert_eq!((high - low, exact.skewness(Quantity::K)), (0.0, Some(0.0)));
-    assert!((low - 5.73).abs() < 1e-6 && exact.stddev(Quantity::K).unwrap() < 1e-14);
+    let [low, high] = exact.interval(InferredQuantity::K).unwrap();
+    assert_eq!((high - low, exact.skewness(InferredQuantity::K)), (0.0, Some(0.0)));
+    assert!((low - 5.73).abs() < 1e-6 && exact.stddev(InferredQuantity::K).unwrap() < 1e-14);
     let mut none = table3::rows()[0].observation().with_relative_error(0.01);
     none.moduli = none.moduli.with(Modulus::G13, 1e9);
     assert!(matches!(of(&none), Err(EmtError::RatioOutOfRange { .. })));
@@ -127,11 +129,13 @@ fn without_errors_there_is_nothing_to_sample_and_exact_data_give_one_value() {
     let empty =
         monte_carlo(model("ratio"), &o, &Calibration::PAPER, SamplingSettings { draws: 0, seed: 0 }).unwrap();
     assert!(
-        empty.mean == Structure::default() && empty.covariance.is_none() && empty.failed_fraction() == 0.0
+        empty.mean == Microstructure::default()
+            && empty.covariance.is_none()
+            && empty.failed_fraction() == 0.0
     );
 }
 
-/// k is Θ in 20 MPa, refused above 6; what it leaves out has a standard deviation of 0.3.
+/// k is Θ in 20 MPa, refused above 6; the model's error has a standard deviation of 0.3.
 #[derive(Debug)]
 struct Line;
 
@@ -151,7 +155,7 @@ impl Model for Line {
         }
     }
 
-    fn predict(&self, _: &Structure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
+    fn predict(&self, _: &Microstructure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
         Ok(Moduli::NONE)
     }
 
@@ -165,14 +169,15 @@ impl Model for Line {
                 calibration: "none".into(),
             });
         }
-        let mut left_out = StructureCovariance::zeros();
+        let mut left_out = MicrostructureCovariance::zeros();
         left_out[(0, 0)] = 0.09;
-        let structure = Structure::default().with(Quantity::K, k);
+        let structure = Microstructure::default().with(InferredQuantity::K, k);
         Ok(PointEstimate { discrepancy: Some(left_out), ..PointEstimate::exact(structure) })
     }
 }
 
-/// 5 ± 0.4 from the data and ± 0.3 from the model make ± 0.5; 6 lies 2.5 σ of the data above, where 0.62 % are.
+/// 5 ± 0.4 from the data and ± 0.3 from the model make ± 0.5. 6 lies 2.5 σ of the data above the mean; 0.62 %
+/// of the draws exceed it.
 #[test]
 fn what_the_model_leaves_out_is_added_and_draws_without_a_solution_are_counted() {
     let theta = 100.0e6;
@@ -186,15 +191,18 @@ fn what_the_model_leaves_out_is_added_and_draws_without_a_solution_are_counted()
         s.failed_fraction()
     );
     assert!(matches!(s.first_fault, Some(EmtError::NoCoordination { nearest, .. }) if nearest > 6.0));
-    // Cut at 2.5 σ a normal distribution has mean −0.01764 σ and variance 0.9556 σ².
+    // Truncated at 2.5 σ, a normal distribution has mean −0.01764 σ and variance 0.9556 σ².
     assert!((s.mean.k.unwrap() - (5.0 - 0.01764 * 0.4)).abs() < 5.0 * 0.5 / 200_000f64.sqrt());
     let variance: f64 = 0.9556 * 0.16 + 0.09;
-    assert!((s.stddev(Quantity::K).unwrap() / variance.sqrt() - 1.0).abs() < 5.0 / 400_000f64.sqrt());
-    assert!(s.quantile(Quantity::K, 0.0).unwrap() < 3.5 && s.quantile(Quantity::K, 1.0).unwrap() > 6.0);
+    assert!((s.stddev(InferredQuantity::K).unwrap() / variance.sqrt() - 1.0).abs() < 5.0 / 400_000f64.sqrt());
+    assert!(
+        s.quantile(InferredQuantity::K, 0.0).unwrap() < 3.5
+            && s.quantile(InferredQuantity::K, 1.0).unwrap() > 6.0
+    );
 }
 
-/// Θ that follows from C11, C33, C13 and G12 is drawn with them: the five stay those of one medium, which a model that
-/// reads them all may count on.
+/// Θ that follows from C11, C33, C13 and G12 is drawn with them: the five remain those of one medium, which a
+/// model that uses all of them requires.
 #[test]
 fn correlated_errors_are_drawn_as_they_are() {
     #[derive(Debug)]
@@ -206,14 +214,14 @@ fn correlated_errors_are_drawn_as_they_are() {
         fn domain(&self, c: &Calibration) -> Domain {
             Line.domain(c)
         }
-        fn predict(&self, _: &Structure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
+        fn predict(&self, _: &Microstructure, _: &Conditions, _: &Calibration) -> Result<Moduli, EmtError> {
             Ok(Moduli::NONE)
         }
         fn solve(&self, o: &Observation, _: &Calibration) -> Result<PointEstimate, EmtError> {
             assert!(o.moduli.imbalance().unwrap().abs() < 1e-9);
             let [k, z] = [Modulus::G12, Modulus::G13].map(|m| o.moduli.get(m).unwrap() / 1e8);
-            let structure = Structure { k: Some(k), z: Some(z), ..Structure::default() };
-            // Differences would move one modulus without the others.
+            let structure = Microstructure { k: Some(k), z: Some(z), ..Microstructure::default() };
+            // Differences would change one modulus without the others.
             Ok(PointEstimate { jacobian: Some(Jacobian::zeros()), ..PointEstimate::exact(structure) })
         }
     }

@@ -1,11 +1,12 @@
-//! Integration over the sphere and media of springs, apart from the code they test.
+//! Integration over the sphere and media of springs, independent of the code they test.
 
 use grainlab_core::{Mat3, Vec3};
 use nalgebra::Matrix6;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Directions and solid angles: 12 Gauss–Legendre points of the polar angle in panels that halve towards poles and
-/// equator, where a root of the overlap can be all but zero, times equal steps in azimuth, exact to degree 5 there.
+/// Directions and solid angles: 12 Gauss–Legendre points of the polar angle in panels that halve towards
+/// poles and equator, where a root of the overlap can be nearly zero, times equal steps in azimuth, exact to
+/// degree 5 there.
 pub(crate) fn directions() -> Vec<(Vec3, f64)> {
     const HALVINGS: i32 = 8;
     const STEPS: usize = 6;
@@ -48,7 +49,7 @@ fn gauss_legendre() -> Vec<(f64, f64)> {
     (0..POINTS).map(root).collect()
 }
 
-/// Eq. 6 for one contact a grain.
+/// Eq. 6 for one contact per grain.
 pub(crate) fn contact_density(eps: f64, x: f64) -> f64 {
     (1.0 - eps + 3.0 * eps * x * x) / (4.0 * PI)
 }

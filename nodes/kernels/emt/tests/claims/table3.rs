@@ -1,6 +1,7 @@
 //! The sixteen states of the paper's Table III, with the moduli that its k, k̂ and ε imply.
 
-use grainlab_emt::{Observation, StrainRatio, Structure};
+use grainlab_core::results::Microstructure;
+use grainlab_emt::{Observation, StrainRatio};
 
 /// One state.
 pub(crate) struct Row {
@@ -8,7 +9,7 @@ pub(crate) struct Row {
     pub(crate) label: String,
     /// γ/Δ of Table II.
     pub(crate) g: f64,
-    /// k, k̂ and ε as Table III has them.
+    /// k, k̂ and ε of Table III.
     pub(crate) printed: [f64; 3],
     /// Pa.
     pub(crate) g12: f64,
@@ -29,10 +30,10 @@ impl Row {
         self.with_theta(self.theta_printed)
     }
 
-    /// What Table III says.
-    pub(crate) fn structure(&self) -> Structure {
+    /// The values of Table III.
+    pub(crate) fn structure(&self) -> Microstructure {
         let [k, k_hat, eps] = self.printed;
-        Structure::paper(k, k_hat, eps)
+        Microstructure::paper(k, k_hat, eps)
     }
 
     fn with_theta(&self, theta: f64) -> Observation {

@@ -1,4 +1,4 @@
-//! Kept measurements, as `grainlab analyze` and the ensemble script wrote them.
+//! Stored measurements, written by `grainlab analyze` and the ensemble script.
 
 use grainlab_core::Material;
 use grainlab_core::results::StrainRatios;
@@ -63,7 +63,7 @@ pub(crate) fn samples(name: &str) -> Vec<CalibrationSample> {
     t.rows.iter().map(sample).collect()
 }
 
-/// The states of the paper's Table III, each with the ε that its simulation counted.
+/// The states of the paper's Table III, each with the ε counted in its simulation.
 pub(crate) fn paper_rows() -> Vec<(Observation, f64)> {
     let t = read("paper_rows.csv");
     let row = |row: &Vec<String>| {

@@ -1,12 +1,12 @@
-//! The kept ensembles of packings: what the built-in calibration was learned from, and what it was not.
+//! The stored ensembles of packings: those from which the built-in calibration was learned, and held-out
+//! ones.
 
 mod csv;
 
-use grainlab_emt::{
-    Calibration, CalibrationSample, Moduli, Modulus, Observation, Quantity, StrainRatioSource, learn,
-};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Calibration, CalibrationSample, Moduli, Modulus, Observation, StrainRatioSource, learn};
 
-/// Packings that no calibration has seen: 24 seeds, 4 frictions, 4 pressures.
+/// Packings not used in any calibration: 24 seeds, 4 frictions, 4 pressures.
 fn held_out() -> Vec<CalibrationSample> {
     csv::samples("held_out.csv")
 }
@@ -15,10 +15,10 @@ fn ours() -> &'static Calibration {
     Calibration::builtin("grainlab").unwrap()
 }
 
-/// The constants are learned and not written by hand. Logarithms differ by a rounding between libraries: 1e-6 of each
-/// number, an absolute 1e-12 for those that are zero but for rounding.
+/// The constants are learned, not written by hand. Logarithms differ by rounding between libraries: 1e-6 of
+/// each number, an absolute 1e-12 for those that are zero up to rounding.
 #[test]
-fn the_built_in_calibration_is_what_the_kept_ensembles_teach() {
+fn the_built_in_calibration_is_learned_from_the_stored_ensembles() {
     let learned =
         learn("grainlab", &csv::samples("isotropic.csv"), &csv::samples("anisotropic.csv")).unwrap();
     let numbers = |c: &Calibration| -> Vec<String> {
@@ -46,7 +46,12 @@ struct Errors {
     covered: f64,
 }
 
-fn errors(model: &str, gamma: StrainRatioSource, quantity: Quantity, keep: fn(Moduli) -> Moduli) -> Errors {
+fn errors(
+    model: &str,
+    gamma: StrainRatioSource,
+    quantity: InferredQuantity,
+    keep: fn(Moduli) -> Moduli,
+) -> Errors {
     let model = grainlab_emt::model(model).unwrap();
     let samples = held_out();
     let (mut squares, mut covered) = (0.0, 0.0);
@@ -55,10 +60,10 @@ fn errors(model: &str, gamma: StrainRatioSource, quantity: Quantity, keep: fn(Mo
         let observation = Observation { moduli: keep(whole.moduli), ..whole };
         let found = model.infer(&observation, ours()).unwrap();
         let truth = match quantity {
-            Quantity::K | Quantity::KHat => s.k,
-            Quantity::Z => s.z,
-            Quantity::Eps => s.eps,
-            Quantity::EpsStiffness => s.eps_stiffness,
+            InferredQuantity::K | InferredQuantity::KHat => s.k,
+            InferredQuantity::Z => s.z,
+            InferredQuantity::Eps => s.eps,
+            InferredQuantity::EpsStiffness => s.eps_stiffness,
         };
         squares += (found.structure.get(quantity).unwrap() - truth).powi(2);
         let [low, high] = found.interval(quantity).unwrap();
@@ -72,7 +77,7 @@ fn errors(model: &str, gamma: StrainRatioSource, quantity: Quantity, keep: fn(Mo
 fn unseen_packings_give_back_z_and_eps_without_any_gamma() {
     let all = |m| m;
     let of = |q| errors("relaxed", StrainRatioSource::Zero, q, all);
-    let (z, eps) = (of(Quantity::Z), of(Quantity::Eps));
+    let (z, eps) = (of(InferredQuantity::Z), of(InferredQuantity::Eps));
     assert!(z.rms < 0.05 && eps.rms < 0.010, "z {} eps {}", z.rms, eps.rms);
     let ratio = [
         StrainRatioSource::Zero,
@@ -80,15 +85,17 @@ fn unseen_packings_give_back_z_and_eps_without_any_gamma() {
         StrainRatioSource::Elastic,
         StrainRatioSource::Contact,
     ]
-    .map(|g| errors("ratio", g, Quantity::Eps, all).rms);
+    .map(|g| errors("ratio", g, InferredQuantity::Eps, all).rms);
     let best = ratio.into_iter().fold(f64::INFINITY, f64::min);
     assert!(eps.rms < 0.5 * best, "{} against {ratio:?}", eps.rms);
-    assert!(of(Quantity::EpsStiffness).rms < eps.rms, "moduli see stiffness before they see number");
+    assert!(of(InferredQuantity::EpsStiffness).rms < eps.rms, "moduli see stiffness before they see number");
 }
 
 #[test]
 fn stated_intervals_hold_the_truth_of_unseen_packings_in_90_to_99_percent() {
-    for quantity in [Quantity::K, Quantity::Z, Quantity::Eps, Quantity::EpsStiffness] {
+    for quantity in
+        [InferredQuantity::K, InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness]
+    {
         let covered = errors("relaxed", StrainRatioSource::Zero, quantity, |m| m).covered;
         assert!((0.90..=0.99).contains(&covered), "{quantity}: {covered}");
     }
@@ -96,10 +103,10 @@ fn stated_intervals_hold_the_truth_of_unseen_packings_in_90_to_99_percent() {
 
 #[test]
 fn three_moduli_or_the_p_moduli_alone_are_worth_what_is_stated() {
-    let three = errors("relaxed", StrainRatioSource::Zero, Quantity::Eps, |m| {
+    let three = errors("relaxed", StrainRatioSource::Zero, InferredQuantity::Eps, |m| {
         m.without(Modulus::C11).without(Modulus::C33).without(Modulus::C13)
     });
-    let p_alone = errors("relaxed", StrainRatioSource::Zero, Quantity::Eps, |m| {
+    let p_alone = errors("relaxed", StrainRatioSource::Zero, InferredQuantity::Eps, |m| {
         Moduli::NONE
             .with(Modulus::C11, m.get(Modulus::C11).unwrap())
             .with(Modulus::C33, m.get(Modulus::C33).unwrap())
@@ -110,7 +117,7 @@ fn three_moduli_or_the_p_moduli_alone_are_worth_what_is_stated() {
     }
 }
 
-/// The paper's own 16 states, which are four loadings of one packing each: three moduli and no γ/Δ.
+/// The 16 states of the paper, which are four loadings of one packing each: three moduli and no γ/Δ.
 #[test]
 fn directional_coordination_halves_the_paper_s_own_error_on_its_own_rows() {
     let rows = csv::paper_rows();

@@ -1,4 +1,4 @@
-//! A drag on motion holds stress that the packing does not bear.
+//! A drag on motion produces stress without contacts that sustain it.
 
 use crate::support::*;
 use grainlab_core::ServoLaw;
@@ -8,7 +8,7 @@ use grainlab_scene::Scene;
 
 const DRAG: f64 = 4e5;
 
-/// The pressure that is left of a state at rest in its cell, without drag, Pa.
+/// The pressure of a state at rest in its cell, without drag, Pa.
 fn left(e: &mut Engine) -> f64 {
     let mut s = *e.settings();
     (s.damping, s.drag, s.spin_drag) = (0.3, 0.0, 0.0);
@@ -18,10 +18,10 @@ fn left(e: &mut Engine) -> f64 {
     e.observables().unwrap().stress.tensor.mean()
 }
 
-/// Expected: grains dragged together far below the density at which they jam show a pressure; at rest none is left.
-/// The unbalanced force had said so.
+/// Expected: grains compressed under drag far below the jamming density show a pressure; at rest it is zero.
+/// The unbalanced force indicates this beforehand.
 #[test]
-fn a_pressure_propped_up_by_drag_is_gone_at_rest_and_shows_in_the_unbalanced_force() {
+fn a_pressure_due_to_drag_vanishes_at_rest_and_shows_in_the_unbalanced_force() {
     for seed in 1..4 {
         let gas = grainlab_dem::gas::random_sequential_addition(60, 2.0 * RADIUS, 0.35, 0.0, seed).unwrap();
         let mut s = setting(0.1, 0.0);
@@ -39,7 +39,7 @@ fn a_pressure_propped_up_by_drag_is_gone_at_rest_and_shows_in_the_unbalanced_for
     }
 }
 
-/// Expected: under the same drag, a target that was met with forces in balance is kept at rest to 1 %.
+/// Expected: under the same drag, a pressure reached with forces in balance is kept at rest to 1 %.
 #[test]
 fn a_pressure_met_in_balance_is_kept_at_rest() {
     let target = 9.5e4;

@@ -1,4 +1,4 @@
-//! A grain held by two contacts, which nothing in the contact law keeps from turning.
+//! A grain with two contacts, whose spin the contact law does not resist.
 
 use crate::support::*;
 use grainlab_core::{Mat3, Packing, Vec3};
@@ -6,8 +6,8 @@ use grainlab_dem::{Engine, EngineSettings};
 use grainlab_experiment::Simulation;
 use grainlab_scene::Scene;
 
-/// A zigzag column of two grains and their images, each held by two contacts that lean by `lean` (rad) to either side:
-/// at rest under friction, its force along the line through the contact points.
+/// A zigzag column of two grains and their images, each with two contacts inclined by `lean` (rad) to either
+/// side: at rest under friction, its force along the line through the contact points.
 fn column(radii: [f64; 2], lean: f64, calm: EngineSettings) -> Engine {
     let length = radii[0] + radii[1] - 4e-4 * radii[1];
     let top = Vec3::new(lean.sin(), 0.0, lean.cos()) * length;
@@ -34,8 +34,8 @@ fn turn(e: &mut Engine, rate: f64) {
     e.set_spins(&[spin; 2]);
 }
 
-/// Expected: a column that turns as a whole slips nowhere, so that contact damping alone leaves it turning and the
-/// unbalanced force at m Ω² e/F for ever; a drag on spins brings it to rest and to balance.
+/// Expected: a column that rotates as a whole does not slip, so that contact damping alone leaves it rotating
+/// with an unbalanced force of m Ω² e/F. A drag on spins brings it to rest and to balance.
 #[test]
 fn two_contact_grains_hold_the_unbalanced_force_up_unless_spins_are_damped() {
     let turned = |spin_drag: f64| {
@@ -65,8 +65,8 @@ fn two_contact_grains_hold_the_unbalanced_force_up_unless_spins_are_damped() {
     );
 }
 
-/// Expected: through turns of a column whose contacts lean against the axis, sizes 1 to 5, the tangential forces turn
-/// along, keep their size, and the stress in the turning frame stays what it was.
+/// Expected: during a rotation of a column with inclined contacts, sizes 1 to 5, the tangential forces rotate
+/// with it and keep their magnitude, and the stress in the rotating frame is constant.
 #[test]
 fn a_turning_column_of_unequal_grains_carries_its_tangential_forces_along() {
     let mut s = calm();
@@ -96,7 +96,7 @@ fn a_turning_column_of_unequal_grains_carries_its_tangential_forces_along() {
     }
 }
 
-/// A frictional packing at rest whose scene then lets it relax, and a grain of it that two contacts hold.
+/// A frictional packing at rest whose scene then relaxes it, and one of its grains with two contacts.
 fn rested(spin_drag: &str) -> (Simulation, usize) {
     let text = |seed: u64| {
         format!(
@@ -141,8 +141,8 @@ until = {{ elapsed = 4e-3 }}
     (1..20).find_map(run).unwrap()
 }
 
-/// The packing with grain `g` turning at `rate` (rad/s) about the line through its two contact points, where it slips
-/// nowhere.
+/// The packing with grain `g` rotating at `rate` (rad/s) about the line through its two contact points, where
+/// it does not slip.
 fn turning(mut p: Packing, g: usize, rate: f64) -> Packing {
     let points: Vec<Vec3> = (0..p.contacts.len())
         .filter_map(|k| {
@@ -161,8 +161,8 @@ fn turning(mut p: Packing, g: usize, rate: f64) -> Packing {
     p
 }
 
-/// Expected: a grain that rolls on two contacts in a packing comes to rest while the packing relaxes, of which a scene
-/// need not know; where the scene forbids it, the grain keeps its spin.
+/// Expected: a grain that rolls on two contacts comes to rest while the packing relaxes, with the default
+/// settings. Without a drag on spins the grain keeps its spin.
 #[test]
 fn a_two_contact_grain_settles_in_a_relaxing_packing_without_any_setting() {
     let left = |spin_drag: &str| {

@@ -1,4 +1,4 @@
-//! The scenes of the laboratory under the servo they come with, their stress targets moved to the ends of its range.
+//! The built-in scenes with their servo, with stress targets at the ends of its range.
 
 use grainlab_core::ComponentControl;
 use grainlab_core::stress::stress;
@@ -7,17 +7,18 @@ use grainlab_scene::{Condition, Measure, PhaseKind, Scene};
 
 const GRAINS: u32 = 200;
 
-/// Simulated time within which a servoed phase settles, s: twenty times what the slowest takes, so that failing is quick.
+/// Simulated time within which a servoed phase settles, s: twenty times that of the slowest, so that a
+/// failure ends early.
 const TIMEOUT: f64 = 0.05;
 
-/// Where the targets of a scene go, Pa.
+/// Targets of the scenes, Pa.
 #[derive(Clone, Copy, Debug)]
 enum Targets {
     LowestAt(f64),
     HighestAt(f64),
 }
 
-/// Every stress that a phase steers to or waits for.
+/// Every stress that a phase controls or waits for.
 fn stresses(scene: &mut Scene) -> Vec<&mut f64> {
     let mut found = Vec::new();
     for phase in &mut scene.phases {
@@ -37,8 +38,8 @@ fn stresses(scene: &mut Scene) -> Vec<&mut f64> {
     found
 }
 
-/// The scene of `text` with fewer grains and all its stresses scaled. Law, rate limits, drags, control periods and
-/// tolerances stay what the text says.
+/// The scene of `text` with fewer grains and all its stresses scaled. Law, rate limits, drags, control
+/// periods and tolerances are unchanged.
 fn scaled(text: &str, targets: Targets) -> Scene {
     let mut scene = Scene::parse(text).unwrap();
     let mut stresses = stresses(&mut scene);
@@ -54,8 +55,8 @@ fn scaled(text: &str, targets: Targets) -> Scene {
     scene
 }
 
-/// Runs `scene`; for each phase that servoes all six components its name, and the largest error of a component over the
-/// target pressure, of the stress summed anew over the packing that the phase left.
+/// Runs `scene`. For each phase with six servoed components: its name, and the largest error of a component
+/// over the target pressure, with the stress computed from the packing at its end.
 fn errors(scene: Scene) -> Vec<(String, f64)> {
     let label = format!("{} ", scene.name);
     let mut run = Simulation::new(scene).unwrap();
@@ -78,7 +79,7 @@ fn errors(scene: Scene) -> Vec<(String, f64)> {
     errors
 }
 
-/// Expected: `phases` servoed phases, and each of them within a thousandth of its pressure in all six components.
+/// Expected: `phases` servoed phases, each within a thousandth of its pressure in all six components.
 fn settles(text: &str, phases: usize) {
     for targets in [Targets::LowestAt(1e3), Targets::HighestAt(5e6)] {
         let errors = errors(scaled(text, targets));
@@ -113,7 +114,7 @@ fn s4_settles_to_a_permille_in_all_components_from_1_kpa_and_up_to_5_mpa() {
     settles(include_str!("../../../../scenes/s4.toml"), 9);
 }
 
-/// Expected: a scene cannot ask for more than the bound; the fault names the key.
+/// Expected: a scene cannot exceed the bound; the fault names the key.
 #[test]
 fn a_scene_that_asks_for_105_hundredths_of_the_bound_is_refused() {
     let text = "name = 'x'\n[grains]\ncount = 2\ndiameter = 2e-4\n[numerics]\ntime_step_safety = 1.05\n\

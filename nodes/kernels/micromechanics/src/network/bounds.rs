@@ -1,17 +1,18 @@
-//! Closed-form neighbours of the relaxed stiffness: above it, affine motion with one spin of all grains; below its bulk
-//! modulus, the forces that the packing already carries.
+//! Bounds of the relaxed stiffness in closed form: above it, affine motion with one spin of all grains; below
+//! its bulk modulus, the forces that the packing already carries.
 
 use super::spring_network::{SpringNetwork, Springs};
 use crate::view::PackingView;
 use grainlab_core::Stiffness;
 use nalgebra::{Matrix3, Matrix6x3};
 
-/// Share of the largest entry of the affine stiffness below which a spin costs nothing.
+/// Fraction of the largest entry of the affine stiffness below which a spin has no stiffness.
 const FREE_SPIN: f64 = 1e-12;
 
-/// Stiffness, Pa, of the network whose grains move with the mean deformation and all spin alike, as the paper's theory has
-/// it (the spin that makes the stress symmetric, its Eq. 12): A less what three uniform spins relax. Between the
-/// relaxed stiffness and the affine one; they are equal without anisotropy and without tangential springs.
+/// Stiffness, Pa, of the network whose grains move with the mean deformation and all have the same spin, as
+/// in the paper's theory (the spin that makes the stress symmetric, its Eq. 12): A less the relaxation of
+/// three uniform spins. It lies between the relaxed and the affine stiffness. All are equal without
+/// anisotropy and without tangential springs.
 pub fn uniform_rotation_stiffness(network: &SpringNetwork, affine: &Stiffness) -> Stiffness {
     let (spin, coupling) = network.spin_energy();
     let eigen = spin.symmetric_eigen();
@@ -27,10 +28,10 @@ pub fn uniform_rotation_stiffness(network: &SpringNetwork, affine: &Stiffness) -
 
 /// Lower bound of the bulk modulus under isotropic stress (Reuss), Pa: V p²/Σ(F_n²/k_n + F_t²/k_t).
 ///
-/// The forces of the packing, each more by the same share, balance every grain and carry the same share more of the
-/// pressure; the complementary energy of any forces that do is at least that of the true ones. As good a bound as the
-/// packing is at rest under isotropic stress. Without tangential springs tangential forces cannot follow, and
-/// are left out. `None` without forces.
+/// Increasing all forces of the packing by the same fraction keeps every grain in balance and increases the
+/// pressure by this fraction. The complementary energy of any such forces is at least that of the true ones.
+/// The bound is as accurate as the packing is at rest under isotropic stress. Without tangential springs,
+/// tangential forces cannot change and are left out. `None` without forces.
 pub fn bulk_reuss_bound(view: &PackingView<'_>, springs: Springs) -> Option<f64> {
     let (packing, pressure) = (view.packing, view.stress.tensor.mean());
     let mut compliance = 0.0;
@@ -44,11 +45,11 @@ pub fn bulk_reuss_bound(view: &PackingView<'_>, springs: Springs) -> Option<f64>
     (compliance > 0.0 && bound.is_finite()).then_some(bound)
 }
 
-/// Energy of three uniform spins alone, and of each with the six unit strains, Pa.
+/// Energy of three uniform spins, and of each combined with the six unit strains, Pa.
 pub(crate) type SpinEnergy = (Matrix3<f64>, Matrix6x3<f64>);
 
 impl SpringNetwork {
-    /// With the spin θ of all grains a contact feels −(λ_i + λ_j) θ×n = −θ×l.
+    /// A spin θ of all grains displaces a contact by −(λ_i + λ_j) θ×n = −θ×l.
     pub(crate) fn spin_energy(&self) -> SpinEnergy {
         let (mut spin, mut coupling) = (Matrix3::zeros(), Matrix6x3::zeros());
         for s in self.springs() {

@@ -4,21 +4,21 @@ use super::gauss_seidel::{Rows, Sweeps, add_products, load, still, store};
 use super::lanes::{Lanes, Plain, Real, WIDTH};
 use std::marker::PhantomData;
 
-/// The vectors of the conjugate gradients, one entry a grain, in the order of the sweeps.
+/// The vectors of the conjugate gradients, one entry per grain, in the order of the sweeps.
 #[derive(Debug)]
 pub(crate) struct Descent<'a, T, const G: bool> {
     pub(crate) sweeps: &'a Sweeps<T, G>,
-    /// x̂ = (D + L)ᵀ x; in the end x.
+    /// x̂ = (D + L)ᵀ x; at the end x.
     pub(crate) motion: Vec<Rows<T>>,
-    /// r̂ = (D + L)⁻¹ r, by recurrence; in the beginning r.
+    /// r̂ = (D + L)⁻¹ r, by recurrence; at the start r.
     pub(crate) rest: Vec<Rows<T>>,
     /// Search direction p.
     step: Vec<Rows<T>>,
     /// t = (D + L)⁻ᵀ p.
     half: Vec<Rows<T>>,
-    /// s = p − D t = Lᵀ t, which the forward sweep uses up.
+    /// s = p − D t = Lᵀ t, consumed by the forward sweep.
     taken: Vec<Rows<T>>,
-    /// Whether a direction of negative stiffness was met, which only prestress can make.
+    /// Whether a direction of negative stiffness was found, which requires prestress.
     pub(crate) unstable: bool,
 }
 
@@ -36,8 +36,9 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         }
     }
 
-    /// From the residual r that `rest` holds, whose squared norms are `squares`, until that of every column is at most its
-    /// target, or `limit` iterations are done; leaves the x with K x ≈ r in `motion`. Returns the iterations done.
+    /// Iterates from the residual r in `rest`, with the squared norms `squares`, until that of every column
+    /// is at most its target, or `limit` iterations are done. Leaves the x with K x ≈ r in `motion`. Returns
+    /// the number of iterations.
     #[inline(always)]
     fn descend<V: Lanes<T = T>>(&mut self, v: V, goal: &Goal) -> u32 {
         let Goal { squares, targets, limit } = goal;
@@ -50,7 +51,7 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
         self.sweeps.forward(v, &mut self.rest);
         let mut rho = self.weigh(v);
         let (mut alpha, mut beta) = ([0.0; WIDTH], [0.0; WIDTH]);
-        // Squared norm of the residual r over ρ = r̂ᵀ D r̂, as it was at the last look.
+        // Squared norm of the residual r over ρ = r̂ᵀ D r̂, at the last check.
         let mut share = ratios(squares, &rho);
         let mut done = *limit;
         for iteration in 0..*limit {
@@ -58,7 +59,7 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
             alpha = ratios(&rho, &energy);
             for l in 0..WIDTH {
                 self.unstable |= G && far[l] && (energy[l] < 0.0 || rho[l] < 0.0);
-                // A column that is done stands still, so that its last digits cannot blow up while others go on.
+                // A converged column is not changed any more, so that its rounding errors cannot grow.
                 if !far[l] {
                     alpha[l] = 0.0;
                 }
@@ -161,18 +162,18 @@ impl<'a, T: Real, const G: bool> Descent<'a, T, G> {
     }
 }
 
-/// Where a descent begins and ends.
+/// Start and end of a descent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal {
-    /// Squared norms of the residual it begins with.
+    /// Squared norms of the residual at the start.
     pub(crate) squares: [f64; WIDTH],
-    /// Squared norms that are enough.
+    /// Squared norms at which it ends.
     pub(crate) targets: [f64; WIDTH],
-    /// Most iterations.
+    /// Maximum number of iterations.
     pub(crate) limit: u32,
 }
 
-/// A precision that a descent can run in, with the widest vectors that the processor has for it.
+/// A precision of a descent, with the widest vectors that the processor has for it.
 pub(crate) trait Precision: Real {
     /// See [`Descent::descend`]. All processors give the same bits.
     fn run<const G: bool>(descent: &mut Descent<'_, Self, G>, goal: &Goal) -> u32;
@@ -211,8 +212,8 @@ mod x86 {
     use super::{Descent, Goal};
     use pulp::NullaryFnOnce;
 
-    /// [`Descent::descend`] with its arguments, to be compiled for an instruction set. No closures in there: those are not
-    /// inlined, and then run with the instructions of the oldest processor.
+    /// [`Descent::descend`] with its arguments, compiled for one instruction set. It contains no closures:
+    /// these are not inlined, and would use the baseline instruction set.
     pub(super) struct Run<'d, 'a, V: Lanes, const G: bool> {
         pub(super) descent: &'d mut Descent<'a, V::T, G>,
         pub(super) goal: &'d Goal,

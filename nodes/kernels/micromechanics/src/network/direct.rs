@@ -1,17 +1,17 @@
-//! The same systems by a sparse Cholesky factorisation: a second path to every stiffness, which shares nothing with the
-//! iterations but the operator and the way residuals are judged, and serves as a check of them.
+//! The same systems by a sparse Cholesky factorisation: a second way to every stiffness, to check the first
+//! one. They share only the operator and the definition of residuals.
 //!
-//! At 2,000 grains a factorisation costs as much as about a thousand iterations of [`super::solve()`] with tangential
-//! springs and five hundred without, where rotations drop out; it grows with N² and a little more, the iterations of one
-//! tolerance with N^1.4 (`grainlab bench stiffness`). So it loses by an order of magnitude and more wherever networks are
-//! solid, and more the larger they are; it wins near isostaticity, where iterations are that many: with a friction of 1
-//! and z = 4.1 the two are even; without friction it is several times as fast at z = 6.02, and more than ten times at
-//! z = 6.00.
+//! At 2,000 grains a factorisation costs as much as about 1,000 iterations of [`super::solve()`] with
+//! tangential springs and 500 without, where rotations drop out. It grows slightly faster than N², the
+//! iterations for one tolerance as N^1.4 (`grainlab bench stiffness`). It is slower by a factor of ten or
+//! more for stiff networks, and more so for larger ones. It is faster near isostaticity, where iterations are
+//! many: with a friction of 1 and z = 4.1 both are equal; without friction it is several times as fast at z =
+//! 6.02, and more than ten times at z = 6.00.
 //!
-//! K is singular; factorised is K + s diag(K) with a share s that is far above rounding, so that no pivot vanishes, and far
-//! below the stiffness of almost every mode, so that one solve leaves a share s of most of the residual. Conjugate
-//! gradients with this factor take the rest: where networks are near a mechanism a few modes are as soft as s, each of
-//! which costs a round or two. What is left is computed with K itself, in every round.
+//! K is singular. K + s diag(K) is factorised, with s far above rounding, so that no pivot vanishes, and far
+//! below the stiffness of almost every mode, so that one solve reduces most of the residual to a fraction s.
+//! Conjugate gradients with this factor as preconditioner reduce the rest: near a mechanism a few modes are
+//! as soft as s, and each costs one or two rounds. Every round computes the residual with K itself.
 
 use super::solve::{Refinement, Solution, add};
 use super::spring_network::{GrainDofs, SpringNetwork};
@@ -21,17 +21,17 @@ use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
 
-/// What is added to the diagonal, as a share of it.
+/// Fraction of the diagonal that is added to it.
 const SHARE: f64 = 1e-11;
 
-/// Directions whose stiffness is below this share of their grain's largest are left out: nothing resists them.
+/// Directions with a stiffness below this fraction of the largest one of their grain are left out.
 const LOOSE: f64 = 1e-12;
 
-/// Rounds after which it is given up: so many modes as soft as that are no network.
+/// Maximum number of rounds: a network with so many modes as soft as s has no stiffness.
 const ROUNDS: u32 = 100;
 
-/// Solves K x = `load` as [`super::solve()`] does, with a factorisation in place of iterations; each round of
-/// refinement counts as one.
+/// Solves K x = `load` like [`super::solve()`], with a factorisation instead of iterations. Each round of
+/// refinement counts as one iteration.
 pub fn solve<const L: usize>(
     network: &SpringNetwork,
     load: &[GrainDofs<L>],
@@ -43,7 +43,7 @@ pub fn solve<const L: usize>(
     if let Some(factor) = Factor::new(network) {
         let mut step = vec![[[0.0; L]; 6]; load.len()];
         let mut image = step.clone();
-        // xᵀ K x of the last step; there is none yet.
+        // xᵀ K x of the last step; none before the first.
         let mut energy = [0.0; L];
         while refinement.goes_on() {
             let left = refinement.left();
@@ -72,19 +72,19 @@ fn products<const L: usize>(x: &[GrainDofs<L>], y: &[GrainDofs<L>]) -> [f64; L] 
     sums
 }
 
-/// Zero where there is nothing to divide by.
+/// Zero if the divisor is zero.
 fn ratios<const L: usize>(above: &[f64; L], below: &[f64; L]) -> [f64; L] {
     std::array::from_fn(|l| if below[l] > 0.0 { above[l] / below[l] } else { 0.0 })
 }
 
 struct Factor {
     factor: Llt<usize, f64>,
-    /// Grain and row of each direction that is not left out.
+    /// Grain and row of each direction that is kept.
     directions: Vec<(usize, usize)>,
 }
 
 impl Factor {
-    /// `None` if a pivot is not positive, which only stiffnesses that are not numbers can bring about.
+    /// `None` if a pivot is not positive, which happens only if a stiffness is not a finite number.
     fn new(network: &SpringNetwork) -> Option<Self> {
         let blocks = network.diagonal_blocks();
         let mut directions = Vec::new();
@@ -123,7 +123,8 @@ impl Factor {
         Some(Self { factor: matrix.sp_cholesky(Side::Lower).ok()?, directions })
     }
 
-    /// The motion that balances `load`, but for what the factorisation leaves out and adds.
+    /// The motion that balances `load`, apart from the directions left out and the term added to the
+    /// diagonal.
     fn solve<const L: usize>(&self, load: &[GrainDofs<L>]) -> Vec<GrainDofs<L>> {
         let mut columns = Mat::zeros(self.directions.len(), L);
         for (number, (grain, row)) in self.directions.iter().enumerate() {

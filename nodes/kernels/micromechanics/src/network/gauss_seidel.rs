@@ -1,17 +1,19 @@
-//! The operator K = L + D + Lᵀ in triangular halves: D the 6×6 blocks of the grains, L what an earlier grain does to a
-//! later one.
+//! The operator K = L + D + Lᵀ in triangular halves: D the 6×6 blocks of the grains, L the coupling of
+//! earlier to later grains.
 //!
-//! Conjugate gradients run on Â = (D + L)⁻¹ K (D + L)⁻ᵀ with the preconditioner D⁻¹, which is symmetric Gauss–Seidel on
-//! K. As K = (D + L) + (D + L)ᵀ − D, one product Â p = t + (D + L)⁻¹ (p − D t), t = (D + L)⁻ᵀ p, touches every contact
-//! twice by half: as much work as one product with K (Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1 (1981)).
+//! Conjugate gradients run on Â = (D + L)⁻¹ K (D + L)⁻ᵀ with the preconditioner D⁻¹, which is symmetric
+//! Gauss–Seidel on K. Since K = (D + L) + (D + L)ᵀ − D, one product Â p = t + (D + L)⁻¹ (p − D t), t = (D +
+//! L)⁻ᵀ p, costs as much as one product with K (Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1 (1981)).
 //!
-//! Blocks may be singular: a null vector of a block is one of the whole network, so a generalised inverse serves.
+//! Blocks may be singular: a null vector of a block is one of the whole network, so that a generalised
+//! inverse suffices.
 
 use super::lanes::{Lanes, Real, WIDTH};
 use super::preconditioner::{Block, generalised_inverse};
 use super::spring_network::{Spring, SpringNetwork};
 
-/// GrainDofs of one grain, or the forces conjugate to it, in the units of the sweeps: rows u_x, u_y, u_z, φ_x, φ_y, φ_z.
+/// Degrees of freedom of one grain, or the conjugate forces, in the units of the sweeps: rows u_x, u_y, u_z,
+/// φ_x, φ_y, φ_z.
 pub(crate) type Rows<T> = [[T; WIDTH]; 6];
 
 /// No motion.
@@ -22,11 +24,12 @@ pub(crate) const fn still<T: Real>() -> Rows<T> {
 /// [`Rows`] in registers.
 type Six<V> = [<V as Lanes>::Row; 6];
 
-/// The halves of one network, grains in an order that follows space, stiffnesses in units of [`Sweeps::unit`]. `G`:
-/// with the prestress term.
+/// The halves of one network, grains in the order of a space-filling curve, stiffnesses in units of
+/// [`Sweeps::unit`]. `G`: with the prestress term.
 #[derive(Clone, Debug)]
 pub(crate) struct Sweeps<T, const G: bool> {
-    /// Between different grains, the earlier one first, sorted by both; contacts with own images are in D alone.
+    /// Between different grains, the earlier one first, sorted by both; contacts with own images are only in
+    /// D.
     springs: Vec<Half<T>>,
     /// Springs of grain g to later grains: `springs[first[g]..first[g + 1]]`.
     first: Vec<u32>,
@@ -50,7 +53,7 @@ const fn place(row: usize, column: usize) -> usize {
     high * (high + 1) / 2 + low
 }
 
-/// One contact as the earlier of its grains sees it.
+/// One contact as stored with the earlier of its grains.
 #[derive(Clone, Copy, Debug)]
 struct Half<T> {
     later: u32,
@@ -125,8 +128,8 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         }
     }
 
-    /// One step of that, from the first grain to the last: returns u of grain `g` and takes what it does to later grains
-    /// off their entries.
+    /// One step of that, from the first grain to the last: returns u of grain `g` and subtracts its effect on
+    /// later grains from their entries.
     #[inline(always)]
     pub(crate) fn forward_step<V: Lanes<T = T>>(&self, v: V, g: usize, y: &mut [Rows<T>]) -> Six<V> {
         let u = product(v, &self.inverse[g], &load(v, &y[g]));
@@ -195,7 +198,7 @@ impl<T: Real, const G: bool> Sweeps<T, G> {
         squares
     }
 
-    /// `rest` less what the motions of later grains do to grain `g`.
+    /// `rest` minus the effect of the motions of later grains on grain `g`.
     #[inline(always)]
     fn left_by_later<V: Lanes<T = T>>(&self, v: V, g: usize, mut rest: Six<V>, motion: &[Rows<T>]) -> Six<V> {
         for s in self.later(g) {
@@ -228,21 +231,21 @@ impl<T: Real> Half<T> {
         (i.min(j), half)
     }
 
-    /// `rest` of the later grain less what the motion `a` of the earlier one does to it.
+    /// `rest` of the later grain minus the effect of the motion `a` of the earlier one.
     #[inline(always)]
     fn push<V: Lanes<T = T>, const G: bool>(&self, v: V, a: &Six<V>, rest: Six<V>) -> Six<V> {
         self.taken_off::<V, G>(v, a, self.levers, rest)
     }
 
-    /// `rest` of the earlier grain less what the motion `b` of the later one does to it: the same, with the arms on the
-    /// other sides.
+    /// `rest` of the earlier grain minus the effect of the motion `b` of the later one: the same with
+    /// exchanged levers.
     #[inline(always)]
     fn pull<V: Lanes<T = T>, const G: bool>(&self, v: V, b: &Six<V>, rest: Six<V>) -> Six<V> {
         let [earlier, later] = self.levers;
         self.taken_off::<V, G>(v, b, [later, earlier].map(|arm| T::of(-1.0).times(arm)), rest)
     }
 
-    /// With the levers of the grain that moves and of the one that is moved.
+    /// With the levers of the moving grain and of the other one.
     #[inline(always)]
     fn taken_off<V: Lanes<T = T>, const G: bool>(
         &self,

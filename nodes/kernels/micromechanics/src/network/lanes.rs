@@ -1,7 +1,7 @@
-//! Eight columns at once, in either precision, with whatever vectors the processor has.
+//! Eight columns at once, in either precision, with the vector instructions of the processor.
 //!
-//! Each operation is rounded the same way everywhere (a multiply-add once), and no operation mixes columns, so every
-//! implementation gives the same bits.
+//! Each operation is rounded in the same way on every processor (a multiply-add once), and no operation mixes
+//! columns, so that all implementations give the same bits.
 
 use std::marker::PhantomData;
 
@@ -71,7 +71,7 @@ pub(crate) trait Lanes: Copy {
     fn mul_sub_from(self, a: Self::Row, b: Self::Row, c: Self::Row) -> Self::Row;
 }
 
-/// One column after the other, or what the compiler makes of that.
+/// Portable implementation, one column after the other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plain<T>(pub(crate) PhantomData<T>);
 

@@ -3,7 +3,7 @@
 //! - [`SpringNetwork`]: grains and springs as an operator for any number of right-hand sides at once
 //! - [`solve()`]: conjugate gradients on the singular operator, preconditioned by symmetric Gauss–Seidel with the grains'
 //!   own blocks ([`generalised_inverse`]); [`solve_directly`]: the same by a sparse Cholesky factorisation
-//! - [`relaxed_stiffness()`]: C = A − ΞᵀK⁺Ξ/V and the checks that every result must pass
+//! - [`relaxed_stiffness()`]: C = A − ΞᵀK⁺Ξ/V and its checks
 //! - [`uniform_rotation_stiffness`], [`bulk_reuss_bound`]: closed forms above and below it
 
 mod bounds;

@@ -3,22 +3,23 @@
 /// A symmetric 6×6 block: three displacements, then three scaled rotations.
 pub type Block = [[f64; 6]; 6];
 
-/// Pivots below this share of their original diagonal are directions without stiffness; what is left there is
-/// rounding (about 10⁻¹⁶), and real blocks of spheres stay above 10⁻⁸.
+/// Pivots below this fraction of their original diagonal are directions without stiffness: rounding leaves
+/// about 10⁻¹⁶ there, and real blocks of spheres stay above 10⁻⁸.
 const ZERO_PIVOT: f64 = 1e-12;
 
 /// A symmetric generalised inverse G of a positive semidefinite block A: A G A = A.
 ///
-/// Swept with diagonal pivoting; coordinates whose pivot vanishes get zero rows. A right-hand side in the range of A
-/// is solved exactly, and that is where the residuals of the network live: a null vector of a grain's block is a null
-/// vector of the whole network, so nothing is lost by leaving it alone.
+/// Swept with diagonal pivoting; coordinates whose pivot vanishes get zero rows. A right-hand side in the
+/// range of A is solved exactly. Residuals of the network lie in that range: a null vector of the block of a
+/// grain is a null vector of the whole network.
 pub fn generalised_inverse(block: &Block) -> Block {
     let mut a = *block;
     let largest = (0..6).fold(0.0f64, |m, k| m.max(block[k][k]));
     let diagonal: [f64; 6] = std::array::from_fn(|k| block[k][k]);
     let mut swept = [false; 6];
     for _ in 0..6 {
-        // Largest remaining pivot relative to its original diagonal; the first of equals, so that the order is fixed.
+        // Largest remaining pivot relative to its original diagonal; the first among equals, so that the
+        // order is deterministic.
         let mut pivot = None;
         let mut best = ZERO_PIVOT;
         for k in 0..6 {
@@ -75,7 +76,7 @@ mod tests {
             let back = product(&product(&a, &g), &a);
             for i in 0..6 {
                 for j in 0..6 {
-                    // The smallest pivot of these blocks is about 10⁻², which costs two or three digits.
+                    // The smallest pivot of these blocks is about 10⁻², at the cost of two or three digits.
                     assert!((back[i][j] - a[i][j]).abs() < 1e-11, "rank {rank} [{i}][{j}]");
                     assert!((g[i][j] - g[j][i]).abs() <= 1e-9 * g[i][i].abs().max(g[j][j].abs()));
                 }

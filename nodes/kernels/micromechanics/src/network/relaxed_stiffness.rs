@@ -1,4 +1,4 @@
-//! C = A − ΞᵀK⁺Ξ/V, and the checks that every result must pass.
+//! C = A − ΞᵀK⁺Ξ/V and its checks.
 
 use super::bounds::uniform_rotation_stiffness;
 use super::direct;
@@ -7,15 +7,16 @@ use super::spring_network::SpringNetwork;
 use crate::error::MicroError;
 use grainlab_core::Stiffness;
 
-/// Eigenvalues of C and of A − C may be this far below zero, as a share of the largest entry of A: rounding of a sum
-/// over contacts, far below any tolerance of the solve.
+/// Eigenvalues of C and of A − C may be this far below zero, as a fraction of the largest entry of A:
+/// rounding of a sum over contacts, far below any tolerance of the solve.
 const BOUND_SLACK: f64 = 1e-11;
 
-/// Standard error of an entry by rounding alone, as a share of the largest entry of A: the sum over contacts.
+/// Standard error of an entry from rounding of the sum over contacts, as a fraction of the largest entry of
+/// A.
 const ROUNDING: f64 = 1e-15;
 
-/// A network whose stiffest response is below this share of its affine stiffness resists nothing (nor does one below
-/// the tolerance of the solve).
+/// A network whose largest stiffness is below this fraction of its affine stiffness counts as having none (as
+/// does one below the tolerance of the solve).
 const FLOPPY: f64 = 1e-9;
 
 /// The stiffness of a spring network.
@@ -23,25 +24,25 @@ const FLOPPY: f64 = 1e-9;
 pub struct NetworkStiffness {
     /// Grains relax under the strain.
     pub relaxed: Stiffness,
-    /// Standard error of each entry of it, Pa.
+    /// Standard error of each entry of `relaxed`, Pa.
     pub stddev: Stiffness,
     /// Affine (Voigt) stiffness: every grain moves with the mean deformation.
     pub affine: Stiffness,
-    /// The same where all grains also rotate alike: between relaxed and affine.
+    /// The same with a uniform rotation of all grains: between relaxed and affine.
     pub uniform_rotation: Stiffness,
-    /// Relative residual of the solve, the worst of the six columns.
+    /// Relative residual of the solve, maximum over the six columns.
     pub residual: f64,
     /// Iterations of the solve.
     pub iterations: u32,
 }
 
-/// Relaxed and affine stiffness of `network`, solved to the relative residual `tolerance`; `None` if the network resists no
-/// strain at all.
+/// Relaxed and affine stiffness of `network`, solved to the relative residual `tolerance`; `None` if the
+/// network resists no strain.
 ///
-/// The relaxed stiffness is evaluated by energy, so that its error is second order in the residual and from above, and
-/// again by stress, whose error is first order; that the two agree checks the solve, and their difference is stated as
-/// the standard error, which it exceeds. 0 ≤ C ≤ A is checked by eigenvalues, with the stiffness B of affine motion and a
-/// uniform rotation between the two.
+/// The relaxed stiffness is evaluated by energy, with an error of second order in the residual and from
+/// above, and by stress, with an error of first order. Their agreement checks the solve; their difference is
+/// an upper bound of the error and taken as the standard error. 0 ≤ C ≤ B ≤ A is checked by eigenvalues, with
+/// the stiffness B of affine motion and a uniform rotation.
 pub fn relaxed_stiffness(
     network: &SpringNetwork,
     solver: Solver,

@@ -1,12 +1,12 @@
 //! Several right-hand sides of one network at once: conjugate gradients in single precision, refined in double.
 //!
-//! The operator is singular (uniform translation, rattlers, floppy grains), but loads made by contact forces lie in
-//! its range, and there conjugate gradients converge to a solution; which one of them does not matter to any force.
+//! The operator is singular (uniform translation, rattlers, floppy grains), but loads from contact forces lie
+//! in its range, where conjugate gradients converge to a solution. All solutions give the same forces.
 //!
-//! Each round solves for what the last one left of the loads, computed in double precision with the operator itself, so
-//! that neither the precision of a round nor its recurrences limit the result. Single precision halves what must be moved
-//! through memory and doubles what one instruction does; where it stops helping, double takes over. Everything runs
-//! in one fixed order on one thread: the same input gives the same bits.
+//! Each round solves for the residual of the last one, computed in double precision with the operator itself,
+//! so that neither the precision of a round nor its recurrences limit the result. Single precision halves the
+//! memory traffic and doubles the work per instruction; double precision follows where it no longer helps.
+//! All operations run in a fixed order on one thread: the same input gives the same bits.
 
 use super::conjugate_gradient::{Descent, Goal, Precision};
 use super::gauss_seidel::Sweeps;
@@ -22,16 +22,16 @@ const SINGLE: f64 = 3e-6;
 /// …and in double.
 const DOUBLE: f64 = 1e-13;
 
-/// A round that leaves more than this share of a residual did not help.
+/// A round that leaves more than this fraction of a residual did not help.
 const HELPED: f64 = 0.1;
 
-/// Iterations of one round in single precision. A network that needs more is so close to a mechanism that rounding would
-/// decide.
+/// Maximum number of iterations of one round in single precision. A network that needs more is so close to a
+/// mechanism that rounding errors dominate.
 const SINGLE_ROUND: u32 = 500;
 
-/// Negative eigenvalues of a block up to this share of its largest are rounding.
+/// Negative eigenvalues of a block up to this fraction of its largest one are rounding.
 const ROUNDING: f64 = 1e-12;
-/// How the loads are balanced.
+/// Method of the solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
     /// By [`solve()`].
@@ -41,12 +41,13 @@ pub enum Solver {
     Direct,
 }
 
-/// Motions that balance the loads.
+/// Solution of a solve.
 #[derive(Clone, Debug)]
 pub struct Solution<const L: usize> {
     /// One motion per grain.
     pub motion: Vec<GrainDofs<L>>,
-    /// Norm of what is left of each load, recomputed from the motion, over its scale; the worst of the columns.
+    /// Norm of the residual of each load, recomputed from the motion, over its scale; maximum over the
+    /// columns.
     pub residual: f64,
     /// Iterations done.
     pub iterations: u32,
@@ -71,7 +72,7 @@ pub fn solve<const L: usize>(
     refinement.solution()
 }
 
-/// Adds `share` of `x`, column by column, to `sum`.
+/// Adds `share` times `x`, column by column, to `sum`.
 pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mut [GrainDofs<L>]) {
     for (x, sum) in x.iter().zip(sum) {
         for k in 0..6 {
@@ -82,7 +83,7 @@ pub(crate) fn add<const L: usize>(share: &[f64; L], x: &[GrainDofs<L>], sum: &mu
     }
 }
 
-/// What is found so far and what is left, in double precision.
+/// Solution and residual so far, in double precision.
 pub(crate) struct Refinement<'a, const L: usize> {
     load: &'a [GrainDofs<L>],
     scale: &'a [f64; L],
@@ -93,7 +94,7 @@ pub(crate) struct Refinement<'a, const L: usize> {
     image: Vec<GrainDofs<L>>,
     /// Squared norms of load − K x.
     squares: [f64; L],
-    /// The worst of the columns.
+    /// Maximum over the columns.
     residual: f64,
     iterations: u32,
 }
@@ -122,7 +123,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         new
     }
 
-    /// What is left of the loads.
+    /// The residual.
     fn look(&mut self) {
         self.squares = [0.0; L];
         for (load, image) in self.load.iter().zip(&self.image) {
@@ -138,7 +139,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
             (0..L).map(ratio).fold(0.0, |worst: f64, r| if worst.is_nan() || r <= worst { worst } else { r });
     }
 
-    /// In single precision, and in double if that is not enough. `G`: with the prestress term.
+    /// In single precision, then in double if that does not suffice. `G`: with the prestress term.
     fn solve<const G: bool>(&mut self, network: &SpringNetwork) -> Result<(), MicroError> {
         if G && network.diagonal_blocks().iter().any(gives_way) {
             return Err(MicroError::Unstable { residual: self.residual });
@@ -156,7 +157,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
         Ok(())
     }
 
-    /// What is left of the loads; nothing in columns that stay at zero.
+    /// The residual; zero in columns that stay at zero.
     pub(crate) fn left(&self) -> Vec<GrainDofs<L>> {
         let left = |load: &f64, image: &f64, l: usize| if self.scale[l] > 0.0 { load - image } else { 0.0 };
         let row = |load: &[f64; L], image: &[f64; L]| std::array::from_fn(|l| left(&load[l], &image[l], l));
@@ -165,25 +166,25 @@ impl<'a, const L: usize> Refinement<'a, L> {
         self.load.iter().zip(&self.image).map(grain).collect()
     }
 
-    /// One iteration: moves by `length` times `step`, column by column, and looks at what is left.
+    /// One iteration: moves by `length` times `step`, column by column, and updates the residual.
     pub(crate) fn advance(&mut self, network: &SpringNetwork, step: &[GrainDofs<L>], length: &[f64; L]) {
         add(length, step, &mut self.motion);
         self.iterations += 1;
         self.renew(network);
     }
 
-    /// Recomputes what is left from the motion.
+    /// Recomputes the residual from the motion.
     fn renew(&mut self, network: &SpringNetwork) {
         network.apply(&self.motion, &mut self.image);
         self.look();
     }
 
-    /// Whether more is to be done, and may be.
+    /// Whether more iterations are needed and allowed.
     pub(crate) fn goes_on(&self) -> bool {
         self.residual > self.tolerance && self.iterations < self.max_iterations
     }
 
-    /// What was found, if it is good enough.
+    /// The solution, if it has converged.
     pub(crate) fn solution(self) -> Result<Solution<L>, MicroError> {
         let Self { motion, residual, tolerance, iterations, .. } = self;
         if residual <= tolerance {
@@ -193,8 +194,8 @@ impl<'a, const L: usize> Refinement<'a, L> {
         }
     }
 
-    /// Rounds of conjugate gradients, each reducing the residual by `reach` at most in at most `most` iterations, as long
-    /// as they help. True if nothing more is to be done.
+    /// Rounds of conjugate gradients, as long as they help. Each reduces the residual by at most `reach` in
+    /// at most `most` iterations. Returns true if the solve is finished.
     fn rounds<T: Precision, const G: bool>(
         &mut self,
         network: &SpringNetwork,
@@ -221,12 +222,12 @@ impl<'a, const L: usize> Refinement<'a, L> {
 
     fn round<T: Precision, const G: bool>(&mut self, descent: &mut Descent<T, G>, reach: f64, most: u32) {
         let sweeps = descent.sweeps;
-        // Rounding leaves more than the recurrence says: half the tolerance leaves it room. The rounds that are still to be
-        // done share what is left evenly.
+        // Rounding leaves a larger residual than the recurrence gives, hence half the tolerance as a margin.
+        // The remaining rounds share the remaining reduction evenly.
         let whole = 0.5 * self.tolerance / self.residual;
         let rounds = (whole.ln() / reach.ln()).ceil().max(1.0);
         let reduction = whole.powf(1.0 / rounds);
-        // Loads of length one: single precision has a narrow range.
+        // Loads of norm 1: single precision has a narrow range.
         let (mut squares, mut targets, mut norms) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
         for l in 0..L {
             norms[l] = self.squares[l].sqrt();
@@ -257,7 +258,7 @@ impl<'a, const L: usize> Refinement<'a, L> {
     }
 }
 
-/// Whether a grain that moves alone, with this block, meets less than no resistance.
+/// Whether a grain with this block, moved alone, has a negative stiffness.
 fn gives_way(block: &Block) -> bool {
     let eigenvalues = Matrix6::from_fn(|i, j| block[i][j]).symmetric_eigenvalues();
     eigenvalues.min() < -ROUNDING * eigenvalues.max()

@@ -5,6 +5,9 @@
 //! levers λ_i = R_i − δ/2 and λ_j = R_j − δ/2 from the centres; they are (|l| ± (R_i − R_j))/2, so that they add up to
 //! |l| and a rigid rotation of the pair costs nothing. Rotations are held as φ = θ a (a the mean branch length over 2),
 //! so that every degree of freedom is a displacement in m and every load a force in N.
+//!
+//! The rolling springs of a contact law with resistance to rolling are not in the network: its stiffness is a lower bound of
+//! that of the packing ([`LeftOut`](grainlab_core::results::LeftOut)).
 
 use super::preconditioner::Block;
 use crate::error::MicroError;
@@ -12,13 +15,13 @@ use crate::view::PackingView;
 use grainlab_core::Stiffness;
 use nalgebra::Matrix6;
 
-/// Displacement (m) and scaled rotation φ = θ a (m) of one grain, rows u_x, u_y, u_z, φ_x, φ_y, φ_z, for `L` loads at
-/// once; or the forces and scaled torques (N) conjugate to them.
+/// Displacement (m) and scaled rotation φ = θ a (m) of one grain, rows u_x, u_y, u_z, φ_x, φ_y, φ_z, for `L`
+/// loads at once; or the conjugate forces and scaled torques (N).
 pub type GrainDofs<const L: usize> = [[f64; L]; 6];
 
 const ZERO: GrainDofs<6> = [[0.0; 6]; 6];
 
-/// Each direction of a grain in a column of its own.
+/// One column for each direction of a grain.
 const UNIT: GrainDofs<6> = {
     let mut unit = ZERO;
     let mut k = 0;
@@ -29,7 +32,7 @@ const UNIT: GrainDofs<6> = {
     unit
 };
 
-/// Which springs a contact has.
+/// Springs of the contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Springs {
     /// k_n and k_t: no contact slides ("friction set very high").
@@ -37,8 +40,8 @@ pub enum Springs {
     NormalAndTangential,
     /// k_n alone: frictionless.
     Normal,
-    /// k_n and the prestress term of [`SpringNetwork::with_prestress`]. Beside tangential springs that term is a
-    /// ten thousandth.
+    /// k_n and the prestress term of [`SpringNetwork::with_prestress`]. With tangential springs that term is
+    /// smaller by 1e-4.
     PrestressedNormal,
 }
 
@@ -54,7 +57,7 @@ impl Springs {
     }
 }
 
-/// One contact of the network, in what the operator needs.
+/// One contact of the network, with the data for the operator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spring {
     pub(crate) i: u32,
@@ -70,18 +73,18 @@ pub(crate) struct Spring {
     pub(crate) tangential: f64,
     /// k_n − k_t, N/m.
     pub(crate) kn_minus_kt: f64,
-    /// F_n/|l|, N/m, taken off what resists the centres' displacement across the normal; 0 without prestress.
+    /// F_n/|l|, N/m, which reduces the stiffness across the normal; 0 without prestress.
     pub(crate) geometric: f64,
 }
 
-/// One contact, for operators of another kind on the same network.
+/// One contact, for other operators on the same network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSpring {
     /// First grain.
     pub i: u32,
     /// Second grain.
     pub j: u32,
-    /// Branch vector from `i` to the image of `j` that is touched, m.
+    /// Branch vector from `i` to the touched image of `j`, m.
     pub branch: [f64; 3],
     /// Unit normal, along the branch.
     pub normal: [f64; 3],
@@ -106,8 +109,8 @@ pub struct SpringNetwork {
 }
 
 impl SpringNetwork {
-    /// The network of every contact of a packing at its present overlap. The kinematics take the branch vectors, which must
-    /// be along the contact normals.
+    /// The network of every contact of a packing at its present overlap. The kinematics use the branch
+    /// vectors, which must be parallel to the contact normals.
     pub fn new(view: &PackingView<'_>, kind: Springs) -> Result<Self, MicroError> {
         let packing = view.packing;
         let mut springs = Vec::with_capacity(packing.contacts.len());
@@ -153,11 +156,12 @@ impl SpringNetwork {
         Ok(if kind == Springs::PrestressedNormal { network.with_prestress(view) } else { network })
     }
 
-    /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force turns with
-    /// its branch. It is of the order of (2/3) overlap/diameter next to a tangential spring, and decides whether a network
-    /// without such springs is stiff at all near isostaticity. Contacts of rattlers are dropped: a grain on one contact rolls
-    /// off under its force, where without that it just follows. `view` is the one the network was made of. Terms of the
-    /// order of the pressure that depend on the choice of strain and stress measures are left out.
+    /// The same with the prestress term −(F_n/|l|)(1 − nn) on the displacement of the centres: a normal force
+    /// rotates with its branch. Relative to a tangential spring it is of the order of (2/3) overlap/diameter.
+    /// Without such springs it decides whether a network near isostaticity is stiff. Contacts of rattlers are
+    /// dropped: under its force a grain on one contact rolls off, while without the term it just follows.
+    /// `view` is that of the same packing. Terms of the order of the pressure that depend on the choice of
+    /// strain and stress measures are left out.
     #[must_use]
     pub fn with_prestress(mut self, view: &PackingView<'_>) -> Self {
         let contacts = &view.packing.contacts;
@@ -170,12 +174,12 @@ impl SpringNetwork {
         self
     }
 
-    /// Whether the prestress term is in.
+    /// Whether the prestress term is included.
     pub fn prestressed(&self) -> bool {
         self.prestressed
     }
 
-    /// Number of grains, those without contacts included.
+    /// Number of grains, including those without contacts.
     pub fn grains(&self) -> usize {
         self.grains
     }
@@ -207,7 +211,7 @@ impl SpringNetwork {
         &self.springs
     }
 
-    /// Grains in an order that keeps neighbours close in memory: a function of the positions.
+    /// Grains in an order that keeps neighbours close in memory; depends only on the positions.
     pub(crate) fn order(&self) -> &[u32] {
         &self.order
     }
@@ -250,7 +254,7 @@ impl SpringNetwork {
                 }
             };
             if s.i == s.j {
-                // An own image moves with the grain.
+                // The own image moves with the grain.
                 add(s.i, &UNIT, &UNIT);
             } else {
                 add(s.i, &UNIT, &ZERO);
@@ -260,8 +264,8 @@ impl SpringNetwork {
         blocks
     }
 
-    /// Loads −Ξ of the six unit strains (engineering shear), N per unit strain, and for each strain the norm that the
-    /// loads would have if no two contact forces on a grain cancelled: the scale of a residual.
+    /// Loads −Ξ of the six unit strains (engineering shear), N per unit strain, and for each strain the norm
+    /// that the loads would have if contact forces on a grain never cancelled: the scale of a residual.
     pub fn affine_loads(&self) -> (Vec<GrainDofs<6>>, [f64; 6]) {
         let mut loads = vec![[[0.0; 6]; 6]; self.grains];
         let mut squares = [0.0; 6];
@@ -324,7 +328,8 @@ impl Spring {
         self.energies([&UNIT, &ZERO], [&ZERO, &UNIT])
     }
 
-    /// What the motions `a` of both grains do against the forces that the motions `b` make, every column with every column.
+    /// The work of the motions `a` of both grains against the forces of the motions `b`, every column with
+    /// every column.
     fn energies(&self, a: [&GrainDofs<6>; 2], b: [&GrainDofs<6>; 2]) -> Block {
         let (w, d) = (self.relative(a[0], a[1]), self.apart(a[0], a[1]));
         let (f, h) = (self.force(&self.relative(b[0], b[1])), self.turned(&self.apart(b[0], b[1])));
@@ -339,7 +344,8 @@ impl Spring {
         self.share.map(|share| self.lever * share)
     }
 
-    /// u_j − u_i − (lever_i φ_i + lever_j φ_j)×n: what the contact feels of the motions `a` of i and `b` of j.
+    /// u_j − u_i − (lever_i φ_i + lever_j φ_j)×n: relative displacement at the contact under the motions `a`
+    /// of i and `b` of j.
     #[inline(always)]
     fn relative<const L: usize>(&self, a: &GrainDofs<L>, b: &GrainDofs<L>) -> [[f64; L]; 3] {
         let [nx, ny, nz] = self.normal.map(|n| n * self.lever);
@@ -367,7 +373,7 @@ impl Spring {
         d
     }
 
-    /// −(F_n/|l|)(1 − nn) d, N: what the normal force gains by turning with the branch.
+    /// −(F_n/|l|)(1 − nn) d, N: change of the normal force by its rotation with the branch.
     #[inline(always)]
     fn turned<const L: usize>(&self, d: &[[f64; L]; 3]) -> [[f64; L]; 3] {
         let mut h = [[0.0; L]; 3];
@@ -397,7 +403,7 @@ impl Spring {
         f
     }
 
-    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on each; and `h`, which is without torque.
+    /// Adds Bᵀ f to `y`: f on j, −f on i, −lever n×f on each; and `h`, which has no torque.
     #[inline(always)]
     fn scatter<const L: usize>(&self, f: &[[f64; L]; 3], h: &[[f64; L]; 3], y: &mut [GrainDofs<L>]) {
         let [nx, ny, nz] = self.normal.map(|n| n * self.lever);
@@ -408,7 +414,7 @@ impl Spring {
             torque[2][l] = nx * f[1][l] - ny * f[0][l];
         }
         let [i, j] = self.share;
-        // One grain after the other: they are the same one if the contact is with an own image.
+        // One grain after the other: both are the same if the contact is with an own image.
         let on_i = &mut y[self.i as usize];
         for k in 0..3 {
             for l in 0..L {

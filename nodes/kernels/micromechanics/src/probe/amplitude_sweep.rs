@@ -9,16 +9,18 @@ use std::ops::RangeInclusive;
 /// Stiffnesses of the same packing by strains of several amplitudes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeSweep {
-    /// From the smallest amplitude to the largest. A probe that failed says why: at a small amplitude because the packing
-    /// cannot be brought to rest well enough, at a large one because it does not settle.
+    /// From the smallest amplitude to the largest. A failed probe has its reason: at a small amplitude the
+    /// packing cannot be brought to rest accurately enough, at a large one it does not settle.
     pub probes: Vec<(f64, Result<StrainProbeResult, ProbeError>)>,
-    /// Places in `probes` of the linear regime: the longest run of amplitudes whose stiffnesses all agree within the
-    /// tolerance asked for; of two as long the one of smaller strains. `None` if no two neighbours agree.
+    /// Indices in `probes` of the linear regime: the longest sequence of amplitudes whose stiffnesses all
+    /// agree within the tolerance; of two of equal length the one at smaller strains. `None` if no two
+    /// neighbours agree.
     pub linear: Option<RangeInclusive<usize>>,
 }
 
-/// Probes `packing` with each of the `amplitudes`, settings otherwise as given. Two stiffnesses agree if no entry differs by
-/// more than `agreement` times the largest of them. An amplitude out of range is an error at once.
+/// Probes `packing` with each of the `amplitudes`, with the other settings as given. Two stiffnesses agree if
+/// no entry differs by more than `agreement` times the largest entry. An amplitude out of range is an error
+/// at once.
 pub fn amplitude_sweep(
     packing: &Packing,
     settings: &StrainProbe,
@@ -46,7 +48,7 @@ pub fn amplitude_sweep(
     Ok(AmplitudeSweep { probes, linear })
 }
 
-/// The longest run of at least two places of which every pair agrees; the first of equals.
+/// The longest sequence of at least two places in which every pair agrees; the first among equals.
 fn longest_run(places: usize, agree: impl Fn(usize, usize) -> bool) -> Option<RangeInclusive<usize>> {
     let mut best: Option<RangeInclusive<usize>> = None;
     for first in 0..places {
@@ -72,7 +74,7 @@ mod tests {
             longest_run(values.len(), move |a, b| (values[a] - values[b]).abs() <= 1.0)
         };
         assert_eq!(within(&[9.0, 5.0, 5.5, 5.8, 3.0, 2.9]), Some(1..=3));
-        // Neighbours agree all along, the ends do not.
+        // All neighbours agree, the ends do not.
         assert_eq!(within(&[0.0, 0.9, 1.8, 2.7]), Some(0..=1));
         assert_eq!(within(&[1.0, 3.0, 5.0]), None);
         assert_eq!(within(&[1.0]), None);

@@ -1,4 +1,4 @@
-//! One column of the probed stiffness: strain forward and backward, relax side by side, take the difference.
+//! One column of the probed stiffness: strains forward and backward, relaxes both, takes the difference.
 
 use super::relaxation::Relaxation;
 use super::settings::{DifferenceScheme, StrainProbe};
@@ -10,49 +10,51 @@ use std::cmp::Ordering;
 /// Strain components, Voigt order.
 const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
-/// Steps between two looks at the stress.
+/// Steps between two evaluations of the stress.
 pub(crate) const LOOK: u32 = 20;
 
-/// Fewest looks, of which the last third are compared.
+/// Least number of evaluations; their last third is compared.
 const LEAST_LOOKS: usize = 6;
 
-/// Fewest steps over which a strain is imposed, and largest strain of one of them: far below any overlap that counts.
+/// Least number of steps over which a strain is imposed, and largest strain of one step: far below any
+/// relevant overlap.
 const STRAIN_STEPS: f64 = 20.0;
 const STRAIN_PER_STEP: f64 = 1e-7;
 
-/// Entries of a column are compared with the largest of them, or with this share of the affine stiffness where a column
-/// is feebler than that, or nothing at all.
+/// Entries of a column are compared with the largest of them, or with this fraction of the affine stiffness
+/// if that is larger.
 const FEEBLE: f64 = 1e-3;
 
-/// How one column came about.
+/// Details of the measurement of one column.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProbeColumn {
-    /// Steps of each relaxation, straining included.
+    /// Steps of each relaxation, including the strain.
     pub steps: u32,
-    /// Mean net force left on the non-rattlers, over the mean change of contact force that the strain alone would make.
+    /// Mean net force on the non-rattlers at the end, over the mean change of contact force by the affine
+    /// strain.
     pub residual: f64,
     /// Largest change of an entry over the last third of the steps, relative to the largest entry.
     pub drift: f64,
-    /// Largest difference between the forward and the backward column, relative to the largest entry; `None` for
-    /// [`DifferenceScheme::Forward`]. Hertz's law alone makes about (2/3) amplitude × Θ/p of it.
+    /// Largest difference between the forward and the backward column, relative to the largest entry; `None`
+    /// for [`DifferenceScheme::Forward`]. Hertz's law contributes about (2/3) amplitude × Θ/p.
     pub forward_backward: Option<f64>,
-    /// Contacts of the packing at rest that either strain opened.
+    /// Contacts of the packing at rest that open under either strain.
     pub opened: u32,
-    /// Contacts that either strain made.
+    /// Contacts that form under either strain.
     pub closed: u32,
     /// Contacts at the Coulomb limit under either strain.
     pub sliding: u32,
 }
 
 impl ProbeColumn {
-    /// Whether the network is another one under strain: C is then not that of the packing at rest alone. One feeble
-    /// contact is enough; how much it matters shows in [`ProbeColumn::forward_backward`].
+    /// Whether the network changes under strain: C is then not only that of the packing at rest. One weak
+    /// contact suffices; [`ProbeColumn::forward_backward`] shows the effect.
     pub fn network_changed(&self) -> bool {
         self.opened + self.closed > 0
     }
 }
 
-/// The packing at rest, which every column starts from.
+/// The packing at rest, the start of every column.
 pub(crate) struct RestState {
     engine: Engine,
     stress: [f64; 6],
@@ -69,7 +71,7 @@ impl RestState {
     }
 }
 
-/// Column `component` of the stiffness, Pa. `load` is the change of contact forces that residuals are measured by.
+/// Column `component` of the stiffness, Pa. `load` is the change of contact forces that scales the residuals.
 pub(crate) fn strained(
     at_rest: &RestState,
     settings: &StrainProbe,
@@ -109,7 +111,8 @@ pub(crate) fn strained(
         let largest = amax(&entries).max(FEEBLE * at_rest.affine);
         seen.push(entries);
         column.residual = snapshots[0].unbalanced.max(snapshots[1].unbalanced) / load;
-        // Of a slow approach the share still to come shows best over a time in proportion to that spent.
+        // In a slow relaxation, the remaining change is best estimated over a time proportional to the time
+        // already spent.
         column.drift = seen[2 * (seen.len() - 1) / 3..]
             .iter()
             .map(|past| difference(past, &entries))
@@ -165,7 +168,7 @@ fn difference(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     amax(&std::array::from_fn(|k| a[k] - b[k]))
 }
 
-/// How many contacts of `before` are gone in `after`, and how many are new; both are sorted.
+/// Numbers of contacts of `before` that are missing in `after`, and of new ones; both lists are sorted.
 fn changes(before: &[Contact], after: &[Contact]) -> (u32, u32) {
     let key = |c: &Contact| (c.i, c.j, c.image);
     let (mut b, mut a) = (0, 0);

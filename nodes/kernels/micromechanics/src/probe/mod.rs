@@ -1,8 +1,8 @@
-//! Explicit probe: stiffness by straining the packing a little with the whole contact law and reading the stress.
+//! Explicit probe: stiffness from the stress change under a small strain, with the whole contact law.
 //!
 //! - [`strain_probe()`]: all six columns, with the settings [`StrainProbe`]
-//! - [`amplitude_sweep()`]: over which strains the response is linear
-//! - [`Relaxation`]: brings grains to rest in a cell that does not move
+//! - [`amplitude_sweep()`]: the range of strains with a linear response
+//! - [`Relaxation`]: brings grains to rest in a fixed cell
 
 mod amplitude_sweep;
 mod column;

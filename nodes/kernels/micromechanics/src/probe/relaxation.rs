@@ -1,23 +1,26 @@
-//! Relaxing grains to rest in a cell that stands still.
+//! Relaxation of grains to rest in a fixed cell.
 //!
-//! Nothing moves a grain but the engine's own steps, so tangential springs see every displacement; only the drag is
-//! steered. It follows Nesterov's momentum: t steps after a start a velocity keeps (t − 1)/(t + r − 1) of itself, and the
-//! schedule starts over when the grains slow down (the speed restart of Su, Boyd & Candès, J. Mach. Learn. Res. 17, 153
-//! (2016), who take r = 3 without restarts). As with a drag tuned to the softest mode, the number of steps grows with
-//! stiffest over softest frequency, but nobody has to know that mode: at z = 5.1 it takes 1.4 to 1.6 times the
-//! steps of the best constant drag, which is another one for every packing, and fewer than half that drag.
+//! Grains move only by the steps of the engine, so that tangential springs follow every displacement; only
+//! the drag is adapted. It follows Nesterov's momentum: t steps after a start a velocity is multiplied by (t
+//! − 1)/(t + r − 1), and the schedule restarts when the grains slow down (the speed restart of Su, Boyd &
+//! Candès, J. Mach. Learn. Res. 17, 153 (2016), who use r = 3 without restarts). The number of steps is
+//! proportional to the ratio of the stiffest to the softest frequency, as for a drag tuned to the softest
+//! mode, but that mode need not be known. At z = 5.1 it takes 1.4 to 1.6 times the steps of the best constant
+//! drag, which differs between packings, and fewer than half of that drag.
 
 use grainlab_dem::{DemError, Engine, EngineSettings};
 
-/// r of the schedule: of 1 to 3 the values from 1.25 to 1.5 take the fewest steps, 3 half as many again.
+/// r of the schedule: between 1 and 3, values from 1.25 to 1.5 take the fewest steps; 3 takes half as many
+/// again.
 const R: f64 = 1.5;
 
-/// The schedule stays at this t if the grains have not slowed down by then: the drag of a mode 1e3 times softer than the
-/// stiffest. Spins without translation, which the speed does not show, are braked by it alone.
+/// The schedule stays at this t if the grains have not slowed down by then: the drag of a mode 1e3 times
+/// softer than the stiffest. Spins without translation do not contribute to the speed and are damped only by
+/// this drag.
 const LONGEST: u32 = 500;
 
-/// Engines relaxed side by side under one schedule: what their states have in common cancels from differences at every
-/// step, not only at the end.
+/// Engines relaxed in parallel under one schedule: common errors of their states cancel from differences at
+/// every step.
 #[derive(Clone, Debug)]
 pub struct Relaxation {
     engines: Vec<Engine>,
@@ -28,8 +31,8 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// Engines that share one time step, held fixed ([`grainlab_dem::TimeStep::Fixed`]) within the stability bound. Their drags
-    /// are taken over.
+    /// Engines with the same fixed time step ([`grainlab_dem::TimeStep::Fixed`]) within the stability bound.
+    /// Their drags are replaced.
     pub fn new(engines: Vec<Engine>) -> Self {
         Self { engines, since: 0, square_speed: 0.0 }
     }
@@ -39,7 +42,7 @@ impl Relaxation {
         &self.engines
     }
 
-    /// The engines, to strain them on the way.
+    /// The engines, to strain them during the relaxation.
     pub fn engines_mut(&mut self) -> &mut [Engine] {
         &mut self.engines
     }

@@ -1,25 +1,28 @@
-//! How a packing is probed.
+//! Settings of the probe.
 
 use crate::error::ProbeError;
 use grainlab_core::contact::TangentialLaw;
 
-/// How a packing is probed.
+/// Settings of the probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainProbe {
-    /// Magnitude of each strain (engineering strain for shears), in (0, 0.01]. It should be far below overlap/diameter, or
-    /// contacts open: 1e-6 to 1e-7 is a plateau at 100 kPa in glass; far below 1e-9 rounding shows.
+    /// Magnitude of each strain (engineering strain for shears), in (0, 0.01]. It should be far below
+    /// overlap/diameter, or contacts open: 1e-6 to 1e-7 is a plateau at 100 kPa in glass. Far below 1e-9
+    /// rounding errors appear.
     pub amplitude: f64,
-    /// Which strains are compared.
+    /// The strains whose difference is taken.
     pub sides: DifferenceScheme,
-    /// Error allowed to the relaxation, about that of C relative to the largest entry of a column, in [1e-8, 1e-2].
+    /// Tolerance of the relaxation, about the error of C relative to the largest entry of a column, in [1e-8,
+    /// 1e-2].
     pub tolerance: f64,
-    /// Steps after which a relaxation gives up.
+    /// Maximum number of steps of a relaxation.
     pub max_steps: u32,
-    /// Friction while probing: infinite ("set very high") sticks every contact, 0 takes tangential springs away, what
-    /// is between lets contacts slide.
+    /// Friction while probing: infinite ("set very high") prevents all sliding, 0 removes tangential springs;
+    /// other values let contacts slide.
     pub friction: f64,
-    /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the frozen
-    /// network as its linear limit; the other law depends on the direction of the strain however small.
+    /// How the tangential force follows a change of normal stiffness. [`TangentialLaw::Incremental`] has the
+    /// frozen network as its linear limit. The other law depends on the direction of the strain, however
+    /// small.
     pub tangential: TangentialLaw,
 }
 
@@ -36,7 +39,7 @@ impl Default for StrainProbe {
     }
 }
 
-/// Which strains a column is the difference of.
+/// The strains whose difference is a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DifferenceScheme {
     /// +amplitude and −amplitude: the error is of second order in the amplitude while no contact opens.
@@ -46,7 +49,7 @@ pub enum DifferenceScheme {
 }
 
 impl StrainProbe {
-    /// The settings, or what is out of range.
+    /// The settings, or the one out of range.
     pub(super) fn check(&self) -> Result<(), ProbeError> {
         let range = |name, value: f64, accept: bool, requirement| {
             if accept { Ok(()) } else { Err(ProbeError::Setting { name, value, requirement }) }

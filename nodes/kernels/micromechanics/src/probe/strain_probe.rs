@@ -1,14 +1,15 @@
-//! Explicit probe: stiffness by straining the packing a little with the whole contact law and reading the stress.
+//! Explicit probe: stiffness from the stress change under a small strain, with the whole contact law.
 //!
-//! Each of the six strains is imposed homogeneously, forward and backward, its affine velocity entering the tangential
-//! springs (across periodic images too); the grains relax in the strained cell; a column of C is the stress difference
-//! over the strain difference, dσ = −C : dE. Nothing is linearised, so the probe sees what
-//! [`crate::network::relaxed_stiffness()`] leaves out: contacts that open or close, and terms of the order of the pressure. The stress is
-//! Cauchy's, in the present volume, and the strain is logarithmic and without rotation, so that for an isotropic stress
-//! the affine part of C11, C12 and C44 differs from that of the frozen network by −0.4 p, +1.2 p and −0.8 p (Barron &
-//! Klein, Proc. Phys. Soc. 85, 523 (1965), with the geometric part of isotropic contacts), and C is symmetric only
-//! to the order of the deviatoric stress. LAMMPS's strained boxes measure the same quantity, but for the rotation in
-//! simple shear (of the order of the deviatoric stress again).
+//! Each of the six strains is imposed homogeneously, forward and backward. Its affine velocity enters the
+//! tangential springs (also across periodic images); the grains relax in the strained cell; a column of C is
+//! the stress difference over the strain difference, dσ = −C : dE. Nothing is linearised, so that the probe
+//! includes what [`crate::network::relaxed_stiffness()`] leaves out: contacts that open or close, and terms
+//! of the order of the pressure. The stress is Cauchy's, in the present volume, and the strain is logarithmic
+//! and without rotation. For an isotropic stress the affine part of C11, C12 and C44 therefore differs from
+//! that of the frozen network by −0.4 p, +1.2 p and −0.8 p (Barron & Klein, Proc. Phys. Soc. 85, 523 (1965),
+//! with the geometric part of isotropic contacts), and C is symmetric only to the order of the deviatoric
+//! stress. The strained boxes of LAMMPS measure the same quantity, except for the rotation in simple shear
+//! (again of the order of the deviatoric stress).
 
 use super::column::{LOOK, ProbeColumn, RestState, strained};
 use super::relaxation::Relaxation;
@@ -19,28 +20,29 @@ use grainlab_core::results::NotJammed;
 use grainlab_core::{Packing, Stiffness, Vec3};
 use grainlab_dem::{Engine, EngineSettings, TimeStep};
 
-/// The packing relaxes, before it is strained, to this share of the unbalanced force that ends a relaxation afterwards.
+/// Before it is strained, the packing is relaxed to this fraction of the unbalanced force that ends a
+/// relaxation afterwards.
 const REST: f64 = 0.25;
 
-/// Verlet skin, share of the smallest diameter: the grains hardly move.
+/// Verlet skin, fraction of the smallest diameter: the grains hardly move.
 const SKIN: f64 = 0.01;
 
-/// What [`strain_probe`] finds.
+/// The result of [`strain_probe`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainProbeResult {
-    /// The stiffness as measured, not made symmetric.
+    /// The measured stiffness, not symmetrised.
     pub stiffness: Stiffness,
     /// Largest |C_ab − C_ba| over the largest entry of C.
     pub asymmetry: f64,
     /// Steps that brought the packing to rest before it was strained.
     pub rest_steps: u32,
-    /// How each column came about, Voigt order.
+    /// Details of each column, Voigt order.
     pub columns: [ProbeColumn; 6],
 }
 
 impl StrainProbeResult {
-    /// Standard error of each entry, Pa: what the relaxation left open, what forward and backward strain say apart, and what
-    /// the two places of an entry do; the worst of the three.
+    /// Standard error of each entry, Pa: the largest of the residual of the relaxation, the difference
+    /// between forward and backward strain, and the difference between the entry and its transposed one.
     pub fn stddev(&self) -> Stiffness {
         let c = &self.stiffness.0;
         let mut stddev = nalgebra::Matrix6::zeros();
@@ -63,7 +65,7 @@ impl StrainProbeResult {
         self.columns.iter().map(|c| c.residual).fold(0.0, f64::max)
     }
 
-    /// Solver steps, those that brought the packing to rest included.
+    /// Solver steps, including the first relaxation.
     pub fn steps(&self) -> u32 {
         self.rest_steps + self.sum(|c| c.steps)
     }
@@ -82,8 +84,8 @@ impl StrainProbeResult {
 
 /// Measures the stiffness of `packing` by straining it, all six columns.
 ///
-/// The packing is first relaxed under the friction of the probe, from rest; the strained copies relax side by side, so
-/// that what was left of that cancels. All contacts keep their forces.
+/// The packing is first relaxed from rest with the friction of the probe. The strained copies relax in
+/// parallel, so that the remaining error cancels. All contacts keep their forces.
 pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainProbeResult, ProbeError> {
     settings.check()?;
     let load = strain_load(packing, settings)?;
@@ -100,8 +102,8 @@ pub fn strain_probe(packing: &Packing, settings: &StrainProbe) -> Result<StrainP
     Ok(StrainProbeResult { stiffness: Stiffness(stiffness), asymmetry, rest_steps, columns })
 }
 
-/// Mean change of a contact force by the strain alone over the mean contact force: what unbalanced forces are to be
-/// small against.
+/// Mean change of a contact force by the affine strain over the mean contact force: the scale of unbalanced
+/// forces.
 fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeError> {
     let grains = packing.grains();
     if packing.contacts.is_empty() {
@@ -119,7 +121,7 @@ fn strain_load(packing: &Packing, settings: &StrainProbe) -> Result<f64, ProbeEr
     Ok(change / force)
 }
 
-/// An engine with the packing relaxed, and the steps that took.
+/// An engine with the relaxed packing, and the number of steps.
 fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engine, u32), ProbeError> {
     let smallest = packing.radii.iter().copied().fold(f64::INFINITY, f64::min);
     let setting = EngineSettings {
@@ -133,7 +135,7 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
         thermostat_speed: None,
     };
     let still = vec![Vec3::zeros(); packing.grains()];
-    // Without a time step of its own the engine takes the longest stable one.
+    // Without its own time step, the engine takes the longest stable one.
     let mut engine = Engine::from_packing(&Packing { time_step: 0.0, ..packing.clone() }, setting);
     engine.set_settings(setting);
     engine.set_velocities(&still);

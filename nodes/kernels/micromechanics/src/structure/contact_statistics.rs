@@ -1,4 +1,4 @@
-//! How many contacts there are, and what they carry.
+//! Numbers of contacts and their forces.
 
 use crate::view::PackingView;
 use grainlab_core::Packing;
@@ -27,7 +27,7 @@ fn coordination(contacts: usize, grains: usize) -> f64 {
     if grains == 0 { 0.0 } else { 2.0 * contacts as f64 / grains as f64 }
 }
 
-/// Fraction of contacts with |F_t| ≥ 0.999 μ F_n; 0 where there is no such limit (μ = 0 or infinite).
+/// Fraction of contacts with |F_t| ≥ 0.999 μ F_n; 0 without a Coulomb limit (μ = 0 or infinite).
 fn sliding_fraction(packing: &Packing) -> f64 {
     if packing.contacts.is_empty() {
         return 0.0;
@@ -36,7 +36,7 @@ fn sliding_fraction(packing: &Packing) -> f64 {
     at_limit.count() as f64 / packing.contacts.len() as f64
 }
 
-/// Distribution of normal forces; `None` without contacts, or where their mean is not positive.
+/// Distribution of normal forces; `None` without contacts, or if their mean is not positive.
 fn force_statistics(view: &PackingView<'_>) -> Option<ForceStatistics> {
     let (packing, mean_normal) = (view.packing, view.mean_normal_force);
     if mean_normal <= 0.0 {
@@ -58,8 +58,8 @@ fn force_statistics(view: &PackingView<'_>) -> Option<ForceStatistics> {
     Some(found)
 }
 
-/// Mobilised friction; `None` without contacts and where there is no limit (μ = 0 or infinite). A contact without
-/// normal force is at the limit if it carries a tangential one.
+/// Mobilised friction; `None` without contacts or without a Coulomb limit (μ = 0 or infinite). A contact
+/// without normal force is at the limit if it carries a tangential one.
 fn mobilised_friction(packing: &Packing) -> Option<MobilisedFriction> {
     let mu = packing.friction;
     if packing.contacts.is_empty() || mu == 0.0 || mu.is_infinite() {
@@ -72,7 +72,7 @@ fn mobilised_friction(packing: &Packing) -> Option<MobilisedFriction> {
         found.mean += share / packing.contacts.len() as f64;
         found.histogram[((share * MOBILISATION_BINS as f64) as usize).min(MOBILISATION_BINS - 1)] += 1;
     }
-    // The mean of ones is 1, whatever rounding makes of it.
+    // The mean of ones is 1, regardless of rounding.
     found.mean = found.mean.min(1.0);
     Some(found)
 }

@@ -47,8 +47,8 @@ pub fn tensor(c: &DeviatorVector) -> SymTensor {
     }
 }
 
-/// The shortest solution of `matrix` x = `right` in the least-squares sense; `matrix` symmetric and positive semidefinite.
-/// Directions whose eigenvalue is below 1e-9 of `scale` count as undetermined and get 0.
+/// The shortest solution of `matrix` x = `right` in the least-squares sense; `matrix` symmetric and positive
+/// semidefinite. Directions whose eigenvalue is below 1e-9 of `scale` count as undetermined and are set to 0.
 pub(crate) fn shortest_solution(
     matrix: SMatrix<f64, 5, 5>,
     right: &DeviatorVector,

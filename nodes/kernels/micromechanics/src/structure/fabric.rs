@@ -1,4 +1,4 @@
-//! How the contacts of a packing are oriented.
+//! Orientation of the contacts of a packing.
 
 use super::fourth_order::fourth_order_fabric;
 use super::orientation::orientation_histogram;
@@ -9,8 +9,8 @@ use grainlab_core::{Mat3, Packing, SymTensor, Vec3};
 
 /// Orientation of the contacts, about the unit vector `axis`.
 ///
-/// Without contacts the tensors, ε and the P4 coefficient are zero and the principal axis is `axis`; likewise a weighted
-/// fabric is zero where its weights sum to nothing.
+/// Without contacts the tensors, ε and the P4 coefficient are zero and the principal axis is `axis`. A
+/// weighted fabric is also zero if its weights sum to zero.
 pub fn fabric(view: &PackingView<'_>, axis: &Vec3) -> Fabric {
     let packing = view.packing;
     let contact_fabric = weighted(packing, |_| 1.0);

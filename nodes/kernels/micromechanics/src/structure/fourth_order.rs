@@ -78,7 +78,7 @@ fn contracted(c: &[f64; 15]) -> SymTensor {
     }
 }
 
-/// Component of sym(L ⊗ δ): the mean over the six ways to give two of the four indices to L and two to δ.
+/// Component of sym(L ⊗ δ): the mean over the six ways to assign two of the four indices to L and two to δ.
 fn second_times_unit(second: &SymTensor, powers: [i32; 3]) -> f64 {
     over_pairings(powers, |i, j, k, l| second.matrix()[(i, j)] * unit(k, l))
 }
@@ -99,7 +99,7 @@ fn over_pairings(powers: [i32; 3], term: impl Fn(usize, usize, usize, usize) -> 
     pairings.iter().map(|&(a, b, c, d)| term(a, b, c, d)).sum::<f64>() / 6.0
 }
 
-/// How often a component stands in the full tensor of 81: 4!/(a! b! c!).
+/// Number of occurrences of a component in the full tensor of 81: 4!/(a! b! c!).
 fn multiplicity(powers: [i32; 3]) -> f64 {
     let factorial = |n: i32| (1..=n).product::<i32>();
     f64::from(24 / powers.map(factorial).iter().product::<i32>())

@@ -1,9 +1,9 @@
-//! Structure of a packing: contacts, their orientation, the stress they carry.
+//! Structure of a packing: contacts, their orientation, and their stress.
 //!
 //! - [`contact_statistics()`]: coordination, rattlers, forces, mobilised friction
 //! - [`fabric()`]: fabric tensors and ε; [`principal_axis()`]: its axis and how well it is known;
 //!   [`orientation_histogram`], [`orientation_fit`]: A(d); [`fourth_order_fabric`]
-//! - [`stress_decomposition()`]: by kind of force and by network; [`stress_force_fabric()`]: the anisotropies it comes from
+//! - [`stress_decomposition()`]: by kind of force and by network; [`stress_force_fabric()`]: by anisotropies
 //! - [`strain_ratio`], [`total_strain_ratio`], [`overlap_anisotropy_fit`]: the ratios γ/Δ
 //! - [`deviator`]: traceless tensors as five numbers
 

@@ -1,33 +1,35 @@
-//! The principal axis of the contact fabric, and how far it can be trusted.
+//! The principal axis of the contact fabric, and its uncertainty.
 //!
-//! Contacts of a jammed packing are not independent: from packing to packing at the same stress, the fabric scatters about
-//! half as much as that of as many independent contacts (with friction; less without). Blocks of the packing scatter too
-//! much as well, because stress fluctuates between blocks, and does not between packings. [`fabric_stddev`] uses what
-//! equilibrium makes exact: a stress wave with wave vector k has no components along k (k·σ = 0). The components of the
-//! fabric's longest waves that shear along k therefore scatter as the mean fabric does among packings of one stress.
+//! Contacts of a jammed packing are not independent: among packings at the same stress, the fabric scatters
+//! about half as much as that of as many independent contacts (with friction; less without). Blocks of a
+//! packing overestimate the scatter, because stress fluctuates between blocks but not between packings.
+//! [`fabric_stddev`] uses an exact consequence of equilibrium: a stress wave with wave vector k has no
+//! components along k (k·σ = 0). The components of the fabric's longest waves that shear along k therefore
+//! scatter as the mean fabric does among packings at one stress.
 
 use super::deviator::from_tensor;
 use crate::view::PackingView;
 use grainlab_core::results::{PrincipalAxis, contact_anisotropy};
 use grainlab_core::{Mat3, SymTensor, Vec3};
 
-/// Contacts below which one packing does not tell its own noise.
+/// Least number of contacts for an estimate of the noise from one packing.
 const FEWEST_CONTACTS: usize = 30;
 
-/// Waves used, as integer multiples of the three reciprocal edge vectors: those with at most two of them, ±k being one.
+/// Waves used, as integer multiples of the three reciprocal edge vectors: those with at most two of them; ±k
+/// is one wave.
 const WAVES: [[i32; 3]; 9] =
     [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]];
 
-/// Square of |dev L| over the noise of one of its five components, above which it is an anisotropy: 5 F, F the 99 % point
-/// of an F distribution of 5 components over the 36 amplitudes that tell the noise.
+/// Square of |dev L| over the noise of one of its five components, above which it is an anisotropy: 5 F, with
+/// F the 99 % point of an F distribution of 5 components over the 36 amplitudes that give the noise.
 const SIGNIFICANT: f64 = 5.0 * 3.57;
 
-/// Standard deviation of one component of the deviator of L (in an orthonormal basis, [`super::deviator`]) among packings
-/// prepared alike under the same stress. `None` with fewer than 30 contacts.
+/// Standard deviation of one component of the deviator of L (in an orthonormal basis, [`super::deviator`])
+/// among packings with the same preparation and stress. `None` with fewer than 30 contacts.
 ///
-/// Claimed over found, for packings of 500 grains and 60 seeds: .94 ± .04 (isotropic, μ = .1), .91 ± .04 (the scene `demo`),
-/// 1.02 ± .04 (isotropic, frictionless), and 1.09 ± .07 for 24 isotropic ones of 2,000; a single claim is good to 13 %. Independent
-/// contacts would claim 1.8, 1.8, 2.2 and 1.9.
+/// Estimated over measured, for packings of 500 grains and 60 seeds: .94 ± .04 (isotropic, μ = .1), .91 ± .04
+/// (the scene `demo`), 1.02 ± .04 (isotropic, frictionless), and 1.09 ± .07 for 24 isotropic ones of 2,000. A
+/// single estimate has an error of 13 %. Independent contacts would give 1.8, 1.8, 2.2 and 1.9.
 /// `cargo run --release -p grainlab_experiment --example fabric_noise` repeats it.
 pub fn fabric_stddev(view: &PackingView<'_>, contact_fabric: &SymTensor) -> Option<f64> {
     let packing = view.packing;
@@ -70,7 +72,8 @@ fn phase(edges: &[(f64, f64); 3], counts: [i32; 3]) -> (f64, f64) {
     })
 }
 
-/// The eigenvector of `contact_fabric` that stands out most, and how well it is known; without contacts `fallback`.
+/// The eigenvector of `contact_fabric` that differs most from the mean, and its uncertainty; without contacts
+/// `fallback`.
 pub fn principal_axis(view: &PackingView<'_>, contact_fabric: &SymTensor, fallback: &Vec3) -> PrincipalAxis {
     let axis = &most_distinct_eigenvector(contact_fabric).unwrap_or(*fallback);
     let found = PrincipalAxis {
@@ -85,13 +88,13 @@ pub fn principal_axis(view: &PackingView<'_>, contact_fabric: &SymTensor, fallba
     // To first order the axis tilts by δL_ha/(λ_h − λ_a) towards each of the others; δL_ha scatters by noise/√2.
     let tilt = |other: f64| 0.5 * (noise / (along - other)).powi(2);
     let angle = (tilt(eigenvalues[1]) + tilt(eigenvalues[2])).sqrt();
-    // A rival axis stands out as much where the middle eigenvalue is the mean.
+    // Another axis is equally distinct if the middle eigenvalue equals the mean.
     let mut sorted = eigenvalues;
     sorted.sort_by(f64::total_cmp);
     let margin = (sorted[1] - contact_fabric.mean()).abs();
     let of_diagonal = (2.0f64 / 3.0).sqrt() * noise;
     let anisotropy = from_tensor(contact_fabric).norm_squared();
-    // 1e-18: below, there is nothing but rounding in the fabric of a lattice.
+    // 1e-18: smaller values are rounding in the fabric of a lattice.
     let significant = anisotropy > (SIGNIFICANT * noise * noise).max(1e-18);
     PrincipalAxis {
         // ε = (15/4)(L_hh − 1/3).

@@ -21,8 +21,8 @@ pub fn strain_ratio(strain: &SymTensor, axis: &Vec3) -> Option<f64> {
     (trace.abs() > 1e-9 * largest && g.is_finite()).then_some(g)
 }
 
-/// Logarithmic (Hencky) strain of a deformation gradient F: ln V of the left stretch V = √(F Fᵀ), on the present axes, as
-/// stress and fabric are; the rotation of F = V R drops out.
+/// Logarithmic (Hencky) strain of a deformation gradient F: ln V of the left stretch V = √(F Fᵀ), on the
+/// present axes, like stress and fabric; independent of the rotation of F = V R.
 pub fn logarithmic_strain(deformation: &Mat3) -> SymTensor {
     let eigen = (deformation * deformation.transpose()).symmetric_eigen();
     let logs = eigen.eigenvalues.map(|v| 0.5 * v.ln());
@@ -31,8 +31,8 @@ pub fn logarithmic_strain(deformation: &Mat3) -> SymTensor {
     )
 }
 
-/// γ/Δ of the strain since the reference state. `None` if no reference was set (the deformation is the identity) or
-/// the volume is unchanged.
+/// γ/Δ of the strain since the reference state. `None` if no reference was set (the deformation is the
+/// identity) or if the volume is unchanged.
 pub fn total_strain_ratio(packing: &Packing, axis: &Vec3) -> Option<f64> {
     if packing.deformation == Mat3::identity() {
         return None;

@@ -5,11 +5,11 @@ use crate::view::PackingView;
 use grainlab_core::results::{Fabric, StressDecomposition, SubNetwork, contact_anisotropy};
 use grainlab_core::{Mat3, SymTensor, Vec3};
 
-/// Love–Weber stress of the normal and of the tangential forces, which add up to [`grainlab_core::stress::stress`], and of
-/// the strong network (contacts with F_n above the mean over contacts) and the weak one (all others). `fabric` is that of
-/// the packing.
+/// Love–Weber stress of the normal and of the tangential forces, whose sum is
+/// [`grainlab_core::stress::stress`], and of the strong network (contacts with F_n above the mean over
+/// contacts) and the weak one (all others). `fabric` is that of the packing.
 pub fn stress_decomposition(view: &PackingView<'_>, fabric: &Fabric) -> StressDecomposition {
-    // Forces that are equal but for rounding are weak, all of them.
+    // Forces that are equal up to rounding all count as weak.
     let threshold = view.mean_normal_force * (1.0 + 1e-12);
     let (mut normal, mut tangential) = (Mat3::zeros(), Mat3::zeros());
     let (mut strong, mut weak) = (Sums::default(), Sums::default());

@@ -1,4 +1,4 @@
-//! Anisotropies of contacts and forces, and the deviatoric stress they make.
+//! Anisotropies of contacts and forces, and the deviatoric stress that follows.
 
 use super::deviator::{DeviatorVector, from_direction, from_tensor, shortest_solution, tensor};
 use crate::view::PackingView;
@@ -8,11 +8,12 @@ use nalgebra::SMatrix;
 
 type Square = SMatrix<f64, 5, 5>;
 
-/// The second-order anisotropies of a packing, with `contact_fabric` its L (Eq. 2). `None` without contacts, or where the
-/// mean normal force over directions is not positive.
+/// The second-order anisotropies of a packing, with `contact_fabric` its L (Eq. 2). `None` without contacts,
+/// or if the mean normal force over directions is not positive.
 ///
-/// Forces and branches are fitted to the contacts by least squares, so that they do not inherit the anisotropy of the
-/// contacts' directions. What the directions present do not determine (a chain, a simple cubic lattice) is 0.
+/// Forces and branches are fitted to the contacts by least squares, so that the anisotropy of the contact
+/// directions does not enter. Components that the directions do not determine (a chain, a simple cubic
+/// lattice) are 0.
 pub fn stress_force_fabric(view: &PackingView<'_>, contact_fabric: &SymTensor) -> Option<StressForceFabric> {
     let packing = view.packing;
     if packing.contacts.is_empty() || view.mean_normal_force <= 0.0 {

@@ -1,4 +1,5 @@
-//! Stiffnesses in closed form beside the relaxed one: a mean spin, the Reuss bound; and the prestress term.
+//! Closed-form stiffnesses compared with the relaxed one: a mean spin, the Reuss bound; and the prestress
+//! term.
 
 use crate::golden::reference;
 use crate::samples::{packing, random};
@@ -27,8 +28,8 @@ fn orthorhombic() -> Packing {
     packing(Cell::new(Mat3::from_diagonal(&edges)).unwrap(), vec![Vec3::zeros()], 0.5 * D, 0.3, None)
 }
 
-/// In shear xz the springs a = k_t,x l_x² and b = k_t,z l_z² share the rotation: C55 = a b/((a + b) V), (a + b)/(4 V) when
-/// nothing spins.
+/// In shear xz the springs a = k_t,x l_x² and b = k_t,z l_z² share the rotation: C55 = a b/((a + b) V), and
+/// (a + b)/(4 V) without spin.
 #[test]
 fn a_mean_spin_is_exact_where_two_directions_differ() {
     let p = orthorhombic();
@@ -41,7 +42,7 @@ fn a_mean_spin_is_exact_where_two_directions_differ() {
     let expected = a * b / ((a + b) * v);
     assert!((m.bounds.uniform_rotation.0[(4, 4)] / expected - 1.0).abs() < 1e-12);
     assert!((m.bounds.affine.0[(4, 4)] / ((a + b) / (4.0 * v)) - 1.0).abs() < 1e-12);
-    // A grain alone has nothing but its spin to relax.
+    // A single grain can only relax its spin.
     assert!((m.bounds.uniform_rotation.0 - m.tensor.0).amax() < 1e-12 * m.bounds.affine.0.amax());
     assert!(
         m.bounds.uniform_rotation.0[(4, 4)] < 0.95 * m.bounds.affine.0[(4, 4)],
@@ -66,7 +67,7 @@ fn a_mean_spin_lies_between_relaxed_and_affine_and_is_affine_without_tangential_
     }
 }
 
-/// Simple cubic under pressure: B = k_n/(3 D) both ways.
+/// Simple cubic under pressure: both give B = k_n/(3 D).
 #[test]
 fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() {
     let edge = D * (1.0 - 2e-4);
@@ -78,11 +79,11 @@ fn the_reuss_bound_is_the_bulk_modulus_of_a_lattice_and_below_it_in_a_packing() 
 
     let m = moduli(&reference(), &Settings::default());
     let share = m.bounds.bulk_reuss.unwrap() / m.tensor.bulk_reuss().unwrap();
-    // .879 by Z̃(5/3) of such packings and their relaxed over affine modulus.
+    // .879 from Z̃(5/3) of such packings and their ratio of relaxed to affine modulus.
     assert!((0.8..1.0).contains(&share), "{share}");
 }
 
-/// Simple cubic: the normal forces turn with the branches, C44 = (k_t − F/D)/(2 D), and C11 stays.
+/// Simple cubic: the normal forces rotate with the branches, C44 = (k_t − F/D)/(2 D), and C11 is unchanged.
 #[test]
 fn prestress_takes_the_normal_force_off_the_shear_modulus_of_a_lattice() {
     let edge = D * (1.0 - 1e-2);
@@ -122,7 +123,7 @@ fn prestress_is_a_negative_tangential_spring_of_a_smooth_lattice() {
     assert!(f > 5e-3 * k, "no prestress to speak of: the test shows nothing");
 }
 
-/// Loose networks under thrust: the solve with prestress against the operator itself, column by column.
+/// Loose networks under compression: the solve with prestress against the operator, column by column.
 #[test]
 fn a_prestressed_network_balances_its_loads() {
     for seed in 48..51 {
@@ -144,7 +145,8 @@ fn a_prestressed_network_balances_its_loads() {
     }
 }
 
-/// Expected: a zigzag chain of smooth spheres under thrust buckles; that is said, and no number given.
+/// Expected: a zigzag chain of smooth spheres under compression buckles; the result is an error, not a
+/// number.
 #[test]
 fn a_chain_that_buckles_is_an_error_by_name() {
     let mut dice = crate::samples::Dice(47);
@@ -154,13 +156,13 @@ fn a_chain_that_buckles_is_an_error_by_name() {
         Vec3::new(edge * g as f64, 1e-2 * D * dice.next(), 1e-2 * D * dice.next())
     };
     let positions = (0..grains).map(|g| place(g, &mut dice)).collect();
-    // With friction a grain on two contacts is none of the rattlers, which prestress leaves out.
+    // With friction a grain with two contacts is not a rattler, and prestress keeps it.
     let p = packing(cell, positions, 0.5 * D, 0.1, None);
     assert!(p.contacts.len() == grains && p.contacts.iter().all(|c: &Contact| c.normal_force > 0.0));
     let network = prestressed(&p, Springs::Normal);
     let refused = relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000);
     assert!(matches!(refused, Err(MicroError::Unstable { .. })), "{refused:?}");
-    // Springs alone let it straighten at no cost.
+    // Without prestress, straightening the chain costs no energy.
     let network = SpringNetwork::new(&PackingView::new(&p), Springs::Normal).unwrap();
     assert_eq!(network.contacts(), grains);
     assert_eq!(relaxed_stiffness(&network, Solver::Iterative, 1e-9, 20_000), Ok(None));

@@ -1,4 +1,4 @@
-//! Against a dense pseudo-inverse, assembled another way.
+//! Comparison with a dense pseudo-inverse, assembled independently.
 
 use crate::samples::random;
 use grainlab_core::{Mat3, Packing, Vec3};
@@ -6,8 +6,8 @@ use grainlab_micromechanics::network::Springs;
 use grainlab_micromechanics::{Settings, analyze};
 use nalgebra::{DMatrix, Matrix6};
 
-/// C = A − ΞᵀK⁺Ξ/V by brute force: B_c as a 3×6N matrix with cross-product matrices, K⁺ from all eigenvalues, rotations
-/// in radians times the first radius.
+/// C = A − ΞᵀK⁺Ξ/V: B_c as a 3×6N matrix with cross-product matrices, K⁺ from all eigenvalues, rotations in
+/// radians times the first radius.
 pub(crate) fn dense_stiffness(p: &Packing, tangential: bool) -> Matrix6<f64> {
     let dof = 6 * p.grains();
     let length = p.radii[0];
@@ -60,8 +60,8 @@ fn unit_strain(a: usize) -> Mat3 {
     e
 }
 
-/// Loose networks have rattlers, floppy grains and soft modes; the dense solve itself loses about 1e-16 times the
-/// condition number of K, hence 1e-9 of the affine stiffness.
+/// Loose networks have rattlers, floppy grains and soft modes. The error of the dense solve is about 1e-16
+/// times the condition number of K, hence 1e-9 of the affine stiffness.
 #[test]
 fn random_networks_agree_with_a_dense_pseudo_inverse() {
     let mut rattlers = 0;

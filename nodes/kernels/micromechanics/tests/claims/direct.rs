@@ -1,4 +1,4 @@
-//! The factorisation beside the iterations: one operator, two paths to C = A − ΞᵀK⁺Ξ/V.
+//! The factorisation against the iterations: one operator, two methods for C = A − ΞᵀK⁺Ξ/V.
 
 use crate::samples::{Dice, packing, random};
 use grainlab_core::results::ElasticStiffness;
@@ -12,7 +12,7 @@ fn moduli(packing: &Packing, solver: Solver, tangential: bool) -> ElasticStiffne
     analyze(packing, &settings).unwrap().report.stiffness().copied().unwrap()
 }
 
-/// Both stiffnesses are above the truth by the square of a residual of 1e-10 times the inverse of the softest stiffness.
+/// Both stiffnesses exceed the exact one by the square of a residual of 1e-10 over the smallest stiffness.
 /// Returns the iterations of each.
 fn agree(packing: &Packing, tangential: bool) -> [u32; 2] {
     let [iterative, direct] =
@@ -23,7 +23,7 @@ fn agree(packing: &Packing, tangential: bool) -> [u32; 2] {
     [iterative.iterations, direct.iterations]
 }
 
-/// Without every contact that `lost` names.
+/// Without the contacts selected by `lost`.
 fn thinned(mut packing: Packing, mut lost: impl FnMut() -> bool) -> Packing {
     packing.contacts.retain(|_| !lost());
     packing.validated().unwrap()
@@ -40,8 +40,8 @@ fn random_networks_with_and_without_tangential_springs_are_as_stiff_by_either_pa
     }
 }
 
-/// Each contact fixes three directions of a grain's six with tangential springs, one of three without: fewer than 4 and 6
-/// contacts a grain cannot hold them.
+/// Each contact fixes three of the six degrees of freedom of a grain with tangential springs, one of three
+/// without: 4 and 6 contacts per grain are the least for a stable network.
 #[test]
 fn near_isostaticity_the_factorisation_takes_a_few_rounds_where_iterations_are_hundreds_of_times_as_many() {
     let mut dice = Dice(4);

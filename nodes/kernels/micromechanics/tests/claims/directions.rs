@@ -23,7 +23,7 @@ fn moments(values: &[f64]) -> (f64, f64) {
     (mean, square.sqrt())
 }
 
-/// 400 sets of 1,000 contacts each: errors over standard errors are normal, and χ² says that A(d) fits.
+/// 400 sets of 1,000 contacts each: errors over standard errors are normal, and χ² accepts A(d).
 #[test]
 fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
     for eps in [-0.3, 0.0, 0.1, 0.6] {
@@ -36,20 +36,20 @@ fn contacts_drawn_from_eq_6_give_back_eps_with_an_honest_standard_error() {
             chi2.push(fit.chi2_per_dof);
         }
         let (mean, spread) = moments(&pulls);
-        // Standard errors of mean and spread over 400: .05 and .035; of the share within one: .023.
+        // Standard errors of mean and spread over 400: .05 and .035; of the fraction within one: .023.
         assert!(mean.abs() < 0.2 && (spread - 1.0).abs() < 0.12, "{eps}: {mean} {spread}");
         let within = pulls.iter().filter(|p| p.abs() < 1.0).count() as f64 / 400.0;
         assert!((within - 0.683).abs() < 0.08, "{eps}: {within}");
         assert!(pulls.iter().filter(|p| p.abs() > 3.0).count() <= 5, "{eps}");
-        // An unbinned fit leaves a little more than 8 of the 9 degrees of freedom; σ of the mean is .025.
+        // An unbinned fit leaves slightly more than 8 of the 9 degrees of freedom; σ of the mean is .025.
         let (chi2, _) = moments(&chi2);
         assert!((0.9..1.2).contains(&chi2), "{eps}: {chi2}");
     }
 }
 
-/// Contacts that do not follow Eq. 6 are told by χ²: a density 1 + P4.
+/// χ² detects contacts that do not follow Eq. 6: a density 1 + P4.
 #[test]
-fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
+fn chi_squared_detects_a_distribution_that_eq_6_does_not_describe() {
     let fourth = |x: f64| x + 0.125 * (7.0 * x.powi(5) - 10.0 * x.powi(3) + 3.0 * x);
     let directions = drawn(&mut Dice(52), 2000, fourth);
     let fit = orientation_fit(directions.iter().map(|n| n.z)).unwrap();
@@ -57,7 +57,7 @@ fn chi_squared_tells_a_distribution_that_eq_6_cannot_describe() {
 }
 
 #[test]
-fn eps_is_kept_where_no_density_is_negative_and_not_fitted_where_nothing_tells() {
+fn eps_is_kept_where_no_density_is_negative_and_not_fitted_without_information() {
     let chain = orientation_fit([1.0, 1.0, -1.0].into_iter()).unwrap();
     let disc = orientation_fit([0.0, 0.0].into_iter()).unwrap();
     assert_eq!((chain.eps, disc.eps), (1.0, -0.5));
@@ -140,7 +140,7 @@ fn fourth_order_fabrics_of_lattices_are_exact_and_contract_to_the_second() {
     assert!(second.iter().all(|(a, b)| (a - b).abs() < 1e-15), "{second:?}");
 }
 
-/// 1 + a2 P2 + a4 P4 about any axis: the magnitude is |a4|, and a2 does not leak into it.
+/// 1 + a2 P2 + a4 P4 about any axis: the magnitude is |a4|, independent of a2.
 #[test]
 fn magnitude_of_the_fourth_order_is_that_of_its_p4_about_any_axis() {
     let a4 = -0.4;
@@ -153,7 +153,8 @@ fn magnitude_of_the_fourth_order_is_that_of_its_p4_about_any_axis() {
     }
 }
 
-/// Independent contacts scatter as independent contacts do, and an axis is hardly ever seen where there is none.
+/// Independent contacts have the scatter of independent contacts, and an axis is rarely found where there is
+/// none.
 #[test]
 fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
     let mut dice = Dice(55);
@@ -165,7 +166,7 @@ fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
         pulls.push(f.contact_anisotropy / a.contact_anisotropy_stddev.unwrap());
         alarms += u32::from(a.determined);
     }
-    // sd(ε)·√contacts = (15/4) √(4/45) = 1.118; each estimate is good to 12 %.
+    // sd(ε)·√contacts = (15/4) √(4/45) = 1.118; each estimate has an error of 12 %.
     let (mean, spread) = moments(&noise);
     assert!((mean - 1.118).abs() < 0.04 && spread < 0.2, "{mean} {spread}");
     assert!((moments(&pulls).1 - 1.0).abs() < 0.2, "{:?}", moments(&pulls));
@@ -173,7 +174,7 @@ fn the_noise_of_independent_contacts_is_found_and_no_axis_in_it() {
     assert!(alarms <= 7, "{alarms}");
 }
 
-/// Prolate and oblate, about a random axis: found, with the angle it claims.
+/// Prolate and oblate, about a random axis: found, within the stated angle.
 #[test]
 fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
     for eps in [0.4, -0.4] {
@@ -197,7 +198,7 @@ fn an_axis_is_found_where_there_is_one_and_its_angle_is_honest() {
     }
 }
 
-/// Three different eigenvalues with the middle one at the mean: two axes stand out alike.
+/// Three different eigenvalues with the middle one at the mean: two axes are equally distinct.
 #[test]
 fn of_two_axes_that_stand_out_alike_neither_is_chosen() {
     let mut dice = Dice(57);
@@ -234,7 +235,7 @@ fn lattices_and_handfuls_of_contacts_have_no_axis_to_trust() {
     }
 }
 
-/// Every number about an axis is a property of the packing and that axis, not of the frame.
+/// Every quantity about an axis depends on the packing and that axis, not on the frame.
 #[test]
 fn turning_packing_and_axis_changes_no_number() {
     let mut p = random(120, 1.15, 58);
@@ -285,7 +286,7 @@ fn turning_packing_and_axis_changes_no_number() {
 fn the_reference_packing_is_isotropic_within_its_noise() {
     let f = along_z(&reference());
     let a = f.principal_axis;
-    // 1,277 contacts: .031 if they were independent; .02 is what packings of 500 grains scatter by.
+    // 1,277 contacts: .031 if they were independent; packings of 500 grains scatter by .02.
     let stddev = a.contact_anisotropy_stddev.unwrap();
     assert!(
         (0.010..0.025).contains(&stddev) && f.contact_anisotropy.abs() < 3.0 * stddev,

@@ -7,7 +7,7 @@ use grainlab_core::{Cell, Mat3, Packing, SymTensor, Vec3};
 use grainlab_micromechanics::PackingView;
 use grainlab_micromechanics::structure::{contact_statistics, fabric, stress_decomposition};
 
-/// What is measured without a stiffness, about z.
+/// All measurements without a stiffness, about z.
 struct Structure {
     contacts: ContactStatistics,
     fabric: Fabric,
@@ -29,7 +29,7 @@ fn difference(a: &SymTensor, b: &SymTensor) -> f64 {
     (0..6).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max)
 }
 
-/// Traceless and symmetric, of size about `scale`, and along no axis in particular.
+/// Traceless and symmetric, with entries of about `scale`, in a general direction.
 fn tilted(dice: &mut Dice, scale: f64) -> SymTensor {
     SymTensor::from_voigt(std::array::from_fn(|_| (dice.next() - 0.5) * scale)).deviator()
 }
@@ -55,7 +55,7 @@ fn a_single_pair_has_the_stress_of_its_two_forces() {
     let scale = 2e-4 / 1e-6;
     let (n, t) = (s.stress.normal, s.stress.tangential);
     assert!((n.zz - 2.0 * scale).abs() < 1e-9 && (largest(&n) - n.zz).abs() < 1e-9);
-    // Half of the shear, as the other half is spin.
+    // Half of the shear, because the other half is spin.
     assert!((t.xz - 0.25 * scale).abs() < 1e-9 && (largest(&t) - t.xz).abs() < 1e-9);
     let along_x = SymTensor { xx: 1.0, ..SymTensor::default() };
     assert!(difference(&s.fabric.tangential_force_fabric, &along_x) < 1e-15);
@@ -79,8 +79,8 @@ fn kinds_of_force_and_networks_add_up_to_the_stress() {
     }
 }
 
-/// Forces that follow the laws give back their tensors, whatever the distribution of the contacts; and the stress they
-/// make is the one predicted, up to products of two anisotropies.
+/// Forces generated from given tensors return these tensors for any distribution of the contacts. The stress
+/// equals the predicted one up to products of two anisotropies.
 #[test]
 fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
     let mut errors = Vec::new();
@@ -103,7 +103,7 @@ fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
         assert!(difference(&found.normal_forces, &a_n) < 1e-12);
         assert!(difference(&found.branches, &a_l) < 1e-10);
         assert!(difference(&found.tangential_forces, &a_t) < 1e-12);
-        // a^c = 3 ε (zz − 1/3); the spread of directions is even to 1e-4.
+        // a^c = 3 ε (zz − 1/3); the directions are uniform to 1e-4.
         assert!((found.contacts.zz - 2.0 * eps).abs() < 2e-4 && (found.contacts.xx + eps).abs() < 2e-4);
         let stress = s.stress.sum();
         let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
@@ -113,7 +113,8 @@ fn anisotropies_are_found_and_predict_the_deviatoric_stress_to_first_order() {
     assert!(errors[0] < 0.3 * 0.08f64.powi(2) && errors[0] / errors[1] > 3.0, "{errors:?}");
 }
 
-/// Radii from 1 to 5, forces that go with the square of the radius: the anisotropies are those of the mean over a direction.
+/// Radii from 1 to 5, forces proportional to the square of the radius: the anisotropies are those of the mean
+/// over each direction.
 #[test]
 fn sizes_from_one_to_five_leave_the_relation_alone() {
     let mut dice = Dice(43);
@@ -131,7 +132,7 @@ fn sizes_from_one_to_five_leave_the_relation_alone() {
         .collect();
     let s = structure(&pairs(&contacts, 1));
     let found = s.stress.stress_force_fabric.unwrap();
-    // The size is no matter of direction: relative scatter of the force (.7) times about 4 over √60000.
+    // The size does not depend on direction: relative scatter of the force (.7) times about 4 over √60000.
     assert!(largest(&found.branches) < 0.03 && difference(&found.normal_forces, &a_n) < 0.04);
     let stress = s.stress.sum();
     let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
@@ -139,9 +140,9 @@ fn sizes_from_one_to_five_leave_the_relation_alone() {
     assert!(measured.deviatoric_invariant() > 0.08);
 }
 
-/// A chain and a simple cubic lattice do not say how forces depend on direction: no anisotropy is invented.
+/// A chain and a simple cubic lattice do not determine how forces depend on direction: the anisotropy is 0.
 #[test]
-fn directions_that_are_not_there_get_no_anisotropy() {
+fn missing_directions_get_no_anisotropy() {
     let chain = structure(&pairs(&[Pair::along(Vec3::z()), Pair::along(Vec3::z())], 1));
     let a = chain.stress.stress_force_fabric.unwrap();
     assert_eq!((largest(&a.normal_forces), largest(&a.tangential_forces)), (0.0, 0.0));
@@ -184,7 +185,7 @@ fn exponential_forces_have_the_moments_of_an_exponential() {
     for (found, (expected, error)) in f.moments.iter().zip([(2.0, 0.06), (6.0, 0.4), (24.0, 4.0)]) {
         assert!((found - expected).abs() < error, "{:?}", f.moments);
     }
-    // e^-1 of the contacts are strong, and carry 2/e of the pressure.
+    // A fraction e^-1 of the contacts is strong, and carries 2/e of the pressure.
     let e = std::f64::consts::E;
     assert!((f64::from(s.stress.strong.contacts) / 1e5 - 1.0 / e).abs() < 0.006);
     assert!((s.stress.strong.stress.trace() / s.stress.sum().trace() - 2.0 / e).abs() < 0.01);
@@ -199,7 +200,7 @@ fn mobilised_friction_is_shared_out_in_tenths_and_has_no_meaning_without_a_limit
         tangential_force: Vec3::x() * t,
         ..Pair::along(Vec3::z())
     };
-    // μ = 0.5: 0, 0.44, 1, more than 1, and contacts without a normal force or with one that pulls.
+    // μ = 0.5: 0, 0.44, 1, more than 1, and contacts with a zero or a tensile normal force.
     let forces = [(2.0, 0.0), (2.0, 0.44), (2.0, 1.0), (2.0, 1.5), (0.0, 0.1), (-4.0, 0.1)];
     let mut p = pairs(&forces.map(|(n, t)| of(n, t)), 1);
     let m = structure(&p).contacts.friction.unwrap();
@@ -220,7 +221,8 @@ fn contacts_without_force_have_a_fabric_and_no_force_statistics() {
     assert_eq!((s.fabric.orientation.contacts[9], largest(&s.fabric.tangential_force_fabric)), (1, 0.0));
 }
 
-/// The packing of LAMMPS was compressed to a shape, not to a stress: it bears q/p of .05, which the anisotropies say.
+/// The packing of LAMMPS was compressed to a shape, not to a stress: q/p is .05, as predicted by the
+/// anisotropies.
 #[test]
 fn the_deviatoric_stress_of_a_real_packing_is_the_one_its_anisotropies_predict() {
     let s = structure(&reference());
@@ -229,7 +231,7 @@ fn the_deviatoric_stress_of_a_real_packing_is_the_one_its_anisotropies_predict()
     let measured = SymTensor::from_voigt(stress.deviator().voigt().map(|v| v / stress.mean()));
     assert!((0.045..0.06).contains(&measured.deviatoric_invariant()));
     assert!(difference(&measured, &a.stress_ratio()) < 0.0015, "{measured:?} {:?}", a.stress_ratio());
-    // Without any one of the three kinds it would be missed by more.
+    // Without any one of the three kinds the error would be larger.
     for kind in [a.contacts, a.normal_forces] {
         assert!(0.4 * largest(&kind) > 0.02);
     }

@@ -1,4 +1,4 @@
-//! The packing of 500 grains that LAMMPS made, and what its sidecar says.
+//! The packing of 500 grains from LAMMPS, and its sidecar.
 
 use crate::samples::ordered;
 use flate2::read::GzDecoder;
@@ -68,6 +68,7 @@ pub(crate) fn reference() -> Packing {
                 normal: -Vec3::new(v[2], v[3], v[4]),
                 normal_force: v[6],
                 tangential_force: Vec3::new(v[7], v[8], v[9]),
+                rolling_force: Vec3::zeros(),
             };
             p.contacts.push(ordered(contact));
         }
@@ -76,8 +77,8 @@ pub(crate) fn reference() -> Packing {
     p.validated().unwrap()
 }
 
-/// Columns of LAMMPS's strains of +`amplitude` (as the sidecar spells it), Pa, Voigt order. Its raw rows are in the order
-/// xx yy zz xy xz yz.
+/// Columns for LAMMPS's strains of +`amplitude` (spelled as in the sidecar), Pa, Voigt order. Its raw rows
+/// are in the order xx yy zz xy xz yz.
 pub(crate) fn lammps(amplitude: &str) -> Matrix6<f64> {
     let columns = ["xx", "yy", "zz", "yz", "xz", "xy"];
     let order = [0, 1, 2, 5, 4, 3];

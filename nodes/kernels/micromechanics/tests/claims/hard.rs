@@ -1,4 +1,4 @@
-//! Cases at the edge of what has a stiffness.
+//! Networks close to the loss of stiffness.
 
 use crate::dense::dense_stiffness;
 use crate::samples::{Dice, packing_of_sizes, random, thinned};
@@ -16,13 +16,14 @@ fn moduli(p: &Packing, tangential: bool) -> ElasticStiffness {
     analyze(p, &settings).unwrap().report.stiffness().copied().unwrap()
 }
 
-/// Against the dense pseudo-inverse, as a share of the affine stiffness.
+/// Against the dense pseudo-inverse, as a fraction of the affine stiffness.
 fn error(p: &Packing, tangential: bool) -> f64 {
     let m = moduli(p, tangential);
     (m.tensor.0 - dense_stiffness(p, tangential)).amax() / m.bounds.affine.0.amax()
 }
 
-/// Expected: a small stiffness, right to the precision of the dense solve, in spite of soft modes by the dozen.
+/// Expected: a small stiffness, accurate to the precision of the dense solve, in spite of dozens of soft
+/// modes.
 #[test]
 fn a_frictional_network_within_a_twentieth_of_isostaticity_is_solved() {
     for (coordination, seed) in [(4.05, 21), (4.0, 22), (3.95, 23)] {
@@ -54,8 +55,8 @@ fn a_frictionless_network_within_a_twentieth_of_isostaticity_is_solved() {
     assert!(floppy < 3, "none was stiff: the test shows nothing");
 }
 
-/// Expected: k ∝ F^⅓ leaves it a stiffness of 1/464 of the others': the moduli lie between those without it and those with
-/// it as strong as the rest.
+/// Expected: by k ∝ F^⅓ its stiffness is 1/464 of the others': the moduli lie between those without it and
+/// those with it as stiff as the rest.
 #[test]
 fn a_contact_of_1e_8_of_the_mean_force_is_a_feeble_spring_and_no_trouble() {
     let mut p = random(60, 1.2, 27);
@@ -75,7 +76,7 @@ fn a_contact_of_1e_8_of_the_mean_force_is_a_feeble_spring_and_no_trouble() {
     assert!(gain.amax() < 1e-2 * with.amax(), "{:e}", gain.amax() / with.amax());
 }
 
-/// Expected: nothing special; levers and springs are those of the pair.
+/// Expected: no special case; levers and springs are those of the pair.
 #[test]
 fn sizes_of_one_to_five_are_solved_with_and_without_tangential_springs() {
     let mut dice = Dice(28);
@@ -102,7 +103,7 @@ fn sizes_of_one_to_five_are_solved_with_and_without_tangential_springs() {
     assert!(error(&p, false) < 1e-9);
 }
 
-/// Expected: k_t/k_n = 2(1 − ν)/(2 − ν) = 1 and .675, and stiffnesses that follow.
+/// Expected: k_t/k_n = 2(1 − ν)/(2 − ν) = 1 and .675, with the corresponding stiffnesses.
 #[test]
 fn poisson_ratios_of_nothing_and_of_nearly_one_half_are_solved() {
     let mut p = random(60, 1.2, 29);
@@ -118,7 +119,7 @@ fn poisson_ratios_of_nothing_and_of_nearly_one_half_are_solved() {
     assert!(ratios[0] > 1.05 * ratios[1], "shear feels the tangential springs: {ratios:?}");
 }
 
-/// Expected: bits of the solve do not depend on what is near in memory, only its rounding does.
+/// Expected: the solve does not depend on the order in memory up to rounding.
 #[test]
 fn numbering_the_grains_otherwise_changes_the_last_digits_alone() {
     let p = random(60, 1.2, 30);
@@ -135,8 +136,8 @@ fn numbering_the_grains_otherwise_changes_the_last_digits_alone() {
     assert!((a - b).amax() < 1e-13 * a.amax(), "{:e}", (a - b).amax() / a.amax());
 }
 
-/// Expected: where rounding sends a round in single precision along nearly free motions, that round is undone, and double
-/// precision starts from what was good.
+/// Expected: where rounding moves a round in single precision far along nearly free motions, the round is
+/// discarded, and double precision starts from the last good state.
 #[test]
 fn networks_next_to_mechanisms_are_solved_though_single_precision_is_lost_in_them() {
     for (swell, seed) in [(1.12, 1), (1.12, 3), (1.12, 4), (1.13, 5), (1.12, 7), (1.12, 8), (1.12, 9)] {

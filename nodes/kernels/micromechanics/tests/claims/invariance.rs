@@ -1,4 +1,4 @@
-//! What must not change the result, and what must cost nothing.
+//! Invariances, and motions without energy.
 
 use crate::samples::{random, repeated, turned};
 use grainlab_core::Vec3;
@@ -88,7 +88,8 @@ fn the_same_packing_gives_the_same_bits() {
     assert_eq!(bits(), bits());
 }
 
-/// A loose solve must still bound the stiffness from above and be second order in its residual.
+/// A solve with a large tolerance still bounds the stiffness from above, with an error of second order in its
+/// residual.
 #[test]
 fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
     let p = random(60, 1.2, 16);
@@ -112,8 +113,8 @@ fn error_of_the_stiffness_is_second_order_in_the_tolerance_and_from_above() {
     }
 }
 
-/// Of a solve by its two evaluations: whatever the tolerance, no entry is further off than twice what is stated, and nothing
-/// is stated to be exact.
+/// From the two evaluations of a solve: for any tolerance, the error of each entry is at most twice the
+/// standard error, which is never zero.
 #[test]
 fn the_standard_error_of_a_stiffness_covers_its_error() {
     let p = random(60, 1.2, 17);

@@ -9,7 +9,8 @@ use nalgebra::{Matrix6, Rotation3};
 const D: f64 = 2.0e-4;
 const OVERLAP: f64 = 3.0e-8;
 
-/// Spheres that just overlap, with the overlap of every spring set to [`OVERLAP`]; branch lengths are D exactly.
+/// Spheres that barely overlap, with the overlap of every spring set to [`OVERLAP`]; branch lengths are D
+/// exactly.
 fn lattice(cell: Mat3, sites: &[[f64; 3]]) -> Packing {
     let cell = Cell::new(cell).unwrap();
     let positions = sites.iter().map(|s| cell.matrix() * Vec3::from(*s)).collect();
@@ -41,13 +42,14 @@ fn cubic(c11: f64, c12: f64, c44: f64) -> Matrix6<f64> {
     })
 }
 
-/// Relative to the largest entry; 1e-10 leaves room for the rounding of the sum over contacts alone.
+/// Relative to the largest entry; 1e-10 allows for rounding of the sum over contacts.
 fn assert_equal(found: &Matrix6<f64>, expected: &Matrix6<f64>, what: &str) {
     let error = (found - expected).amax() / expected.amax();
     assert!(error < 1e-10, "{what}: {error:e}\n{found}\n{expected}");
 }
 
-/// Three contacts a grain along the axes, V = D³: C11 = k_n/D, C12 = 0, C44 = k_t/(2D); nothing relaxes by symmetry.
+/// Three contacts per grain along the axes, V = D³: C11 = k_n/D, C12 = 0, C44 = k_t/(2D); nothing relaxes by
+/// symmetry.
 #[test]
 fn simple_cubic_is_exact_with_one_grain_touching_its_own_images() {
     let p = simple_cubic();
@@ -68,8 +70,8 @@ fn simple_cubic_is_exact_with_one_grain_touching_its_own_images() {
     assert_equal(&m.bounds.affine.0, &expected, "affine");
 }
 
-/// Six contacts a grain along ⟨110⟩, V = D³/√2: C11 = √2 (k_n + k_t)/D, C12 = (k_n − k_t)/(√2 D),
-/// C44 = (k_n + k_t)/(√2 D); affine motion is exact.
+/// Six contacts per grain along ⟨110⟩, V = D³/√2: C11 = √2 (k_n + k_t)/D, C12 = (k_n − k_t)/(√2 D), C44 =
+/// (k_n + k_t)/(√2 D); affine motion is exact.
 #[test]
 fn fcc_is_exact_with_four_grains() {
     let p = fcc();
@@ -92,7 +94,8 @@ fn fcc_is_exact_with_one_grain_in_a_skewed_primitive_cell() {
     assert_equal(&one.tensor.0, &four.tensor.0, "primitive cell");
 }
 
-/// Eight contacts a grain along ⟨111⟩ and two grains a cell, V = 4D³/(3√3) each: Σ n_x² = 4/3, Σ n_x⁴ = Σ n_x²n_y² = 4/9.
+/// Eight contacts per grain along ⟨111⟩, two grains per cell, V = 4D³/(3√3) each: Σ n_x² = 4/3, Σ n_x⁴ = Σ
+/// n_x²n_y² = 4/9.
 #[test]
 fn bcc_is_exact_with_two_grains() {
     let p = lattice(Mat3::identity() * (2.0 * D / 3f64.sqrt()), &[[0.0; 3], [0.5; 3]]);
@@ -108,7 +111,7 @@ fn bcc_is_exact_with_two_grains() {
     assert_equal(&m.tensor.0, &expected, "relaxed");
 }
 
-/// A lattice of cubic symmetry is cubic, seen from any side; a stiffness along ⟨110⟩ and one along the edges alike.
+/// The cubic symmetry of a lattice is found in any frame, for axes along ⟨110⟩ and along the edges.
 #[test]
 fn cubic_lattices_are_found_cubic_and_their_edges_found() {
     let r = Rotation3::from_euler_angles(0.4, 1.0, -0.6);

@@ -1,4 +1,4 @@
-//! What this kernel claims, each claim a test.
+//! Tests of structure and stiffness.
 
 mod bounds;
 mod dense;

@@ -1,4 +1,4 @@
-//! The explicit probe, against LAMMPS's, against the frozen network, and in its own limits.
+//! The explicit probe against that of LAMMPS, against the frozen network, and at its limits.
 
 use crate::golden::{lammps, reference};
 use crate::samples::packing;
@@ -16,9 +16,9 @@ fn share(difference: Matrix6<f64>, c: &Matrix6<f64>) -> f64 {
     difference.amax() / c[(0, 0)]
 }
 
-/// Most of the difference, 2e-4, is the rate at which LAMMPS strained: with 1000, 2000, 4000 and 32000 steps for the strain
-/// its C11 is 365.082, 365.122, 365.141 and 365.158 MPa, and the forward part of ours 365.165. The forward shear columns
-/// of the two agree to 1e-5.
+/// Most of the difference, 2e-4, is due to the strain rate in LAMMPS: with 1000, 2000, 4000 and 32000 steps
+/// its C11 is 365.082, 365.122, 365.141 and 365.158 MPa, and the forward part of ours 365.165. The forward
+/// shear columns of the two agree to 1e-5.
 #[test]
 fn six_columns_are_those_of_lammps_within_a_permille_of_c11() {
     let found = strain_probe(&reference(), &StrainProbe::default()).unwrap();
@@ -27,14 +27,14 @@ fn six_columns_are_those_of_lammps_within_a_permille_of_c11() {
     assert!(error < 1e-3, "{error:e}\n{}\n{raw}", found.stiffness.0);
     // C is symmetric up to the deviatoric stress, 3 kPa here, and the tolerance.
     assert!(found.asymmetry < 2e-5, "{:e}", found.asymmetry);
-    // Hertz's law bends the response by (2/3) 1e-7 Θ/p = 1.1e-4.
+    // The nonlinearity of Hertz's law is (2/3) 1e-7 Θ/p = 1.1e-4.
     for column in found.columns {
         assert!(column.residual <= 1e-5 && column.drift <= 1e-5, "{column:?}");
         assert!((3e-5..4e-4).contains(&column.forward_backward.unwrap()), "{column:?}");
     }
 }
 
-/// To the affine differences of −0.4 p, 1.2 p and −0.8 p relaxation adds others of the order of p.
+/// Besides the affine differences of −0.4 p, 1.2 p and −0.8 p, relaxation adds others of the order of p.
 #[test]
 fn frozen_network_is_the_probe_up_to_terms_of_the_pressure() {
     let packing = reference();
@@ -55,7 +55,7 @@ fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged
     let c = &small.stiffness.0;
     let error = share(large.stiffness.0 - c, c);
     assert!(error < 2e-3, "{error:e}");
-    // Contacts open at 1e-5, and the two sides differ by more than Hertz's 1.1e-2.
+    // Contacts open at 1e-5, and forward and backward differ by more than Hertz's 1.1e-2.
     let far = with(1e-5);
     assert!(share(far.stiffness.0 - c, c) > 2e-3);
     let opened = |r: &StrainProbeResult| r.sum(|c| c.opened);
@@ -64,8 +64,8 @@ fn ten_times_the_amplitude_is_on_the_same_plateau_and_a_hundred_times_is_flagged
     assert!(small.columns[1].forward_backward.unwrap() < 3e-4);
 }
 
-/// Where Hertz's law bends the response by less than the agreement asked for, from where rounding of stresses shows to where
-/// contacts open in numbers.
+/// The linear regime: nonlinearity of Hertz's law below the required agreement, between rounding errors of
+/// the stress and the opening of many contacts.
 #[test]
 fn a_scan_of_amplitudes_finds_the_linear_regime() {
     let packing = reference();
@@ -74,7 +74,7 @@ fn a_scan_of_amplitudes_finds_the_linear_regime() {
     let seen: Vec<f64> = scan.probes.iter().map(|(a, _)| *a).collect();
     assert_eq!(seen, [1e-8, 1e-7, 1e-6, 1e-5]);
     assert_eq!(scan.linear, Some(0..=2));
-    // The error that a probe states covers its distance from the plateau's middle.
+    // The stated error of a probe covers its distance from the middle of the plateau.
     let plateau = scan.probes[1].1.as_ref().unwrap().stiffness.0;
     for (amplitude, found) in &scan.probes {
         let found = found.as_ref().unwrap();
@@ -85,7 +85,7 @@ fn a_scan_of_amplitudes_finds_the_linear_regime() {
     assert!(matches!(refused, ProbeError::Setting { name: "amplitude", .. }), "{refused}");
 }
 
-/// With the friction it was made by the packing slides where it is strained; stuck, nowhere.
+/// With the friction of its preparation the packing slides under strain; with infinite friction it does not.
 #[test]
 fn contacts_that_slide_under_the_strain_are_counted() {
     let packing = reference();
@@ -108,12 +108,13 @@ fn forward_probe_at_1e_6_is_that_of_lammps() {
     assert!(found.columns.iter().all(|c| c.forward_backward.is_none()));
 }
 
-/// LAMMPS's `fix deform` with its default remapping of positions gives C66 = 78.5 MPa on this packing, for 137.9.
+/// LAMMPS's `fix deform` with its default remapping of positions gives C66 = 78.5 MPa on this packing,
+/// instead of 137.9.
 #[test]
 fn homogeneous_strain_enters_the_tangential_springs() {
     let found = strain_probe(&reference(), &StrainProbe::default()).unwrap().stiffness.0;
     assert!((found[(5, 5)] / 137.9e6 - 1.0).abs() < 1e-3, "{}", found[(5, 5)]);
-    // The same strain as a jump of positions, which no spring can see.
+    // The same strain as a jump of positions, which tangential springs do not follow.
     let blind = |strain: f64| {
         let mut p = reference();
         let mut f = Mat3::identity();
@@ -130,7 +131,8 @@ fn homogeneous_strain_enters_the_tangential_springs() {
     assert!((c66 / 78.5e6 - 1.0).abs() < 5e-3, "{c66:e}");
 }
 
-/// The packing dilated until a quarter of its pressure and 4.5 contacts a grain are left; it takes five times the steps.
+/// The packing dilated to a quarter of its pressure and 4.5 contacts per grain; it takes five times the
+/// steps.
 #[test]
 fn near_isostaticity_the_probe_settles_on_the_frozen_network_too() {
     let mut relaxation = Relaxation::new(vec![stuck(&reference())]);
@@ -157,7 +159,7 @@ fn near_isostaticity_the_probe_settles_on_the_frozen_network_too() {
     assert!(error < 4.0, "in units of the pressure: {error}");
 }
 
-/// An engine with every contact stuck, undamped, at the longest stable time step.
+/// An engine with infinite friction, undamped, at the longest stable time step.
 fn stuck(packing: &Packing) -> Engine {
     let setting = EngineSettings {
         friction: f64::INFINITY,
@@ -184,9 +186,9 @@ fn cubic(c11: f64, c12: f64, c44: f64) -> Matrix6<f64> {
     })
 }
 
-/// Nothing relaxes in a lattice: C11 = √2 (k_n + k_t)/l, C12 = (k_n − k_t)/(√2 l), C44 = (k_n + k_t)/(√2 l), and of the
-/// pressure −p/2, 5p/4 and −3p/4, as n_x⁴ has the mean 1/6 and n_x² n_y² the mean 1/12. What is left is of second order
-/// in amplitude/(overlap/diameter) = 1e-4.
+/// Nothing relaxes in a lattice: C11 = √2 (k_n + k_t)/l, C12 = (k_n − k_t)/(√2 l), C44 = (k_n + k_t)/(√2 l),
+/// and pressure terms −p/2, 5p/4 and −3p/4, since the mean of n_x⁴ is 1/6 and that of n_x² n_y² is 1/12. The
+/// rest is of second order in amplitude/(overlap/diameter) = 1e-4.
 #[test]
 fn face_centred_cubic_is_exact_with_its_terms_of_the_pressure() {
     let (radius, overlap) = (1e-4, 2e-7);
@@ -209,8 +211,9 @@ fn face_centred_cubic_is_exact_with_its_terms_of_the_pressure() {
     assert!(found.columns.iter().all(|c| !c.network_changed()));
 }
 
-/// A chain along z of force F and stress σ = F l/V: C33 = k_n l²/V; a strain across changes the volume alone, which makes
-/// C31 = C32 = σ; in shear the grain rolls until no tangential force is left, and the turned chain makes C44 = C55 = −σ/2.
+/// A chain along z with force F and stress σ = F l/V: C33 = k_n l²/V. A strain across it changes only the
+/// volume: C31 = C32 = σ. In shear the grain rolls until no tangential force is left, and the rotated chain
+/// gives C44 = C55 = −σ/2.
 #[test]
 fn a_chain_has_its_closed_form_and_columns_of_nothing_settle() {
     let (radius, l) = (1e-4, 1.998e-4);
@@ -239,7 +242,7 @@ fn a_packing_that_was_shaken_comes_to_rest_first() {
     let found = strain_probe(&shaken, &StrainProbe::default()).unwrap();
     assert!(found.rest_steps > 100 && still.rest_steps == 0, "{} {}", found.rest_steps, still.rest_steps);
     let error = share(found.stiffness.0 - still.stiffness.0, &still.stiffness.0);
-    // Overlaps have moved by 4e-4 of their mean.
+    // Overlaps have changed by 4e-4 of their mean.
     assert!(error < 5e-4, "{error:e}");
 }
 
@@ -271,7 +274,7 @@ fn the_same_packing_gives_the_same_bits() {
 }
 
 #[test]
-fn what_cannot_be_probed_says_why() {
+fn packings_that_cannot_be_probed_are_refused_with_the_reason() {
     let cell = Cell::cube(1e-3).unwrap();
     let gas = packing(cell, vec![Vec3::zeros(), Vec3::repeat(5e-4)], 1e-4, 0.1, None);
     let refused = strain_probe(&gas, &StrainProbe::default()).unwrap_err();

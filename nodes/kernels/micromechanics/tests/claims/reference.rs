@@ -1,4 +1,5 @@
-//! A packing of 500 grains made, and its stiffness probed, by LAMMPS; the sidecar also holds a sparse direct solve.
+//! A packing of 500 grains from LAMMPS, with its probed stiffness; the sidecar also holds a sparse direct
+//! solve.
 
 use crate::golden::{lammps, matrix, reference, sidecar};
 use grainlab_micromechanics::{Analysis, Settings, analyze};
@@ -21,18 +22,19 @@ fn coordination_rattlers_and_fabric_are_those_of_the_reference() {
             let expected = json["fabric_tensor"][i][j].as_f64().unwrap();
             assert!((f.contact_fabric.matrix()[(i, j)] - expected).abs() < 1e-14);
             let expected = json["stress_from_contacts"][i][j].as_f64().unwrap();
-            // The sidecar's shears are asymmetric by 1e-3 Pa where torques do not quite balance.
+            // The shears of the sidecar are asymmetric by 1e-3 Pa because torques do not balance exactly.
             assert!((a.report.stress.tensor.matrix()[(i, j)] - expected).abs() < 1e-8 * a.report.pressure());
         }
     }
     assert!((c.sliding_fraction - json["mobilised_fraction_gt_0p999"].as_f64().unwrap()).abs() < 1e-14);
-    // The sidecar averages net forces over all 500 grains, ours over the 476 that carry; the rattlers' own are tiny.
+    // The sidecar averages net forces over all 500 grains, ours over the 476 non-rattlers; those of the
+    // rattlers are tiny.
     let unbalanced = json["unbalanced_mean"].as_f64().unwrap() * 500.0 / 476.0;
     assert!((a.report.unbalanced_force_ratio.unwrap() / unbalanced - 1.0).abs() < 1e-2);
 }
 
-/// The direct solve adds 1e-11 of the mean stiffness to its diagonal and refines five times; 1e-9 is far above what
-/// either leaves.
+/// The direct solve adds 1e-11 of the mean stiffness to its diagonal and refines five times; 1e-9 is far
+/// above the error of either.
 #[test]
 fn stiffness_is_that_of_a_sparse_direct_solve() {
     let m = analysis().report.stiffness().copied().unwrap();
@@ -45,7 +47,7 @@ fn stiffness_is_that_of_a_sparse_direct_solve() {
     assert!(error < 1e-9, "relaxed: {error:e}");
 }
 
-/// A probe of 1e-7 with the whole nonlinear code: it sees terms of the order of the pressure (0.1 MPa) too, and its
+/// A probe of 1e-7 with the whole nonlinear code includes terms of the order of the pressure (0.1 MPa). Its
 /// raw rows are in the order xx yy zz xy xz yz.
 #[test]
 fn stiffness_is_within_a_permille_of_an_explicit_probe_by_lammps() {

@@ -1,11 +1,11 @@
-//! Packings to measure.
+//! Packings for the tests.
 
 use grainlab_core::Contact;
 use grainlab_core::effective_radius;
 use grainlab_core::{Cell, Mat3, Material, Packing, Vec3};
 
-/// A packing of spheres of one radius at `positions`, with every contact that `radius` makes in `cell` (images up to
-/// one cell away). With `uniform`, that overlap is written into every contact, which makes all springs equal.
+/// A packing of spheres of one radius at `positions`, with all contacts in `cell` (images up to one cell
+/// away). With `uniform`, every contact has that overlap, so that all springs are equal.
 pub(crate) fn packing(
     cell: Cell,
     positions: Vec<Vec3>,
@@ -63,6 +63,7 @@ pub(crate) fn packing_of_sizes(
                         normal_force: Material::GLASS
                             .normal_force(effective_radius(packing.radii[i], packing.radii[j]), overlap),
                         tangential_force: Vec3::zeros(),
+                        rolling_force: Vec3::zeros(),
                     });
                 }
             }
@@ -81,8 +82,8 @@ impl Dice {
     }
 }
 
-/// `grains` spheres thrown into a cube, no closer than 0.8 diameters, then blown up by `swell`: no equilibrium, but a
-/// network with every kind of grain, from none to a dozen contacts.
+/// `grains` spheres placed at random in a cube, no closer than 0.8 diameters, then enlarged by `swell`: not
+/// in equilibrium, but a network with every kind of grain, from no contact to a dozen.
 pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
     let mut dice = Dice(seed);
     let diameter = 2.0e-4;
@@ -103,7 +104,7 @@ pub(crate) fn random(grains: usize, swell: f64, seed: u64) -> Packing {
     packing(cell, positions, 0.5 * swell * diameter, 0.1, None)
 }
 
-/// The packing without its weakest contacts, so that grains have `coordination` of them on average.
+/// The packing without its weakest contacts, with a mean coordination number of `coordination`.
 pub(crate) fn thinned(p: &Packing, coordination: f64) -> Packing {
     let mut out = p.clone();
     let kept = (0.5 * coordination * p.grains() as f64).round() as usize;
@@ -151,7 +152,7 @@ pub(crate) fn ordered(c: Contact) -> Contact {
     Contact { i: c.j, j: c.i, image, normal: -c.normal, tangential_force: -c.tangential_force, ..c }
 }
 
-/// The packing turned as a whole.
+/// The rotated packing.
 pub(crate) fn turned(p: &Packing, rotation: &Mat3) -> Packing {
     let mut out = p.clone();
     out.cell = Cell::new(rotation * p.cell.matrix()).unwrap();
@@ -168,7 +169,7 @@ pub(crate) fn normal(dice: &mut Dice) -> f64 {
     (-2.0 * (1.0 - dice.next()).ln()).sqrt() * (std::f64::consts::TAU * dice.next()).cos()
 }
 
-/// A contact to be put between two grains of its own.
+/// A contact between its own two grains.
 pub(crate) struct Pair {
     pub(crate) normal: Vec3,
     /// Distance of the centres, m.
@@ -186,8 +187,8 @@ impl Pair {
     }
 }
 
-/// Contacts of any directions and forces, each between two grains of its own that touch nobody else, thrown into a cube
-/// of 1 cm³: what structure is measured on, and nothing that could stand.
+/// Contacts of any directions and forces, each between two grains without other contacts, placed at random in
+/// a cube of 1 cm³: for measurements of structure, not mechanically stable.
 pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
     let mut dice = Dice(seed);
     let mut p = packing(Cell::cube(0.01).unwrap(), Vec::new(), 1e-4, 0.5, None);
@@ -208,6 +209,7 @@ pub(crate) fn pairs(contacts: &[Pair], seed: u64) -> Packing {
             normal: pair.normal,
             normal_force: pair.normal_force,
             tangential_force: -pair.tangential_force,
+            rolling_force: Vec3::zeros(),
         });
     }
     p.validated().expect("pairs are a packing")
@@ -223,7 +225,7 @@ pub(crate) fn drawn(dice: &mut Dice, count: usize, cumulative: impl Fn(f64) -> f
         .collect()
 }
 
-/// The same without scatter: evenly spread in x and about z.
+/// The same without scatter: uniform in x and about z.
 pub(crate) fn spread(count: usize, cumulative: impl Fn(f64) -> f64) -> Vec<Vec3> {
     (0..count)
         .map(|k| {

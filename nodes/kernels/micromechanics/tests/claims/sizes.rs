@@ -15,8 +15,8 @@ fn radii(grains: usize, spread: f64, dice: &mut Dice) -> Vec<f64> {
     (0..grains).map(|_| 0.5 * DIAMETER * (1.0 + spread * (2.0 * dice.next() - 1.0))).collect()
 }
 
-/// Spheres thrown into a cube until none overlap, compressed with friction beyond `pressure` (Pa), and relaxed until the
-/// unbalanced force ratio is 1e-8, or nearly so.
+/// Spheres placed in a cube without overlaps, compressed with friction beyond `pressure` (Pa), and relaxed
+/// until the unbalanced force ratio is about 1e-8.
 fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
     let mut dice = Dice(seed);
     let radii = radii(grains, spread, &mut dice);
@@ -55,10 +55,10 @@ fn prepared(grains: usize, spread: f64, pressure: f64, seed: u64) -> Packing {
         engine.observables().unwrap().stress.tensor.mean()
     };
     strain(200.0, &|s| s.solid_fraction > 0.58);
-    // Grains that come to rest press less: until enough is left.
+    // The pressure falls as grains come to rest: repeat until it suffices.
     while strain(10.0, &|s| s.stress.tensor.mean() > pressure) < 0.6 * pressure {}
     engine.initialise().unwrap();
-    // Nothing slides any more: sliding contacts come to rest slowly.
+    // Without sliding: sliding contacts relax slowly.
     let time_step = TimeStep::Fixed(0.8 * engine.time_step());
     engine.set_settings(EngineSettings { time_step, friction: f64::INFINITY, damping: 0.0, ..setting });
     let mut relaxation = Relaxation::new(vec![engine]);
@@ -84,8 +84,8 @@ struct Element {
     branch: Vec3,
 }
 
-/// C = A − ΞᵀK⁺Ξ/V by conjugate gradients in double precision on K assembled contact by contact, with the levers
-/// R − δ/2 read off radii and positions.
+/// C = A − ΞᵀK⁺Ξ/V by conjugate gradients in double precision on K assembled contact by contact, with the
+/// levers R − δ/2 from radii and positions.
 fn independent_stiffness(p: &Packing) -> Matrix6<f64> {
     let length = p.radii.iter().sum::<f64>() / p.grains() as f64;
     let elements: Vec<Element> = p
@@ -174,7 +174,7 @@ fn conjugate_gradients(load: &[f64], diagonal: &[f64], apply: impl Fn(&[f64], &m
     panic!("the independent solve did not converge");
 }
 
-/// Whether G12, G13 and Θ of `c` are those of `truth` within `share`.
+/// Whether G12, G13 and Θ of `c` agree with `truth` within the fraction `share`.
 fn assert_moduli(c: &Matrix6<f64>, truth: &Matrix6<f64>, share: f64) {
     let three = |c: &Matrix6<f64>| {
         let c = grainlab_core::Stiffness(*c);
@@ -225,8 +225,8 @@ fn stiffness_of_500_spheres_of_radii_within_40_percent_is_that_of_a_sparse_solve
     assert_stiffness(500, 0.4, 2);
 }
 
-/// Of seeds 3 to 6, two packings of this size have a mode too soft for the probe's 50,000 steps; of the others, this one and
-/// 4, where 58 contacts that hardly touch open or close, the moduli are within .2 %.
+/// Of seeds 3 to 6, two packings of this size have a mode too soft for the probe's 50,000 steps. Of the
+/// others, this one and 4, where 58 weak contacts open or close, the moduli agree within .2 %.
 #[test]
 fn stiffness_of_2000_spheres_of_radii_within_40_percent_is_that_of_a_sparse_solve_and_of_the_probe() {
     assert_stiffness(2_000, 0.4, 6);

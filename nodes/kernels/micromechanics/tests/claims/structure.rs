@@ -75,7 +75,7 @@ fn a_packing_without_grains_has_no_network_and_no_nan() {
     assert_finite(&a);
 }
 
-/// An open chain unravels from its ends.
+/// In an open chain, grains become rattlers one by one from the ends.
 #[test]
 fn rattlers_are_removed_until_none_is_left() {
     let chain: Vec<[f64; 3]> = (0..5).map(|k| [k as f64, 0.5, 0.5]).collect();
@@ -89,7 +89,8 @@ fn rattlers_are_removed_until_none_is_left() {
     assert_finite(&a);
 }
 
-/// A tetrahedron of touching grains floats in the cell: everybody has three contacts, yet any strain relaxes.
+/// A tetrahedron of touching grains that does not span the cell: each grain has three contacts, but any
+/// strain relaxes.
 #[test]
 fn a_cluster_that_does_not_span_the_cell_is_no_network() {
     let h = 1.0 / 2f64.sqrt();
@@ -97,13 +98,13 @@ fn a_cluster_that_does_not_span_the_cell_is_no_network() {
     let a = measured(&sites(4.0, &tetrahedron, 0.1));
     assert_eq!(a.report.elasticity, Elasticity::NotJammed(NotJammed::Floppy { contacts: 6 }));
     assert_eq!(a.report.contacts.rattlers, 0);
-    // Without friction three contacts do not hold a grain.
+    // Without friction three contacts do not support a grain.
     let a = measured(&sites(4.0, &tetrahedron, 0.0));
     assert_eq!(a.report.elasticity, Elasticity::NotJammed(NotJammed::OnlyRattlers { grains: 4, needed: 4 }));
 }
 
-/// One grain in a cell as long as its diameter touches its own image and holds itself: a chain of infinite length, whose
-/// only stiffness is along itself.
+/// One grain in a cell as long as its diameter touches its own image: a chain of infinite length, whose only
+/// stiffness is along itself.
 #[test]
 fn a_chain_across_the_cell_is_stiff_along_itself_alone() {
     let cell = Cell::new(Mat3::from_diagonal(&(Vec3::new(3.0, 3.0, 1.0) * D))).unwrap();
@@ -202,7 +203,7 @@ fn fitted_g_returns_the_law_that_wrote_the_overlaps() {
 }
 
 #[test]
-fn the_unbalanced_ratio_counts_net_forces_of_those_who_carry() {
+fn the_unbalanced_ratio_counts_net_forces_of_non_rattlers() {
     // A closed chain of one grain: two equal and opposite forces.
     let cell = Cell::new(Mat3::from_diagonal(&(Vec3::new(3.0, 3.0, 2.0) * D))).unwrap();
     let mut p = packing(cell, vec![Vec3::zeros(), Vec3::z() * D], 0.5 * D * 1.0001, 0.1, None);

@@ -1,4 +1,4 @@
-//! Packings as they are published.
+//! Packings from a live topic.
 
 use super::measure::Analysis;
 use super::outlet::Outlet;
@@ -12,14 +12,14 @@ use grainlab_node_kit::{BulkSubscription, Bus, Demand, Exit, Wake};
 use grainlab_recordings::import::Imported;
 use std::time::Duration;
 
-/// Packings that may wait while one is measured; megabytes each.
+/// Packings in the queue while one is measured; megabytes each.
 const BACKLOG: u32 = 64;
 
-/// Nothing but a packing or a signal ends the wait.
+/// Only a packing or a signal ends the wait.
 const IDLE: Duration = Duration::from_secs(3600);
 
-/// Measures packings of `topic` until `count` are measured or a signal comes. Without a count that is the only end there is,
-/// and a good one.
+/// Measures packings of `topic` until `count` are measured or a signal arrives. Without a count a signal is
+/// the only end, and not an error.
 pub(super) fn run(
     topic: &str,
     count: Option<u64>,
@@ -49,15 +49,15 @@ pub(super) fn run(
     sink.finish()
 }
 
-/// What came.
+/// A received message.
 enum Next {
     Packing(Box<Imported>),
-    /// A message that is no packing, and why.
+    /// The message is not a valid packing, for this reason.
     Refused(String),
     Signal,
 }
 
-/// The subscription: all that knows how a packing comes over the bus.
+/// The subscription, for packings sent whole or in parts.
 struct Source {
     bus: grainlab_node_kit::DdsBus,
     packings: BulkSubscription,
@@ -67,7 +67,7 @@ struct Source {
 impl Source {
     fn subscribe(name: &str) -> Result<Self, Failure> {
         let mut bus = tool_bus("analyze")?;
-        // A topic of the contract lives as long as the program; this one name does, too.
+        // Topics of the contract are static; this name must be, too.
         let topic = Topic { name: Box::leak(name.to_owned().into_boxed_str()), ..topics::PACKING };
         let packings = BulkSubscription::subscribe(&mut bus, &topic, Demand::reliable(BACKLOG))
             .map_err(Failure::usage)?;
@@ -75,7 +75,7 @@ impl Source {
         Ok(Self { bus, packings, name })
     }
 
-    /// Waits for what comes next.
+    /// Waits for the next message or signal.
     fn next(&mut self) -> Result<Next, Failure> {
         loop {
             if let Some(sample) = self.packings.take(&mut self.bus).map_err(Failure::failed)? {

@@ -1,9 +1,9 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::commands::packings::Measure;
-use crate::results::doubts::doubts;
 use crate::results::measured_packing::MeasuredPacking;
 use crate::results::probe::{ProbeView, ScanView};
+use crate::results::state_warnings::state_warnings;
 use grainlab_core::Packing;
 use grainlab_fabric_analyzer::{Measured, messages};
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
@@ -12,27 +12,27 @@ use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 use grainlab_recordings::import::Imported;
 use std::time::Instant;
 
-/// Forward and backward stiffness of a probe may differ by this share without a warning: half of it is the error of either,
-/// and the difference of both is of a smaller order.
+/// Relative difference of the forward and the backward stiffness of a probe without a warning: half of it is
+/// the error of either, while the error of their mean is of a smaller order.
 const ONE_SIDED: f64 = 0.01;
 
-/// How packings are measured.
+/// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Analysis {
     pub(super) settings: Settings,
-    /// Amplitudes to probe with, beside the measurement proper.
+    /// Amplitudes of additional probes.
     pub(super) scan: Vec<f64>,
 }
 
-/// Stiffnesses of a scan agree if no entry differs by more than this share of the largest: the precision that probes are
-/// compared with others to.
+/// Stiffnesses of a scan agree if no entry differs by more than this fraction of the largest: the precision
+/// of comparisons with other probes.
 const AGREEMENT: f64 = 1e-3;
 
-/// What was found of one packing.
+/// The result for one packing.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) packing: MeasuredPacking,
-    /// As the node `fabric_analyzer` would publish it, or why it could not.
+    /// The messages that the node `fabric_analyzer` would publish, or the reason why it would not.
     pub(super) messages: Result<Measured, String>,
 }
 
@@ -53,7 +53,7 @@ impl Measure for Analysis {
             measured.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
         }
         let mut warnings = imported.notes.clone();
-        warnings.extend(doubts(packing, report, &imported.notes));
+        warnings.extend(state_warnings(packing, report, &imported.notes));
         warnings.extend(report.elasticity.not_jammed().map(ToString::to_string));
         warnings.extend(probe.and_then(one_sided));
         measured.warnings = warnings;
@@ -63,7 +63,7 @@ impl Measure for Analysis {
 }
 
 impl Analysis {
-    /// Probes of all amplitudes beside the frozen network.
+    /// Probes of all amplitudes, compared with the frozen network.
     fn scanned(&self, packing: &Packing) -> Result<ScanView, MicroError> {
         let set = &self.settings;
         let sweep = amplitude_sweep(packing, &explicit(set.springs), &self.scan, AGREEMENT)?;
@@ -73,7 +73,7 @@ impl Analysis {
     }
 }
 
-/// What a probe says about a response that depends on the direction of the strain.
+/// A warning of a probe if the response depends on the direction of the strain.
 fn one_sided(probe: &StrainProbeResult) -> Option<String> {
     let changed = probe.sum(|c| c.opened + c.closed);
     let worst = probe.forward_backward().unwrap_or(0.0);
@@ -86,7 +86,7 @@ fn one_sided(probe: &StrainProbeResult) -> Option<String> {
     })
 }
 
-/// A probe in which contacts stick, or slide freely.
+/// A probe with infinite or zero friction.
 pub(super) fn explicit(springs: Springs) -> StrainProbe {
     let probe = StrainProbe::default();
     StrainProbe { friction: if springs.has_tangential() { probe.friction } else { 0.0 }, ..probe }

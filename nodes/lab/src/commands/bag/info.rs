@@ -43,7 +43,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 struct View {
     #[serde(flatten)]
     info: Info,
-    /// Id of the run; null where the recorder was not bound to one.
+    /// Id of the run; null if the recorder was not bound to one.
     run: Option<String>,
     /// Processes whose messages were left out.
     strangers: Vec<StrangerView>,

@@ -15,15 +15,15 @@ Examples:
   grainlab bag play recordings/runs/demo-1-1 --rate 10 --start-offset 2.5
 
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
-publishes is left out and named: two writers would mix their messages.";
+publishes is left out with a message: two writers would mix their messages.";
 
 /// Time to discover the publishers, and for all subscriptions to be discovered after the first.
 const LOOK_AROUND: Duration = Duration::from_millis(700);
 const SETTLE: Duration = Duration::from_millis(1000);
 /// Pause before the next attempt to send a message while a reader is slow.
 const HOLD: Duration = Duration::from_millis(5);
-/// Time limit for the last messages, and how long this process then stays: readers lose the samples they have not taken
-/// when their writer leaves.
+/// Time limit for the last messages, and time for which this process stays afterwards: when a writer leaves,
+/// readers lose the samples that they have not taken.
 const FAREWELL: Duration = Duration::from_secs(5);
 const GRACE: Duration = Duration::from_millis(300);
 
@@ -73,10 +73,10 @@ pub(crate) struct Args {
     /// Recorded seconds per second; inf is as fast as the readers can receive
     #[arg(short, long, value_name = "RATE", default_value_t = 1.0)]
     rate: f64,
-    /// Where to start, s after the first message
+    /// Start, s after the first message
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     start_offset: f64,
-    /// How much to play, s of the recording [default: to the end]
+    /// Duration to play, s of the recording [default: to the end]
     #[arg(long, value_name = "S")]
     duration: Option<f64>,
     /// Subscribers that every topic needs before sending
@@ -160,7 +160,8 @@ fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
     }
 }
 
-/// Advertises one recorded topic under its recorded name; the inner error is the reason why not.
+/// Advertises one recorded topic under its recorded name; the inner error is the reason if it is not
+/// possible.
 fn offer(bus: &mut DdsBus, name: &str) -> Result<Result<Outlet, String>, Failure> {
     let Some(row) = Topic::by_name(name) else {
         return Ok(Err("its type is not one of the laboratory".to_owned()));

@@ -13,7 +13,7 @@ Examples:
   grainlab bag record -a -o my_run
   grainlab bag record --topics stress packing
 
-Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost on the way.";
+Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost.";
 
 /// Arguments of `grainlab bag record`.
 #[derive(Debug, clap::Args)]

@@ -6,14 +6,14 @@ use grainlab_core::Material;
 use grainlab_emt::{CalibrationSample, Modulus};
 use std::path::Path;
 
-/// Which columns tell packings apart.
+/// The columns that identify packings.
 pub(super) struct Naming<'a> {
     pub(super) preparation: &'a [String],
     pub(super) packing: &'a [String],
 }
 
-/// Every packing of a table. A row that is none is named, and then there is no calibration: one learned from the rest
-/// would say nothing of it.
+/// Every packing of a table. An invalid row is reported, and the calibration is refused, because it would not
+/// include that row.
 pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSample>, Failure> {
     let by = [naming.preparation, naming.packing].concat();
     let mut rows = Rows::open(path, &by, Defaults::default())?;
@@ -35,7 +35,7 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
     }
     let name = rows.name();
     if bad > 0 {
-        return Err(Failure::usage(format!("{name}: {bad} rows are no packings to learn from")));
+        return Err(Failure::usage(format!("{name}: {bad} rows are not valid packings")));
     }
     if samples.is_empty() {
         return Err(Failure::usage(format!("{name}: there is no packing below the header")));
@@ -43,7 +43,7 @@ pub(super) fn read(path: &Path, naming: &Naming<'_>) -> Result<Vec<CalibrationSa
     Ok(samples)
 }
 
-/// The first `preparation` cells grouped by say how it was prepared, those behind them which packing it is.
+/// The first `preparation` cells grouped by identify the preparation, those after them the packing.
 fn sample(row: &Row, preparation: usize) -> Result<CalibrationSample, String> {
     let State { moduli, truth, phi, grains, grain_shear_modulus, poisson, .. } = &row.state;
     let need = |value: Option<f64>, name: &str| match value {

@@ -1,8 +1,9 @@
-//! A calibration for people.
+//! A calibration as text.
 
 use grainlab_console::Table;
+use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{AmplitudeLaw, RelaxationCalibration, ScalingLaw};
-use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration, Quantity};
+use grainlab_emt::{Calibration, CalibrationSample, IsotropicCalibration};
 use std::collections::BTreeSet;
 
 /// Constants with their standard errors, scatter, and ranges.
@@ -18,7 +19,7 @@ pub(super) fn text(
         }
     }
     text += "\nEqs. 21 and 22, G = alpha (k + beta) p^(1/3), Theta = rho (k + zeta) p^(1/3), in MPa\n";
-    let lines = [Quantity::K, Quantity::Z].map(|q| calibration.with_coordination_kind(q));
+    let lines = [InferredQuantity::K, InferredQuantity::Z].map(|q| calibration.with_coordination_kind(q));
     text += &line_table(lines.iter().flatten().map(Calibration::isotropic));
     if let Some(network) = calibration.network() {
         text += &network_text(network);
@@ -85,7 +86,7 @@ fn network_text(n: &RelaxationCalibration) -> String {
     let [z, eps] = [n.z, n.eps];
     format!(
         "\nRelaxed networks of {} grains, in units of E*^(2/3) p^(1/3): z {:.3} to {:.3}, eps {:.3} to {:.3}, phi0 = {:.4}, \
-         p0 = {} kPa\n{}{}Scatter of packings that the laws have not seen, times (z - 4)/z\n{}",
+         p0 = {} kPa\n{}{}Scatter of packings left out of the fit of the laws, times (z - 4)/z\n{}",
         n.grains,
         z[0],
         z[1],
@@ -113,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_told_to_two_digits() {
+    fn errors_are_printed_with_two_digits() {
         for (value, text) in [(0.000_123_4, "0.00012"), (1.808, "1.8"), (23.7, "24"), (0.0, "0")] {
             assert_eq!(significant(value), text);
         }

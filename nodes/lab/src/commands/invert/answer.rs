@@ -1,4 +1,4 @@
-//! What the models say of one state.
+//! The results of the models for one state.
 
 use super::columns::BadRow;
 use super::explain::Explained;
@@ -7,22 +7,23 @@ use super::state::State;
 use super::way::Way;
 use crate::results::inference::Inference;
 use grainlab_console::worse;
-use grainlab_emt::{EmtError, Estimate, Quantity};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{EmtError, Estimate};
 use grainlab_node_kit::Exit;
 use serde::Serialize;
 
-/// One state and one outcome for each way.
+/// One state and one outcome per way.
 #[derive(Debug)]
 pub(super) struct Answer {
     /// Line of the table.
     pub(super) line: Option<u64>,
-    /// Or why the line is none.
+    /// Or the reason why the line is invalid.
     pub(super) state: Result<State, BadRow>,
-    /// As many as there are ways; none where there is no state.
+    /// One per way; empty without a state.
     pub(super) outcomes: Vec<Result<Estimate, EmtError>>,
 }
 
-/// As JSON has it.
+/// As JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct View<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,7 +34,7 @@ pub(super) struct View<'a> {
     more: More,
 }
 
-/// What is only told when asked for.
+/// Additional output on demand.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct More {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,13 +44,13 @@ pub(super) struct More {
 }
 
 impl Answer {
-    /// What each way makes of a state.
+    /// The outcome of each way for a state.
     pub(super) fn of(state: State, line: Option<u64>, ways: &[Way]) -> Self {
         let outcomes = ways.iter().map(|way| state.infer(way)).collect();
         Self { line, state: Ok(state), outcomes }
     }
 
-    /// Of a line that is no state.
+    /// For an invalid line.
     pub(super) fn of_bad_row(row: BadRow, line: u64) -> Self {
         Self { line: Some(line), state: Err(row), outcomes: Vec::new() }
     }
@@ -61,7 +62,7 @@ impl Answer {
         }
     }
 
-    /// With the stable keys of results, one for each way.
+    /// With the stable keys of results, one per way.
     pub(super) fn inferences(&self, ways: &[Way]) -> Vec<Inference> {
         let one = |(i, way): (usize, &Way)| self.inference(way, self.outcomes.get(i));
         ways.iter().enumerate().map(one).collect()
@@ -89,9 +90,9 @@ impl Answer {
         View { line: self.line, inputs, results: self.inferences(ways), more }
     }
 
-    /// How a command ends that had nothing but this to say. Numbers that are no moduli are wrong usage, moduli that no
-    /// packing has are invalid physics. That a model needs what is not given is no fault, unless nothing at all could be
-    /// inferred.
+    /// The exit code of a command with only this result. Invalid moduli are wrong usage, moduli that no
+    /// packing has are invalid physics. A model that lacks an input is not an error, unless no model has a
+    /// result.
     pub(super) fn exit(&self) -> Exit {
         if self.state.is_err() || !self.outcomes.iter().any(Result::is_ok) && self.errors().all(is_lacking) {
             return Exit::Usage;
@@ -101,7 +102,7 @@ impl Answer {
         })
     }
 
-    /// What went wrong, each fault once with the models it comes from; empty if [`Answer::exit`] is `Done`.
+    /// The errors, each once with its models; empty if [`Answer::exit`] is `Done`.
     pub(super) fn faults(&self, ways: &[Way]) -> Vec<String> {
         if let Err(row) = &self.state {
             return vec![row.fault.clone()];
@@ -143,13 +144,13 @@ impl Answer {
     }
 }
 
-/// Whether a model was not told enough.
+/// Whether a model lacked an input.
 fn is_lacking(error: &EmtError) -> bool {
     matches!(error, EmtError::Missing { .. } | EmtError::NotCalibrated { .. })
 }
 
-/// What the model speaks of and the data do not determine.
+/// Quantities of the model that the data do not determine.
 fn undetermined(estimate: &Estimate) -> Option<String> {
-    let names: Vec<&str> = estimate.undetermined().map(Quantity::name).collect();
-    (!names.is_empty()).then(|| format!("what is given does not determine {}", names.join(", ")))
+    let names: Vec<&str> = estimate.undetermined().map(InferredQuantity::name).collect();
+    (!names.is_empty()).then(|| format!("the data do not determine {}", names.join(", ")))
 }

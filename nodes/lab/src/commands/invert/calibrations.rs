@@ -6,15 +6,15 @@ use grainlab_recordings::input;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The name that stands for each model's own.
+/// The name for the default calibration of each model.
 pub(super) const DEFAULT: &str = "default";
 
-/// What the models take their constants from.
+/// The constants of the models.
 #[derive(Clone, Debug)]
 pub(super) enum Choice {
-    /// Each model from the one that is made for it.
+    /// Each model has its default calibration.
     Default,
-    /// All of them from this one.
+    /// One calibration for all models.
     One(Arc<Calibration>),
 }
 
@@ -24,7 +24,7 @@ impl Choice {
         if name == DEFAULT { Ok(Self::Default) } else { load(name).map(Arc::new).map(Self::One) }
     }
 
-    /// What this model takes.
+    /// The calibration of this model.
     pub(super) fn of(&self, model: &dyn Model) -> Arc<Calibration> {
         match self {
             Self::Default => Arc::new(model.default_calibration().clone()),

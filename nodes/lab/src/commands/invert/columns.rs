@@ -7,7 +7,7 @@ use csv_core::{ReadRecordResult, Terminator};
 use grainlab_core::{Stiffness, Vec3};
 use grainlab_emt::{Measured, Moduli};
 
-/// What holds for every row that does not say otherwise.
+/// Inputs common to all rows without their own.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Defaults {
     pub(crate) relative_error: Option<f64>,
@@ -15,17 +15,17 @@ pub(crate) struct Defaults {
     pub(crate) poisson: Option<f64>,
 }
 
-/// Where in a row everything is. A column that is not named here is not read.
+/// Positions of the inputs in a row. Other columns are ignored.
 pub(crate) struct Columns {
     names: Vec<String>,
-    /// Inputs with their column, and what one unit there is in SI.
+    /// Inputs with their column, and its unit in SI.
     inputs: Vec<(&'static Input, usize, f64)>,
-    /// All 36 entries of a stiffness, row by row. With them C11, C33 and C13 are entries of a matrix and no moduli of a
-    /// medium: those are then its projection.
+    /// All 36 entries of a stiffness, row by row. With them, columns C11, C33 and C13 are entries of a
+    /// matrix; the moduli are those of its projection.
     stiffness: Option<[usize; 36]>,
-    /// Axis that the stiffness is projected about, which moduli, strain ratios and truth are about, too; e3 without.
+    /// Axis of the projection, to which moduli, strain ratios and truth refer, too; e3 by default.
     reference_axis: Option<[usize; 3]>,
-    /// Whether the moduli are named as those that `grainlab analyze` projects a stiffness on.
+    /// Whether the moduli have the names of the projection that `grainlab analyze` prints.
     projected: bool,
     sample: Option<usize>,
     source: Option<usize>,
@@ -34,7 +34,7 @@ pub(crate) struct Columns {
     defaults: Defaults,
 }
 
-/// A row that is a state.
+/// A valid row.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) state: State,
@@ -42,7 +42,7 @@ pub(crate) struct Row {
     pub(crate) group: Vec<String>,
 }
 
-/// A row that is not.
+/// An invalid row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BadRow {
     pub(crate) sample: Option<String>,
@@ -50,7 +50,7 @@ pub(crate) struct BadRow {
 }
 
 impl Columns {
-    /// Of a header line; rows are grouped by the columns named in `by`.
+    /// From a header line; rows are grouped by the columns named in `by`.
     pub(crate) fn of_header(line: &[u8], by: &[String], defaults: Defaults) -> Result<Self, String> {
         let mut splitter = Splitter::new();
         let names = splitter.cells(line).map_err(|fault| format!("the header: {fault}"))?;
@@ -68,7 +68,7 @@ impl Columns {
         for input in INPUTS {
             let mut found = Vec::new();
             for alias in input.names() {
-                // Beside the entries of a stiffness, the aliases of a modulus are these entries.
+                // With the entries of a stiffness, the aliases of a modulus are these entries.
                 let is_entry = stiffness.is_some() && input.role == Role::Modulus && alias.name != input.key;
                 if let Some(column) = find(alias.name)?.filter(|_| !is_entry) {
                     found.push((input, column, alias.factor));
@@ -76,7 +76,7 @@ impl Columns {
             }
             if let (Role::Pressure, [(_, one, _), (_, other, _), ..]) = (input.role, &found[..]) {
                 let (one, other) = (&names[*one], &names[*other]);
-                return Err(format!("columns {one} and {other} both say the pressure: which one is meant?"));
+                return Err(format!("columns {one} and {other} both contain the pressure: keep one of them"));
             }
             inputs.extend(found.into_iter().next());
         }
@@ -106,12 +106,12 @@ impl Columns {
         })
     }
 
-    /// Whether a column has what an estimate can be compared with.
+    /// Whether a column contains the truth of an estimate.
     pub(crate) fn has_truth(&self) -> bool {
         self.inputs.iter().any(|(input, ..)| input.role == Role::Truth)
     }
 
-    /// The state of a line; `None` of one that is blank or a comment.
+    /// The state of a line; `None` if it is blank or a comment.
     pub(crate) fn row(&self, line: &[u8], splitter: &mut Splitter) -> Option<Result<Row, BadRow>> {
         if line.first() == Some(&b'#') || line.iter().all(u8::is_ascii_whitespace) {
             return None;
@@ -138,7 +138,7 @@ impl Columns {
             return Some(cells.get(column).to_owned());
         }
         let source = cells.get(self.source?);
-        // One recording holds many packings.
+        // One recording may contain many packings.
         Some(match self.step {
             Some(step) => format!("{source} step {}", cells.get(step)),
             None => source.to_owned(),
@@ -163,7 +163,7 @@ impl Columns {
                 continue;
             };
             if input.role == Role::Stddev && !(value >= 0.0 && value.is_finite()) {
-                return Err(format!("column {}: {value} is no standard deviation", self.names[*column]));
+                return Err(format!("column {}: {value} is not a standard deviation", self.names[*column]));
             }
             (input.set)(&mut state, value * factor);
         }
@@ -194,7 +194,7 @@ impl Columns {
         Ok(values)
     }
 
-    /// The stiffness, where its columns are there and not empty.
+    /// The stiffness, if its columns exist and are not empty.
     fn stiffness(&self, cells: &Cells<'_>) -> Result<Option<Stiffness>, String> {
         let Some(columns) = &self.stiffness else { return Ok(None) };
         let entries = self.numbers(cells, columns)?;
@@ -208,7 +208,7 @@ impl Columns {
         Ok(Some(Stiffness::from_row_major(&entries.map(Option::unwrap_or_default))))
     }
 
-    /// The reference axis, a unit vector; e3 where the row says none.
+    /// The reference axis, a unit vector; e3 by default.
     fn axis(&self, cells: &Cells<'_>) -> Result<Vec3, String> {
         let Some(columns) = &self.reference_axis else { return Ok(Vec3::z()) };
         let axis = self.numbers(cells, columns)?;
@@ -216,17 +216,17 @@ impl Columns {
             return Ok(Vec3::z());
         }
         let axis = Vec3::from(axis.map(|c| c.unwrap_or(f64::NAN)));
-        // As it is where it is e3: no rounding then.
+        // Unchanged if it is e3, so that there is no rounding.
         let unit = if axis == Vec3::z() { axis } else { axis.normalize() };
         if unit.iter().all(|c| c.is_finite()) {
             Ok(unit)
         } else {
-            Err("columns reference_axis_x, reference_axis_y, reference_axis_z are no direction".to_owned())
+            Err("columns reference_axis_x, reference_axis_y, reference_axis_z are not a direction".to_owned())
         }
     }
 }
 
-/// Columns reference_axis_x, _y, _z: all or none.
+/// Columns reference_axis_x, _y, _z: all or none of them.
 fn axis_columns(find: &impl Fn(&str) -> Result<Option<usize>, String>) -> Result<Option<[usize; 3]>, String> {
     let [x, y, z] = ["reference_axis_x", "reference_axis_y", "reference_axis_z"].map(find);
     match [x?, y?, z?] {
@@ -238,7 +238,7 @@ fn axis_columns(find: &impl Fn(&str) -> Result<Option<usize>, String>) -> Result
     }
 }
 
-/// Columns c11_pa to c66_pa if each entry is there, or its mirror image.
+/// Columns c11_pa to c66_pa if each entry exists, or its transposed one.
 fn stiffness_columns(
     find: &impl Fn(&str) -> Result<Option<usize>, String>,
 ) -> Result<Option<[usize; 36]>, String> {
@@ -253,7 +253,8 @@ fn stiffness_columns(
     Ok(Some(columns))
 }
 
-/// A cell as the name of a group: a number that is not whole, a pressure as a servo leaves it, to three digits.
+/// A cell as the name of a group: numbers that are not whole, such as the pressure at the end of a servoed
+/// phase, to three digits.
 fn group_label(cell: &str) -> String {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() && value.fract() != 0.0 => {
@@ -264,8 +265,8 @@ fn group_label(cell: &str) -> String {
     }
 }
 
-/// Splits lines into cells. A cell in quotes may hold commas and doubled quotes, but no line break, so that one bad cell cannot
-/// swallow the lines after it. Space around a cell is no part of it.
+/// Splits lines into cells. A cell in quotes may contain commas and doubled quotes, but no line break, so
+/// that an invalid cell affects only its line. Space around a cell is ignored.
 pub(crate) struct Splitter {
     reader: csv_core::Reader,
     text: Vec<u8>,
@@ -285,7 +286,7 @@ impl Splitter {
     }
 
     fn cells(&mut self, line: &[u8]) -> Result<Cells<'_>, &'static str> {
-        // A place to spare in both: full is not empty.
+        // One more place than needed, so that a full buffer is distinct from an empty one.
         self.text.resize(self.text.len().max(line.len() + 1), 0);
         let most = 2 + line.iter().filter(|b| **b == b',').count();
         self.ends.resize(self.ends.len().max(most), 0);
@@ -296,7 +297,7 @@ impl Splitter {
         if result != ReadRecordResult::Record {
             return Err("a quote is not closed on its line");
         }
-        let text = std::str::from_utf8(&self.text[..written + more]).map_err(|_| "it is no text (UTF-8)")?;
+        let text = std::str::from_utf8(&self.text[..written + more]).map_err(|_| "it is not UTF-8 text")?;
         Ok(Cells { text, ends: &self.ends[..ended + last] })
     }
 }
@@ -343,7 +344,7 @@ mod tests {
         assert_eq!(few.moduli.values(), [None, None, None, Some(300.0), Some(200.0), Some(100.0)]);
         assert_eq!(few.asymmetry, None);
 
-        // C11 ≠ C22: neither is the modulus of the medium.
+        // C11 ≠ C22: neither is the modulus of the projection.
         let mut entries = [0.0; 36];
         for (n, value) in [(0, 300.0), (7, 340.0), (14, 280.0), (21, 90.0), (28, 110.0), (35, 95.0)] {
             entries[n] = value;
@@ -358,7 +359,7 @@ mod tests {
         assert_eq!(full.asymmetry, Some(medium.residual));
         assert_ne!(full.moduli.get(Modulus::C11), Some(300.0));
 
-        // About the axis of the row, which a packing measured about it has in its columns.
+        // About the axis of the row, which is in the columns of a packing measured about it.
         let axis = "reference_axis_x,reference_axis_y,reference_axis_z";
         let about = |cells: &str| {
             state(&format!("p_pa,{},{axis}", matrix_names().join(",")), &format!("5e4,{row},{cells}"))
@@ -367,9 +368,9 @@ mod tests {
         assert_eq!(about("2,0,0").unwrap().moduli, Moduli::of_medium(&turned));
         assert_eq!(about("0,0,1").unwrap().moduli, full.moduli);
         assert_eq!(about(",,").unwrap().moduli, full.moduli);
-        assert!(about("0,0,0").unwrap_err().contains("no direction"));
+        assert!(about("0,0,0").unwrap_err().contains("not a direction"));
 
-        // One half of it says the same.
+        // One half of the matrix suffices.
         let upper: Vec<usize> = (0..36).filter(|n| n / 6 <= n % 6).collect();
         let names = matrix_names();
         let header = upper.iter().map(|n| names[*n].clone()).collect::<Vec<_>>().join(",");
@@ -405,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_no_negative_numbers() {
+    fn negative_errors_are_refused() {
         let fault = state("p_pa,g12_pa,g12_sigma_pa", "5e4,1e8,-1e6").unwrap_err();
         assert!(fault.contains("g12_sigma_pa") && fault.contains("-1000000"), "{fault}");
     }

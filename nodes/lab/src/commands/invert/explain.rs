@@ -1,8 +1,9 @@
-//! Which datum decides which unknown, and what the uncertainty is made of.
+//! Contribution of each datum to the uncertainty of each unknown, and the parts due to data and model.
 
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{EmtError, Estimate, INPUT_NAMES, Quantity, StructureCovariance};
+use grainlab_core::results::{InferredQuantity, MicrostructureCovariance};
+use grainlab_emt::{EmtError, Estimate, INPUT_NAMES};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -15,15 +16,15 @@ pub(super) struct Explained {
     quantity: &'static str,
     value: Option<f64>,
     sigma: Option<f64>,
-    /// The parts of it: from the errors of the data, and from what the model leaves out.
+    /// Its parts: from the errors of the data, and from the model.
     sigma_data: Option<f64>,
     sigma_model: Option<f64>,
-    /// Share of each input in the variance that the errors of the data cause.
+    /// Contribution of each input to the variance from the errors of the data, as fractions.
     information: BTreeMap<&'static str, f64>,
     condition_number: Option<f64>,
 }
 
-/// All that the models found.
+/// All results of the models.
 pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -> Vec<Explained> {
     let found = outcomes.iter().zip(ways).filter_map(|(o, way)| Some((o.as_ref().ok()?, way)));
     found.flat_map(|(estimate, way)| of_estimate(estimate, way)).collect()
@@ -31,10 +32,10 @@ pub(super) fn explained(outcomes: &[Result<Estimate, EmtError>], ways: &[Way]) -
 
 fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
     let condition_number = estimate.condition_number();
-    let determined = Quantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
-    let one = |quantity: Quantity| {
+    let determined = InferredQuantity::ALL.into_iter().filter(|q| estimate.structure.get(*q).is_some());
+    let one = |quantity: InferredQuantity| {
         let i = quantity as usize;
-        let part = |c: Option<StructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
+        let part = |c: Option<MicrostructureCovariance>| c.map(|c| c[(i, i)].max(0.0).sqrt());
         let shares = estimate.information(quantity).unwrap_or_default();
         Explained {
             model: way.model.name(),
@@ -52,7 +53,7 @@ fn of_estimate(estimate: &Estimate, way: &Way) -> Vec<Explained> {
     determined.map(one).collect()
 }
 
-/// As a table for people: a column for each input that has a say.
+/// As a text table with a column for each contributing input.
 pub(super) fn people(explained: &[Explained]) -> String {
     let has_a_say = |name: &&&str| explained.iter().any(|e| e.information.contains_key(**name));
     let inputs: Vec<&str> = INPUT_NAMES.iter().filter(has_a_say).copied().collect();

@@ -1,4 +1,4 @@
-//! The table of what a state may hold: keys of a table's columns and of JSON, and where each number belongs.
+//! The inputs of a state: keys of a table's columns and of JSON, and the number that each one sets.
 
 use super::state::State;
 use grainlab_core::quantity::{Alias, by_key};
@@ -10,29 +10,29 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 pub(super) struct Input {
     /// Its name in JSON.
     pub(super) key: &'static str,
-    /// What it is; empty where the table of quantities says so.
+    /// Its meaning; empty if the table of quantities contains it.
     meaning: &'static str,
     pub(super) role: Role,
     pub(super) get: fn(&State) -> Option<f64>,
     pub(super) set: fn(&mut State, f64),
 }
 
-/// What an input is for.
+/// The role of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
-    /// The one that is needed.
+    /// The required input.
     Pressure,
-    /// One of the moduli: with all 36 entries of a stiffness it follows from these.
+    /// One of the moduli, which follow from the 36 entries of a stiffness, if given.
     Modulus,
     /// Standard deviation: 0 or more.
     Stddev,
-    /// Anything else that a model takes.
+    /// Another input of a model.
     Datum,
-    /// What estimates are compared with.
+    /// The truth for comparisons.
     Truth,
 }
 
-/// The inputs, a row each: key, role, meaning, how to get and how to set it.
+/// The inputs, one per row: key, role, meaning, getter and setter.
 macro_rules! inputs {
     ($($key:literal $role:ident $meaning:literal |$from:ident| $get:expr, |$state:ident, $value:ident| $set:expr;)*) => {
         &[$(Input {
@@ -45,7 +45,7 @@ macro_rules! inputs {
     };
 }
 
-/// Every number that a table may have of a state, in the order of JSON.
+/// Every input that a table may contain, in the order of JSON.
 pub(super) static INPUTS: &[Input] = inputs! {
     "g12_pa" Modulus "" |s| s.moduli.get(Modulus::G12), |s, v| s.set_modulus(Modulus::G12, v);
     "g12_sigma_pa" Stddev "standard deviation of g12_pa" |s| s.sigma_of(Modulus::G12), |s, v| s.set_sigma(Modulus::G12, v);
@@ -59,12 +59,12 @@ pub(super) static INPUTS: &[Input] = inputs! {
     "c33_sigma_pa" Stddev "of c33_pa" |s| s.sigma_of(Modulus::C33), |s, v| s.set_sigma(Modulus::C33, v);
     "c13_pa" Modulus "" |s| s.moduli.get(Modulus::C13), |s, v| s.set_modulus(Modulus::C13, v);
     "c13_sigma_pa" Stddev "of c13_pa" |s| s.sigma_of(Modulus::C13), |s, v| s.set_sigma(Modulus::C13, v);
-    "theta_printed_pa" Datum "what the model ratio-as-printed takes for theta_pa"
+    "theta_printed_pa" Datum "theta_pa of the model ratio-as-printed"
         |s| s.theta_printed, |s, v| s.theta_printed = Some(v);
     "pressure_pa" Pressure "" |s| Some(s.pressure.value), |s, v| s.pressure.value = v;
     "pressure_sigma_pa" Stddev "standard deviation of the pressure"
         |s| Some(s.pressure.stddev), |s, v| s.pressure.stddev = v;
-    "gamma_over_delta" Datum "ratio of deviatoric to volumetric strain; as grainlab analyze measures it: the next three (see --gamma)"
+    "gamma_over_delta" Datum "ratio of deviatoric to volumetric strain; measured by grainlab analyze: the next three (see --gamma)"
         |s| s.gamma.map(|g| g.value), |s, v| s.gamma = Some(Measured::exact(v));
     "gamma_over_delta_sigma" Stddev "standard deviation of gamma_over_delta"
         |s| s.gamma.map(|g| g.stddev), |s, v| if let Some(gamma) = &mut s.gamma { gamma.stddev = v };
@@ -85,8 +85,8 @@ pub(super) static INPUTS: &[Input] = inputs! {
 };
 
 impl Input {
-    /// Names of a column that has it, the preferred one first, and what one unit there is in SI: the quantity of a packing of
-    /// this key, or whose alias it is, and the aliases of that one.
+    /// Column names of an input, the preferred one first, with its unit in SI: the quantity of a packing with
+    /// this key or alias, and all its aliases.
     pub(super) fn names(&self) -> Vec<Alias> {
         let called = |name| Alias { name, factor: 1.0 };
         let is_it = |aliases: &[Alias]| aliases.iter().any(|a| a.name == self.key);
@@ -102,7 +102,7 @@ impl Input {
     }
 }
 
-/// The columns in words, for the help of a command: a line each.
+/// The columns as text for the help of a command, one line each.
 pub(super) fn reference() -> String {
     let line = |input: &Input| {
         let names: Vec<&str> = input.names().iter().map(|alias| alias.name).collect();
@@ -111,7 +111,7 @@ pub(super) fn reference() -> String {
     INPUTS.iter().map(line).collect()
 }
 
-/// The numbers as given, with the standard deviations that hold.
+/// The inputs given, with the standard deviations in force.
 impl Serialize for State {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

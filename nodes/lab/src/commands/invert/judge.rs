@@ -1,6 +1,6 @@
-//! Estimates against the truth of a table, model by model.
+//! Estimates against the truth in a table, model by model.
 //!
-//! - [`score`]: errors of one quantity, summed up; [`plot`]: estimates against the truth, drawn
+//! - [`score`]: statistics of the errors of one quantity; [`plot`]: estimates against the truth, plotted
 
 mod plot;
 mod score;
@@ -12,38 +12,39 @@ use super::state::State;
 use super::table::Tally;
 use super::way::Way;
 use grainlab_console::{Failure, Format, Table, exact, fixed, json, print};
-use grainlab_emt::Quantity;
+use grainlab_core::results::InferredQuantity;
 use grainlab_node_kit::Exit;
 use score::Score;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What one way makes of one quantity of one group of rows.
+/// The result of one way for one quantity of one group of rows.
 #[derive(Debug, Serialize)]
 struct Judged {
     /// Cells of the columns grouped by.
     group: Vec<String>,
     model: &'static str,
     calibration: String,
-    /// Which γ/Δ the model was fed with, or `none`.
+    /// The γ/Δ that the model used, or `none`.
     gamma_over_delta_source: &'static str,
     quantity: &'static str,
-    /// What it is compared with.
+    /// The quantity that it is compared with.
     truth: &'static str,
     #[serde(flatten)]
     score: Score,
 }
 
-/// What one row says of one way: the γ/Δ it was fed with, and the error of each quantity whose truth is known.
+/// The result of one way for one row: the γ/Δ used, and the error of each quantity whose truth is known.
 struct Verdict {
     gamma: &'static str,
-    errors: [Option<score::Error>; grainlab_emt::QUANTITIES],
+    errors: [Option<score::Error>; grainlab_core::results::InferredQuantity::COUNT],
     /// True and inferred contact anisotropy.
     anisotropy: Option<[f64; 2]>,
 }
 
-/// Inverts every row, and prints how far from the truth it is; `plot` is the file of the figure, if one is drawn.
+/// Inverts every row, and prints the errors against the truth; `plot` is the file of the plot, if one is
+/// drawn.
 pub(super) fn run(
     mut rows: Rows,
     by: &[String],
@@ -52,7 +53,7 @@ pub(super) fn run(
     format: Format,
 ) -> Result<Exit, Failure> {
     if !rows.columns.has_truth() {
-        let needed = Quantity::ALL.map(Quantity::name).join(", ");
+        let needed = InferredQuantity::ALL.map(InferredQuantity::name).join(", ");
         return Err(Failure::usage(format!("{}: no column to judge by ({needed})", rows.name())));
     }
     let mut tally = Tally::new();
@@ -74,7 +75,7 @@ pub(super) fn run(
                     }
                     board.enter(group, &verdicts);
                 }
-                // That a model has no estimate is what is judged. That a row is none is not.
+                // A missing estimate is part of the statistics. An invalid row is an error.
                 Err((number, bad)) => {
                     let answer = Answer::of_bad_row(bad, number);
                     tally.add(answer.exit(), &answer.complaint(ways));
@@ -98,7 +99,7 @@ pub(super) fn run(
 impl Verdict {
     fn of(state: &State, way: &Way) -> Self {
         let estimate = state.infer(way).ok();
-        let errors = Quantity::ALL.map(|quantity| {
+        let errors = InferredQuantity::ALL.map(|quantity| {
             let truth = state.truth.get(against(quantity, way))?;
             Some(score::Error::of(estimate.as_ref(), quantity, truth))
         });
@@ -108,10 +109,11 @@ impl Verdict {
     }
 }
 
-/// What a quantity is compared with: k̂ is no property of a packing, the coordination number that it stands for is.
-fn against(quantity: Quantity, way: &Way) -> Quantity {
+/// The quantity for comparison: k̂ is not a property of a packing, so that the coordination number of its
+/// calibration is used.
+fn against(quantity: InferredQuantity, way: &Way) -> InferredQuantity {
     match quantity {
-        Quantity::KHat => way.calibration.isotropic().coordination_kind,
+        InferredQuantity::KHat => way.calibration.isotropic().coordination_kind,
         other => other,
     }
 }
@@ -124,7 +126,7 @@ type Place = (usize, usize, &'static str);
 struct Board {
     groups: Vec<Vec<String>>,
     index: HashMap<Vec<String>, usize>,
-    scores: Vec<(Place, [Score; grainlab_emt::QUANTITIES])>,
+    scores: Vec<(Place, [Score; grainlab_core::results::InferredQuantity::COUNT])>,
     places: HashMap<Place, usize>,
 }
 
@@ -152,24 +154,29 @@ impl Board {
         }
     }
 
-    /// Of everything that a model speaks of and the truth is known of.
+    /// For each quantity of the model whose truth is known.
     fn judged(mut self, ways: &[Way]) -> Vec<Judged> {
         self.scores.sort_by_key(|((group, way, _), _)| (*group, *way));
         let groups = self.groups;
-        let of = |((group, way, gamma), scores): (Place, [Score; grainlab_emt::QUANTITIES])| {
+        let of = |((group, way, gamma), scores): (
+            Place,
+            [Score; grainlab_core::results::InferredQuantity::COUNT],
+        )| {
             let (group, way) = (groups[group].clone(), &ways[way]);
             let domain = way.model.domain(&way.calibration);
-            let speaks = move |(q, score): &(Quantity, Score)| {
+            let relevant = move |(q, score): &(InferredQuantity, Score)| {
                 score.rows > 0 && (score.solved > 0 || domain.structure[*q as usize].is_some())
             };
-            Quantity::ALL.into_iter().zip(scores).filter(speaks).map(move |(quantity, score)| Judged {
-                group: group.clone(),
-                model: way.model.name(),
-                calibration: way.calibration.name().to_owned(),
-                gamma_over_delta_source: gamma,
-                quantity: quantity.name(),
-                truth: against(quantity, way).name(),
-                score,
+            InferredQuantity::ALL.into_iter().zip(scores).filter(relevant).map(move |(quantity, score)| {
+                Judged {
+                    group: group.clone(),
+                    model: way.model.name(),
+                    calibration: way.calibration.name().to_owned(),
+                    gamma_over_delta_source: gamma,
+                    quantity: quantity.name(),
+                    truth: against(quantity, way).name(),
+                    score,
+                }
             })
         };
         self.scores.into_iter().flat_map(of).collect()
@@ -184,7 +191,7 @@ fn people(judged: &[Judged], by: &[String]) -> String {
     for j in judged {
         let digits = if j.quantity.starts_with("eps") { 4 } else { 3 };
         let s = &j.score;
-        // Rounding leaves no sign on a zero.
+        // Removes the sign of a rounded zero.
         let number = |value: Option<f64>| {
             let text = fixed(value, digits);
             let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));

@@ -1,4 +1,4 @@
-//! The lines of a text as they come, in pieces of bounded size.
+//! The lines of a stream, in pieces of bounded size.
 
 use grainlab_console::Failure;
 use grainlab_recordings::input;
@@ -7,22 +7,22 @@ use std::io::{ErrorKind, Read};
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
-/// Most bytes taken at once: some thousand rows of a few numbers.
+/// Maximum number of bytes read at once: some thousand rows of a few numbers.
 const PIECE: usize = 1 << 18;
 
-/// Longest line of a table, bytes. What is longer is cut just behind it, so that it cannot fill the memory.
+/// Longest line of a table, bytes. Longer lines are cut after it, so that they cannot fill the memory.
 pub(super) const LONGEST: usize = 1 << 20;
 
-/// A line of so many bytes will not end.
+/// A longer line is taken as endless.
 const ENDLESS: u64 = 64 << 20;
 
-/// A text under way.
+/// A stream of lines.
 pub(super) struct Lines {
     source: Box<dyn Read>,
     name: String,
-    /// Bytes of the line that has not ended yet.
+    /// Bytes of the incomplete line.
     rest: Vec<u8>,
-    /// How many it has, with those that were cut.
+    /// Its length, with the bytes that were cut.
     unended: u64,
     /// Number of that line, from 1.
     number: u64,
@@ -36,7 +36,7 @@ pub(super) struct Piece {
 }
 
 impl Lines {
-    /// Of a file or a pipe; `-` is the standard input. A device is refused: it may never end.
+    /// Of a file or a pipe; `-` is the standard input. A device is refused, because it may be endless.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         if path.as_os_str() == "-" {
             return Ok(Self::new(Box::new(std::io::stdin()), "standard input".to_owned()));
@@ -53,12 +53,12 @@ impl Lines {
         Self { source, name, rest: Vec::new(), unended: 0, number: 1, ended: false }
     }
 
-    /// What to call it in a message.
+    /// Its name in messages.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
 
-    /// The complete lines at hand, at least one; waits for it. `None` at the end.
+    /// The available complete lines, at least one; waits for it. `None` at the end.
     pub(super) fn piece(&mut self) -> Result<Option<Piece>, Failure> {
         let mut taken = vec![0; PIECE];
         while !self.ended {
@@ -76,7 +76,8 @@ impl Lines {
             }
             self.unended += count as u64;
             if self.unended > ENDLESS {
-                let problem = format!("line {} has more than {ENDLESS} bytes: this is no table", self.number);
+                let problem =
+                    format!("line {} has more than {ENDLESS} bytes: this is not a table", self.number);
                 return Err(Failure::failed(format!("{}: {problem}", self.name)));
             }
             let room = (LONGEST + 1).saturating_sub(self.rest.len());
@@ -94,7 +95,7 @@ impl Lines {
 }
 
 impl Piece {
-    /// Its lines with their numbers, without what ends them.
+    /// Its lines with their numbers, without line ends.
     pub(super) fn lines(&self) -> impl Iterator<Item = (u64, &[u8])> {
         let lines = self.bytes.split(|b| *b == b'\n').map(|l| l.strip_suffix(b"\r").unwrap_or(l));
         (self.first..).zip(lines)
@@ -105,7 +106,7 @@ impl Piece {
 mod tests {
     use super::*;
 
-    /// Gives at most `step` bytes at a time, as a pipe does.
+    /// Returns at most `step` bytes at a time, like a pipe.
     struct Pipe {
         text: Vec<u8>,
         step: usize,
@@ -151,7 +152,7 @@ mod tests {
     #[test]
     fn a_source_that_never_ends_a_line_is_given_up() {
         let mut lines = Lines::new(Box::new(std::io::repeat(0)), "zeros".into());
-        assert!(lines.piece().err().unwrap().to_string().contains("no table"));
+        assert!(lines.piece().err().unwrap().to_string().contains("not a table"));
         assert!(Lines::open(Path::new("/dev/zero")).err().unwrap().to_string().contains("device"));
     }
 }

@@ -1,4 +1,4 @@
-//! Answers as text: JSON, CSV, a table for people.
+//! Results as text: JSON, CSV, a table.
 
 use super::answer::{Answer, More};
 use super::way::Way;
@@ -7,7 +7,7 @@ use crate::results::inference::Inference;
 use crate::results::inference_text;
 use grainlab_console::{CsvText, Failure, Table, exact, json};
 
-/// What turns answers into text.
+/// Converts results to text.
 pub(super) struct Printer<'a> {
     pub(super) ways: &'a [Way],
 }
@@ -22,7 +22,7 @@ impl Printer<'_> {
         text.finish()
     }
 
-    /// One line for each way.
+    /// One line per way.
     pub(super) fn csv(&self, answer: &Answer) -> String {
         let state = answer.state.as_ref().ok();
         let label = [answer.sample().unwrap_or_default().to_owned(), exact(state.map(|s| s.pressure.value))];
@@ -44,7 +44,7 @@ impl Printer<'_> {
         json(&answer.view(self.ways, more))
     }
 
-    /// An element of an array, without what separates it from the next.
+    /// An element of an array, without the separator.
     pub(super) fn json_element(&self, answer: &Answer) -> Result<String, Failure> {
         let object = self.json(answer, More::default())?;
         Ok(object.lines().map(|line| format!("\n  {line}")).collect())

@@ -1,4 +1,4 @@
-//! The rows of a table, in pieces, each row looked at by one of several threads.
+//! The rows of a table, in pieces, distributed over several threads.
 
 use super::columns::{BadRow, Columns, Defaults, Row, Splitter};
 use super::lines::{Lines, Piece};
@@ -9,11 +9,11 @@ use std::path::Path;
 /// Rows that one thread takes at a time.
 const SHARE: usize = 32;
 
-/// The first line that is no comment, and the lines below it as they come.
+/// The first line that is not a comment, and the stream of lines below it.
 pub(crate) struct Rows {
     lines: Lines,
     pub(crate) columns: Columns,
-    /// What came with the header.
+    /// Lines read together with the header.
     first: Option<Piece>,
     /// Number of the header's line.
     header: u64,
@@ -37,7 +37,7 @@ impl Rows {
         }
     }
 
-    /// What `work` makes of the rows of the next piece, in order; `None` at the end.
+    /// The results of `work` for the rows of the next piece, in order; `None` at the end.
     pub(crate) fn next<T: Send>(
         &mut self,
         work: impl Fn(u64, Result<Row, BadRow>) -> T + Sync,
@@ -60,13 +60,13 @@ impl Rows {
         Ok(Some(worked.into_iter().flatten().collect()))
     }
 
-    /// What to call the table in a message.
+    /// The name of the table in messages.
     pub(crate) fn name(&self) -> &str {
         self.lines.name()
     }
 }
 
-/// Spreadsheets begin their files with a byte order mark.
+/// Some spreadsheets begin their files with a byte order mark.
 fn without_mark(line: &[u8]) -> &[u8] {
     line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)
 }

@@ -3,7 +3,8 @@
 use super::state::State;
 use super::way::Way;
 use grainlab_console::{Table, fixed};
-use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, Quantity, SamplingSettings, monte_carlo};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{CREDIBLE_LEVEL, EmtError, Estimate, MonteCarlo, SamplingSettings, monte_carlo};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -14,7 +15,7 @@ pub(super) struct Sampled {
     calibration: String,
     quantity: &'static str,
     draws: usize,
-    /// How many of them have no solution; all other numbers are of the rest.
+    /// Number of draws without a solution; all other numbers refer to the rest.
     unsolved: usize,
     mean: Option<f64>,
     sigma: Option<f64>,
@@ -22,11 +23,11 @@ pub(super) struct Sampled {
     /// Probability of the interval.
     level: f64,
     interval: Option<[f64; 2]>,
-    /// 0 where both parts of the interval are as long, 1 where all of it lies above the median, -1 below.
+    /// 0 if both parts of the interval have the same length, 1 if all of it lies above the median, -1 below.
     skewness: Option<f64>,
 }
 
-/// All that has an estimate, sampled.
+/// Everything with an estimate, sampled.
 pub(super) fn sampled(
     state: &State,
     outcomes: &[Result<Estimate, EmtError>],
@@ -36,7 +37,7 @@ pub(super) fn sampled(
 ) -> Vec<Sampled> {
     let settings = SamplingSettings { draws, seed };
     let found: Vec<_> = ways.iter().zip(outcomes).filter_map(|(w, o)| o.is_ok().then_some(w)).collect();
-    // What has an estimate has samples, too: its errors are known, or the flag is refused.
+    // An estimate always has samples: without errors of the data the flag is refused.
     let samples: Vec<_> = found.par_iter().filter_map(|way| of_way(state, way, settings).ok()).collect();
     samples.iter().flat_map(of_samples).collect()
 }
@@ -46,8 +47,8 @@ fn of_way(state: &State, way: &Way, settings: SamplingSettings) -> Result<MonteC
 }
 
 fn of_samples(samples: &MonteCarlo) -> Vec<Sampled> {
-    let determined = Quantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
-    let one = |quantity: Quantity| Sampled {
+    let determined = InferredQuantity::ALL.into_iter().filter(|q| samples.mean.get(*q).is_some());
+    let one = |quantity: InferredQuantity| Sampled {
         model: samples.model,
         calibration: samples.calibration.clone(),
         quantity: quantity.name(),
@@ -63,7 +64,7 @@ fn of_samples(samples: &MonteCarlo) -> Vec<Sampled> {
     determined.map(one).collect()
 }
 
-/// As a table for people.
+/// As a text table.
 pub(super) fn people(sampled: &[Sampled]) -> String {
     let level = format!("{} %", 100.0 * CREDIBLE_LEVEL);
     let columns = ["model", "sampled", "mean", "sigma", "median", &format!("{level} from"), "to", "skewness"];

@@ -1,11 +1,12 @@
-//! What is known of one state.
+//! The data of one state.
 
 use super::way::Way;
 use grainlab_core::Material;
+use grainlab_core::results::Microstructure;
 use grainlab_core::results::StrainRatios;
 use grainlab_emt::{
     Calibration, Conditions, EmtError, Estimate, Measured, Moduli, ModuliCovariance, Modulus, Observation,
-    StrainRatio, StrainRatioSource, Structure,
+    StrainRatio, StrainRatioSource,
 };
 
 /// One state, as given.
@@ -19,28 +20,28 @@ pub(crate) struct State {
     pub(crate) projected: bool,
     /// Standard deviations of the moduli, Pa.
     pub(crate) sigma: [Option<f64>; grainlab_emt::MODULI],
-    /// Relative standard deviation of the moduli that have none of their own.
+    /// Relative standard deviation of the moduli without their own.
     pub(crate) relative_error: Option<f64>,
-    /// What the model `ratio-as-printed` takes for Θ, if that is something else, Pa.
+    /// Θ for the model `ratio-as-printed`, if it differs, Pa.
     pub(crate) theta_printed: Option<f64>,
     /// Pa.
     pub(crate) pressure: Measured,
-    /// γ/Δ from whoever asks.
+    /// The γ/Δ given.
     pub(crate) gamma: Option<Measured>,
-    /// γ/Δ as `grainlab analyze` measures it.
+    /// The γ/Δ measured by `grainlab analyze`.
     pub(crate) measured_gamma: StrainRatios,
     pub(crate) phi: Option<Measured>,
     /// Pa.
     pub(crate) grain_shear_modulus: Option<f64>,
     pub(crate) poisson: Option<f64>,
-    /// Number of grains, where a table says it.
+    /// Number of grains, if a table contains it.
     pub(crate) grains: Option<f64>,
-    /// What the microstructure is, where a table says it.
-    pub(crate) truth: Structure,
+    /// The true microstructure, if a table contains it.
+    pub(crate) truth: Microstructure,
 }
 
 impl State {
-    /// Nothing known but the pressure, Pa.
+    /// Only the pressure is known, Pa.
     pub(crate) fn at(pressure: Measured) -> Self {
         Self {
             sample: None,
@@ -57,7 +58,7 @@ impl State {
             phi: None,
             grain_shear_modulus: None,
             poisson: None,
-            truth: Structure::default(),
+            truth: Microstructure::default(),
         }
     }
 
@@ -69,19 +70,19 @@ impl State {
         self.sigma[modulus as usize] = Some(value);
     }
 
-    /// Standard deviation of one of the moduli, its own or the one for all, Pa.
+    /// Standard deviation of one of the moduli, Pa: its own or the common one.
     pub(super) fn sigma_of(&self, modulus: Modulus) -> Option<f64> {
         self.moduli.get(modulus)?;
         let at = modulus as usize;
         self.covariance(&self.moduli).map(|c| c[(at, at)].sqrt())
     }
 
-    /// What a model says of it, in the way asked for.
+    /// The estimate of the model of this way.
     pub(super) fn infer(&self, way: &Way) -> Result<Estimate, EmtError> {
         way.model.infer(&self.observation(way)?, &way.calibration)
     }
 
-    /// As a model takes it, in the way asked for.
+    /// The observation for this way.
     pub(super) fn observation(&self, way: &Way) -> Result<Observation, EmtError> {
         let mut conditions = Conditions::at(self.pressure.value);
         conditions.pressure = self.pressure;
@@ -105,7 +106,7 @@ impl State {
         Ok(Observation { asymmetry: self.asymmetry, grains, covariance, ..observation })
     }
 
-    /// Where the γ/Δ comes from that a model is fed with, or would be.
+    /// The source of the γ/Δ that a model uses or would use.
     pub(super) fn gamma_source(&self, way: &Way) -> &'static str {
         match self.gamma(way.gamma) {
             _ if !way.model.uses_gamma() => "none",
@@ -114,7 +115,8 @@ impl State {
         }
     }
 
-    /// Whether Θ is no datum of its own: with errors, it would be one more measurement than there was.
+    /// Whether Θ follows from the other moduli: with an error of its own, it would count as an additional
+    /// measurement.
     fn theta_follows(&self) -> bool {
         let mut others = Modulus::ALL.into_iter().filter(|m| *m != Modulus::Theta);
         let errors_known = self.relative_error.is_some() || self.sigma.iter().any(Option::is_some);
@@ -124,7 +126,7 @@ impl State {
             && others.all(|m| self.moduli.get(m).is_some())
     }
 
-    /// Independent errors; what has none stated is exact if others have. `None` if no error is known at all.
+    /// Independent errors; moduli without one are exact if others have one. `None` if no error is known.
     fn covariance(&self, moduli: &Moduli) -> Option<ModuliCovariance> {
         if self.relative_error.is_none() && self.sigma.iter().all(Option::is_none) {
             return None;
@@ -137,7 +139,8 @@ impl State {
         Some(ModuliCovariance::from_diagonal(&variance.into()))
     }
 
-    /// Of what is given of the grains; the rest is the calibration's. `None` if nothing is.
+    /// The material: values given for the grains, and those of the calibration for the rest. `None` if none
+    /// is given.
     fn material(&self, calibration: &Calibration) -> Option<Material> {
         let own = calibration.material();
         (self.grain_shear_modulus.is_some() || self.poisson.is_some()).then(|| Material {
@@ -147,8 +150,8 @@ impl State {
         })
     }
 
-    /// The γ/Δ asked for, or the name of what is missing. Where nothing is asked for: the one given, else what the paper's
-    /// models take.
+    /// The γ/Δ set, or the name of the missing one. By default: the one given, else that of the paper's
+    /// models.
     fn gamma(&self, asked: Option<StrainRatioSource>) -> Result<StrainRatio, &'static str> {
         let of = |source, measured: Option<f64>, missing| {
             measured.map(|value| StrainRatio { value, stddev: 0.0, source }).ok_or(missing)
@@ -197,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_said_of_the_grains_is_the_calibration_s() {
+    fn unknown_properties_of_grains_are_those_of_the_calibration() {
         let state = State { poisson: Some(0.3), ..State::at(Measured::exact(5e4)) };
         let material = state.material(&Calibration::PAPER).unwrap();
         assert_eq!((material.poisson_ratio, material.shear_modulus), (0.3, Material::GLASS.shear_modulus));

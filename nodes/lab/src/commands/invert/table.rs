@@ -1,4 +1,4 @@
-//! A whole table: read in pieces, inverted in parallel, written in order as it comes.
+//! A whole table: read in pieces, inverted in parallel, written in order.
 
 use super::answer::Answer;
 use super::columns::Row;
@@ -9,10 +9,10 @@ use grainlab_node_kit::Exit;
 use std::io::{ErrorKind, Write};
 use std::time::Instant;
 
-/// Most states that are printed as a table for people: it must be known as a whole before it can be aligned.
+/// Maximum number of states printed as a text table, whose columns are aligned at its end.
 const FOR_PEOPLE: usize = 1000;
 
-/// What has become of the rows so far.
+/// Counts and state of the output.
 #[derive(Debug)]
 pub(super) struct Tally {
     rows: u64,
@@ -26,7 +26,7 @@ impl Tally {
         Self { rows: 0, bad: 0, exit: Exit::Done, begin: Instant::now() }
     }
 
-    /// Counts a row and says what is wrong with it.
+    /// Counts a row and reports its errors.
     pub(super) fn add(&mut self, exit: Exit, complaint: &str) {
         self.rows += 1;
         self.bad += u64::from(exit != Exit::Done);
@@ -36,7 +36,7 @@ impl Tally {
         }
     }
 
-    /// The last word.
+    /// Ends the output; returns the exit code.
     pub(super) fn end(self, name: &str) -> Result<Exit, Failure> {
         if self.rows == 0 {
             return Err(Failure::usage(format!("{name}: there is no state below the header")));
@@ -57,7 +57,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
     let mut kept = Vec::new();
     let mut out = Out::new(format);
     loop {
-        // Text is made where answers are: it takes as long as they do.
+        // Text is formatted in the same threads, because formatting takes as long as the inversion.
         let piece = rows.next(|number, row| {
             let answer = answer(number, row);
             let text = match format {
@@ -66,7 +66,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
                 Format::Table => String::new(),
             };
             let (exit, complaint) = (answer.exit(), answer.complaint(printer.ways));
-            // Only a table for people waits for the rest, and keeps the answers.
+            // Only a text table collects all results before printing.
             Ok::<_, Failure>((text, exit, complaint, (format == Format::Table).then_some(answer)))
         })?;
         let Some(piece) = piece else { break };
@@ -78,11 +78,11 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
             kept.extend(answer);
         }
         if kept.len() > FOR_PEOPLE {
-            let most = format!("more than {FOR_PEOPLE} states are no table for people");
-            return Err(Failure::usage(format!("{}: {most}; take --format csv or json", rows.name())));
+            let most = format!("more than {FOR_PEOPLE} states are too many for a text table");
+            return Err(Failure::usage(format!("{}: {most}; use --format csv or json", rows.name())));
         }
         if !out.write(&texts)? {
-            // The reader has seen enough.
+            // The reader closed the pipe.
             return Ok(tally.exit);
         }
     }
@@ -94,7 +94,7 @@ pub(super) fn run(mut rows: Rows, printer: &Printer<'_>, format: Format) -> Resu
     ended
 }
 
-/// Texts that, one after the other, are one CSV or one JSON array, on stdout.
+/// Texts that together form one CSV or one JSON array, on stdout.
 struct Out {
     format: Format,
     begun: bool,
@@ -105,7 +105,7 @@ impl Out {
         Self { format, begun: false }
     }
 
-    /// Whether somebody still reads.
+    /// Whether the pipe is still open.
     fn write(&mut self, texts: &[String]) -> Result<bool, Failure> {
         if texts.is_empty() {
             return Ok(true);

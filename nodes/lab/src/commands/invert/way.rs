@@ -1,11 +1,11 @@
-//! The ways in which each state is inverted: a model, its constants, and the γ/Δ that it is fed with.
+//! The ways to invert a state: a model, its constants, and its γ/Δ.
 
 use super::calibrations::Choice;
 use grainlab_console::Failure;
 use grainlab_emt::{Calibration, Model, StrainRatioSource};
 use std::sync::Arc;
 
-/// Which γ/Δ feeds the models that use one.
+/// The γ/Δ of the models that use one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum GammaChoice {
     /// The column gamma_over_delta, or --gamma-over-delta
@@ -18,7 +18,7 @@ pub(super) enum GammaChoice {
     Contact,
     /// None: 0
     Zero,
-    /// Each of total, elastic, contact and zero, one after the other
+    /// Each of total, elastic, contact and zero
     All,
 }
 
@@ -27,11 +27,11 @@ pub(super) enum GammaChoice {
 pub(super) struct Way {
     pub(super) model: &'static dyn Model,
     pub(super) calibration: Arc<Calibration>,
-    /// `None` takes what is given, else what the paper's models take of what is measured.
+    /// `None`: the one given, else that of the paper's models.
     pub(super) gamma: Option<StrainRatioSource>,
 }
 
-/// Every model, or those of these names, with every calibration and every γ/Δ asked for.
+/// Every model, or those of these names, with every calibration and every γ/Δ set.
 pub(super) fn ways(
     models: &[String],
     calibrations: &[String],

@@ -12,18 +12,18 @@ use grainlab_console::{Failure, worse};
 use grainlab_console::{Format, json, print};
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::Run;
-use grainlab_launcher::{Heard, Supervised};
+use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
 use std::path::{Path, PathBuf};
 
 /// Published results that the recording lacks.
-fn missing(heard: &Heard, back: &ReadBack) -> Vec<String> {
+fn missing(received: &Received, back: &ReadBack) -> Vec<String> {
     let mut missing = Vec::new();
-    if let Some(published) = heard.packings.filter(|n| back.packings < *n as usize) {
+    if let Some(published) = received.packings.filter(|n| back.packings < *n as usize) {
         missing.push(format!("{} of {published} packings are in the recording", back.packings));
     }
-    for (topic, steps) in &heard.results {
+    for (topic, steps) in &received.results {
         let recorded = back.results.get(topic);
         for step in steps.iter().filter(|step| recorded.is_none_or(|known| !known.contains(step))) {
             missing.push(format!("the {topic} of step {step} was published and is not in the recording"));
@@ -50,9 +50,9 @@ pub(super) fn finish(
         exit = worse(exit, Exit::DataLoss);
     }
     let mut back = back;
-    let mut missing = missing(&supervised.heard, &back);
+    let mut missing = missing(&supervised.received, &back);
     // An interrupted run may end with an unanswered request.
-    if let (Some(_), Ok(recording)) = (supervised.heard.packings, &recording) {
+    if let (Some(_), Ok(recording)) = (supervised.received.packings, &recording) {
         missing.extend(continuity::missing(recording).map_err(Failure::failed)?);
     }
     let has = |node: NodeKind| supervised.children.iter().any(|c| c.plan.is(node));

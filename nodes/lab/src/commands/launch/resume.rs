@@ -21,7 +21,7 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
     let order = Order::read(&directory)?;
     let scene = scenes::load(&directory.join("scene.toml").to_string_lossy(), &[], Some(order.seed))?;
     let mut plans = order.plans(&directory)?;
-    // Without a recording the run begins anew, in its own directory.
+    // Without a recording the run starts anew, in its own directory.
     if Recording::open(&directory).is_ok() {
         // The file of a killed recorder is completed first, so that other tools read the whole run.
         grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
@@ -32,7 +32,7 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
         let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
         if recorded.is_some_and(|file| file.bytes != scene.text.as_bytes()) {
             return Err(Failure::failed(format!(
-                "{}: scene.toml is not the scene that the recording began with: the run cannot go on by another. Put the \
+                "{}: scene.toml is not the scene that the recording began with: the run cannot continue with another one. Put the \
                  recorded one back, or launch a new run",
                 directory.display()
             )));

@@ -1,21 +1,21 @@
-//! How far the files are, on a terminal.
+//! Progress on a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// Often enough for a clock that goes on while a large packing is measured.
+/// Period of the updates while a large packing is measured.
 const TICK: Duration = Duration::from_millis(250);
 
-/// A bar on stderr; nothing where that is no terminal.
+/// A progress bar on stderr; hidden if that is not a terminal.
 pub(crate) struct Bar(ProgressBar);
 
 impl Bar {
-    /// None at all.
+    /// Without a bar.
     pub(crate) fn hidden() -> Self {
         Self(ProgressBar::hidden())
     }
 
-    /// Of this many files.
+    /// For this number of files.
     pub(crate) fn of(files: usize) -> Self {
         let bar = ProgressBar::new(files as u64);
         let template = "{bar:30} {pos} of {len} files, {msg}, {elapsed}";
@@ -35,12 +35,12 @@ impl Bar {
         self.0.inc(1);
     }
 
-    /// Runs `print` while the bar is away.
+    /// Runs `print` while the bar is hidden.
     pub(crate) fn around<T>(&self, print: impl FnOnce() -> T) -> T {
         self.0.suspend(print)
     }
 
-    /// A line on stderr.
+    /// Prints a line on stderr.
     pub(crate) fn say(&self, line: &str) {
         self.around(|| grainlab_console::say!("{line}"));
     }

@@ -1,4 +1,4 @@
-//! Many files at once, a few packings of them in memory.
+//! Many files at once, with a few packings of them in memory.
 
 use super::bar::Bar;
 use super::sink::{Ending, Place, Sink};
@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Measures every packing of every file, on every core. Whoever has nothing to measure reads the next file; a reader
-/// measures what it reads itself once two packings a core wait: more are never in memory.
+/// Measures every packing of every file on all cores. A worker without a packing reads the next file. A
+/// reader measures the packings that it reads once two per core are queued, which limits the memory.
 pub(crate) fn run<M, O>(
     files: &[PathBuf],
     options: &ImportOptions,
@@ -55,7 +55,7 @@ where
     let sink = sink.into_inner().unwrap_or_else(PoisonError::into_inner);
     let measured = sink.measured();
     let exit = sink.finish()?;
-    // A signal that came when all was done changes nothing.
+    // A signal after the end of all work has no effect.
     if desk.read_to_end == files.len() && desk.packings.is_empty() {
         return Ok(exit);
     }
@@ -71,10 +71,10 @@ struct Job {
     imported: Imported,
 }
 
-/// What there is to do.
+/// The state of the work.
 #[derive(Default)]
 struct Desk {
-    /// The next file that nobody reads yet.
+    /// The next file to read.
     next: usize,
     reading: usize,
     read_to_end: usize,
@@ -90,9 +90,9 @@ struct Shop<'a, M, O: Outlet> {
     files: &'a [PathBuf],
     options: &'a ImportOptions,
     measure: &'a M,
-    /// A signal came, or results go nowhere.
+    /// A signal arrived, or results cannot be written.
     stop: &'a AtomicBool,
-    /// Packings that may wait.
+    /// Maximum number of queued packings.
     room: usize,
     desk: Mutex<Desk>,
     news: Condvar,
@@ -162,7 +162,7 @@ impl<M: Measure, O: Outlet<Found = M::Found>> Shop<'_, M, O> {
         }
     }
 
-    /// Nobody goes on when results cannot be printed or recorded.
+    /// All workers stop when results cannot be printed or recorded.
     fn check(&self, result: Result<(), Failure>) {
         if let Err(failure) = result {
             lock(&self.failure).get_or_insert(failure);
@@ -180,7 +180,7 @@ impl<M: Measure, O: Outlet<Found = M::Found>> Shop<'_, M, O> {
     }
 }
 
-/// A file that is being read: those who wait for its packings learn when no more will come, whatever happens.
+/// A file being read. Dropping it informs the waiting workers that no more packings come, also after a panic.
 struct Reading<'a> {
     desk: &'a Mutex<Desk>,
     news: &'a Condvar,
@@ -197,12 +197,12 @@ impl Drop for Reading<'_> {
     }
 }
 
-/// A worker that panicked ends the process when the scope ends; until then the others go on.
+/// A worker that panicked ends the process at the end of the scope; until then the others continue.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Reads one file; returns what there is to complain of, and how bad it is.
+/// Reads one file; returns its warnings and their exit code.
 fn read(
     path: &Path,
     options: &ImportOptions,
@@ -221,8 +221,8 @@ fn read(
                 _ => Exit::Failure,
             };
             let mut complaints = Vec::new();
-            // A recording without a packing may be one that is cut off before it, or whose chunk with it is damaged:
-            // then data were lost.
+            // A recording without a packing may be cut off before it, or the chunk with the packing may be
+            // damaged: then data were lost.
             if let Ok(recording) = Recording::open(path) {
                 complaints = lines(&recording.verify());
                 exit = if complaints.is_empty() { exit } else { Exit::DataLoss };

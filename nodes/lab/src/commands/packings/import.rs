@@ -1,4 +1,4 @@
-//! What files do not say, as flags.
+//! Flags for data that files lack.
 
 use grainlab_console::Failure;
 use grainlab_core::contact::ContactLaw;
@@ -8,13 +8,13 @@ use std::path::PathBuf;
 
 /// Formats, for the help of a command.
 pub(crate) const FORMATS: &str = "\
-A file that cannot be read is named and the others are measured; the exit code is that of the worst file. Ctrl-C prints what
-is finished and ends with 130. Formats are told by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
+A file that cannot be read is reported and the others are measured; the exit code is the worst of all files. Ctrl-C prints
+the finished results and ends with 130. Formats are recognised by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
 (atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
-comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). Where a file lists no contacts they are found
-from positions, with Hertz normal forces and no tangential ones. The contact forces of a LAMMPS dump come from these lines,
-all of which are needed where there is friction (fx fy fz of granular pair styles is the normal force alone):
+comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
+from positions, with Hertz normal forces and without tangential ones. The contact forces of a LAMMPS dump need these lines,
+all of them with friction (fx fy fz of granular pair styles is only the normal force):
   compute pl all property/local patom1 patom2
   compute pf all pair/local dist fx fy fz p1 p2 p3
   dump forces all local 1 forces.dump c_pl[*] c_pf[*]
@@ -22,8 +22,9 @@ all of which are needed where there is friction (fx fy fz of granular pair style
 Columns are found by these names, by those of dump_modify colname (patom1 patom2 fx fy fz p1 p2 p3), or by
 --contact-columns.";
 
-/// A flag goes before what a file or its sidecar says.
+/// A flag takes precedence over a file and its sidecar.
 #[derive(Debug, clap::Args)]
+#[group(skip)]
 pub(crate) struct Args {
     /// Shear modulus of the grains, Pa
     #[arg(long, value_name = "PA")]
@@ -40,19 +41,20 @@ pub(crate) struct Args {
     /// Contact law with its parameters: hertz_mindlin, or linear:KN,RATIO with k_n in N/m and k_t/k_n
     #[arg(long, value_name = "LAW")]
     contact_law: Option<ContactLaw>,
-    /// Radius of every grain, m, for files that have none
+    /// Radius of every grain, m, for files without radii
     #[arg(long, value_name = "M")]
     radius: Option<f64>,
     /// Periodic cell, m: three edge lengths, or nine numbers row by row with the edge vectors as columns
     #[arg(long, value_name = "LX,LY,LZ", value_delimiter = ',')]
     cell: Vec<f64>,
-    /// Topic that holds the packings: of recordings, or of a live run
+    /// Topic of the packings: of recordings, or of a live run
     #[arg(long, value_name = "NAME", default_value = "packing")]
     pub(crate) topic: String,
-    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its columns
+    /// LAMMPS `dump local` with the contact forces of a single-frame dump, also as .gz; see below for its
+    /// columns
     #[arg(long, value_name = "FILE")]
     contact_forces: Option<PathBuf>,
-    /// Its columns, where they are others: ids, normal force, tangential force (or ids and the whole force)
+    /// Its columns, if they differ: ids, normal force, tangential force (or ids and the whole force)
     #[arg(long, value_name = "ID,ID,FX,FY,FZ,P1,P2,P3", value_delimiter = ',', requires = "contact_forces")]
     contact_columns: Vec<String>,
 }

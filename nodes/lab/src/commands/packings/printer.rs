@@ -1,4 +1,4 @@
-//! Results that, printed one after the other, are one table, one JSON array or one CSV.
+//! Results that form one table, one JSON array or one CSV.
 
 use grainlab_console::{Failure, Format, Table};
 use serde::Serialize;
@@ -7,24 +7,24 @@ use std::marker::PhantomData;
 
 /// A result that can be printed in every format.
 pub(crate) trait Printed: Serialize + Sized {
-    /// For people.
+    /// As text.
     fn text(&self) -> String;
 
-    /// Results as a table, one a row, at full precision.
+    /// Results as a table, one per row, at full precision.
     fn table(results: &[Self]) -> Table;
 }
 
 /// Prints results one after the other.
 pub(crate) struct Printer<R> {
     format: Format,
-    /// Of CSV; none for all.
+    /// Columns of CSV; empty for all.
     columns: Vec<String>,
     printed: usize,
     of: PhantomData<fn(&R)>,
 }
 
 impl<R: Printed> Printer<R> {
-    /// `columns` of CSV; none for all. An unknown column is better refused before the work than after it.
+    /// `columns` of CSV; empty for all. An unknown column is refused before the measurements.
     pub(crate) fn new(format: Format, columns: Vec<String>) -> Result<Self, Failure> {
         if !columns.is_empty() && format != Format::Csv {
             return Err(Failure::usage("--columns is for --format csv"));
@@ -34,12 +34,12 @@ impl<R: Printed> Printer<R> {
         Ok(printer)
     }
 
-    /// Results printed so far.
+    /// Number of results printed.
     pub(crate) fn printed(&self) -> usize {
         self.printed
     }
 
-    /// The text of the next one.
+    /// The text of the next result.
     pub(crate) fn next(&mut self, result: &R) -> Result<String, Failure> {
         let first = self.printed == 0;
         self.printed += 1;
@@ -65,7 +65,7 @@ impl<R: Printed> Printer<R> {
         })
     }
 
-    /// What comes after the last one.
+    /// The text after the last result.
     pub(crate) fn end(&self) -> Result<String, Failure> {
         Ok(match (self.format, self.printed) {
             (Format::Json, 0) => "[]\n".to_owned(),

@@ -1,4 +1,4 @@
-//! Results in the order asked for: each goes out as soon as all before it have.
+//! Results in order: each one is passed on as soon as all before it have been.
 
 use super::Outlet;
 use super::bar::Bar;
@@ -6,33 +6,33 @@ use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
 use std::collections::BTreeMap;
 
-/// Which packing of which file.
+/// File and index of a packing.
 pub(crate) type Place = (usize, usize);
 
-/// What there was to say of a source that has been read to its end.
+/// Warnings of a source that has been read to its end.
 #[derive(Debug)]
 pub(crate) struct Ending {
-    /// Packings it gave.
+    /// Number of its packings.
     pub(crate) packings: usize,
     pub(crate) complaints: Vec<String>,
     pub(crate) exit: Exit,
 }
 
-/// Hands results on. What comes too early waits; a result is small.
+/// Passes results on. Early ones are stored; a result is small.
 pub(crate) struct Sink<O: Outlet> {
     outlet: O,
-    /// The first that has not been handed on.
+    /// The first one that has not been passed on.
     next: Place,
     waiting: BTreeMap<Place, Result<O::Found, String>>,
     endings: BTreeMap<usize, Ending>,
     exit: Exit,
     measured: usize,
-    /// Where lines on stderr must make way for a bar.
+    /// The bar to hide while lines are printed.
     pub(super) bar: Bar,
 }
 
 impl<O: Outlet> Sink<O> {
-    /// Nothing is there yet.
+    /// Without results.
     pub(crate) fn new(outlet: O) -> Self {
         Self {
             outlet,
@@ -45,14 +45,14 @@ impl<O: Outlet> Sink<O> {
         }
     }
 
-    /// Takes what was found of one packing.
+    /// Takes the result of one packing.
     pub(crate) fn put(&mut self, place: Place, found: Result<O::Found, String>) -> Result<(), Failure> {
         self.waiting.insert(place, found);
         self.measured += 1;
         self.advance()
     }
 
-    /// Takes the end of a source: its packings are known now.
+    /// Takes the end of a source, whose number of packings is then known.
     pub(crate) fn end(&mut self, file: usize, ending: Ending) -> Result<(), Failure> {
         self.endings.insert(file, ending);
         self.bar.file_done();
@@ -100,7 +100,7 @@ impl<O: Outlet> Sink<O> {
         Ok(())
     }
 
-    /// Hands on whatever still waits behind a gap, and completes the output.
+    /// Passes on the results after a gap, and completes the output.
     pub(crate) fn finish(mut self) -> Result<Exit, Failure> {
         for (_, found) in std::mem::take(&mut self.waiting) {
             self.emit(found)?;

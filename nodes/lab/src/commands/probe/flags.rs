@@ -1,4 +1,4 @@
-//! The parameters of the node acoustic_probe as flags: the same names, ranges and meanings.
+//! The parameters of the node acoustic_probe as flags: with the same names, ranges and descriptions.
 
 use clap::{Arg, ArgMatches, Command, FromArgMatches};
 use grainlab_acoustic_probe::{Settings, parameters};
@@ -8,7 +8,7 @@ use grainlab_node_kit::{Names, ParameterSpec, ParameterValue, Parameters, Range,
 
 const NODE: NodeKind = NodeKind::AcousticProbe;
 
-/// What was given, by the name of the parameter.
+/// The values given, by the name of the parameter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flags(Vec<(&'static str, String)>);
 
@@ -24,13 +24,13 @@ impl Flags {
         let (ros, _) = RosArgs::parse(&words).map_err(Failure::usage)?;
         let names = Names::new(NODE.name()).map_err(Failure::usage)?;
         let parameters = Parameters::resolve(&specs, NODE.name(), &names, &ros);
-        // Whoever typed a flag did not type -p.
+        // The message refers to a flag, not to -p.
         let named = |e: &dyn std::fmt::Display| Failure::usage(e.to_string().replacen("-p: ", "", 1));
         Settings::try_from(&parameters.map_err(|e| named(&e))?).map_err(|e| named(&e))
     }
 }
 
-/// A value as a shell gives it, as YAML.
+/// A value from the shell, as YAML.
 fn yaml(spec: &ParameterSpec, text: &str) -> String {
     match &spec.default {
         ParameterValue::String(_) => serde_json::Value::from(text).to_string(),

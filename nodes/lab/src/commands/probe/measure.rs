@@ -11,17 +11,17 @@ use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
 
-/// How packings are measured.
+/// Settings of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) settings: Settings,
 }
 
-/// What was found of one packing.
+/// The result for one packing.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) probed: Probed,
-    /// As the node acoustic_probe would publish it; `None` where nothing carries a wave.
+    /// The messages that the node acoustic_probe would publish; `None` if no wave propagates.
     pub(super) messages: Option<Measured>,
 }
 

@@ -1,4 +1,4 @@
-//! Results to stdout and, if asked for, into a recording.
+//! Results to stdout and, if set, into a recording.
 
 use super::measure::Found;
 use crate::commands::packings;

@@ -14,7 +14,7 @@ use grainlab_core::Vec3;
 /// The next collision of a grain.
 #[derive(Clone, Copy, Debug)]
 struct NextCollision {
-    /// `NO_GRAIN` if the collision was cancelled, or there is none before the end.
+    /// `NO_GRAIN` if the collision was cancelled, or if the grain collides with no other before the end.
     partner: u32,
     /// Cell vectors from the partner, unwrapped since the start, to the image that is hit.
     image: [i32; 3],

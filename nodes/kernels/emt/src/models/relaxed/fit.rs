@@ -6,7 +6,7 @@ use crate::invariants::INVARIANTS;
 use crate::moduli::{MODULI, Modulus};
 use crate::observation::Observation;
 use crate::point_estimate::Jacobian;
-use crate::structure::{Quantity, Structure, StructureCovariance};
+use grainlab_core::results::{InferredQuantity, Microstructure, MicrostructureCovariance};
 use nalgebra::{Cholesky, SMatrix, SVector};
 
 /// Relative error of the relation between the six moduli below which only five of them are independent.
@@ -79,13 +79,13 @@ pub(super) struct Fit {
 
 /// The estimate and its errors.
 pub(super) struct Inferred {
-    pub(super) structure: Structure,
+    pub(super) structure: Microstructure,
     pub(super) jacobian: Jacobian,
-    pub(super) discrepancy: StructureCovariance,
+    pub(super) discrepancy: MicrostructureCovariance,
 }
 
 impl Fit {
-    /// At z, with the given ε or, for `None`, the best one; `None` where the covariance is singular.
+    /// At z, with the given ε or, for `None`, the best one; `None` if the covariance is singular.
     pub(super) fn at(
         data: &Data,
         network: &RelaxationCalibration,
@@ -206,7 +206,7 @@ impl Fit {
         data.used.checked_sub(unknowns).filter(|d| *d > 0)
     }
 
-    /// The modulus furthest from its prediction by the others, and by how many standard deviations.
+    /// The modulus furthest from its prediction by the others, and the difference in standard deviations.
     pub(super) fn worst(&self, data: &Data) -> (Modulus, f64) {
         // A datum left out of the fit differs from its prediction by (W r)_i over the square root of (W C W)_ii.
         let left = self.weight - self.weight * self.by_unknowns * self.gain();
@@ -240,7 +240,7 @@ impl Fit {
         let following = follows * gain + regression * residual_gain;
         let beyond = regression * self.residual;
         let known = self.fits_eps;
-        let structure = Structure {
+        let structure = Microstructure {
             k: Some(z * (1.0 - rattlers) + beyond[1]),
             k_hat: None,
             z: Some(z),
@@ -248,7 +248,8 @@ impl Fit {
             eps_stiffness: known.then_some(amplitude.value(z) * eps + beyond[0]),
         };
 
-        let rows = [Quantity::Z, Quantity::Eps, Quantity::EpsStiffness, Quantity::K];
+        let rows =
+            [InferredQuantity::Z, InferredQuantity::Eps, InferredQuantity::EpsStiffness, InferredQuantity::K];
         let mut by_moduli = SMatrix::<f64, 4, MODULI>::zeros();
         by_moduli.fixed_view_mut::<2, MODULI>(0, 0).copy_from(&gain);
         by_moduli.fixed_view_mut::<2, MODULI>(2, 0).copy_from(&following);
@@ -270,7 +271,7 @@ impl Fit {
             jacobian[(of, MODULI)] = by_state[0][row];
             jacobian[(of, MODULI + 2)] = if state.phi_known { by_state[1][row] } else { 0.0 };
         }
-        let of_k = Quantity::K as usize;
+        let of_k = InferredQuantity::K as usize;
         jacobian[(of_k, MODULI)] -= z * rattlers * by_p;
         if state.phi_known {
             jacobian[(of_k, MODULI + 2)] -= z * rattlers * by_phi;
@@ -293,7 +294,7 @@ impl Fit {
             let row = by_moduli * direction;
             errors += row * row.transpose() * (mean * mean + spread * spread);
         }
-        let mut discrepancy = StructureCovariance::zeros();
+        let mut discrepancy = MicrostructureCovariance::zeros();
         for (a, qa) in rows.into_iter().enumerate() {
             for (b, qb) in rows.into_iter().enumerate() {
                 discrepancy[(qa as usize, qb as usize)] = errors[(a, b)];

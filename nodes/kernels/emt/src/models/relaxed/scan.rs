@@ -14,7 +14,7 @@ const STEPS: usize = 60;
 /// Difference of twice the log-likelihood below which two solutions are equally good (two sigma).
 const AMBIGUOUS: f64 = 4.0;
 
-/// The most probable solution, if it is the only one.
+/// The most probable solution, if it is unique.
 pub(super) fn best(
     data: &Data,
     network: &RelaxationCalibration,

@@ -3,7 +3,7 @@
 use crate::commands::invert::way::Way;
 use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 
-/// The figure as SVG. `points` has, for each way, the true and the inferred anisotropy of each row.
+/// The plot as SVG. `points` has, for each way, the true and the inferred anisotropy of each row.
 pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {
     let truths = || points.iter().flatten().map(|[truth, _]| *truth);
     let ends = [truths().fold(f64::INFINITY, f64::min), truths().fold(f64::NEG_INFINITY, f64::max)];
@@ -13,7 +13,7 @@ pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {
         points: ends.map(|e| Point::at(e, e)).into(),
         ..Series::default()
     };
-    // The legend has little room: a calibration is named where a model has several.
+    // The legend is short: a calibration is named only if a model has several.
     let name = |way: &Way| match ways.iter().filter(|w| w.model.name() == way.model.name()).count() {
         1 => way.model.name().to_owned(),
         _ => format!("{} ({})", way.model.name(), way.calibration.name()),

@@ -1,21 +1,22 @@
-//! How far estimates of one quantity are from its truth.
+//! Statistics of the errors of one quantity.
 
-use grainlab_emt::{Estimate, Quantity, Status};
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Estimate, Status};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
 /// One estimate against the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Error {
-    /// Estimate less truth; `None` without an estimate.
+    /// Estimate minus truth; `None` without an estimate.
     error: Option<f64>,
     extrapolated: bool,
-    /// Whether the interval has the truth in it; `None` without an interval.
+    /// Whether the interval contains the truth; `None` without an interval.
     covered: Option<bool>,
 }
 
 impl Error {
-    pub(super) fn of(estimate: Option<&Estimate>, quantity: Quantity, truth: f64) -> Self {
+    pub(super) fn of(estimate: Option<&Estimate>, quantity: InferredQuantity, truth: f64) -> Self {
         let found = estimate.and_then(|e| Some((e, e.structure.get(quantity)?)));
         Self {
             error: found.map(|(_, value)| value - truth),
@@ -27,16 +28,16 @@ impl Error {
     }
 }
 
-/// Errors summed up.
+/// Statistics of errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Score {
     /// Rows whose truth is known.
     pub(super) rows: u64,
-    /// Those of them that have an estimate; all below is of these.
+    /// Rows with an estimate; the numbers below refer to these.
     pub(super) solved: u64,
-    /// Those of them outside the range of model or calibration.
+    /// Estimates outside the range of model or calibration.
     pub(super) extrapolated: u64,
-    /// Those of them that have an interval.
+    /// Estimates with an interval.
     pub(super) intervals: u64,
     covered: u64,
     mean: f64,
@@ -46,7 +47,7 @@ pub(super) struct Score {
 }
 
 impl Score {
-    /// Takes one more, in one pass (Welford).
+    /// Adds one row, in one pass (Welford).
     pub(super) fn add(&mut self, error: &Error) {
         self.rows += 1;
         let Some(value) = error.error else { return };
@@ -65,7 +66,7 @@ impl Score {
         (self.solved > 0).then_some(self.mean)
     }
 
-    /// Standard deviation of the errors, of two or more.
+    /// Standard deviation of two or more errors.
     pub(super) fn scatter(&self) -> Option<f64> {
         (self.solved > 1).then(|| (self.squares / (self.solved - 1) as f64).sqrt())
     }
@@ -75,12 +76,12 @@ impl Score {
         Some((self.bias()?.powi(2) + self.squares / self.solved as f64).sqrt())
     }
 
-    /// Mean size of the error.
+    /// Mean magnitude of the error.
     pub(super) fn mean_absolute(&self) -> Option<f64> {
         (self.solved > 0).then(|| self.absolute / self.solved as f64)
     }
 
-    /// Share of the intervals that have the truth in them.
+    /// Fraction of the intervals that contain the truth.
     pub(super) fn coverage(&self) -> Option<f64> {
         (self.intervals > 0).then(|| self.covered as f64 / self.intervals as f64)
     }
@@ -115,7 +116,7 @@ mod tests {
     #[test]
     fn bias_scatter_and_rms_are_those_of_the_errors() {
         let mut score = Score::default();
-        // Far from zero, where a sum of squares would lose what they differ by.
+        // Far from zero, where a plain sum of squares would lose the differences by rounding.
         let errors = [1e6 + 1.0, 1e6 - 2.0, 1e6 + 4.0];
         for (i, value) in errors.into_iter().enumerate() {
             score.add(&Error { error: Some(value), extrapolated: i == 0, covered: Some(i < 2) });

@@ -2,7 +2,8 @@ use super::*;
 use grainlab_msgs::{msg, to_cdr, topics};
 use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
 
-/// A recording whose one packing message is not a valid packing: what is read of it, and with what exit code, shows how far reading came.
+/// A recording whose one packing message is not a valid packing: the error and the exit code show whether it
+/// was reached.
 fn recording(folder: &Path) -> PathBuf {
     let topic = TopicSpec::of_contract(&topics::PACKING, "/packing");
     let mut run = RunWriter::create(folder, "r", &[topic], WriterOptions::default()).unwrap();
@@ -31,13 +32,13 @@ fn a_damaged_chunk_of_the_packing_is_named_and_is_data_loss() {
         chunk = if good[at] == 0x06 { at } else { chunk };
         at += 9 + u64::from_le_bytes(good[at + 1..at + 9].try_into().unwrap()) as usize;
     }
-    // Its opcode, its length, its header and the begin of its content.
+    // Its opcode, its length, its header and the start of its content.
     for bit in 0..8 * 70 {
         let mut bytes = good.clone();
         bytes[chunk + bit / 8] ^= 1 << (bit % 8);
         let (complaints, exit) = outcome(&bytes);
         let text = complaints.join("\n");
-        // A chunk whose length is a little longer, or whose own times are others, is read all the same.
+        // A chunk with a slightly larger length or other times is read all the same.
         let read_all_the_same = text.contains("message 1 on /packing");
         assert!(exit == Exit::DataLoss || read_all_the_same, "bit {bit}: {text}");
         let named = text.contains(&format!("byte {chunk}")) || text.contains("checksum");

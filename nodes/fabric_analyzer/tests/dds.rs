@@ -1,4 +1,5 @@
-//! The analyzer over DDS, while it analyses. One test: the watchdog counts the DDS threads of the whole process.
+//! The analyzer over DDS, during an analysis. One test: the watchdog counts the DDS threads of the whole
+//! process.
 
 use grainlab_core::results::NotJammed;
 use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Measured};
@@ -16,13 +17,13 @@ use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A fabric with the packing's step, and no moduli: what this costs is up to the gate.
+/// A fabric with the step of the packing, without moduli; the gate sets the duration.
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
     let fabric = Fabric { source_step: packing.step, ..Fabric::default() };
-    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }) })
+    Ok(Measured { fabric, moduli: Err(NotJammed::NoContacts { grains: 0 }), left_out: None })
 }
 
-/// An analyzer whose every measurement waits for a word from its gate, and what is heard of it.
+/// An analyzer whose measurements wait for its gate, and the messages received from it.
 struct Scene {
     bus: DdsBus,
     packings: BulkPublisher,
@@ -95,7 +96,7 @@ impl Scene {
         }
     }
 
-    /// What the analyzer says of itself next.
+    /// The next report of the analyzer.
     fn report(&mut self) -> Report {
         loop {
             if let Some((message, _)) = self.reports.take_valid(&mut self.bus).unwrap() {
@@ -132,7 +133,7 @@ fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
             beats += 1;
         }
     }
-    // A second large one and a small one come while the first is analysed.
+    // A second large packing and a small one arrive while the first is analysed.
     scene.publish(&Packing { step: 2, ..large });
     scene.publish(&Packing { step: 3, ..Packing::default() });
     while value(&scene.report(), "waiting") != "2" {}
@@ -141,7 +142,7 @@ fn an_analyzer_beats_while_it_analyses_answers_in_order_and_leaves_at_once() {
         scene.gate.send(()).unwrap();
         assert_eq!(scene.fabric(), step);
     }
-    // Asked to stop in the middle of the next one, it leaves without a result.
+    // Stopped in the middle of the next one, it ends without a result.
     scene.publish(&Packing { step: 4, ..Packing::default() });
     while value(&scene.report(), "analysing") != "4" {}
     scene.stop.store(true, Ordering::Relaxed);

@@ -7,19 +7,19 @@ const STEP: Duration = Duration::from_millis(500);
 
 /// The remaining time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Patience {
+pub(crate) struct TimeLimit {
     left: Duration,
     looked: Instant,
 }
 
-impl Patience {
+impl TimeLimit {
     /// A time limit from now on.
-    pub(super) fn new(time: Duration) -> Self {
+    pub(crate) fn new(time: Duration) -> Self {
         Self { left: time, looked: Instant::now() }
     }
 
     /// True when the time is over; call it several times a second. Time with `suspended` does not count.
-    pub(super) fn is_over(&mut self, suspended: bool) -> bool {
+    pub(crate) fn is_over(&mut self, suspended: bool) -> bool {
         self.passes(Instant::now(), suspended)
     }
 
@@ -41,10 +41,10 @@ mod tests {
     fn time_for_which_somebody_was_stopped_does_not_count() {
         let begin = Instant::now();
         let at = |ms| begin + Duration::from_millis(ms);
-        let mut patience = Patience { left: Duration::from_secs(1), looked: begin };
-        assert!(!patience.passes(at(60_000), false), "the launcher was stopped: one step counts");
-        assert!(!patience.passes(at(60_400), true), "a process of the run was stopped");
-        assert!(!patience.passes(at(60_800), false));
-        assert!(patience.passes(at(61_000), false));
+        let mut limit = TimeLimit { left: Duration::from_secs(1), looked: begin };
+        assert!(!limit.passes(at(60_000), false), "the launcher was stopped: one step counts");
+        assert!(!limit.passes(at(60_400), true), "a process of the run was stopped");
+        assert!(!limit.passes(at(60_800), false));
+        assert!(limit.passes(at(61_000), false));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! F = (4/3) E* √R* δ^{3/2}, k_n = 2 E* a, k_t = 8 G* a with the contact radius a = √(R* δ).
 
-use super::springs::ContactSprings;
+use crate::contact::springs::ContactSprings;
 use crate::lanes::Lanes;
 use crate::material::Material;
 

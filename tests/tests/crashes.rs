@@ -1,11 +1,11 @@
-//! Who may die, who may not, and what is left then.
+//! Crashes of each process of a run, and their consequences.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::process::{Process, children, send};
 
-/// A run that would not end by itself, some seconds under way; the launcher and the pid of `node`.
+/// A run that does not end by itself, after some seconds; the launcher and the pid of `node`.
 fn under_way(lab: &Lab, node: &str) -> (Process, u32) {
     let launcher = lab.start(&["launch", "--scene", &golden("scenes/endless.toml").to_string_lossy()]);
     let begin = Instant::now();
@@ -25,7 +25,7 @@ fn messages(run: &Path) -> usize {
 }
 
 #[test]
-fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_finished_recording() {
+fn a_simulator_that_is_killed_repeatedly_ends_the_run_with_exit_code_1_and_a_finished_recording() {
     let lab = Lab::new();
     let (launcher, first) = under_way(&lab, "dem_simulator");
     let mut victim = first;
@@ -51,7 +51,7 @@ fn a_simulator_that_dies_again_and_again_ends_the_run_with_exit_code_1_and_a_fin
 }
 
 #[test]
-fn the_death_of_the_recorder_ends_the_run_with_exit_code_3_and_keeps_what_was_recorded() {
+fn a_killed_recorder_ends_the_run_with_exit_code_3_and_keeps_its_recording() {
     let lab = Lab::new();
     let (launcher, recorder) = under_way(&lab, "recorder");
     send(recorder, libc::SIGKILL);
@@ -62,15 +62,15 @@ fn the_death_of_the_recorder_ends_the_run_with_exit_code_3_and_keeps_what_was_re
 }
 
 #[test]
-fn the_death_of_the_launcher_ends_every_process_and_finishes_the_recording() {
+fn a_killed_launcher_ends_every_process_and_finishes_the_recording() {
     let lab = Lab::new();
     let (launcher, _) = under_way(&lab, "dem_simulator");
     let all = children(launcher.pid(), "run ");
     assert_eq!(all.len(), 5);
     launcher.signal(libc::SIGKILL);
     let begin = Instant::now();
-    let lives = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
-    while all.iter().any(lives) {
+    let runs = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
+    while all.iter().any(runs) {
         assert!(begin.elapsed() < Duration::from_secs(20), "processes outlive their launcher");
         std::thread::sleep(Duration::from_millis(50));
     }

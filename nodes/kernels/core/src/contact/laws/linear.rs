@@ -2,7 +2,8 @@
 //!
 //! F = k_n δ with the same k_n for every pair, k_t = ratio × k_n (Cundall & Strack, Géotechnique 29, 47 (1979)).
 
-use super::springs::{ContactSprings, LawParameter};
+use crate::contact::law_parameter::LawParameter;
+use crate::contact::springs::ContactSprings;
 use crate::lanes::Lanes;
 
 /// Linear springs.
@@ -17,8 +18,20 @@ pub struct Linear {
 impl Linear {
     /// Parameters in scenes and messages, in the order of the fields.
     pub const PARAMETERS: [LawParameter; 2] = [
-        LawParameter { key: "normal_stiffness", meaning: "a stiffness in N/m, more than 0", default: None },
-        LawParameter { key: "stiffness_ratio", meaning: "k_t/k_n, more than 0", default: Some(0.5) },
+        LawParameter {
+            key: "normal_stiffness",
+            unit: "N/m",
+            meaning: "normal stiffness k_n",
+            default: None,
+            may_be_zero: false,
+        },
+        LawParameter {
+            key: "stiffness_ratio",
+            unit: "",
+            meaning: "k_t/k_n",
+            default: Some(0.5),
+            may_be_zero: false,
+        },
     ];
 }
 

@@ -1,23 +1,30 @@
-//! What makes a measured state doubtful, said beside it.
+//! Warnings about a measured state.
 
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
 
-/// Unbalanced force ratio from which the stiffness of the network is not that of a packing at rest. Packings that have
-/// come to rest are below 1e-3; contact forces that are not those of the positions leave some tenths.
+/// Unbalanced force ratio above which a packing is not at rest, so that the stiffness of the network is not
+/// meaningful. Packings at rest are below 1e-3; contact forces that do not match the positions give some
+/// tenths.
 const RESTLESS: f64 = 0.01;
 
-/// Θ may be below its bound by this share: packings whose stress is not quite isotropic.
+/// Relative margin of the lower bound of Θ: for packings whose stress is not exactly isotropic.
 const BELOW: f64 = 1e-3;
 
-/// Every doubt about `packing` and what was measured on it, in words; `notes` are those of whoever read it.
-pub(crate) fn doubts(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
-    [restless(report), below_its_bound(report), pulling(packing), missing(packing, notes)]
-        .into_iter()
-        .flatten()
-        .collect()
+/// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
+pub(crate) fn state_warnings(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
+    [
+        restless(report),
+        below_its_bound(report),
+        pulling(packing),
+        missing(packing, notes),
+        left_out(packing, report),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn restless(report: &PackingReport) -> Option<String> {
@@ -51,7 +58,11 @@ fn pulling(packing: &Packing) -> Option<String> {
     ))
 }
 
-/// Contacts by position that the list lacks; files have said so when they were read.
+fn left_out(packing: &Packing, report: &PackingReport) -> Option<String> {
+    Some(report.stiffness()?.method.leaves_out(&packing.law)?.to_string())
+}
+
+/// Contacts by position that are missing in the list; the readers of some files have already reported them.
 fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     if notes.iter().any(|w| w.contains("are not listed")) {
         return None;
@@ -59,12 +70,12 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
     let found = contacts::find(&packing.cell, &packing.positions, &packing.radii, force).ok()?;
     let listed: BTreeSet<_> = packing.contacts.iter().map(|c| (c.i, c.j, c.image)).collect();
-    // Of a contact with an own image, either of the two names may be listed.
+    // A contact with an own image may be listed under either of its two images.
     let has = |c: &grainlab_core::Contact| {
         listed.contains(&(c.i, c.j, c.image))
             || (c.i == c.j && listed.contains(&(c.i, c.j, c.image.map(|k| k.saturating_neg()))))
     };
-    // Touching by less than rounding is not a contact.
+    // Overlaps below rounding are not contacts.
     let rounding = 64.0 * f64::EPSILON * packing.cell.matrix().amax();
     let mut missing = found.iter().filter(|c| c.overlap > rounding && !has(c));
     let first = missing.next()?;
@@ -78,6 +89,7 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_core::contact::RollingResistance;
     use grainlab_core::results::Elasticity;
     use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
     use grainlab_micromechanics::{Settings, analyze};
@@ -89,7 +101,16 @@ mod tests {
             let (mut image, mut normal) = ([0; 3], Vec3::zeros());
             (image[axis], normal[axis]) = (1, 1.0);
             let normal_force = Material::GLASS.normal_force(5e-5, overlap);
-            Contact { i: 0, j: 0, image, overlap, normal, normal_force, tangential_force: Vec3::zeros() }
+            Contact {
+                i: 0,
+                j: 0,
+                image,
+                overlap,
+                normal,
+                normal_force,
+                tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
+            }
         };
         Packing {
             step: 0,
@@ -113,38 +134,45 @@ mod tests {
         analyze(packing, &Settings::default()).unwrap().report
     }
 
-    fn said(change: impl FnOnce(&mut Packing)) -> String {
+    fn warnings(change: impl FnOnce(&mut Packing)) -> String {
         let mut packing = lattice();
         change(&mut packing);
-        doubts(&packing, &report(&packing), &[]).join("; ")
+        state_warnings(&packing, &report(&packing), &[]).join("; ")
     }
 
     #[test]
-    fn nothing_is_doubted_of_a_packing_at_rest() {
-        assert_eq!(said(|_| ()), "");
+    fn a_packing_at_rest_has_no_warnings() {
+        assert_eq!(warnings(|_| ()), "");
     }
 
     #[test]
-    fn a_contact_that_is_missing_and_one_that_pulls_are_said() {
+    fn missing_and_tensile_contacts_are_reported() {
         assert!(
-            said(|p| _ = p.contacts.pop()).contains("1 contact(s) overlap by position but are not listed")
+            warnings(|p| _ = p.contacts.pop())
+                .contains("1 contact(s) overlap by position but are not listed")
         );
-        let pulls = said(|p| p.contacts[1].normal_force *= -1.0);
+        let pulls = warnings(|p| p.contacts[1].normal_force *= -1.0);
         assert!(pulls.contains("1 contact(s) pull") && pulls.contains("grains 5 and 5"), "{pulls}");
     }
 
     #[test]
-    fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_said() {
+    fn rolling_springs_that_the_network_lacks_are_reported() {
+        let rolling = RollingResistance { stiffness: 1e4, damping: 0.0, friction: 0.1 };
+        assert!(warnings(|p| p.law = p.law.with_rolling(rolling)).contains("rolling springs"));
+    }
+
+    #[test]
+    fn theta_below_the_bound_by_the_forces_present_and_forces_out_of_balance_are_reported() {
         let packing = lattice();
         let mut report = report(&packing);
         assert_eq!(report.unbalanced_force_ratio, Some(0.0));
         let Elasticity::Jammed(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
         stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
         report.unbalanced_force_ratio = Some(0.2);
-        let said = doubts(&packing, &report, &[]).join("; ");
+        let found = state_warnings(&packing, &report, &[]).join("; ");
         assert!(
-            said.contains("below its lower bound") && said.contains("2.00e-1 of the mean contact force"),
-            "{said}"
+            found.contains("below its lower bound") && found.contains("2.00e-1 of the mean contact force"),
+            "{found}"
         );
     }
 }

@@ -1,0 +1,95 @@
+//! The laws of springs: one file each, and the list of them.
+//!
+//! To add a law: write its file, and add it here. Scenes, messages, engine and measurements take it from this list. Its closed
+//! form and its golden trajectory belong into the tests of contact laws in `grainlab_dem`.
+
+mod hertz_mindlin;
+mod linear;
+
+pub use hertz_mindlin::HertzMindlin;
+pub use linear::Linear;
+
+use crate::contact::law_parameter::LawParameter;
+use crate::contact::springs::LawVisitor;
+use crate::material::Material;
+
+/// The springs of a contact law, with the parameters that do not follow from the material.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SpringLaw {
+    /// Hertz's normal spring with Mindlin's tangential spring; its stiffnesses follow from the material.
+    #[default]
+    HertzMindlin,
+    /// Linear springs.
+    Linear(Linear),
+}
+
+impl SpringLaw {
+    /// Every law of springs, in the order of [`SpringLaw::NAMES`]; parameters are examples.
+    pub const EXAMPLES: [Self; 2] =
+        [Self::HertzMindlin, Self::Linear(Linear { normal_stiffness: 1e4, stiffness_ratio: 0.5 })];
+
+    /// Names, as in scenes and messages.
+    pub const NAMES: [&'static str; 2] = [Self::EXAMPLES[0].name(), Self::EXAMPLES[1].name()];
+
+    /// Name, as in scenes and messages.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::HertzMindlin => "hertz_mindlin",
+            Self::Linear(_) => "linear",
+        }
+    }
+
+    /// What the parameters of springs of this kind are.
+    pub fn parameter_list(&self) -> &'static [LawParameter] {
+        match self {
+            Self::HertzMindlin => &[],
+            Self::Linear(_) => &Linear::PARAMETERS,
+        }
+    }
+
+    /// Parameters, in the order of the list.
+    pub fn parameters(&self) -> Vec<f64> {
+        match self {
+            Self::HertzMindlin => Vec::new(),
+            Self::Linear(l) => vec![l.normal_stiffness, l.stiffness_ratio],
+        }
+    }
+
+    /// Springs of the same kind with these parameters, unchecked.
+    ///
+    /// # Panics
+    /// Where there are fewer parameters than in the list.
+    #[must_use]
+    pub fn with_parameters(&self, p: &[f64]) -> Self {
+        match self {
+            Self::HertzMindlin => Self::HertzMindlin,
+            Self::Linear(_) => Self::Linear(Linear { normal_stiffness: p[0], stiffness_ratio: p[1] }),
+        }
+    }
+
+    /// Does work that is compiled for each law, with these springs.
+    pub fn visit<V: LawVisitor>(&self, material: &Material, visitor: V) -> V::Output {
+        match self {
+            Self::HertzMindlin => visitor.visit(HertzMindlin::new(material)),
+            Self::Linear(springs) => visitor.visit(*springs),
+        }
+    }
+
+    /// Elastic normal force, N, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
+    pub fn normal_force(&self, material: &Material, r_eff: f64, overlap: f64) -> f64 {
+        match self {
+            Self::HertzMindlin => material.normal_force(r_eff, overlap),
+            Self::Linear(l) => l.normal_stiffness * overlap,
+        }
+    }
+
+    /// Stiffnesses (k_n, k_t), N/m, for effective radius `r_eff` (m) and full overlap `overlap` (m, ≥ 0).
+    pub fn stiffnesses(&self, material: &Material, r_eff: f64, overlap: f64) -> (f64, f64) {
+        match self {
+            Self::HertzMindlin => {
+                (material.normal_stiffness(r_eff, overlap), material.tangential_stiffness(r_eff, overlap))
+            }
+            Self::Linear(l) => (l.normal_stiffness, l.normal_stiffness * l.stiffness_ratio),
+        }
+    }
+}

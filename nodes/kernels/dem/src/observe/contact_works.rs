@@ -1,0 +1,108 @@
+//! Forces and energies of the present contacts, by the scalar contact law.
+
+use super::pair_motion::{kinematics, lanes, law, vec3};
+use crate::domain::state::State;
+use crate::pairs::contacts::Contacts;
+use crate::pairs::types::{History, Pair};
+use crate::settings::{EngineSettings, Features};
+use grainlab_core::contact::{ContactSprings, LawVisitor};
+use grainlab_core::{Mat3, Vec3};
+
+/// A contact with its forces.
+pub(super) struct ContactWork {
+    pub(super) i: usize,
+    pub(super) j: usize,
+    pub(super) normal: Vec3,
+    pub(super) branch: Vec3,
+    /// R − δ/2 of both grains, m.
+    pub(super) levers: [f64; 2],
+    pub(super) elastic: f64,
+    pub(super) normal_force: f64,
+    pub(super) tangential_force: Vec3,
+    /// R*, m.
+    pub(super) r_eff: f64,
+    pub(super) rolling_force: Vec3,
+    pub(super) history: History,
+    pub(super) normal_energy: f64,
+    pub(super) tangential_energy: f64,
+    pub(super) rolling_energy: f64,
+}
+
+impl ContactWork {
+    pub(super) fn energy(&self) -> f64 {
+        self.normal_energy + self.tangential_energy + self.rolling_energy
+    }
+}
+
+/// `rate` is the strain rate that the forces were evaluated with, 1/s.
+pub(super) fn contact_works(
+    state: &State,
+    contacts: &Contacts,
+    settings: &EngineSettings,
+    rate: &Mat3,
+) -> Vec<ContactWork> {
+    state.law.visit(&state.material, ContactWorks { state, contacts, settings, rate })
+}
+
+/// Forces and energies of all contacts, under any law.
+struct ContactWorks<'a> {
+    state: &'a State,
+    contacts: &'a Contacts,
+    settings: &'a EngineSettings,
+    rate: &'a Mat3,
+}
+
+impl LawVisitor for ContactWorks<'_> {
+    type Output = Vec<ContactWork>;
+
+    fn visit<S: ContactSprings>(self, springs: S) -> Vec<ContactWork> {
+        let Self { state, contacts, settings, rate } = self;
+        let law = law(settings, springs);
+        let no_slip = settings.features() == Features::NoSlip;
+        let frictional = settings.features() != Features::Frictionless;
+        let work = |p: Pair| {
+            let m = kinematics(state, contacts, rate, &p, p.history.contact_radius);
+            let (c, tangential) = (&m.contact, lanes(p.history.tangential));
+            let f = if no_slip {
+                law.full_force::<f64, false, false, false>(c, tangential, 0.0)
+            } else {
+                law.full_force::<f64, false, true, false>(c, tangential, 0.0)
+            };
+            let rolling = if S::ROLLS && frictional {
+                vec3(
+                    law.rolling_force::<f64, false>(c, m.rolling, f.elastic, lanes(p.history.rolling), 0.0)
+                        .total,
+                )
+            } else {
+                Vec3::zeros()
+            };
+            ContactWork {
+                i: p.i as usize,
+                j: p.j as usize,
+                normal: vec3(c.normal),
+                branch: m.branch,
+                levers: m.levers,
+                elastic: f.elastic,
+                normal_force: f.normal,
+                tangential_force: vec3(f.tangential),
+                r_eff: m.r_eff,
+                rolling_force: rolling,
+                history: p.history,
+                normal_energy: springs.normal_energy(f.elastic, c.overlap),
+                tangential_energy: tangential_energy(&springs, &p.history.tangential, c.contact_radius),
+                rolling_energy: rolling_energy(&springs, &p.history.rolling),
+            }
+        };
+        contacts.touching().map(work).collect()
+    }
+}
+
+/// Energy of a tangential spring, J.
+pub(super) fn tangential_energy(springs: &impl ContactSprings, force: &Vec3, contact_radius: f64) -> f64 {
+    0.5 * force.norm_squared() / springs.tangential_stiffness(contact_radius, 1.0)
+}
+
+/// Energy of a rolling spring, J.
+pub(super) fn rolling_energy<S: ContactSprings>(springs: &S, force: &Vec3) -> f64 {
+    if S::ROLLS { 0.5 * force.norm_squared() / springs.rolling().stiffness } else { 0.0 }
+}
