@@ -1,8 +1,8 @@
 //! One process of a run, which ends with the launcher.
 
-use super::Run;
 use super::plan::NodePlan;
 use crate::pipe::VARIABLE;
+use crate::run::Run;
 use grainlab_console::Failure;
 use grainlab_node_kit::{MEMBER_VARIABLE, ROOT_VARIABLE, RUN_VARIABLE};
 use std::fs::{File, OpenOptions};

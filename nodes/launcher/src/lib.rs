@@ -18,6 +18,7 @@ mod pending_results;
 pub mod pipe;
 mod plan;
 mod progress;
+mod run;
 mod stopped;
 mod supervisor;
 mod time_limit;
@@ -25,15 +26,5 @@ mod watch;
 
 pub use nodes::{NodeKind, UnknownNode};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
+pub use run::Run;
 pub use supervisor::{Received, Supervised, Supervisor};
-
-use grainlab_node_kit::RunId;
-
-/// The run that a launcher starts.
-#[derive(Clone, Copy, Debug)]
-pub struct Run {
-    /// Its id.
-    pub id: RunId,
-    /// DDS domain.
-    pub domain: u16,
-}

@@ -1,6 +1,5 @@
 //! Runs the processes of a launch: restarts them, and ends the run.
 
-use super::Run;
 use super::child::{Child, Ended};
 use super::deadline::{Deadline, nothing};
 use super::pending_results::{PendingResults, ResultState, Source};
@@ -10,6 +9,7 @@ use super::stopped::Stopped;
 use super::time_limit::TimeLimit;
 use super::watch::{Event, Watch};
 use crate::nodes::NodeKind;
+use crate::run::Run;
 use grainlab_console::{Failure, worse};
 use grainlab_msgs::boundary::{RunStateReading, RunStatus};
 use grainlab_msgs::topics;

@@ -1,6 +1,6 @@
 //! Passes the run's messages over DDS to the supervisor.
 
-use super::Run;
+use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_console::network::bus_as;
