@@ -81,7 +81,7 @@ fn packings_that_determine_no_constants_are_refused_with_the_reason() {
         head(2) + "\n" + &third.replace(&format!(",0.64{}", after_phi.split(',').next().unwrap()), ",");
     for (name, table, code, words) in [
         ("few", head(3), 4, &["no calibration", "isotropic packings"][..]),
-        ("torn", torn, 2, &["line 3: phi is not known", "1 rows are no packings"]),
+        ("torn", torn, 2, &["line 3: phi is not known", "1 rows are not valid packings"]),
         ("empty", head(1), 2, &["no packing below the header"]),
         ("foreign", whole.replace("mu2", "friction"), 2, &["no column mu2 to group by"]),
     ] {

@@ -28,7 +28,12 @@ impl Recording {
     /// [`Recording::warnings`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut warnings = BTreeSet::new();
-        let paths = files::of_recording(path, &mut warnings)?;
+        let mut paths = files::of_recording(path, &mut warnings)?;
+        // A recorder that has just begun its next file has written nothing to it.
+        let is_empty = |file: &PathBuf| file.metadata().is_ok_and(|m| m.len() == 0);
+        if paths.len() > 1 && paths.last().is_some_and(is_empty) {
+            paths.pop();
+        }
         let mut files = Vec::with_capacity(paths.len());
         for file in paths {
             files.push(OpenFile::map(&file, &mut warnings)?);

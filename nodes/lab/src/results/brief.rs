@@ -8,6 +8,7 @@ use grainlab_console::{Table, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::PackingReport;
 use grainlab_msgs::topics;
+use grainlab_node_kit::Exit;
 use std::path::Path;
 
 /// The model of the paper (its Eqs. 21 and 22, corrected).
@@ -17,27 +18,55 @@ const PAPER: &str = "ratio";
 const MOST_GROUPS: usize = 3;
 
 /// Notes on a packing that are shown.
-const MOST_NOTES: usize = 2;
+const MOST_NOTES: usize = 1;
 
 /// Rows of the table of states; with more states, the last ones have rows.
 const MOST_ROWS: usize = 10;
 
 /// The result of a run as text. `program` is the name of the binary on the command line.
 pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
-    let mut lines = match s.states.as_slice() {
-        [] => vec![row("Prepared", "no packing was published")],
-        [state] => one(state),
-        states => several(states),
-    };
-    lines.push(row("Run", &pace(s)));
-    let folder = directory.display();
-    lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
-    if !s.states.is_empty() {
-        lines.push(row("Next", &format!("{program} analyze {folder}    # all that is measured")));
+    let mut lines: Vec<String> = ended(s.exit).map(|why| row("Ended", &why)).into_iter().collect();
+    match s.states.as_slice() {
+        [] => lines.push(row("Prepared", "no packing was published and measured")),
+        [state] => lines.extend(one(state)),
+        states => lines.extend(several(states)),
     }
-    lines.push(row("", &format!("{program} bag info {folder}    # what was recorded")));
-    lines.push(row("", &format!("{program} launch --scene s2 --verbose    # another scene, every model")));
+    lines.push(row("Run", &pace(s)));
+    let folder = quoted(&directory.display().to_string());
+    lines.push(row("Files", &format!("{folder}: recording, summary.json, scene.toml, logs")));
+    let next = [
+        (s.exit == Exit::Interrupted.code())
+            .then(|| format!("launch --resume {folder}    # goes on where it was interrupted")),
+        (!s.states.is_empty()).then(|| format!("analyze {folder}    # all that is measured")),
+        Some(format!("bag info {folder}    # what was recorded")),
+        Some("launch --scene s2 --verbose    # another scene, every model".to_owned()),
+    ];
+    for (n, command) in next.into_iter().flatten().enumerate() {
+        lines.push(row(if n == 0 { "Next" } else { "" }, &format!("{program} {command}")));
+    }
     lines.join("\n") + "\n"
+}
+
+/// What an exit code other than 0 means for the lines below it.
+fn ended(code: u8) -> Option<String> {
+    let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
+    let why = match exit {
+        Exit::Done => return None,
+        Exit::Failure => "a process failed; the last packing may be an intermediate one",
+        Exit::Usage => "invalid arguments",
+        Exit::DataLoss => "messages or results are missing in the recording",
+        Exit::PhysicsInvalid => {
+            "the loading path was not completed; the last packing may be an intermediate one"
+        }
+        Exit::Interrupted => "interrupted; the last packing may be an intermediate one",
+    };
+    Some(format!("with exit code {code}: {why}"))
+}
+
+/// A path for a shell.
+fn quoted(path: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    if path.chars().all(is_plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }
 
 fn row(name: &str, text: &str) -> String {
@@ -178,6 +207,7 @@ fn several(states: &[InvertedPacking]) -> Vec<String> {
         "z",
         "eps",
         "by",
+        "status",
         "from",
     ]);
     let origins = states.iter().map(|s| by_origin(&s.results).len()).max().unwrap_or(0).max(1);
@@ -208,10 +238,12 @@ fn several(states: &[InvertedPacking]) -> Vec<String> {
 }
 
 /// The recommended estimate, and the topic of its data.
-fn inferred(best: Option<&Inference>) -> [String; 5] {
-    let Some(b) = best else { return [const { String::new() }; 5] };
+fn inferred(best: Option<&Inference>) -> [String; 6] {
+    let Some(b) = best else { return [const { String::new() }; 6] };
     let from = b.source.clone().unwrap_or_default();
-    [fixed(b.values.k, 3), fixed(b.values.z, 3), fixed(b.values.eps, 4), b.model.clone(), from]
+    let values = [fixed(b.values.k, 3), fixed(b.values.z, 3), fixed(b.values.eps, 4)];
+    let [k, z, eps] = values;
+    [k, z, eps, b.model.clone(), b.status.to_owned(), from]
 }
 
 fn pace(s: &Summary) -> String {
@@ -231,4 +263,22 @@ fn pace(s: &Summary) -> String {
         text += &format!("; {} was restarted {} times", node.name, node.restarts);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_can_be_pasted_into_a_shell() {
+        assert_eq!(quoted("recordings/runs/demo-1-1"), "recordings/runs/demo-1-1");
+        assert_eq!(quoted("my runs/it's"), r"'my runs/it'\''s'");
+    }
+
+    #[test]
+    fn only_a_run_that_is_done_ends_without_a_reason() {
+        for exit in Exit::ALL {
+            assert_eq!(ended(exit.code()).is_none(), exit == Exit::Done, "{exit:?}");
+        }
+    }
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  grainlab bag export recordings/runs/demo-1-1 --format lammps --out dumps
+  grainlab bag export recordings/runs/s2-1-1 --format lammps --out dumps
   grainlab bag export run.mcap --format csv --out tables
 
 Writes every packing of the recording, in SI units. lammps: one file, packings.dump, with one frame per packing (grains
