@@ -52,11 +52,12 @@ pub enum PathEvent {
 pub enum PathError {
     /// A phase exceeded its timeout.
     #[error(
-        "phase {index} ({name}) did not meet its end conditions within {timeout} s of simulated time: {unmet}; \
-         raise its timeout, loosen the condition, or change the loading"
+        "phase {number} ({name}) did not meet its end conditions within {timeout} s of simulated time: {unmet}; \
+         raise its timeout, loosen the condition, or change the loading",
+        number = .index + 1
     )]
     Timeout {
-        /// Index of the phase.
+        /// Index of the phase, from 0; the message counts from 1, as progress does.
         index: usize,
         /// Name of the phase.
         name: String,
