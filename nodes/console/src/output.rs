@@ -141,12 +141,12 @@ impl CsvText {
     }
 }
 
-/// A number at full precision for CSV, empty if there is none.
+/// A number at full precision for CSV; `None` is an empty text.
 pub fn exact(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map_or_else(String::new, |v| v.to_string())
 }
 
-/// A number with `digits` decimal places, `-` if there is none.
+/// A number with `digits` decimal places; `None` is `-`.
 pub fn fixed(value: Option<f64>, digits: usize) -> String {
     value.filter(|v| v.is_finite()).map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"))
 }

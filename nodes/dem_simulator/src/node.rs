@@ -172,7 +172,7 @@ impl DemSimulator {
 
     /// Publishes the progress once a second and the simulated time at most every 10 ms.
     fn beat(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<(), BusError> {
-        // Not before the run begins: while it waits for readers, nobody would receive it.
+        // Published only after the run has begun: before that, no reader is there to receive it.
         if now >= self.next_clock && self.stage != Stage::Starting {
             self.next_clock = now + CLOCK_PERIOD;
             self.clock.publish(bus, &messages::clock(&self.run))?;

@@ -1,6 +1,6 @@
 //! Plane waves of long wavelength in an elastic medium.
 //!
-//! A wave u = p exp(iq(n·x − vt)) along the unit vector n obeys Γ p = ρ v² p with the Christoffel tensor
+//! A wave u = p exp(iq(n·x − vt)) along the unit vector n solves Γ p = ρ v² p, with the Christoffel tensor
 //! Γ_ik = C_ijkl n_j n_l. Its three modes have perpendicular particle motions p.
 
 use crate::stiffness::{Stiffness, VOIGT};

@@ -143,7 +143,7 @@ pub(crate) static ROLLING_KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
     RollingResistance::PARAMETERS.iter().map(of).collect()
 });
 
-/// The key of a parameter of a contact law. Its text lives as long as the program, as that of every key.
+/// The key of a parameter of a contact law. Its text is `'static`, as that of every key.
 fn law_key(p: &LawParameter, whose: &str) -> Key {
     let path = String::leak(format!("contact.{}", p.key));
     let range = if p.may_be_zero { Interval::FROM_ZERO } else { Interval::POSITIVE };

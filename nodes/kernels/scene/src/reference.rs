@@ -37,7 +37,7 @@ pub fn reference() -> String {
     page
 }
 
-/// A table of these keys under a title; only the title if there are none.
+/// A title with a table of these keys below it. Without keys it is the title alone.
 fn section(title: &str, belongs: impl Fn(&Key) -> bool) -> String {
     let rows: Vec<String> = KEYS.iter().filter(|k| belongs(k)).map(|k| row(k)).collect();
     let head = if rows.is_empty() {

@@ -179,7 +179,7 @@ impl DdsBus {
         Ok(created)
     }
 
-    /// The reader for `demand` on a topic, made if there is none.
+    /// The reader for `demand` on a topic. It is created at the first call.
     fn reader_for(&mut self, resolved: String, topic: &Topic, demand: Demand) -> Result<usize, BusError> {
         let serves = |r: &Reader| r.topic == resolved && lock(&r.inbox).demand().covers(demand);
         if let Some(index) = self.readers.iter().position(serves) {

@@ -74,7 +74,7 @@ impl Elasticity {
         }
     }
 
-    /// Why there is no stiffness, if there is none.
+    /// The reason why a packing has no stiffness; `None` if it has one.
     pub fn not_jammed(&self) -> Option<&NotJammed> {
         match self {
             Self::Jammed(_) => None,
@@ -82,7 +82,7 @@ impl Elasticity {
         }
     }
 
-    /// The stiffness, or why there is none, as a result.
+    /// The stiffness. The error is the reason why the packing has none.
     pub fn into_stiffness(self) -> Result<ElasticStiffness, NotJammed> {
         match self {
             Self::Jammed(stiffness) => Ok(*stiffness),

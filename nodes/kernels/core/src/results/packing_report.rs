@@ -31,7 +31,7 @@ pub struct PackingReport {
     pub stress_decomposition: StressDecomposition,
     /// The three ratios γ/Δ.
     pub strain_ratios: StrainRatios,
-    /// The stiffness, or why there is none.
+    /// The stiffness, or the reason why the packing has none.
     pub elasticity: Elasticity,
     /// Symmetry of the stiffness; `None` without one.
     pub symmetry: Option<Symmetry>,

@@ -1,6 +1,7 @@
 //! Moduli from wave speeds.
 //!
-//! A plane wave along the unit vector n obeys Γ p = ρ v² p with Γ_ik = C_ijkl n_j n_l (see [`grainlab_core::PlaneWaves`]).
+//! The particle motion p and speed v of a plane wave along the unit vector n solve Γ p = ρ v² p, with
+//! Γ_ik = C_ijkl n_j n_l ([`grainlab_core::PlaneWaves`]).
 //! In a medium that is isotropic about an axis, with θ between n and the axis, one mode moves across the plane of n and
 //! axis, ρ v² = C66 sin²θ + C44 cos²θ, and two in that plane: ρ v² are the eigenvalues of
 //!
