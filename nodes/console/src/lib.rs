@@ -2,10 +2,12 @@
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
+//! - [`Dataset`]: typed columns, as CSV and Parquet
 //! - [`plot`]: plots as SVG
 //! - [`scenes`]: built-in scenes, and those in files
 //! - [`network`]: buses of tools, free domains
 
+mod dataset;
 mod failure;
 pub mod network;
 mod output;
@@ -13,5 +15,6 @@ pub mod plot;
 pub mod scenes;
 mod start;
 
+pub use dataset::{Cell, Dataset};
 pub use failure::{Failure, worse};
 pub use output::{CsvText, Format, Table, exact, fixed, json, print};

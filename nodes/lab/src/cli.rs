@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::commands::{analyze, bag, calibrate, invert, launch, probe, run, scene};
+use crate::commands::{analyze, bag, calibrate, campaign, invert, launch, probe, reproduce, run, scene};
 use clap::{Parser, Subcommand};
 use grainlab_bench as bench;
 use grainlab_console::Failure;
@@ -26,6 +26,10 @@ struct Cli {
 enum Command {
     /// Run a scene: every node as its own process, recorded, measured, inverted. The default.
     Launch(launch::Args),
+    /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
+    Campaign(campaign::Args),
+    /// Reproduce the tables and figures of the paper: sixteen states, one page.
+    Reproduce(reproduce::Args),
     /// List, show, check and create scenes: what a run simulates.
     #[command(subcommand)]
     Scene(scene::Command),
@@ -53,6 +57,8 @@ pub(crate) fn main() -> ExitCode {
     let outcome = match cli.command {
         None => launch::run(&launch::Args::default()),
         Some(Command::Launch(args)) => launch::run(&args),
+        Some(Command::Campaign(args)) => campaign::run(&args),
+        Some(Command::Reproduce(args)) => reproduce::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),

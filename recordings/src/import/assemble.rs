@@ -195,7 +195,8 @@ pub(super) fn packing(
     notes.extend(too_few_digits(printed, &packing));
     packing.contacts.sort_by_key(|c| (c.i, c.j, c.image));
     let packing = packing.validated()?.consistent()?;
-    Ok(Imported { header: packing_header(&packing), packing, step: state.step, source, notes })
+    let header = packing_header(&packing);
+    Ok(Imported { header, packing, step: state.step, run_state: Vec::new(), source, notes })
 }
 
 /// A warning if the rounding of printed positions changes overlaps noticeably. Programs print at least six

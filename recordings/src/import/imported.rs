@@ -12,6 +12,8 @@ pub struct Imported {
     pub header: Header,
     /// Solver step of the state; 0 if unknown.
     pub step: u64,
+    /// The run state of its message; empty if it was not recorded by a simulator.
+    pub run_state: Vec<u8>,
     /// Description of its source, for the user.
     pub source: String,
     /// Warnings: contacts found rather than given, quantities that disagree.

@@ -54,5 +54,6 @@ pub fn packing(message: &Message) -> Result<Imported, ImportError> {
     let packing = Packing::try_from(&decoded).map_err(|e| fail(e.to_string()))?;
     let scene = if decoded.scene.is_empty() { "a scene without name" } else { &decoded.scene };
     let source = format!("recording, {scene}, step {}", packing.step);
-    Ok(Imported { step: packing.step, packing, header: decoded.header, source, notes: Vec::new() })
+    let (header, run_state) = (decoded.header, decoded.run_state);
+    Ok(Imported { step: packing.step, packing, header, run_state, source, notes: Vec::new() })
 }

@@ -14,5 +14,6 @@ pub(crate) struct Rollback {
     pub(crate) deformation: Mat3,
     pub(crate) phase_deformation: Mat3,
     pub(crate) phase_strain: f64,
+    pub(crate) within_phase: bool,
     pub(crate) observables: Observables,
 }

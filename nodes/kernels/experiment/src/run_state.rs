@@ -20,8 +20,8 @@ pub(crate) struct RunState {
     /// Integral over time of the largest component of the strain rate since the start of the phase.
     pub(crate) phase_strain: f64,
     pub(crate) has_reference: bool,
-    /// The packing was recorded within a phase.
-    pub(crate) is_frame: bool,
+    /// The state is within a phase, not at the end of one.
+    pub(crate) within_phase: bool,
     /// Fingerprint of the scene: a state can be resumed only in the scene that it came from.
     pub(crate) scene: u64,
 }
@@ -38,7 +38,7 @@ impl RunState {
             u64::from(p.holding_since.is_some()),
             p.holding_since.unwrap_or(0.0).to_bits(),
             self.time.to_bits(),
-            u64::from(self.has_reference) | u64::from(self.is_frame) << 1,
+            u64::from(self.has_reference) | u64::from(self.within_phase) << 1,
             self.scene,
         ];
         words.extend(self.rate.iter().map(|r| r.to_bits()));
@@ -90,13 +90,27 @@ impl RunState {
             phase_deformation,
             phase_strain: real(25),
             has_reference: words[8] & 1 != 0,
-            is_frame: words[8] & 2 != 0,
+            within_phase: words[8] & 2 != 0,
             scene,
         })
     }
 }
 
-/// Whether a packing with this run state was recorded within a phase, on the way from one state to the next.
-pub fn is_frame(run_state: &[u8]) -> bool {
-    RunState::decode(run_state).is_ok_and(|state| state.is_frame)
+/// Position of a packing on the loading path of its run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathPosition {
+    /// Number of the phase, from 1; 0 for the packing that the run started from.
+    pub phase: usize,
+    /// The phase met its end conditions at this packing. A packing within a phase, recorded on the way or saved by an
+    /// interruption, need not be at rest.
+    pub end_of_phase: bool,
+}
+
+impl PathPosition {
+    /// The position in the run state of a packing; `None` if the packing has no run state of this version.
+    pub fn of(run_state: &[u8]) -> Option<Self> {
+        let state = RunState::decode(run_state).ok()?;
+        let (next, end_of_phase) = (state.path.phase, !state.within_phase);
+        Some(Self { phase: if end_of_phase { next } else { next + 1 }, end_of_phase })
+    }
 }

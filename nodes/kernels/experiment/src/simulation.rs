@@ -33,8 +33,8 @@ pub struct Simulation {
     /// Integral over time of the largest component of the strain rate since the phase began.
     phase_strain: f64,
     has_reference: bool,
-    /// The present packing was due within a phase.
-    is_frame: bool,
+    /// The present state is within a phase, not at the end of one.
+    within_phase: bool,
     observables: Observables,
     rollback: Option<Rollback>,
 }
@@ -62,7 +62,9 @@ impl Simulation {
             Engine::new(gas.cell, scene.material, radii, &gas.positions, settings).with_law(scene.law);
         engine.set_velocities(&gas.velocities);
         let friction = engine.settings().friction;
-        Self::begin(scene, engine, friction)
+        let mut run = Self::begin(scene, engine, friction)?;
+        run.within_phase = true;
+        Ok(run)
     }
 
     /// The start of a scene whose path begins with this packing. Its clock is set to 0.
@@ -95,7 +97,7 @@ impl Simulation {
             phase_deformation: Mat3::identity(),
             phase_strain: 0.0,
             has_reference: false,
-            is_frame: false,
+            within_phase: false,
             observables,
             rollback: None,
         })
@@ -124,7 +126,7 @@ impl Simulation {
             phase_deformation: saved.phase_deformation,
             phase_strain: saved.phase_strain,
             has_reference: saved.has_reference,
-            is_frame: saved.is_frame,
+            within_phase: saved.within_phase,
             observables,
             rollback: None,
             scene,
@@ -229,7 +231,7 @@ impl Simulation {
             PathEvent::Stay => {
                 let record = self.scene.phases[index].record;
                 let packing_due = record.is_some_and(|r| r.is_due(&before, &self.travelled()));
-                self.is_frame = packing_due;
+                self.within_phase = true;
                 if packing_due {
                     self.packings += 1;
                     // A failing run does not return beyond a packing that was published.
@@ -239,7 +241,8 @@ impl Simulation {
             }
             PathEvent::PhaseEnded { reference, publish, finished } => {
                 self.begin_phase(reference)?;
-                self.is_frame = false;
+                // A state that is not published here is saved by an interruption alone, as the first of the next phase.
+                self.within_phase = !publish;
                 self.packings += u64::from(publish);
                 let ended = Some(self.scene.phases[index].name.clone());
                 Ok(StepOutcome { ended, packing_due: publish, finished, energy })
@@ -353,7 +356,7 @@ impl Simulation {
             phase_deformation: self.phase_deformation,
             phase_strain: self.phase_strain,
             has_reference: self.has_reference,
-            is_frame: self.is_frame,
+            within_phase: self.within_phase,
             scene: fingerprint(&self.scene),
         }
         .encode()
@@ -370,6 +373,7 @@ impl Simulation {
                 deformation: self.deformation,
                 phase_deformation: self.phase_deformation,
                 phase_strain: self.phase_strain,
+                within_phase: self.within_phase,
                 observables: self.observables,
             });
         }
@@ -380,7 +384,7 @@ impl Simulation {
             self.engine.restore(saved.engine);
             (self.path, self.sequence, self.friction) = (saved.path, saved.sequence, saved.friction);
             (self.deformation, self.phase_deformation) = (saved.deformation, saved.phase_deformation);
-            (self.phase_strain, self.is_frame) = (saved.phase_strain, false);
+            (self.phase_strain, self.within_phase) = (saved.phase_strain, saved.within_phase);
             self.observables = saved.observables;
             // The forces of this state were valid when it was saved. If they fail now, the state is restored all the same.
             let _ = self.engine.initialise();

@@ -1,7 +1,7 @@
 //! Packings within phases, grains of several sizes, and runs that start from a packing.
 
 use grainlab_core::Packing;
-use grainlab_experiment::{Simulation, is_frame};
+use grainlab_experiment::{PathPosition, Simulation};
 use grainlab_scene::{Draft, Scene};
 
 const SCENE: &str = r#"
@@ -76,7 +76,7 @@ fn recording_packings_within_phases_does_not_change_a_run() {
     assert_eq!(plain.len(), 1);
     assert_eq!(frames.last().unwrap().0, plain[0].0);
     assert_eq!(film.packings(), frames.len() as u64);
-    assert!(frames.iter().all(|(_, state, ended)| is_frame(state) != *ended));
+    assert!(frames.iter().all(|(_, state, ended)| PathPosition::of(state).unwrap().end_of_phase == *ended));
     let strained: Vec<&Packing> = frames.iter().map(|(p, ..)| p).filter(|p| p.friction == 0.1).collect();
     assert!(strained.len() > 10, "{} packings", strained.len());
     for (n, pair) in strained.windows(2).enumerate() {

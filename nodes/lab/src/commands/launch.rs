@@ -10,12 +10,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 mod conduct;
+mod directory;
 mod finish;
 mod order;
 mod output;
 mod resume;
 
 use conduct::{conduct, domain};
+use directory::Given;
 use order::Order;
 use output::Output;
 
@@ -29,6 +31,7 @@ Examples:
   grainlab launch my.launch.yaml --scene my_scene.toml
   grainlab launch threads:=1 simd:=scalar   arguments of the launch file
   grainlab launch --resume recordings/runs/s2-1-1
+  grainlab launch --scene s2 --run mine     begins, continues or keeps the run in the directory mine
 
 The run is stored in recordings/runs/SCENE-SEED-N: the recording, scene.toml, summary.json and the logs of every node.
 Without ROS_DOMAIN_ID, an unused DDS domain is chosen and printed.";
@@ -53,9 +56,13 @@ pub(crate) struct Args {
     /// Folder for the directory of the run
     #[arg(long, value_name = "DIR", default_value = RUNS)]
     out: PathBuf,
+    /// Directory of the run itself: it begins there, continues if it was interrupted, and is left as it is if it is
+    /// finished, so that the same command can be repeated
+    #[arg(long, value_name = "DIR", conflicts_with = "out")]
+    run: Option<PathBuf>,
     /// Continue this run from the last packing in its recording, with its launch file, arguments, scene and
     /// seed; the result is the same to the last byte as without the interruption
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["words", "scene", "set", "seed", "out", "run"])]
     resume: Option<PathBuf>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t)]
@@ -78,6 +85,7 @@ impl Default for Args {
             set: Vec::new(),
             seed: None,
             out: RUNS.into(),
+            run: None,
             resume: None,
             format: Format::Table,
             verbose: false,
@@ -103,9 +111,25 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     };
     // Invalid input is refused before the directory is created.
     refuse_unknown(&order(given.clone()).plans(Path::new("."))?)?;
-    let (domain, lock) = domain()?;
-    let directory = run_directory(&args.out, &scene)?;
     let order = order(given);
+    // Held to the end of the run.
+    let mut _at_work = None;
+    let directory = match &args.run {
+        None => new_directory(&args.out, &scene)?,
+        Some(directory) => match directory::given(directory, &scene, &order)? {
+            Given::Finished => return Ok(Exit::Done),
+            Given::Begun(directory, lock) => {
+                _at_work = Some(lock);
+                return resume::run(&directory, output);
+            }
+            Given::Empty(directory, lock) => {
+                _at_work = Some(lock);
+                directory
+            }
+        },
+    };
+    let (domain, lock) = domain()?;
+    directory::fill(&directory, &scene)?;
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
     conduct(plans, domain, lock, &directory, &scene, output)
@@ -172,12 +196,9 @@ fn read_file(path: Option<&Path>) -> Result<LaunchFile, Failure> {
     LaunchFile::parse(&text).map_err(|e| Failure::usage(format!("{}: {e}", path.display())))
 }
 
-/// Creates the directory of the run, with a copy of the scene: later edits of the file affect neither the run nor a
-/// restart.
-fn run_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
+/// Creates the next free directory.
+fn new_directory(root: &Path, scene: &SceneText) -> Result<PathBuf, Failure> {
     let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", root.display()));
     let directory = create_run_directory(root, &scene.scene.name, scene.scene.seed).map_err(failed)?;
-    let directory = directory.canonicalize().map_err(failed)?;
-    std::fs::write(directory.join("scene.toml"), &scene.text).map_err(failed)?;
-    Ok(directory)
+    directory.canonicalize().map_err(failed)
 }

@@ -3,9 +3,11 @@
 pub(crate) mod analyze;
 pub(crate) mod bag;
 pub(crate) mod calibrate;
+pub(crate) mod campaign;
 pub(crate) mod invert;
 pub(crate) mod launch;
 pub(crate) mod packings;
 pub(crate) mod probe;
+pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod scene;

@@ -67,7 +67,7 @@ impl<T> Quantities<T> {
 
 impl<T: Copy> Quantities<T> {
     /// In the order of [`InferredQuantity::ALL`].
-    pub(super) fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
+    pub(crate) fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }

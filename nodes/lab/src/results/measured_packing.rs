@@ -6,6 +6,7 @@ use grainlab_console::Table;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
 use grainlab_core::results::{PackingReport, QUANTITIES};
+use grainlab_experiment::PathPosition;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// A report, and its source.
@@ -16,6 +17,8 @@ pub(crate) struct MeasuredPacking {
     /// Step of the packing in its source.
     pub(crate) step: u64,
     pub(crate) report: PackingReport,
+    /// Position on the loading path; `None` if no simulator recorded it.
+    pub(crate) position: Option<PathPosition>,
     /// Wall time of the measurement, s; `None` if it was read from a recording.
     pub(crate) seconds: Option<f64>,
     pub(crate) warnings: Vec<String>,
@@ -29,13 +32,26 @@ pub(crate) struct MeasuredPacking {
 pub(crate) static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
     "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
     "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
+    "phase" "" "1" "number of the phase of the scene, from 1; 0 for the packing that a run started from"
+        Scalar, |m| m.position.map(|p| p.phase as u64);
+    "end_of_phase" "" "" "whether the phase met its end conditions; a packing within a phase need not be at rest"
+        Scalar, |m| m.position.map(|p| p.end_of_phase);
     "seconds" "" "s" "wall time of the measurement" Scalar, |m| m.seconds;
 };
 
 impl MeasuredPacking {
     pub(crate) fn new(source: String, report: PackingReport) -> Self {
         let step = report.step;
-        Self { source, step, report, seconds: None, warnings: Vec::new(), probe: None, scan: None }
+        Self {
+            source,
+            step,
+            report,
+            position: None,
+            seconds: None,
+            warnings: Vec::new(),
+            probe: None,
+            scan: None,
+        }
     }
 }
 
@@ -147,7 +163,7 @@ pub(crate) mod tests {
     fn every_row_is_as_long_as_the_header() {
         let table = table(&[measured(&lattice(true)), measured(&lattice(false))]).csv();
         let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
-        assert_eq!(rows[0][..5], ["source", "step", "seconds", "grains", "phi"]);
+        assert_eq!(rows[0][..5], ["source", "step", "phase", "end_of_phase", "seconds"]);
         assert!(rows.iter().all(|r| r.len() == rows[0].len()), "{table}");
         let at = |name: &str| rows[0].iter().position(|c| *c == name).unwrap();
         assert_eq!((rows[1][at("symmetry")], rows[2][at("symmetry")]), ("cubic", ""));

@@ -1,6 +1,6 @@
 //! Results as JSON and CSV, from the tables of quantities.
 
-use grainlab_console::exact;
+use grainlab_console::Cell;
 use grainlab_core::quantity::{Quantity, Shape, Value};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -27,18 +27,28 @@ pub(crate) fn cells<'a, R: 'static>(
     quantities: impl IntoIterator<Item = &'a Quantity<R>>,
     result: &R,
 ) -> impl Iterator<Item = String> {
+    typed_cells(quantities, result).map(|cell| cell.text())
+}
+
+/// The values of these columns.
+pub(crate) fn typed_cells<'a, R: 'static>(
+    quantities: impl IntoIterator<Item = &'a Quantity<R>>,
+    result: &R,
+) -> impl Iterator<Item = Cell> {
     quantities.into_iter().flat_map(|q| {
         let columns = q.columns().len();
         match (q.value)(result) {
             _ if columns == 0 => Vec::new(),
-            Value::Unknown => vec![String::new(); columns],
-            Value::Number(v) => vec![exact(Some(v))],
-            Value::Count(n) => vec![n.to_string()],
-            Value::Flag(flag) => vec![flag.to_string()],
-            Value::Word(word) => vec![word.to_owned()],
-            Value::Text(text) => vec![text],
-            Value::Numbers(numbers) => numbers.into_iter().map(exact).collect(),
-            Value::Counts(counts) => counts.into_iter().map(|n| n.to_string()).collect(),
+            Value::Unknown => vec![Cell::Unknown; columns],
+            Value::Number(v) => vec![Cell::Number(v)],
+            Value::Count(n) => vec![Cell::Count(n)],
+            Value::Flag(flag) => vec![Cell::Flag(flag)],
+            Value::Word(word) => vec![Cell::Text(word.to_owned())],
+            Value::Text(text) => vec![Cell::Text(text)],
+            Value::Numbers(numbers) => {
+                numbers.into_iter().map(|v| v.map_or(Cell::Unknown, Cell::Number)).collect()
+            }
+            Value::Counts(counts) => counts.into_iter().map(|n| Cell::Count(n.into())).collect(),
         }
     })
 }

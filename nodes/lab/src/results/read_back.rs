@@ -5,7 +5,7 @@ use super::inference::Inference;
 use super::measured_packing::MeasuredPacking;
 use grainlab_core::Packing;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
-use grainlab_experiment::is_frame;
+use grainlab_experiment::PathPosition;
 use grainlab_micromechanics::{PackingView, ReportParts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -68,14 +68,20 @@ pub(crate) struct Film {
 /// The messages about one packing; repeated ones are equal.
 #[derive(Default)]
 struct About {
-    /// Whether it was published within a phase: it need not be at rest, and may have no results.
-    within: bool,
+    /// Position on the loading path. A packing within a phase need not be at rest, and may have no results.
+    position: Option<PathPosition>,
     packing: Option<Packing>,
     fabric: Option<FabricReading>,
     stiffness: Option<ElasticStiffness>,
     wave_speeds: Option<WaveSpeedsReading>,
     /// In the order of arrival.
     results: Vec<Inference>,
+}
+
+impl About {
+    fn is_within_phase(&self) -> bool {
+        self.position.is_some_and(|p| !p.end_of_phase)
+    }
 }
 
 /// Reads a recording back.
@@ -127,9 +133,10 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
         }
     }
     let source = recording.path().display().to_string();
-    let film: BTreeSet<u64> = about.iter().filter(|(_, a)| a.within).map(|(step, _)| *step).collect();
+    let film: BTreeSet<u64> =
+        about.iter().filter(|(_, a)| a.is_within_phase()).map(|(step, _)| *step).collect();
     for (step, about) in about {
-        if about.within {
+        if about.is_within_phase() {
             back.film.packings += 1;
             back.film.structures += usize::from(about.fabric.is_some());
             back.film.moduli += usize::from(about.stiffness.is_some());
@@ -139,6 +146,7 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
             (Some(packing), Some(fabric)) => {
                 let report = reported(&packing, fabric, about.stiffness);
                 let mut measured = MeasuredPacking::new(source.clone(), report);
+                measured.position = about.position;
                 measured.warnings.extend(measured.report.elasticity.not_jammed().map(ToString::to_string));
                 let left_out = measured.report.stiffness().and_then(|s| s.method.leaves_out(&packing.law));
                 measured.warnings.extend(left_out.map(|left_out| left_out.to_string()));
@@ -193,7 +201,7 @@ fn enter(
             let packing = Packing::try_from(&message).map_err(text)?;
             let step = packing.step;
             let about = about.entry(step).or_default();
-            about.within = is_frame(&message.run_state);
+            about.position = PathPosition::of(&message.run_state);
             about.packing = Some(packing);
             Ok(step)
         }

@@ -2,6 +2,7 @@
 
 use grainlab_core::Packing;
 use grainlab_core::results::PackingReport;
+use grainlab_experiment::PathPosition;
 use grainlab_recordings::import::contacts;
 use std::collections::BTreeSet;
 
@@ -14,8 +15,14 @@ const RESTLESS: f64 = 0.01;
 const BELOW: f64 = 1e-3;
 
 /// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
-pub(crate) fn state_warnings(packing: &Packing, report: &PackingReport, notes: &[String]) -> Vec<String> {
+pub(crate) fn state_warnings(
+    packing: &Packing,
+    report: &PackingReport,
+    position: Option<PathPosition>,
+    notes: &[String],
+) -> Vec<String> {
     [
+        position.and_then(within_phase),
         restless(report),
         below_its_bound(report),
         pulling(packing),
@@ -25,6 +32,13 @@ pub(crate) fn state_warnings(packing: &Packing, report: &PackingReport, notes: &
     .into_iter()
     .flatten()
     .collect()
+}
+
+fn within_phase(position: PathPosition) -> Option<String> {
+    let PathPosition { phase, end_of_phase } = position;
+    (!end_of_phase).then(|| {
+        format!("recorded within phase {phase}, which had not met its end conditions: the packing need not be at rest")
+    })
 }
 
 fn restless(report: &PackingReport) -> Option<String> {
@@ -137,7 +151,7 @@ mod tests {
     fn warnings(change: impl FnOnce(&mut Packing)) -> String {
         let mut packing = lattice();
         change(&mut packing);
-        state_warnings(&packing, &report(&packing), &[]).join("; ")
+        state_warnings(&packing, &report(&packing), None, &[]).join("; ")
     }
 
     #[test]
@@ -169,7 +183,7 @@ mod tests {
         let Elasticity::Jammed(stiffness) = &mut report.elasticity else { panic!("a lattice is stiff") };
         stiffness.bounds.bulk_reuss = Some(1.1 * stiffness.tensor.bulk_voigt());
         report.unbalanced_force_ratio = Some(0.2);
-        let found = state_warnings(&packing, &report, &[]).join("; ");
+        let found = state_warnings(&packing, &report, None, &[]).join("; ");
         assert!(
             found.contains("below its lower bound") && found.contains("2.00e-1 of the mean contact force"),
             "{found}"

@@ -95,6 +95,11 @@ fn the_demo_settles_to_a_permille_in_all_components_from_1_kpa_and_up_to_5_mpa()
 }
 
 #[test]
+fn the_uniaxial_path_settles_to_a_permille_in_all_components_from_1_kpa_and_up_to_5_mpa() {
+    settles(include_str!("../../../../scenes/uniaxial.toml"), 9);
+}
+
+#[test]
 fn s1_settles_to_a_permille_in_all_components_from_1_kpa_and_up_to_5_mpa() {
     settles(include_str!("../../../../scenes/s1.toml"), 9);
 }

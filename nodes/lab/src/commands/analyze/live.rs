@@ -98,6 +98,7 @@ impl Source {
             step: packing.step,
             packing,
             header: message.header,
+            run_state: message.run_state,
             source: self.name.clone(),
             notes: Vec::new(),
         })))

@@ -5,6 +5,7 @@ use crate::results::measured_packing::MeasuredPacking;
 use crate::results::probe::{ProbeView, ScanView};
 use crate::results::state_warnings::state_warnings;
 use grainlab_core::Packing;
+use grainlab_experiment::PathPosition;
 use grainlab_fabric_analyzer::{Measured, messages};
 use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness};
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult, amplitude_sweep};
@@ -46,6 +47,7 @@ impl Measure for Analysis {
         let found = analyze(packing, &self.settings).map_err(|e| named(&e))?;
         let mut measured = MeasuredPacking::new(source.to_owned(), found.report);
         measured.step = imported.step;
+        measured.position = PathPosition::of(&imported.run_state);
         measured.seconds = Some(began.elapsed().as_secs_f64());
         let (report, probe) = (&measured.report, found.probe.as_ref());
         measured.probe = probe.zip(self.settings.probe).map(|(p, set)| ProbeView::new(set.amplitude, p));
@@ -53,7 +55,7 @@ impl Measure for Analysis {
             measured.scan = Some(self.scanned(packing).map_err(|e| named(&e))?);
         }
         let mut warnings = imported.notes.clone();
-        warnings.extend(state_warnings(packing, report, &imported.notes));
+        warnings.extend(state_warnings(packing, report, measured.position, &imported.notes));
         warnings.extend(report.elasticity.not_jammed().map(ToString::to_string));
         warnings.extend(probe.and_then(one_sided));
         measured.warnings = warnings;

@@ -3,6 +3,7 @@
 use super::finish::finish;
 use super::order;
 use super::output::Output;
+use grainlab_campaign::Lock;
 use grainlab_console::Failure;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
@@ -49,7 +50,10 @@ fn remove_if_unused(directory: &Path) -> bool {
     let empty = |e: &std::fs::DirEntry| e.metadata().is_ok_and(|m| m.len() == 0);
     let unused = std::fs::read_dir(directory).is_ok_and(|mut entries| {
         entries.all(|e| {
-            e.is_ok_and(|e| e.file_name() == "scene.toml" || e.file_name() == order::FILE || e.path() == logs)
+            e.is_ok_and(|e| {
+                e.path() == logs
+                    || ["scene.toml", order::FILE, Lock::FILE].iter().any(|name| e.file_name() == *name)
+            })
         })
     });
     let silent = match std::fs::read_dir(&logs) {

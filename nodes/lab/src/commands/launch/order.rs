@@ -25,7 +25,11 @@ impl Order {
     /// Writes it into the run directory.
     pub(super) fn keep(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
-        std::fs::write(&path, json(self)?).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+        let partial = directory.join("launch.json.part");
+        // At once: what has a launch file can be resumed.
+        std::fs::write(&partial, json(self)?)
+            .and_then(|()| std::fs::rename(&partial, &path))
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
     }
 
     /// Reads it back.

@@ -4,16 +4,21 @@
 //! repeat with the same bytes are not recorded again.
 
 use super::conduct::{conduct, domain};
+use super::finish::finish;
 use super::order::Order;
 use super::output::Output;
+use grainlab_campaign::{RunState, run_state};
 use grainlab_console::Failure;
 use grainlab_console::scenes;
+use grainlab_console::scenes::SceneText;
 use grainlab_launcher::NodeKind;
 use grainlab_launcher::last_packing;
+use grainlab_launcher::{Received, Run, Supervised};
 use grainlab_msgs::{from_cdr, msg, topics};
-use grainlab_node_kit::Exit;
+use grainlab_node_kit::{Exit, RunId};
 use grainlab_recordings::{Recording, Selection};
 use std::path::Path;
+use std::time::Duration;
 
 pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
     let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", directory.display()));
@@ -27,7 +32,13 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
         grainlab_recordings::recover(&directory).map_err(|e| failed(&e))?;
         let recording = Recording::open(&directory).map_err(|e| failed(&e))?;
         if is_finished(&recording) {
-            return Err(Failure::usage(format!("{}: the run is finished", directory.display())));
+            // The launcher may have ended before it reported the run.
+            return match run_state(&directory) {
+                RunState::Ended(0) => {
+                    Err(Failure::usage(format!("{}: the run is finished", directory.display())))
+                }
+                _ => report(&directory, &scene, output),
+            };
         }
         let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
         if recorded.is_some_and(|file| file.bytes != scene.text.as_bytes()) {
@@ -51,6 +62,14 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
     }
     let (domain, lock) = domain()?;
     conduct(plans, domain, lock, &directory, &scene, output)
+}
+
+/// Reports a finished run from its recording.
+fn report(directory: &Path, scene: &SceneText, output: Output) -> Result<Exit, Failure> {
+    let packings = u32::try_from(last_packing::count(directory)).ok();
+    let received = Received { packings, ..Received::default() };
+    let ended = Supervised { exit: Exit::Done, children: Vec::new(), wall: Duration::ZERO, received };
+    finish(output, directory, scene, Run { id: RunId::fresh(), domain: 0 }, ended)
 }
 
 /// Whether the loading path was complete and its last packing was measured and inverted.

@@ -1,0 +1,62 @@
+use super::*;
+
+fn parse(text: &str) -> Result<Campaign, String> {
+    Campaign::parse(text, Path::new("/nowhere")).map_err(|e| e.to_string())
+}
+
+fn names(campaign: &Campaign) -> Vec<&str> {
+    campaign.members.iter().map(|m| m.name.as_str()).collect()
+}
+
+#[test]
+fn scenes_values_and_seeds_are_combined_in_this_order() {
+    let campaign = parse(
+        "name = 'x'\nscenes = ['s1', 's2']\nseeds = { first = 3, count = 2 }\nset = { grains.count = 500 }\n\
+         vary = { friction = [0.05, 0.1] }",
+    )
+    .unwrap();
+    assert_eq!(
+        names(&campaign),
+        [
+            "s1-friction=0.05-3",
+            "s1-friction=0.05-4",
+            "s1-friction=0.1-3",
+            "s1-friction=0.1-4",
+            "s2-friction=0.05-3",
+            "s2-friction=0.05-4",
+            "s2-friction=0.1-3",
+            "s2-friction=0.1-4"
+        ]
+    );
+    assert_eq!(campaign.members[0].sets(), ["grains.count=500", "friction=0.05"]);
+    assert_eq!((campaign.launch.as_str(), campaign.members[7].seed), ("demo", 4));
+}
+
+#[test]
+fn single_runs_and_tables_add_members() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction\n1,s3,0.2\n2,mine.toml,\n").unwrap();
+    std::fs::write(folder.path().join("mine.toml"), "base = 's1'").unwrap();
+    let text = "name = 'x'\ntable = 'runs.csv'\nset = { name = 'n' }\n[[member]]\nscene = 's1'\nseed = 7\nset = { phase.rest.drag = 1e3 }";
+    let campaign = Campaign::parse(text, folder.path()).unwrap();
+    assert_eq!(names(&campaign), ["s1-phase.rest.drag=1000.0-7", "s3-friction=0.2-1", "mine-2"]);
+    assert_eq!(campaign.members[2].sets(), ["name=n"]);
+    assert_eq!(campaign.members[2].scene, folder.path().join("mine.toml").to_string_lossy());
+}
+
+#[test]
+fn faults_are_named() {
+    for (text, named) in [
+        ("name = 'x'", "no members"),
+        ("name = 'x y'\nscenes = ['s1']\nseeds = [1]", "letters, digits"),
+        ("name = 'x'\nscenes = ['s1']", "scenes and seeds are given together"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = [1, 1]", "two members are called s1-1"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = 0.1 }", "vary.friction is 0.1"),
+        ("name = 'x'\nscenes = ['s1']\nseed = [1]", "unknown field `seed`"),
+        ("name = 'x'\ntable = 'lost.csv'", "lost.csv"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = { first = 1, count = 200000 }", "more than 100000"),
+    ] {
+        let error = parse(text).unwrap_err();
+        assert!(error.contains(named), "{text}: {error}");
+    }
+}

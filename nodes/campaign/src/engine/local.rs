@@ -1,0 +1,115 @@
+//! Members on this machine, some at a time.
+
+use super::Options;
+use crate::campaign::Campaign;
+use crate::command::command;
+use crate::folder::{Folder, MemberState};
+use crate::progress::Progress;
+use grainlab_console::Failure;
+use grainlab_node_kit::Signals;
+use std::collections::VecDeque;
+use std::fs::OpenOptions;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Period of the checks of the processes.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// A member to run, and how often it was tried.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    member: usize,
+    tries: usize,
+}
+
+/// A running member.
+struct Job {
+    task: Task,
+    process: Child,
+    began: Instant,
+}
+
+/// Runs these members; true if a signal ended the campaign.
+pub(super) fn run(
+    campaign: &Campaign,
+    folder: &Folder,
+    options: Options,
+    pending: Vec<usize>,
+    progress: &mut Progress,
+) -> Result<bool, Failure> {
+    let signals = Signals::install().map_err(Failure::failed)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let jobs = options.jobs.unwrap_or(cores + 1).max(1);
+    let mut waiting: VecDeque<Task> = pending.into_iter().map(|member| Task { member, tries: 0 }).collect();
+    let mut running: Vec<Job> = Vec::new();
+    let mut told = false;
+    while !running.is_empty() || (!waiting.is_empty() && !signals.requested()) {
+        if signals.requested() && !told {
+            told = true;
+            // Each launcher ends its run in order, so that it can be continued.
+            running.iter().for_each(|job| interrupt(&job.process));
+        }
+        while !signals.requested() && running.len() < jobs {
+            let Some(task) = waiting.pop_front() else { break };
+            if task.tries > 0 && task.tries >= options.retries {
+                folder.remove(&campaign.members[task.member])?;
+            }
+            let process = start(campaign, folder, task.member)?;
+            running.push(Job { task, process, began: Instant::now() });
+            progress.running(running.len());
+        }
+        let mut n = 0;
+        while n < running.len() {
+            let ended = running[n].process.try_wait().map_err(Failure::failed)?.is_some();
+            if !ended {
+                n += 1;
+                continue;
+            }
+            let Job { task, began, .. } = running.swap_remove(n);
+            let member = &campaign.members[task.member];
+            match folder.state(member) {
+                MemberState::Finished => progress.finished(&member.name, began.elapsed()),
+                MemberState::Failed(_) => progress.failed(&member.name),
+                _ if signals.requested() => {}
+                _ if task.tries < options.retries => {
+                    progress.again(&member.name);
+                    waiting.push_front(Task { tries: task.tries + 1, ..task });
+                }
+                _ => progress.failed(&member.name),
+            }
+            progress.running(running.len());
+        }
+        std::thread::sleep(LOOK);
+    }
+    Ok(signals.requested())
+}
+
+/// Starts the run of a member; its output is appended to its log.
+fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failure> {
+    let member = &campaign.members[n];
+    let words = command(campaign, folder, member)?;
+    let path = folder.logs().join(format!("{}.log", member.name));
+    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", path.display()));
+    let log = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
+    // A group of its own: Ctrl-C reaches the campaign, which passes it on.
+    command.process_group(0);
+    // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.
+    unsafe {
+        command.pre_exec(|| {
+            // A campaign that is killed ends its runs.
+            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM);
+            Ok(())
+        });
+    }
+    command.spawn().map_err(failed)
+}
+
+fn interrupt(process: &Child) {
+    if let Ok(pid) = i32::try_from(process.id()) {
+        // SAFETY: kill takes two integers. The process is a child and was not waited for, so the id is still its own.
+        unsafe { libc::kill(pid, libc::SIGINT) };
+    }
+}

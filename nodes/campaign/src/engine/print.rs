@@ -1,0 +1,21 @@
+//! The commands of a campaign as a script.
+
+use crate::campaign::Campaign;
+use crate::command::{command, line};
+use crate::folder::Folder;
+use grainlab_console::Failure;
+
+/// Prints one command for each member.
+pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
+    let mut script = format!(
+        "#!/bin/sh\n# Campaign {}: {} runs, in any order. Each line can be repeated: a finished run is left as it is, an\n\
+         # interrupted one is continued.\n",
+        campaign.name,
+        campaign.members.len()
+    );
+    for member in &campaign.members {
+        script += &line(&command(campaign, folder, member)?);
+        script.push('\n');
+    }
+    grainlab_console::print(&script)
+}

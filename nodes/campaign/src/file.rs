@@ -1,0 +1,65 @@
+//! The file of a campaign.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::{Table, Value};
+
+/// The keys of the file, as written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct CampaignFile {
+    /// Name of the campaign; letters, digits, `_` and `-`.
+    pub(crate) name: String,
+    /// Description in one line.
+    #[serde(default)]
+    pub(crate) description: String,
+    /// Scenes, each run with every combination of `vary` and every seed.
+    #[serde(default)]
+    pub(crate) scenes: Vec<String>,
+    /// Seeds.
+    pub(crate) seeds: Option<Seeds>,
+    /// Launch file: built in, or a path from this file.
+    pub(crate) launch: Option<String>,
+    /// Values for arguments of the launch file.
+    #[serde(default)]
+    pub(crate) arguments: BTreeMap<String, Value>,
+    /// Keys set in every scene.
+    #[serde(default)]
+    pub(crate) set: Table,
+    /// Keys and the values that each takes.
+    #[serde(default)]
+    pub(crate) vary: Table,
+    /// Single runs.
+    #[serde(default)]
+    pub(crate) member: Vec<MemberEntry>,
+    /// A table of runs: CSV by its path from this file, with the columns `scene`, `seed`, and keys of scenes.
+    pub(crate) table: Option<String>,
+}
+
+/// Seeds: a list, or a range.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Seeds {
+    List(Vec<u64>),
+    Range { first: u64, count: u64 },
+}
+
+impl Seeds {
+    /// The seeds, at most `most` of them.
+    pub(crate) fn all(&self, most: usize) -> Vec<u64> {
+        match self {
+            Self::List(seeds) => seeds.iter().take(most).copied().collect(),
+            Self::Range { first, count } => (*first..first.saturating_add(*count)).take(most).collect(),
+        }
+    }
+}
+
+/// One run.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MemberEntry {
+    pub(crate) scene: String,
+    pub(crate) seed: u64,
+    #[serde(default)]
+    pub(crate) set: Table,
+}

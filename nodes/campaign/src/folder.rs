@@ -1,0 +1,147 @@
+//! The folder of a campaign, and how far its members came.
+
+use crate::campaign::Campaign;
+use crate::member::Member;
+use crate::run_state::{RunState, run_state};
+use grainlab_console::{Failure, json};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::input;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// How far a member came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MemberState {
+    /// It has not begun.
+    Waiting,
+    /// It began and is not finished: it can be continued.
+    Interrupted,
+    /// It ended with this exit code, and would end so again.
+    Failed(u8),
+    /// Its run is finished, and its recording whole.
+    Finished,
+}
+
+/// The folder of a campaign.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    root: PathBuf,
+}
+
+impl Folder {
+    /// The default folder of a campaign.
+    pub fn default_of(campaign: &Campaign) -> PathBuf {
+        Path::new("recordings/campaigns").join(&campaign.name)
+    }
+
+    /// Creates the folder, or finds it, and writes what its members are.
+    pub fn create(root: &Path, campaign: &Campaign) -> Result<Self, Failure> {
+        let failed = |e: io::Error| Failure::failed(format!("{}: {e}", root.display()));
+        std::fs::create_dir_all(root).map_err(failed)?;
+        let folder = Self { root: root.canonicalize().map_err(failed)? };
+        for part in [folder.members(), folder.logs()] {
+            std::fs::create_dir_all(part).map_err(failed)?;
+        }
+        folder.write("campaign.toml", &campaign.text)?;
+        folder.write(CAMPAIGN, &json(campaign)?)?;
+        Ok(folder)
+    }
+
+    /// The folder of a campaign that began, and the campaign.
+    pub fn open(root: &Path) -> Result<(Self, Campaign), Failure> {
+        let path = root.join(CAMPAIGN);
+        let failed = |e: &dyn std::fmt::Display| {
+            Failure::failed(format!("{}: {e}: this is not the folder of a campaign", path.display()))
+        };
+        let text = input::text(&path, input::SETTINGS).map_err(|e| failed(&e))?;
+        let campaign = serde_json::from_str(&text).map_err(|e| failed(&e))?;
+        let root = root.canonicalize().map_err(|e| failed(&e))?;
+        Ok((Self { root }, campaign))
+    }
+
+    /// Its whole path.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The directories of the runs.
+    fn members(&self) -> PathBuf {
+        self.root.join("members")
+    }
+
+    /// The output of each member.
+    pub(crate) fn logs(&self) -> PathBuf {
+        self.root.join("logs")
+    }
+
+    /// The directory of the run of a member.
+    pub fn run(&self, member: &Member) -> PathBuf {
+        self.members().join(&member.name)
+    }
+
+    /// How far a member came.
+    pub fn state(&self, member: &Member) -> MemberState {
+        match run_state(&self.run(member)) {
+            RunState::Absent => MemberState::Waiting,
+            RunState::Ended(0) => MemberState::Finished,
+            RunState::Ended(code) if will_end_so_again(code) => MemberState::Failed(code),
+            RunState::Begun | RunState::Ended(_) => MemberState::Interrupted,
+        }
+    }
+
+    /// Removes the run of a member.
+    pub(crate) fn remove(&self, member: &Member) -> Result<(), Failure> {
+        let run = self.run(member);
+        match std::fs::remove_dir_all(&run) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => {
+                Err(Failure::failed(format!("{}: {e}", run.display())))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes a file of the campaign at once.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<PathBuf, Failure> {
+        let (path, part) = (self.root.join(name), self.root.join(format!("{name}.part")));
+        std::fs::write(&part, content)
+            .and_then(|()| std::fs::rename(&part, &path))
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;
+        Ok(path)
+    }
+}
+
+/// Name of the file of the members.
+const CAMPAIGN: &str = "campaign.json";
+
+/// Whether a run with this exit code depends on its scene alone.
+pub(crate) fn will_end_so_again(code: u8) -> bool {
+    [Exit::Usage, Exit::PhysicsInvalid].iter().any(|exit| exit.code() == code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_campaign_is_read_back_from_its_folder_with_the_states_of_its_members() {
+        let root = tempfile::tempdir().unwrap();
+        let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4]";
+        let campaign = Campaign::parse(text, root.path()).unwrap();
+        let folder = Folder::create(root.path(), &campaign).unwrap();
+        for (member, exit) in campaign.members.iter().zip([0, 4, 130]) {
+            let run = folder.run(member);
+            std::fs::create_dir_all(&run).unwrap();
+            std::fs::write(run.join("summary.json"), format!("{{\"exit\": {exit}}}")).unwrap();
+        }
+        let (again, known) = Folder::open(root.path()).unwrap();
+        assert_eq!(known, campaign);
+        let states: Vec<MemberState> = known.members.iter().map(|m| again.state(m)).collect();
+        let expected =
+            [MemberState::Finished, MemberState::Failed(4), MemberState::Interrupted, MemberState::Waiting];
+        assert_eq!(states, expected);
+        again.remove(&known.members[0]).unwrap();
+        again.remove(&known.members[0]).unwrap();
+        assert_eq!(again.state(&known.members[0]), MemberState::Waiting);
+        assert!(Folder::open(&root.path().join("logs")).unwrap_err().to_string().contains("not the folder"));
+    }
+}

@@ -1,0 +1,74 @@
+//! A member of a campaign: one run.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A key of the scene and its value, as `KEY=VALUE` on a command line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The key, such as `grains.count`.
+    pub key: String,
+    /// The value in TOML, without the quotes of a plain text.
+    pub value: String,
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value)
+    }
+}
+
+/// One run: a scene, its seed, and what is set in it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Member {
+    /// Name of its folder: the scene, the values that distinguish it, the seed.
+    pub name: String,
+    /// A built-in scene, or the whole path of a file.
+    pub scene: String,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Keys set in the scene.
+    pub set: Vec<Setting>,
+}
+
+impl Member {
+    /// A member, named after its scene, the settings from number `common` on, and its seed.
+    pub(crate) fn new(scene: &str, seed: u64, set: Vec<Setting>, common: usize) -> Self {
+        let stem = scene.rsplit('/').next().unwrap_or(scene);
+        let stem = stem.strip_suffix(".toml").unwrap_or(stem);
+        let own = set.iter().skip(common).map(|s| format!("-{}={}", s.key, s.value));
+        let name: String = std::iter::once(stem.to_owned()).chain(own).chain([format!("-{seed}")]).collect();
+        Self { name: file_name(&name), scene: scene.to_owned(), seed, set }
+    }
+
+    /// The settings as arguments of a command.
+    pub fn sets(&self) -> Vec<String> {
+        self.set.iter().map(ToString::to_string).collect()
+    }
+}
+
+/// Other characters than letters, digits and some marks become `_`.
+fn file_name(name: &str) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || "._-=+".contains(c) { c } else { '_' };
+    let name: String = name.chars().map(safe).collect();
+    if name.starts_with('.') { format!("_{name}") } else { name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_member_is_named_after_what_distinguishes_it() {
+        let set = |key: &str, value: &str| Setting { key: key.into(), value: value.into() };
+        let member = Member::new(
+            "/a/b/uniaxial.toml",
+            3,
+            vec![set("grains.count", "500"), set("friction", "0.05")],
+            1,
+        );
+        assert_eq!(member.name, "uniaxial-friction=0.05-3");
+        assert_eq!(member.sets(), ["grains.count=500", "friction=0.05"]);
+        assert_eq!(Member::new("..", 1, vec![set("a", "x/../y")], 0).name, "_..-a=x_.._y-1");
+    }
+}

@@ -1,0 +1,119 @@
+//! The progress of a campaign, with the time left.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Counts of members, as a bar on a terminal and as lines elsewhere.
+pub(crate) struct Progress {
+    members: usize,
+    done: usize,
+    /// Members that were done before.
+    before: usize,
+    failed: usize,
+    running: usize,
+    began: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    pub(crate) fn new(members: usize, done: usize) -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");
+            let bar = ProgressBar::with_draw_target(Some(members as u64), ProgressDrawTarget::stderr());
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar
+        });
+        let new = Self { members, done, before: done, failed: 0, running: 0, began: Instant::now(), bar };
+        if done > 0 {
+            new.say(&format!("{done} of {members} members were done before"));
+        }
+        new.draw();
+        new
+    }
+
+    /// A member is finished.
+    pub(crate) fn finished(&mut self, name: &str, took: Duration) {
+        self.done += 1;
+        self.line(&format!("{name} in {:.1} s", took.as_secs_f64()));
+    }
+
+    /// A member failed.
+    pub(crate) fn failed(&mut self, name: &str) {
+        self.failed += 1;
+        self.line(&format!("{name} failed"));
+    }
+
+    /// A member was interrupted, and is continued.
+    pub(crate) fn again(&mut self, name: &str) {
+        self.say(&format!("{name} was interrupted, and is continued"));
+    }
+
+    /// So many run now.
+    pub(crate) fn running(&mut self, running: usize) {
+        self.running = running;
+        self.draw();
+    }
+
+    pub(crate) fn end(&self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+
+    fn line(&self, what: &str) {
+        self.draw();
+        if self.bar.is_none() {
+            grainlab_console::say!(
+                "grainlab: {} of {}{}: {what}",
+                self.done + self.failed,
+                self.members,
+                self.left()
+            );
+        }
+    }
+
+    fn say(&self, what: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| grainlab_console::say!("grainlab: {what}")),
+            None => grainlab_console::say!("grainlab: {what}"),
+        }
+    }
+
+    fn draw(&self) {
+        if let Some(bar) = &self.bar {
+            bar.set_position((self.done + self.failed) as u64);
+            let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
+            bar.set_message(format!("{failed}, {} running{}", self.running, self.left()));
+        }
+    }
+
+    /// The time left at the present pace.
+    fn left(&self) -> String {
+        let ended = self.done + self.failed - self.before;
+        let open = self.members - self.done - self.failed;
+        if ended == 0 || open == 0 {
+            return String::new();
+        }
+        let left = self.began.elapsed().as_secs_f64() / ended as f64 * open as f64;
+        format!(", {} left", duration(left))
+    }
+}
+
+/// A duration in two units at most.
+fn duration(seconds: f64) -> String {
+    let s = seconds.round() as u64;
+    match s {
+        0..60 => format!("{s} s"),
+        60..3600 => format!("{} min {} s", s / 60, s % 60),
+        _ => format!("{} h {} min", s / 3600, s % 3600 / 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_duration_has_two_units_at_most() {
+        assert_eq!([0.4, 59.4, 61.0, 3660.0].map(duration), ["0 s", "59 s", "1 min 1 s", "1 h 1 min"]);
+    }
+}

@@ -1,0 +1,96 @@
+//! A table of typed columns, as CSV and as Parquet.
+
+mod parquet;
+
+use crate::failure::Failure;
+use crate::output::{CsvText, exact};
+
+/// A value.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Cell {
+    /// Undefined, or not known.
+    #[default]
+    Unknown,
+    /// A number; one that is not finite is unknown.
+    Number(f64),
+    /// A count.
+    Count(u64),
+    /// Yes or no.
+    Flag(bool),
+    /// A text.
+    Text(String),
+}
+
+impl Cell {
+    /// As CSV has it: at full precision, empty if unknown.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Unknown => String::new(),
+            Self::Number(v) => exact(Some(*v)),
+            Self::Count(n) => n.to_string(),
+            Self::Flag(flag) => flag.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+/// Rows with named columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dataset {
+    names: Vec<String>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Dataset {
+    /// An empty table with these columns.
+    pub fn new(names: impl IntoIterator<Item = String>) -> Self {
+        Self { names: names.into_iter().collect(), rows: Vec::new() }
+    }
+
+    /// Adds a row; missing cells at its end are unknown.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        let mut row: Vec<Cell> = cells.into_iter().collect();
+        row.resize(self.names.len(), Cell::Unknown);
+        self.rows.push(row);
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Comma-separated, with a header.
+    pub fn csv(&self) -> String {
+        let mut text = CsvText::new();
+        text.row(&self.names);
+        self.rows.iter().for_each(|row| text.row(row.iter().map(Cell::text)));
+        text.finish()
+    }
+
+    /// Apache Parquet, one row group, not compressed. Every column is optional; its type is that of its values: DOUBLE,
+    /// INT64, BOOLEAN or STRING. The same rows give the same bytes.
+    ///
+    /// # Errors
+    /// If a column has values of several types.
+    pub fn parquet(&self) -> Result<Vec<u8>, Failure> {
+        parquet::write(&self.names, &self.rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_unknown_is_empty_and_short_rows_are_filled() {
+        let mut t = Dataset::new(["a", "b", "c"].map(str::to_owned));
+        t.row([Cell::Text("x,y".into()), Cell::Number(0.1), Cell::Flag(true)]);
+        t.row([Cell::Unknown, Cell::Number(f64::NAN)]);
+        assert_eq!(t.csv(), "a,b,c\n\"x,y\",0.1,true\n,,\n");
+    }
+}

@@ -1,0 +1,49 @@
+//! Ours beside the paper's.
+
+use crate::mean::Mean;
+use crate::quantity::{Printed, Quantity};
+use crate::sample::States;
+
+/// One quantity of one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Index of the sample.
+    pub sample: usize,
+    /// Index of the pressure.
+    pub pressure: usize,
+    /// Mean over seeds.
+    pub ours: Mean,
+    /// The paper's.
+    pub paper: Option<Printed>,
+}
+
+impl Comparison {
+    /// Ours less the paper's.
+    pub fn difference(&self) -> Option<f64> {
+        Some(self.ours.value - self.paper?.value)
+    }
+
+    /// The same over the paper's.
+    pub fn relative(&self) -> Option<f64> {
+        Some(self.difference()? / self.paper?.value)
+    }
+
+    /// The difference in units of its error: that of our mean and of the paper's rounding. The paper's own scatter, of one
+    /// sample each, is not known. `None` with one seed.
+    pub fn in_errors(&self) -> Option<f64> {
+        let error = self.ours.error?.hypot(self.paper?.rounding);
+        (error > 0.0).then_some(self.difference()? / error)
+    }
+}
+
+/// Every quantity of every state that was simulated.
+pub fn compare(states: &States) -> Vec<Comparison> {
+    let one = |quantity: Quantity, (sample, pressure): (usize, usize)| {
+        let ours = Mean::of(states.of(sample, pressure).filter_map(|o| quantity.measured(&o.report)))?;
+        Some(Comparison { quantity, sample, pressure, ours, paper: quantity.in_paper(sample, pressure) })
+    };
+    let all = Quantity::ALL.into_iter();
+    all.flat_map(|q| States::places().filter_map(move |place| one(q, place))).collect()
+}

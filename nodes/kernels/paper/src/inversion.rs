@@ -1,0 +1,171 @@
+//! The models judged on the simulated packings, whose microstructure was counted.
+
+use crate::mean::Mean;
+use crate::sample::{Observed, States};
+use crate::tables::PAPER;
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{
+    Calibration, Conditions, Measured, Model, Observation, StrainRatio, StrainRatioSource, models,
+};
+
+/// A model with its constants and its γ/Δ.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// The model.
+    pub model: &'static dyn Model,
+    /// The constants.
+    pub calibration: &'static Calibration,
+    /// The γ/Δ; `None` for a model without.
+    pub gamma: Option<StrainRatioSource>,
+}
+
+impl Way {
+    /// Every model with the paper's constants and with ours, where it takes them, and with each of the three γ/Δ.
+    pub fn all() -> Vec<Self> {
+        let ratios = [StrainRatioSource::Total, StrainRatioSource::Elastic, StrainRatioSource::Contact];
+        let mut all = Vec::new();
+        for model in models().iter().copied() {
+            let gammas: Vec<_> = if model.uses_gamma() { ratios.map(Some).to_vec() } else { vec![None] };
+            let default = model.default_calibration();
+            let ours = Calibration::builtin("grainlab")
+                .filter(|c| c.name() != default.name() && model.name() != "emt");
+            for calibration in std::iter::once(default).chain(ours) {
+                all.extend(gammas.iter().map(|gamma| Self { model, calibration, gamma: *gamma }));
+            }
+        }
+        all
+    }
+
+    /// What it infers from the exact moduli of a packing; `None` where it has no answer.
+    fn infer(&self, observed: &Observed) -> Option<[Option<f64>; InferredQuantity::COUNT]> {
+        let r = &observed.report;
+        let conditions = Conditions {
+            gamma: self.gamma.map_or(StrainRatio::ZERO, |source| StrainRatio::of(&r.strain_ratios, source)),
+            solid_fraction: Some(Measured::exact(r.solid_fraction)),
+            material: Some(r.material),
+            ..Conditions::at(r.pressure())
+        };
+        let observation = Observation {
+            grains: Some(r.contacts.grains as u32),
+            ..Observation::of_stiffness(&r.stiffness()?.tensor, conditions)
+        };
+        let estimate = self.model.infer(&observation.with_relative_error(0.01), self.calibration).ok()?;
+        Some(estimate.structure.values())
+    }
+}
+
+/// Errors of one quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Mean of the magnitude.
+    pub magnitude: f64,
+    /// Mean.
+    pub bias: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Number of states with an estimate.
+    pub count: usize,
+}
+
+impl Errors {
+    /// Of these errors; `None` without one.
+    pub fn of(errors: &[f64]) -> Option<Self> {
+        let mean = |value: fn(f64) -> f64| Mean::of(errors.iter().map(|e| value(*e))).map(|m| m.value);
+        Some(Self {
+            magnitude: mean(f64::abs)?,
+            bias: mean(|e| e)?,
+            rms: mean(|e| e * e)?.sqrt(),
+            count: errors.len(),
+        })
+    }
+}
+
+/// How well one way infers all states.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The way.
+    pub way: Way,
+    /// Errors of k, z and ε; `None` where the model does not infer it.
+    pub k: Option<Errors>,
+    /// Of z.
+    pub z: Option<Errors>,
+    /// Of ε.
+    pub eps: Option<Errors>,
+    /// States without an answer.
+    pub unanswered: usize,
+    /// Inferred k and ε of each state, mean over seeds, by sample and pressure.
+    pub rows: Vec<Row>,
+}
+
+/// Means over the seeds of one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Index of the sample.
+    pub sample: usize,
+    /// Index of the pressure.
+    pub pressure: usize,
+    /// Inferred k.
+    pub k: Option<Mean>,
+    /// Inferred ε.
+    pub eps: Option<Mean>,
+}
+
+/// Every way on every state.
+pub fn judge(states: &States) -> Vec<Judged> {
+    Way::all().into_iter().map(|way| judge_one(way, states)).collect()
+}
+
+fn judge_one(way: Way, states: &States) -> Judged {
+    let found: Vec<_> = states.all().iter().map(|o| (o, way.infer(o))).collect();
+    let value = |found: &Option<[Option<f64>; InferredQuantity::COUNT]>, q: InferredQuantity| {
+        found.as_ref().and_then(|values| values[q as usize])
+    };
+    let errors = |q: InferredQuantity, truth: fn(&Observed) -> f64| {
+        let errors: Vec<f64> = found.iter().filter_map(|(o, f)| Some(value(f, q)? - truth(o))).collect();
+        Errors::of(&errors)
+    };
+    let rows = States::places().map(|(sample, pressure)| {
+        let here = || found.iter().filter(move |(o, _)| o.sample == sample && o.pressure == pressure);
+        let mean = |q| Mean::of(here().filter_map(|(_, f)| value(f, q)));
+        Row { sample, pressure, k: mean(InferredQuantity::K), eps: mean(InferredQuantity::Eps) }
+    });
+    Judged {
+        rows: rows.collect(),
+        k: errors(InferredQuantity::K, |o| o.report.contacts.coordination),
+        z: errors(InferredQuantity::Z, |o| o.report.contacts.mechanical_coordination),
+        eps: errors(InferredQuantity::Eps, |o| o.report.fabric.contact_anisotropy),
+        unanswered: found.iter().filter(|(_, f)| f.is_none()).count(),
+        way,
+    }
+}
+
+/// Errors of the paper's own inversion on its own packings (Table III): k by the ratios, k by the effective medium theory, ε.
+pub fn of_the_paper() -> [Errors; 3] {
+    let states = || PAPER.iter().flat_map(|s| &s.states);
+    let all = |error: fn(&crate::tables::State) -> f64| {
+        let errors: Vec<f64> = states().map(error).collect();
+        Errors::of(&errors).unwrap_or(Errors { magnitude: f64::NAN, bias: f64::NAN, rms: f64::NAN, count: 0 })
+    };
+    [all(|s| s.k_ratio - s.k_sim), all(|s| s.k_emt - s.k_sim), all(|s| s.eps_ratio - s.eps_sim)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sizes that ERRATA and the README give for the paper's own rows.
+    #[test]
+    fn the_errors_of_table_iii_are_those_known() {
+        let [ratio, emt, eps] = of_the_paper();
+        assert!((ratio.magnitude - 0.16).abs() < 0.01 && ratio.bias > 0.0, "{ratio:?}");
+        assert!((emt.magnitude - 4.9).abs() < 0.05 && emt.bias < 0.0, "{emt:?}");
+        assert!((eps.magnitude - 0.036).abs() < 0.001 && (eps.bias - 0.028).abs() < 0.001, "{eps:?}");
+    }
+
+    #[test]
+    fn models_with_gamma_are_judged_with_each_of_the_three() {
+        let ways = Way::all();
+        let of = |name: &str| ways.iter().filter(|w| w.model.name() == name).count();
+        assert_eq!((of("relaxed"), of("emt"), of("ratio")), (1, 3, 6));
+    }
+}

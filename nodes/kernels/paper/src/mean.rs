@@ -1,0 +1,41 @@
+//! Means over seeds.
+
+/// Mean of independent values, and its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mean {
+    /// The mean.
+    pub value: f64,
+    /// Its standard error, s/√n; `None` for one value.
+    pub error: Option<f64>,
+    /// Number of values.
+    pub count: usize,
+}
+
+impl Mean {
+    /// Of these values; `None` without one.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.into_iter().collect();
+        let count = values.len();
+        if count == 0 {
+            return None;
+        }
+        let value = values.iter().sum::<f64>() / count as f64;
+        let squares: f64 = values.iter().map(|v| (v - value).powi(2)).sum();
+        let error = (count > 1).then(|| (squares / (count as f64 - 1.0) / count as f64).sqrt());
+        Some(Self { value, error, count })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_a_mean_is_that_of_the_sample_over_the_root_of_its_size() {
+        let mean = Mean::of([1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert_eq!((mean.value, mean.count), (2.5, 4));
+        assert!((mean.error.unwrap() - (5.0f64 / 3.0 / 4.0).sqrt()).abs() < 1e-15);
+        assert_eq!(Mean::of([7.0]).unwrap().error, None);
+        assert_eq!(Mean::of([]), None);
+    }
+}

@@ -1,0 +1,159 @@
+//! `grainlab campaign`: many runs, their progress, and their states in one table.
+
+pub(crate) mod gather;
+
+use grainlab_campaign::{Campaign, Engine, Folder, MemberState, Options};
+use grainlab_console::{Failure, Table, print, scenes, worse};
+use grainlab_node_kit::Exit;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+A campaign file:
+  name = \"friction\"
+  scenes = [\"s1\", \"mine.toml\"]             # built in, or files beside this one
+  seeds = { first = 1, count = 5 }          # or a list
+  set = { grains.count = 500 }              # keys of every scene
+  vary = { friction = [0.05, 0.1, 0.3] }    # every combination is run with every seed
+  launch = \"demo\"                           # launch file; arguments = { simd = \"best\" }
+  table = \"runs.csv\"                        # or single runs: columns scene, seed, and keys
+  [[member]]
+  scene = \"s2\"
+  seed = 7
+  set = { phase.rest.drag = 1e3 }
+
+Each member is a folder with a recorded run. Started again, the command leaves finished members as they are and continues
+interrupted ones; the results are the same to the last byte.
+
+Examples:
+  grainlab campaign friction.toml
+  grainlab campaign friction.toml --engine slurm
+  grainlab campaign status recordings/campaigns/friction
+  grainlab campaign gather recordings/campaigns/friction";
+
+/// A campaign to run.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// File of the campaign
+    #[arg(required = true, value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Folder of the campaign [default: recordings/campaigns/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    engine: EngineArgs,
+}
+
+/// Where and how members run.
+#[derive(Debug, clap::Args)]
+pub(crate) struct EngineArgs {
+    /// Where the members run
+    #[arg(long, value_enum, default_value_t)]
+    engine: Engine,
+    /// Members at a time on this machine [default: one more than there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// How often an interrupted member is tried again, the last time anew
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    retries: u16,
+    /// Run members again that failed
+    #[arg(long)]
+    redo_failed: bool,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    /// Count the members by how far they came, and name those that are not finished
+    Status(Place),
+    /// Write the states of all finished members as states.csv and states.parquet, from their recordings
+    Gather(Place),
+}
+
+/// A campaign that began.
+#[derive(Debug, clap::Args)]
+struct Place {
+    /// Folder of the campaign
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+impl EngineArgs {
+    /// Runs the members of a campaign, and gathers their states.
+    pub(crate) fn run(&self, campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
+        let options = Options {
+            jobs: self.jobs.map(usize::from),
+            retries: self.retries.into(),
+            redo_failed: self.redo_failed,
+        };
+        self.engine.run(campaign, folder, options)
+    }
+
+    /// Whether the commands are only printed.
+    pub(crate) fn only_prints(&self) -> bool {
+        self.engine == Engine::Print
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    match (&args.command, &args.file) {
+        (Some(Command::Status(place)), _) => status(place),
+        (Some(Command::Gather(place)), _) => {
+            let (folder, campaign) = Folder::open(&place.folder)?;
+            gather::run(&campaign, &folder)
+        }
+        (None, Some(file)) => {
+            let campaign = Campaign::read(file)?;
+            check(&campaign)?;
+            let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
+            let folder = Folder::create(&root, &campaign)?;
+            let exit = args.engine.run(&campaign, &folder)?;
+            if args.engine.only_prints() || exit == Exit::Interrupted {
+                return Ok(exit);
+            }
+            Ok(worse(exit, gather::run(&campaign, &folder)?))
+        }
+        (None, None) => Err(Failure::usage("name the file of a campaign")),
+    }
+}
+
+/// Reads every scene, so that a fault ends the campaign before it begins.
+fn check(campaign: &Campaign) -> Result<(), Failure> {
+    for member in &campaign.members {
+        scenes::load(&member.scene, &member.sets(), Some(member.seed))
+            .map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
+    }
+    Ok(())
+}
+
+fn status(place: &Place) -> Result<Exit, Failure> {
+    let (folder, campaign) = Folder::open(&place.folder)?;
+    let states: Vec<MemberState> = campaign.members.iter().map(|m| folder.state(m)).collect();
+    let count = |is: fn(&MemberState) -> bool| states.iter().filter(|s| is(s)).count();
+    let [finished, interrupted, waiting] = [
+        count(|s| *s == MemberState::Finished),
+        count(|s| *s == MemberState::Interrupted),
+        count(|s| *s == MemberState::Waiting),
+    ];
+    let failed = states.len() - finished - interrupted - waiting;
+    print(&format!(
+        "{}: {} members: {finished} finished, {interrupted} begun, {waiting} waiting, {failed} failed\n",
+        campaign.name,
+        states.len()
+    ))?;
+    let mut table = Table::new(["member", "state", "directory"]);
+    for (member, state) in campaign.members.iter().zip(&states) {
+        let state = match state {
+            MemberState::Finished | MemberState::Waiting => continue,
+            MemberState::Interrupted => "begun".to_owned(),
+            MemberState::Failed(code) => format!("failed, exit code {code}"),
+        };
+        table.row([member.name.clone(), state, folder.run(member).display().to_string()]);
+    }
+    if failed + interrupted > 0 {
+        print(&table.text())?;
+    }
+    Ok(Exit::Done)
+}

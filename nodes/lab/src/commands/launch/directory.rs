@@ -1,0 +1,54 @@
+//! `grainlab launch --run DIR`: a directory that begins, continues or keeps its run.
+
+use super::order::Order;
+use grainlab_campaign::{Lock, RunState, run_state};
+use grainlab_console::Failure;
+use grainlab_console::scenes::SceneText;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Time for a previous launcher of the run to end.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// What a given directory holds.
+pub(super) enum Given {
+    /// No run.
+    Empty(PathBuf, Lock),
+    /// A run that is not finished.
+    Begun(PathBuf, Lock),
+    /// A finished run, with a whole recording.
+    Finished,
+}
+
+/// Looks into a directory, and locks it.
+///
+/// # Errors
+/// A run of another scene or launch file, and a run that is under way.
+pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Result<Given, Failure> {
+    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", directory.display()));
+    std::fs::create_dir_all(directory).map_err(failed)?;
+    let directory = directory.canonicalize().map_err(failed)?;
+    let lock = Lock::take(&directory, PATIENCE)?;
+    if run_state(&directory) == RunState::Absent {
+        return Ok(Given::Empty(directory, lock));
+    }
+    let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
+    let is_same = known == scene.text && Order::read(&directory)?.launch == order.launch;
+    if !is_same {
+        return Err(Failure::usage(format!(
+            "{}: the run there has another scene, seed or launch file: use another directory, or remove it",
+            directory.display()
+        )));
+    }
+    if run_state(&directory) == RunState::Ended(0) {
+        grainlab_console::say!("grainlab: {}: the run is finished", directory.display());
+        return Ok(Given::Finished);
+    }
+    Ok(Given::Begun(directory, lock))
+}
+
+/// Writes a copy of the scene: later edits of the file affect neither the run nor a restart.
+pub(super) fn fill(directory: &Path, scene: &SceneText) -> Result<(), Failure> {
+    let path = directory.join("scene.toml");
+    std::fs::write(&path, &scene.text).map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+}

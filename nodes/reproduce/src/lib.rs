@@ -1,0 +1,60 @@
+//! The tables and figures of the paper from simulated packings: one HTML page, JSON and CSV.
+//!
+//! - [`Reproduction`]: the packings, compared and judged, and where they come from
+//! - [`campaign_text`]: the campaign that prepares them
+//! - `page`: the HTML page; `tables`, `figures`, `inversions`: its parts; `html`: its elements
+//! - `data`: the same as JSON and CSV; `text`: a summary for a terminal
+
+mod data;
+mod figures;
+mod html;
+mod inversions;
+mod page;
+mod plan;
+mod tables;
+mod text;
+
+pub use plan::{Size, campaign_text, pressure_of_phase, sample_of_scene};
+
+use grainlab_paper::claims::{Claim, claims};
+use grainlab_paper::inversion::{Judged, judge};
+use grainlab_paper::{Comparison, States, compare};
+
+/// Where the packings come from.
+#[derive(Clone, Debug)]
+pub struct Provenance {
+    /// Version of the program.
+    pub version: String,
+    /// The command that made the report.
+    pub command: String,
+    /// Folder of the campaign, as in the commands of the report.
+    pub folder: String,
+    /// Grains of each packing.
+    pub grains: u32,
+    /// Seeds of each sample.
+    pub seeds: Vec<u64>,
+}
+
+/// The packings beside the paper.
+#[derive(Clone, Debug)]
+pub struct Reproduction {
+    provenance: Provenance,
+    states: States,
+    compared: Vec<Comparison>,
+    judged: Vec<Judged>,
+    claims: Vec<Claim>,
+}
+
+impl Reproduction {
+    /// Compares and judges.
+    pub fn new(states: States, provenance: Provenance) -> Self {
+        let (compared, judged) = (compare(&states), judge(&states));
+        let claims = claims(&compared, &judged);
+        Self { provenance, states, compared, judged, claims }
+    }
+
+    /// The comparison of one quantity of one state.
+    fn get(&self, quantity: grainlab_paper::Quantity, sample: usize, pressure: usize) -> Option<&Comparison> {
+        self.compared.iter().find(|c| c.quantity == quantity && c.sample == sample && c.pressure == pressure)
+    }
+}

@@ -1,0 +1,174 @@
+//! Tables I, II and III, and the moduli, ours beside the paper's.
+
+use crate::Reproduction;
+use crate::html::{Cell, code, escaped, table};
+use grainlab_emt::Modulus;
+use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
+
+/// A mean with its error, in `scale`.
+pub(crate) fn mean(m: &Mean, scale: f64, digits: usize) -> String {
+    let error = m.error.map_or_else(String::new, |e| format!(" ± {:.digits$}", e / scale));
+    format!("{:.digits$}{error}", m.value / scale)
+}
+
+/// A difference in units of its error.
+pub(crate) fn in_errors(c: &Comparison) -> String {
+    c.in_errors().map_or_else(|| "–".to_owned(), |e| format!("{e:+.1}"))
+}
+
+/// Ours, the paper's, the difference, and the difference in units of its error.
+fn cells(c: Option<&Comparison>, scale: f64, digits: usize, relative: bool) -> [Cell; 4] {
+    let Some(c) = c else { return ["–", "–", "–", "–"].map(Cell::number) };
+    let paper = c.paper.map_or_else(|| "–".to_owned(), |p| format!("{:.digits$}", p.value / scale));
+    let difference = if relative {
+        c.relative().map(|d| format!("{:+.1} %", 100.0 * d))
+    } else {
+        c.difference().map(|d| format!("{:+.digits$}", d / scale))
+    };
+    [
+        Cell::number(mean(&c.ours, scale, digits)),
+        Cell::paper(paper),
+        Cell::number(difference.unwrap_or_else(|| "–".to_owned())),
+        Cell::number(in_errors(c)),
+    ]
+}
+
+impl Reproduction {
+    /// A caption: what it is, and the command and the columns that regenerate it.
+    fn caption(&self, what: &str, columns: &str) -> String {
+        let command = format!("grainlab campaign gather {}", self.provenance.folder);
+        format!("{}. Columns {} of {}", escaped(what), code(columns), code(&command))
+    }
+
+    /// Table I: the states at 50 kPa.
+    pub(crate) fn table_one(&self) -> String {
+        let quantities = [
+            (Quantity::K, 3),
+            (Quantity::Z, 3),
+            (Quantity::Fabric(0), 4),
+            (Quantity::Fabric(1), 4),
+            (Quantity::Fabric(2), 4),
+            (Quantity::SolidFraction, 4),
+        ];
+        let names = ["k, all grains", "z, without rattlers (beside the paper's k)", "L11", "L22", "L33", "φ"];
+        let mut rows = Vec::new();
+        for (sample, paper) in PAPER.iter().enumerate() {
+            for ((quantity, digits), name) in quantities.iter().zip(names) {
+                let relative = matches!(quantity, Quantity::K | Quantity::Z);
+                let row = [Cell::text(format!("{} (μ2 = {})", paper.name, paper.mu2)), Cell::text(name)];
+                rows.push(
+                    row.into_iter()
+                        .chain(cells(self.get(*quantity, sample, 0), 1.0, *digits, relative))
+                        .collect(),
+                );
+            }
+        }
+        let caption = self.caption("Table I: the four samples at 50 kPa", "k, z, fabric_*, phi");
+        table(&caption, &["sample", "", "ours", "paper", "difference", "in errors"], &rows)
+    }
+
+    /// Table II: γ/Δ.
+    pub(crate) fn table_two(&self) -> String {
+        let mut rows = Vec::new();
+        for (sample, pressure) in places() {
+            let total = self.get(Quantity::StrainTotal, sample, pressure);
+            let own = [Quantity::StrainElastic, Quantity::StrainContact].map(|q| {
+                let found = self.get(q, sample, pressure);
+                Cell::number(found.map_or_else(|| "–".to_owned(), |c| mean(&c.ours, 1.0, 4)))
+            });
+            rows.push(
+                head(sample, pressure).into_iter().chain(cells(total, 1.0, 4, false)).chain(own).collect(),
+            );
+        }
+        let caption =
+            self.caption("Table II: deviatoric over volumetric strain γ/Δ", "g_total, g_elastic, g_contact");
+        let header = [
+            "sample",
+            "p/kPa",
+            "total, ours",
+            "paper",
+            "difference",
+            "in errors",
+            "elastic",
+            "contact overlaps",
+        ];
+        table(&caption, &header, &rows)
+    }
+
+    /// The simulated columns of Table III.
+    pub(crate) fn table_three(&self) -> String {
+        let mut rows = Vec::new();
+        for (sample, pressure) in places() {
+            let [k, z, eps] =
+                [Quantity::K, Quantity::Z, Quantity::Eps].map(|q| self.get(q, sample, pressure));
+            let all = |c, digits| {
+                let [ours, paper, _, errors] = cells(c, 1.0, digits, false);
+                [ours, paper, errors]
+            };
+            let [ours_z, _, errors_z] = all(z, 3);
+            let row = head(sample, pressure).into_iter().chain(all(k, 3)).chain([ours_z, errors_z]);
+            rows.push(row.chain(all(eps, 4)).collect());
+        }
+        let caption = self.caption("Table III, simulation: coordination number and anisotropy", "k, z, eps");
+        let header = [
+            "sample",
+            "p/kPa",
+            "k",
+            "paper k",
+            "in errors",
+            "z",
+            "z − paper k, in errors",
+            "ε",
+            "paper ε",
+            "in errors",
+        ];
+        table(&caption, &header, &rows)
+    }
+
+    /// The moduli, beside those that Table III implies.
+    pub(crate) fn moduli(&self) -> String {
+        let mut rows = Vec::new();
+        for (sample, pressure) in places() {
+            let mut row: Vec<Cell> = head(sample, pressure).into();
+            for modulus in [Modulus::G12, Modulus::G13, Modulus::Theta] {
+                let [ours, paper, difference, _] =
+                    cells(self.get(Quantity::Modulus(modulus), sample, pressure), 1e6, 1, true);
+                row.extend([ours, paper, difference]);
+            }
+            let [ours, paper, ..] = cells(self.get(Quantity::KEmt, sample, pressure), 1.0, 2, false);
+            row.extend([ours, paper]);
+            rows.push(row);
+        }
+        let caption = self.caption(
+            "Moduli in MPa, beside those that the paper's k, k̂ and ε of Table III imply by its Eqs. 16–18, 21 and 22; \
+             and k by the effective medium theory from G12 with the strain Δ since the reference state (Table III, k_EMT)",
+            "ti_g12_pa, ti_g13_pa, theta_pa",
+        );
+        let header = [
+            "sample",
+            "p/kPa",
+            "G12",
+            "implied",
+            "difference",
+            "G13",
+            "implied",
+            "difference",
+            "Θ",
+            "implied",
+            "difference",
+            "k_EMT",
+            "paper k_EMT",
+        ];
+        table(&caption, &header, &rows)
+    }
+}
+
+/// Sample and pressure.
+fn head(sample: usize, pressure: usize) -> [Cell; 2] {
+    [Cell::text(PAPER[sample].name), Cell::number(format!("{}", PRESSURE[pressure] / 1e3))]
+}
+
+/// Every state, sample by sample.
+pub(crate) fn places() -> impl Iterator<Item = (usize, usize)> {
+    (0..SAMPLES).flat_map(|s| (0..PRESSURES).map(move |p| (s, p)))
+}
