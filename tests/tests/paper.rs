@@ -1,5 +1,7 @@
 //! The paper and an independent code, by the commands of the README.
 
+use std::time::Duration;
+
 use serde_json::Value;
 use system_tests::lab::{Lab, golden};
 
@@ -128,4 +130,44 @@ fn analyze_reproduces_the_numbers_of_lammps_on_its_own_packing() {
             assert!((ours - probe).abs() < 1e-3 * c11, "C[{i}][{j}] {ours} against the probe {probe}");
         }
     }
+}
+
+/// The sixteen states with 500 grains and one seed, whose scatter is some .02 in ε and .03 in γ/Δ.
+#[test]
+fn the_sixteen_states_of_the_paper_are_near_its_tables() {
+    let lab = Lab::new();
+    let ended = lab.start(&["reproduce", "--quick"]).ended(Duration::from_secs(300));
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let folder = lab.folder().join("recordings/campaigns/paper-500");
+    let text = std::fs::read(folder.join("reproduction.json")).unwrap();
+    let found: Value = serde_json::from_slice(&text).unwrap();
+    let states = found["states"].as_array().unwrap();
+    let of = |quantity: &'static str| states.iter().filter(move |s| s["quantity"] == quantity);
+    for (quantity, tolerance, relative) in
+        [("z", 0.05, true), ("eps", 0.025, false), ("phi", 0.006, false), ("g_total", 0.045, false)]
+    {
+        let mut compared = 0;
+        for state in of(quantity) {
+            let Some(paper) = state["paper"].as_f64() else { continue };
+            let ours = state["ours"].as_f64().unwrap();
+            let error = (ours - paper).abs() / if relative { paper } else { 1.0 };
+            assert!(error <= tolerance, "{state}");
+            compared += 1;
+        }
+        assert_eq!(compared, if quantity == "phi" { 4 } else { 16 }, "{quantity}");
+    }
+    for claim in found["claims"].as_array().unwrap() {
+        let text = claim["claim"].as_str().unwrap();
+        let is_of_the_paper = ["coordination in the order", "G13 > G12", "ratios of moduli"];
+        if is_of_the_paper.iter().any(|start| text.starts_with(start)) {
+            assert_eq!(claim["holds"], true, "{claim}");
+        }
+    }
+    // One page without references to other files.
+    let page = std::fs::read_to_string(folder.join("index.html")).unwrap();
+    for outside in ["http://", "https://", "src=", "<link", "<script", "url(", "@import"] {
+        let rest = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!rest.contains(outside), "{outside}");
+    }
+    assert!(!page.contains("NaN") && page.matches("<svg").count() == 4);
 }

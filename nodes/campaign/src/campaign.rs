@@ -1,6 +1,6 @@
 //! The members of a campaign, from its file.
 
-use crate::file::CampaignFile;
+use crate::file::{CampaignFile, Group};
 use crate::member::{Member, Setting};
 use grainlab_console::Failure;
 use grainlab_recordings::input;
@@ -47,7 +47,16 @@ impl Campaign {
         let file: CampaignFile =
             toml::from_str(text).map_err(|e| Failure::usage(e.to_string().trim_end()))?;
         check_name(&file.name)?;
-        let mut members = product(&file, folder)?;
+        let first = Group {
+            scenes: file.scenes.clone(),
+            seeds: file.seeds.clone(),
+            vary: file.vary.clone(),
+            ..Group::default()
+        };
+        let mut members = product(&first, &file.set, folder)?;
+        for group in &file.group {
+            members.extend(product(group, &file.set, folder)?);
+        }
         for entry in &file.member {
             let set = merged(&file.set, &entry.set);
             let common = flat(&file.set).len();
@@ -97,13 +106,13 @@ fn found(name: &str, folder: &Path) -> String {
 }
 
 /// Scenes × values × seeds.
-fn product(file: &CampaignFile, folder: &Path) -> Result<Vec<Member>, Failure> {
-    let seeds = file.seeds.as_ref().map(|seeds| seeds.all(MOST + 1)).unwrap_or_default();
-    if file.scenes.is_empty() != seeds.is_empty() {
+fn product(group: &Group, common: &Table, folder: &Path) -> Result<Vec<Member>, Failure> {
+    let seeds = group.seeds.as_ref().map(|seeds| seeds.all(MOST + 1)).unwrap_or_default();
+    if group.scenes.is_empty() != seeds.is_empty() {
         return Err(Failure::usage("scenes and seeds are given together"));
     }
-    let mut combinations = vec![Vec::new()];
-    for Setting { key, value } in flat(&file.vary) {
+    let mut combinations = vec![merged(&Table::new(), &group.set)];
+    for Setting { key, value } in flat(&group.vary) {
         let values = values(&key, &value)?;
         let with = |old: &Vec<Setting>, value: &String| {
             let mut new = old.clone();
@@ -116,9 +125,9 @@ fn product(file: &CampaignFile, folder: &Path) -> Result<Vec<Member>, Failure> {
             return Err(Failure::usage(format!("more than {MOST} combinations of values")));
         }
     }
-    let set = flat(&file.set);
+    let set = flat(common);
     let mut members = Vec::new();
-    for scene in file.scenes.iter().map(|scene| found(scene, folder)) {
+    for scene in group.scenes.iter().map(|scene| found(scene, folder)) {
         for own in &combinations {
             for seed in &seeds {
                 let all = set.iter().chain(own).cloned().collect();

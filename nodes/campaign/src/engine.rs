@@ -2,11 +2,16 @@
 
 mod cluster;
 mod local;
+mod options;
+mod pending;
 mod print;
+
+pub use options::Options;
 
 use crate::campaign::Campaign;
 use crate::folder::{Folder, MemberState};
 use crate::lock::Lock;
+use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
@@ -24,17 +29,6 @@ pub enum Engine {
     Hq,
     /// Nowhere: print the commands as a shell script
     Print,
-}
-
-/// How a campaign is run.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Members at a time on this machine; `None`: one more than there are cores, since each waits at its start and end.
-    pub jobs: Option<usize>,
-    /// How often a member that was interrupted is tried again; the last time anew.
-    pub retries: usize,
-    /// Run members again that failed.
-    pub redo_failed: bool,
 }
 
 impl Engine {
@@ -55,8 +49,11 @@ impl Engine {
                 folder.remove(member)?;
             }
         }
-        let pending: Vec<usize> = pending(campaign, folder);
-        let mut progress = Progress::new(campaign.members.len(), campaign.members.len() - pending.len());
+        let pending = pending::pending(campaign, folder);
+        let is_finished = |m: &&Member| folder.state(m) == MemberState::Finished;
+        let finished = campaign.members.iter().filter(is_finished).count();
+        let failed = campaign.members.len() - pending.len() - finished;
+        let mut progress = Progress::new(campaign.members.len(), finished, failed);
         let interrupted = match self {
             _ if pending.is_empty() => false,
             Self::Slurm => cluster::run(&cluster::SLURM, campaign, folder, options, &mut progress)?,
@@ -67,14 +64,6 @@ impl Engine {
         let exit = report(campaign, folder);
         Ok(if interrupted { Exit::Interrupted } else { exit })
     }
-}
-
-/// The members that can still be run.
-fn pending(campaign: &Campaign, folder: &Folder) -> Vec<usize> {
-    let is_pending = |n: &usize| {
-        matches!(folder.state(&campaign.members[*n]), MemberState::Waiting | MemberState::Interrupted)
-    };
-    (0..campaign.members.len()).filter(is_pending).collect()
 }
 
 /// Names the members that are not finished; their exit code.

@@ -29,11 +29,26 @@ pub(crate) struct CampaignFile {
     /// Keys and the values that each takes.
     #[serde(default)]
     pub(crate) vary: Table,
+    /// More combinations, each with scenes, seeds and values of its own.
+    #[serde(default)]
+    pub(crate) group: Vec<Group>,
     /// Single runs.
     #[serde(default)]
     pub(crate) member: Vec<MemberEntry>,
     /// A table of runs: CSV by its path from this file, with the columns `scene`, `seed`, and keys of scenes.
     pub(crate) table: Option<String>,
+}
+
+/// Scenes, each run with every combination of `vary` and every seed.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Group {
+    pub(crate) scenes: Vec<String>,
+    pub(crate) seeds: Option<Seeds>,
+    #[serde(default)]
+    pub(crate) set: Table,
+    #[serde(default)]
+    pub(crate) vary: Table,
 }
 
 /// Seeds: a list, or a range.

@@ -81,6 +81,10 @@ impl Folder {
 
     /// How far a member came.
     pub fn state(&self, member: &Member) -> MemberState {
+        let given_up = std::fs::read_to_string(self.given_up(member)).ok();
+        if let Some(code) = given_up.and_then(|text| text.trim().parse().ok()) {
+            return MemberState::Failed(code);
+        }
         match run_state(&self.run(member)) {
             RunState::Absent => MemberState::Waiting,
             RunState::Ended(0) => MemberState::Finished,
@@ -89,9 +93,23 @@ impl Folder {
         }
     }
 
+    /// The file that says with which exit code a member was given up.
+    fn given_up(&self, member: &Member) -> PathBuf {
+        self.logs().join(format!("{}.failed", member.name))
+    }
+
+    /// Gives up a member that ended so again and again.
+    pub(crate) fn give_up(&self, member: &Member) -> Result<(), Failure> {
+        let RunState::Ended(code) = run_state(&self.run(member)) else { return Ok(()) };
+        let path = self.given_up(member);
+        std::fs::write(&path, format!("{code}\n"))
+            .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))
+    }
+
     /// Removes the run of a member.
     pub(crate) fn remove(&self, member: &Member) -> Result<(), Failure> {
         let run = self.run(member);
+        let _ = std::fs::remove_file(self.given_up(member));
         match std::fs::remove_dir_all(&run) {
             Err(e) if e.kind() != io::ErrorKind::NotFound => {
                 Err(Failure::failed(format!("{}: {e}", run.display())))

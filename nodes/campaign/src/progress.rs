@@ -17,16 +17,22 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn new(members: usize, done: usize) -> Self {
+    /// Of so many members, of which some are finished and some failed before.
+    pub(crate) fn new(members: usize, done: usize, failed: usize) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{bar:30} {pos} of {len}{msg}");
             let bar = ProgressBar::with_draw_target(Some(members as u64), ProgressDrawTarget::stderr());
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar
         });
-        let new = Self { members, done, before: done, failed: 0, running: 0, began: Instant::now(), bar };
-        if done > 0 {
-            new.say(&format!("{done} of {members} members were done before"));
+        let before = done + failed;
+        let new = Self { members, done, before, failed, running: 0, began: Instant::now(), bar };
+        if before > 0 {
+            let failed = match failed {
+                0 => String::new(),
+                n => format!(", {n} failed (--redo-failed runs them again)"),
+            };
+            new.say(&format!("{done} of {members} members were done before{failed}"));
         }
         new.draw();
         new

@@ -142,7 +142,7 @@ fn scenes_are_listed_shown_checked_and_begun() {
     let names: Vec<_> = list.lines().filter_map(|line| line.split_once("  ")).map(|(name, _)| name).collect();
     assert_eq!(
         names.iter().map(|n| n.trim()).collect::<Vec<_>>(),
-        ["demo", "s1", "s2", "s3", "s4", "uniaxial", "rolling"]
+        ["demo", "s1", "s2", "s3", "s4", "uniaxial", "literal", "rolling"]
     );
     let show = grainlab(&["scene", "show", "s3", "--set", "grains.count=500", "--seed", "7"]);
     let shown = text(&show.stdout);

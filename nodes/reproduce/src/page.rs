@@ -23,8 +23,9 @@ tbody th{font-weight:600;white-space:nowrap}
 tbody tr:nth-child(even){background:var(--band)}
 .n{text-align:right;white-space:nowrap}
 .p{color:var(--faint)}
-.yes{color:var(--good);font-weight:600}
-.no{color:var(--bad);font-weight:600}
+.yes,.no{font-weight:600;white-space:nowrap}
+.yes{color:var(--good)}
+.no{color:var(--bad)}
 figure{margin:1.25rem 0}
 figure svg{width:100%;height:auto;display:block}
 figcaption{color:var(--faint);font-size:.9rem}

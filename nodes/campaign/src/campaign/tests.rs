@@ -33,6 +33,17 @@ fn scenes_values_and_seeds_are_combined_in_this_order() {
 }
 
 #[test]
+fn groups_have_scenes_seeds_and_values_of_their_own() {
+    let campaign = parse(
+        "name = 'x'\nscenes = ['s1']\nseeds = [1]\nset = { grains.count = 500 }\n\
+         [[group]]\nscenes = ['s2']\nseeds = [7, 8]\nset = { friction = 0.2 }\n[[group]]\nscenes = ['s3']\nseeds = [1]",
+    )
+    .unwrap();
+    assert_eq!(names(&campaign), ["s1-1", "s2-friction=0.2-7", "s2-friction=0.2-8", "s3-1"]);
+    assert_eq!(campaign.members[1].sets(), ["grains.count=500", "friction=0.2"]);
+}
+
+#[test]
 fn single_runs_and_tables_add_members() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("runs.csv"), "seed,scene,friction\n1,s3,0.2\n2,mine.toml,\n").unwrap();

@@ -1,12 +1,15 @@
 //! Members as an array of tasks of a scheduler.
 
-use super::{Options, pending};
+use super::options::Options;
+use super::pending::pending;
 use crate::campaign::Campaign;
 use crate::command::{command, line};
 use crate::folder::{Folder, MemberState};
 use crate::progress::Progress;
 use grainlab_console::Failure;
+use grainlab_node_kit::Signals;
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -15,59 +18,81 @@ const LOOK: Duration = Duration::from_millis(500);
 
 /// A scheduler.
 pub(super) struct Scheduler {
-    /// Its name.
     name: &'static str,
-    /// The command that submits an array and waits for its end.
-    submit: &'static str,
-    /// The variable with the number of a task.
+    /// The number of a task, in a shell.
     task: &'static str,
-    /// Its arguments, for tasks 1 to n, a name, the folder of logs and a script.
-    arguments: fn(usize, &str, &str, &str) -> Vec<String>,
+    /// Program and arguments that submit an array and wait for its end.
+    submit: fn(&Array<'_>) -> Result<Vec<String>, Failure>,
     /// How to get it.
     advice: &'static str,
+}
+
+/// Tasks 1 to n of a campaign.
+struct Array<'a> {
+    tasks: usize,
+    folder: &'a Folder,
+    /// Name of the job.
+    name: String,
+    /// Folder of the logs.
+    logs: String,
+    /// The script of a task.
+    script: String,
 }
 
 /// Slurm.
 pub(super) const SLURM: Scheduler = Scheduler {
     name: "Slurm",
-    submit: "sbatch",
-    task: "SLURM_ARRAY_TASK_ID",
-    arguments: |tasks, name, logs, script| {
-        vec![
+    task: "$SLURM_ARRAY_TASK_ID",
+    submit: |array| {
+        Ok(vec![
+            "sbatch".into(),
             "--wait".into(),
-            format!("--array=1-{tasks}"),
-            format!("--job-name={name}"),
-            format!("--output={logs}/slurm-%A-%a.log"),
+            format!("--array=1-{}", array.tasks),
+            format!("--job-name={}", array.name),
+            format!("--output={}/slurm-%A-%a.log", array.logs),
             "--ntasks=1".into(),
-            script.into(),
-        ]
+            array.script.clone(),
+        ])
     },
     advice: "is sbatch on the PATH, and does the controller answer `sinfo`?",
 };
 
-/// HyperQueue.
+/// HyperQueue: the program hq, or without it the Python package.
 pub(super) const HYPER_QUEUE: Scheduler = Scheduler {
     name: "HyperQueue",
-    submit: "hq",
-    task: "HQ_TASK_ID",
-    arguments: |tasks, name, logs, script| {
-        vec![
-            "submit".into(),
-            "--wait".into(),
-            format!("--array=1-{tasks}"),
-            format!("--name={name}"),
-            format!("--stdout={logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log"),
-            format!("--stderr={logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log"),
-            "--".into(),
-            "sh".into(),
-            script.into(),
-        ]
+    task: "${GRAINLAB_TASK:-$HQ_TASK_ID}",
+    submit: |array| {
+        let Array { tasks, folder, name, logs, script } = array;
+        if is_on_path("hq") {
+            let log = format!("{logs}/hq-%{{JOB_ID}}-%{{TASK_ID}}.log");
+            return Ok(vec![
+                "hq".into(),
+                "submit".into(),
+                "--wait".into(),
+                format!("--array=1-{tasks}"),
+                format!("--name={name}"),
+                format!("--stdout={log}"),
+                format!("--stderr={log}"),
+                "sh".into(),
+                script.clone(),
+            ]);
+        }
+        let python = std::env::var("GRAINLAB_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+        let client = folder.write("hq.py", include_str!("hq.py"))?;
+        let client = client.to_string_lossy().into_owned();
+        Ok(vec![python, client, tasks.to_string(), script.clone(), logs.clone()])
     },
-    advice: "is hq on the PATH, and do a server (`hq server start`) and a worker run?",
+    advice: "is hq on the PATH, with a server and a worker, or is the Python package hyperqueue installed (GRAINLAB_PYTHON \
+             names another Python)?",
 };
 
-/// Runs the members that are not finished; true if a signal ended the wait. An array is submitted again for those that were
-/// interrupted.
+fn is_on_path(program: &str) -> bool {
+    let path = std::env::var_os("PATH");
+    path.is_some_and(|path| std::env::split_paths(&path).any(|d| d.join(program).is_file()))
+}
+
+/// Runs the members that are not finished; true if a signal ended the wait. An array is submitted again for those that
+/// were interrupted.
 pub(super) fn run(
     scheduler: &Scheduler,
     campaign: &Campaign,
@@ -75,7 +100,7 @@ pub(super) fn run(
     options: Options,
     progress: &mut Progress,
 ) -> Result<bool, Failure> {
-    let signals = grainlab_node_kit::Signals::install().map_err(Failure::failed)?;
+    let signals = Signals::install().map_err(Failure::failed)?;
     for tries in 0..=options.retries {
         let open = pending(campaign, folder);
         if open.is_empty() {
@@ -87,40 +112,42 @@ pub(super) fn run(
         let mut process = submit(scheduler, campaign, folder, &open)?;
         let (began, mut done) = (Instant::now(), BTreeSet::new());
         let status = loop {
-            for n in open.iter().filter(|n| !done.contains(*n)).copied().collect::<Vec<_>>() {
-                let member = &campaign.members[n];
-                match folder.state(member) {
-                    MemberState::Finished => progress.finished(&member.name, began.elapsed()),
-                    MemberState::Failed(_) => progress.failed(&member.name),
-                    _ => continue,
+            let ended = process.try_wait().map_err(Failure::failed)?;
+            for n in &open {
+                let member = &campaign.members[*n];
+                let state = folder.state(member);
+                if !matches!(state, MemberState::Finished | MemberState::Failed(_)) || !done.insert(*n) {
+                    continue;
                 }
-                done.insert(n);
+                match state {
+                    MemberState::Finished => progress.finished(&member.name, began.elapsed()),
+                    _ => progress.failed(&member.name),
+                }
             }
-            if let Some(status) = process.try_wait().map_err(Failure::failed)? {
+            if let Some(status) = ended {
                 break status;
             }
             if signals.requested() {
+                let name = scheduler.name;
                 grainlab_console::say!(
-                    "grainlab: the tasks stay with {}; the same command continues the campaign",
-                    scheduler.name
+                    "grainlab: the tasks stay with {name}; the same command continues the campaign"
                 );
                 return Ok(true);
             }
             std::thread::sleep(LOOK);
         };
         // A scheduler that refuses the array starts none of its tasks.
-        if !status.success() && pending(campaign, folder) == open && untouched(campaign, folder, &open) {
-            return Err(Failure::failed(format!(
-                "{} ended with {status}: {}",
-                scheduler.submit, scheduler.advice
-            )));
+        let untouched = |n: &usize| folder.state(&campaign.members[*n]) == MemberState::Waiting;
+        if !status.success() && open.iter().all(untouched) {
+            let Scheduler { name, advice, .. } = scheduler;
+            let log = folder.logs().join("scheduler.log");
+            let said = std::fs::read_to_string(log).unwrap_or_default();
+            let last = said.lines().rfind(|l| !l.trim().is_empty()).unwrap_or_default();
+            return Err(Failure::failed(format!("{name} ended with {status}: {last}: {advice}")));
         }
     }
+    pending(campaign, folder).iter().try_for_each(|n| folder.give_up(&campaign.members[*n]))?;
     Ok(false)
-}
-
-fn untouched(campaign: &Campaign, folder: &Folder, open: &[usize]) -> bool {
-    open.iter().all(|n| folder.state(&campaign.members[*n]) == MemberState::Waiting)
 }
 
 /// Submits an array of these members.
@@ -132,22 +159,24 @@ fn submit(
 ) -> Result<Child, Failure> {
     let task = scheduler.task;
     let mut script = format!(
-        "#!/bin/sh\n# One member of the campaign {} for each task.\ncase ${task} in\n",
+        "#!/bin/sh\n# One member of the campaign {} for each task.\nunset ROS_DOMAIN_ID\ncase \"{task}\" in\n",
         campaign.name
     );
     for (n, member) in members.iter().map(|m| &campaign.members[*m]).enumerate() {
         script += &format!("{}) exec {} ;;\n", n + 1, line(&command(campaign, folder, member)?));
     }
-    script += &format!("*) echo \"task ${task} is not of this campaign\" >&2; exit 2 ;;\nesac\n");
-    let path = folder.write("tasks.sh", script)?;
-    let logs = folder.logs();
-    let arguments = (scheduler.arguments)(
-        members.len(),
-        &format!("grainlab-{}", campaign.name),
-        &logs.to_string_lossy(),
-        &path.to_string_lossy(),
-    );
-    let started =
-        Command::new(scheduler.submit).args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).spawn();
-    started.map_err(|e| Failure::failed(format!("{}: {e}: {}", scheduler.submit, scheduler.advice)))
+    script += &format!("*) echo \"task {task} is not of this campaign\" >&2; exit 2 ;;\nesac\n");
+    let array = Array {
+        tasks: members.len(),
+        folder,
+        name: format!("grainlab-{}", campaign.name),
+        logs: folder.logs().to_string_lossy().into_owned(),
+        script: folder.write("tasks.sh", script)?.to_string_lossy().into_owned(),
+    };
+    let words = (scheduler.submit)(&array)?;
+    let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}: {}", words[0], scheduler.advice));
+    let log = File::create(folder.logs().join("scheduler.log")).map_err(failed)?;
+    let mut command = Command::new(&words[0]);
+    command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
+    command.spawn().map_err(failed)
 }

@@ -1,6 +1,6 @@
 //! Members on this machine, some at a time.
 
-use super::Options;
+use super::options::Options;
 use crate::campaign::Campaign;
 use crate::command::command;
 use crate::folder::{Folder, MemberState};
@@ -76,7 +76,10 @@ pub(super) fn run(
                     progress.again(&member.name);
                     waiting.push_front(Task { tries: task.tries + 1, ..task });
                 }
-                _ => progress.failed(&member.name),
+                _ => {
+                    folder.give_up(member)?;
+                    progress.failed(&member.name);
+                }
             }
             progress.running(running.len());
         }
@@ -94,6 +97,8 @@ fn start(campaign: &Campaign, folder: &Folder, n: usize) -> Result<Child, Failur
     let log = OpenOptions::new().create(true).append(true).open(&path).map_err(failed)?;
     let mut command = Command::new(&words[0]);
     command.args(&words[1..]).stdin(Stdio::null()).stdout(log.try_clone().map_err(failed)?).stderr(log);
+    // Each run finds a free domain.
+    command.env_remove("ROS_DOMAIN_ID");
     // A group of its own: Ctrl-C reaches the campaign, which passes it on.
     command.process_group(0);
     // SAFETY: prctl takes integers, accesses no memory, and may be called between fork and exec.

@@ -9,7 +9,7 @@ use grainlab_console::Failure;
 pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
     let mut script = format!(
         "#!/bin/sh\n# Campaign {}: {} runs, in any order. Each line can be repeated: a finished run is left as it is, an\n\
-         # interrupted one is continued.\n",
+         # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
         campaign.name,
         campaign.members.len()
     );

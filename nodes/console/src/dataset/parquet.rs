@@ -1,6 +1,6 @@
 //! Apache Parquet.
 
-use super::Cell;
+use super::cell::Cell;
 use crate::failure::Failure;
 use parquet::basic::{LogicalType, Repetition, Type as PhysicalType};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!((first.get_string(0).unwrap().as_str(), first.get_double(1).unwrap()), ("ε", 0.1));
         assert_eq!((first.get_long(2).unwrap(), first.get_bool(3).unwrap()), (7, true));
         for (row, column) in [(0, 4), (1, 0), (1, 1), (1, 2), (1, 3), (2, 1)] {
-            assert!(rows[row].is_null_at(column), "row {row}, column {column}");
+            assert!(rows[row].is_null(column).unwrap(), "row {row}, column {column}");
         }
     }
 

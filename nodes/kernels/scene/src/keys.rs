@@ -108,6 +108,8 @@ keys! {
     UNTIL_SPEED = condition("phase.until.speed", "m/s", "root mean square speed relative to the affine motion at or below it");
     UNTIL_PRESSURE_BELOW = condition("phase.until.pressure_below", "Pa", "mean stress at or below it");
     UNTIL_PRESSURE_ABOVE = condition("phase.until.pressure_above", "Pa", "mean stress at or above it");
+    UNTIL_DEVIATOR_ABOVE = condition("phase.until.deviator_above", "Pa", "stress zz less the mean of xx and yy at or above it");
+    UNTIL_DEVIATOR_BELOW = condition("phase.until.deviator_below", "Pa", "stress zz less the mean of xx and yy at or below it");
     UNTIL_STRAIN = Key { domain: BY_COMPONENT, ..condition("phase.until.strain", "", "logarithmic strain since the phase began, positive in extension, at or beyond these values, seen from 0") };
     UNTIL_STRESS_ABOVE = Key { domain: BY_COMPONENT, ..condition("phase.until.stress_above", "Pa", "stress components at or above these values, positive in compression") };
     UNTIL_STRESS_BELOW = Key { domain: BY_COMPONENT, ..condition("phase.until.stress_below", "Pa", "stress components at or below these values") };

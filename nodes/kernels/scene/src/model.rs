@@ -223,6 +223,8 @@ pub enum Measure {
     Stress(usize),
     /// Mean stress, Pa.
     Pressure,
+    /// Stress difference σ33 − (σ11 + σ22)/2, Pa.
+    Deviator,
     /// Mean net force of non-rattlers over mean contact force.
     Unbalanced,
     /// Root mean square speed relative to the affine motion, m/s.

@@ -118,6 +118,10 @@ fn measured(measure: Measure, seen: &Observation, elapsed: f64) -> f64 {
         Measure::Strain(c) => seen.strain.voigt()[c],
         Measure::Stress(c) => seen.stress.voigt()[c],
         Measure::Pressure => seen.stress.mean(),
+        Measure::Deviator => {
+            let [xx, yy, zz, ..] = seen.stress.voigt();
+            zz - 0.5 * (xx + yy)
+        }
         Measure::Unbalanced => seen.unbalanced,
         Measure::Speed => seen.speed,
     }

@@ -215,8 +215,13 @@ fn refuse_contacts(r: &mut Reader<'_>, phase: &Phase) {
     let needs_force = |c: &Condition| {
         matches!(
             c,
-            Condition::AtLeast(Measure::Pressure | Measure::Stress(_) | Measure::Unbalanced, _)
-                | Condition::AtMost(Measure::Pressure | Measure::Stress(_) | Measure::Unbalanced, _)
+            Condition::AtLeast(
+                Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced,
+                _
+            ) | Condition::AtMost(
+                Measure::Pressure | Measure::Deviator | Measure::Stress(_) | Measure::Unbalanced,
+                _
+            )
         )
     };
     if phase.until.all.iter().any(needs_force) {

@@ -22,6 +22,8 @@ pub(crate) fn read(r: &mut Reader<'_>, servoed: bool) -> Conditions {
         one(r, &keys::UNTIL_SPEED, &|v| Condition::AtMost(Measure::Speed, v));
         one(r, &keys::UNTIL_PRESSURE_BELOW, &|v| Condition::AtMost(Measure::Pressure, v));
         one(r, &keys::UNTIL_PRESSURE_ABOVE, &|v| Condition::AtLeast(Measure::Pressure, v));
+        one(r, &keys::UNTIL_DEVIATOR_ABOVE, &|v| Condition::AtLeast(Measure::Deviator, v));
+        one(r, &keys::UNTIL_DEVIATOR_BELOW, &|v| Condition::AtMost(Measure::Deviator, v));
         by_component(r, &keys::UNTIL_STRAIN, &mut all, |c, v| {
             // A strain is reached starting from zero.
             if v < 0.0 {

@@ -15,12 +15,11 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   The packings of the calibration grainlab:
-    S=nodes/scenes/ensemble
-    nodes/launch/ensemble.sh $S/isotropic.toml \"0.01 0.03 0.1 0.2 0.4 1.0\" 41 44 > isotropic.csv
-    nodes/launch/ensemble.sh $S/uniaxial.toml \"0.05 0.1 0.15 0.3\" 11 26 > anisotropic.csv
-    nodes/launch/ensemble.sh $S/biaxial.toml \"0.05 0.1 0.15 0.3\" 31 34 | sed 1d >> anisotropic.csv
-    nodes/launch/ensemble.sh $S/overloaded.toml \"0.05 0.1 0.15 0.3\" 31 34 | sed 1d >> anisotropic.csv
-    grainlab calibrate --isotropic isotropic.csv --anisotropic anisotropic.csv --name mine --out mine.toml
+    grainlab campaign nodes/scenes/campaigns/isotropic.toml
+    grainlab campaign nodes/scenes/campaigns/anisotropic.toml
+    C=recordings/campaigns
+    grainlab calibrate --isotropic $C/isotropic/states.csv --anisotropic $C/anisotropic/states.csv \\
+      --preparation scene,set.friction --packing scene,set.friction,seed --out mine.toml
     grainlab invert --table states.csv --calibration mine.toml
 
 Tables have the columns of `grainlab analyze --format csv`: pressure_pa, phi, grains, k, z, eps, eps_stiffness, all six

@@ -78,7 +78,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
 fn list() -> Result<Exit, Failure> {
     let mut lines = String::new();
     for (name, _) in BUILT_IN {
-        lines += &format!("{name:9}{}\n", scenes::load(name, &[], None)?.scene.description);
+        lines += &format!("{name:10}{}\n", scenes::load(name, &[], None)?.scene.description);
     }
     print(&lines)?;
     Ok(Exit::Done)

@@ -27,7 +27,7 @@ const MOST_ROWS: usize = 10;
 pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines: Vec<String> = ended(s.exit).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
-        [] => lines.push(row("Prepared", "no packing was published and measured")),
+        [] => lines.push(row("Prepared", "no packing at the end of a phase")),
         [state] => lines.extend(one(state)),
         states => lines.extend(several(states)),
     }
@@ -52,13 +52,11 @@ fn ended(code: u8) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let why = match exit {
         Exit::Done => return None,
-        Exit::Failure => "a process failed; the last packing may be an intermediate one",
+        Exit::Failure => "a process failed; the last state is in the recording",
         Exit::Usage => "invalid arguments",
         Exit::DataLoss => "messages or results are missing in the recording",
-        Exit::PhysicsInvalid => {
-            "the loading path was not completed; the last packing may be an intermediate one"
-        }
-        Exit::Interrupted => "interrupted; the last packing may be an intermediate one",
+        Exit::PhysicsInvalid => "the loading path was not completed; the last state is in the recording",
+        Exit::Interrupted => "interrupted; the last state is in the recording",
     };
     Some(format!("with exit code {code}: {why}"))
 }

@@ -1,0 +1,12 @@
+//! How a campaign is run.
+
+/// How a campaign is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Members at a time on this machine; `None`: one more than there are cores, since each waits at its start and end.
+    pub jobs: Option<usize>,
+    /// How often a member that was interrupted is tried again; the last time anew.
+    pub retries: usize,
+    /// Run members again that failed.
+    pub redo_failed: bool,
+}
