@@ -2,10 +2,11 @@
 
 use super::campaign::{EngineArgs, gather};
 use grainlab_campaign::{Campaign, Folder};
-use grainlab_console::{Failure, Format, print, worse};
+use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
-use grainlab_paper::{Observed, States};
+use grainlab_paper::{Distance, Observed, States};
 use grainlab_reproduce::{Provenance, Reproduction, Size, campaign_text, pressure_of_phase, sample_of_scene};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Grains of each packing of --quick.
@@ -19,7 +20,8 @@ every model judged. Started again after an interruption, it continues, to the sa
 Examples:
   grainlab reproduce                  one seed
   grainlab reproduce --seeds 5        with standard errors
-  grainlab reproduce --quick          500 grains, within a minute";
+  grainlab reproduce --quick          500 grains, within a minute
+  grainlab campaign nodes/scenes/campaigns/search.toml && grainlab reproduce --distance recordings/campaigns/search";
 
 /// The reproduction to make.
 #[derive(Debug, clap::Args)]
@@ -40,6 +42,10 @@ pub(crate) struct Args {
     /// Folder of the runs and of the page [default: recordings/campaigns/paper-GRAINS]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Instead, judge a campaign over s1 to s4: how far the means of each set of values are from Tables I and II, term by
+    /// term
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["seeds", "first_seed", "grains", "quick", "out"])]
+    distance: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineArgs,
     /// How to print the result
@@ -49,6 +55,9 @@ pub(crate) struct Args {
 
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let Some(folder) = &args.distance {
+        return distance(folder, args.format);
+    }
     let grains = args.grains.unwrap_or(if args.quick { QUICK } else { 2000 });
     let size = Size { grains, seeds: args.seeds, first_seed: args.first_seed };
     let campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
@@ -61,15 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
     let (states, gathered) = gather::states(&campaign, &folder)?;
     gather::write(&campaign, &folder, &states)?;
-    let observed = states.into_iter().filter_map(|state| {
-        Some(Observed {
-            sample: sample_of_scene(&state.member.scene)?,
-            pressure: pressure_of_phase(&state.phase)?,
-            seed: state.member.seed,
-            report: state.found.packing.report,
-        })
-    });
-    let observed = States::new(observed.collect());
+    let observed = States::new(states.into_iter().filter_map(observed).collect());
     if observed.all().is_empty() {
         return Ok(worse(exit, gathered));
     }
@@ -84,6 +85,58 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         Format::Table => reproduction.text() + &format!("Page: {}\n", page.display()),
     })?;
     Ok(worse(exit, gathered))
+}
+
+/// A state of the paper; `None` if it is another one.
+fn observed(state: gather::State<'_>) -> Option<Observed> {
+    Some(Observed {
+        sample: sample_of_scene(&state.member.scene)?,
+        pressure: pressure_of_phase(&state.phase)?,
+        seed: state.member.seed,
+        report: state.found.packing.report,
+    })
+}
+
+/// Judges each set of values of a campaign.
+fn distance(folder: &Path, format: Format) -> Result<Exit, Failure> {
+    let (folder, campaign) = Folder::open(folder)?;
+    let (states, exit) = gather::states(&campaign, &folder)?;
+    let mut groups: BTreeMap<String, Vec<Observed>> = BTreeMap::new();
+    for state in states {
+        let settings = state.member.sets().join(" ");
+        groups.entry(settings).or_default().extend(observed(state));
+    }
+    let judged = groups.into_iter().map(|(settings, all)| (settings, Distance::of(&States::new(all))));
+    let mut judged: Vec<(String, Option<Distance>)> = judged.collect();
+    let total = |d: &Option<Distance>| d.map_or(f64::INFINITY, |d| d.total());
+    judged.sort_by(|a, b| total(&a.1).total_cmp(&total(&b.1)));
+    let mut table = Table::new([
+        "settings",
+        "distance",
+        "z",
+        "eps",
+        "gamma/Delta",
+        "phi",
+        "k (not counted)",
+        "G12 (not counted)",
+    ]);
+    for (settings, d) in &judged {
+        let terms = d.map(|d| {
+            [
+                d.total(),
+                d.coordination,
+                d.anisotropy,
+                d.strain_ratio,
+                d.solid_fraction,
+                d.all_grains,
+                d.shear_modulus,
+            ]
+        });
+        let cells = (0..7).map(|n| fixed(terms.map(|t| t[n]), 3));
+        table.row(std::iter::once(settings.clone()).chain(cells));
+    }
+    print(&if format == Format::Table { table.text() } else { table.csv() })?;
+    Ok(exit)
 }
 
 /// The same for every place where the command was typed.
