@@ -12,6 +12,9 @@ use toml::{Table, Value};
 /// Largest number of members.
 const MOST: usize = 100_000;
 
+/// Largest number of characters of a member's name, which is that of a folder.
+const LONGEST: usize = 200;
+
 /// A campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Campaign {
@@ -71,6 +74,18 @@ impl Campaign {
         if members.len() > MOST {
             return Err(Failure::usage(format!("{} members, more than {MOST}", members.len())));
         }
+        if let Some(long) = members.iter().find(|m| m.name.len() > LONGEST) {
+            return Err(Failure::usage(format!(
+                "the name of member {} has {} characters, more than {LONGEST}: put its settings into a scene",
+                long.name,
+                long.name.len()
+            )));
+        }
+        if members.iter().any(|m| m.set.iter().any(|s| s.key == "seed")) {
+            return Err(Failure::usage(
+                "seed is no key to set: name it in seeds, or as the seed of a member",
+            ));
+        }
         let mut names = BTreeSet::new();
         if let Some(twice) = members.iter().find(|m| !names.insert(m.name.as_str())) {
             return Err(Failure::usage(format!("two members are called {}", twice.name)));
@@ -109,7 +124,7 @@ fn found(name: &str, folder: &Path) -> String {
 fn product(group: &Group, common: &Table, folder: &Path) -> Result<Vec<Member>, Failure> {
     let seeds = group.seeds.as_ref().map(|seeds| seeds.all(MOST + 1)).unwrap_or_default();
     if group.scenes.is_empty() != seeds.is_empty() {
-        return Err(Failure::usage("scenes and seeds are given together"));
+        return Err(Failure::usage("scenes and seeds: both are needed, and neither may be empty"));
     }
     let mut combinations = vec![merged(&Table::new(), &group.set)];
     for Setting { key, value } in flat(&group.vary) {
@@ -143,7 +158,7 @@ fn values(key: &str, text: &str) -> Result<Vec<String>, Failure> {
     let table: Result<Table, _> = format!("v = {text}").parse();
     match table.ok().and_then(|mut t| t.remove("v")) {
         Some(Value::Array(values)) if !values.is_empty() => Ok(values.iter().map(plain).collect()),
-        _ => Err(Failure::usage(format!("vary.{key} is {text}: it takes a list of values"))),
+        _ => Err(Failure::usage(format!("vary.{key} is {text}: it takes a list of one value or more"))),
     }
 }
 

@@ -10,12 +10,10 @@ pub use options::Options;
 
 use crate::campaign::Campaign;
 use crate::folder::{Folder, MemberState};
-use crate::lock::Lock;
 use crate::member::Member;
 use crate::progress::Progress;
 use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
-use std::time::Duration;
 
 /// Where the members of a campaign run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -32,7 +30,7 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// Runs the members that are not finished. The exit is 0 if all are.
+    /// Runs the members that are not finished; the caller holds the lock of the folder. The exit is 0 if all are.
     ///
     /// # Errors
     /// A folder in use, a scheduler that cannot be reached, a folder that cannot be written.
@@ -41,7 +39,6 @@ impl Engine {
             print::run(campaign, folder)?;
             return Ok(Exit::Done);
         }
-        let _lock = Lock::take(folder.root(), Duration::from_secs(10))?;
         if options.redo_failed {
             for member in
                 campaign.members.iter().filter(|m| matches!(folder.state(m), MemberState::Failed(_)))

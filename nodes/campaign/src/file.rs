@@ -53,7 +53,7 @@ pub(crate) struct Group {
 
 /// Seeds: a list, or a range.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "seeds are whole numbers from 0: a list, or { first = 1, count = 5 }")]
 pub(crate) enum Seeds {
     List(Vec<u64>),
     Range { first: u64, count: u64 },

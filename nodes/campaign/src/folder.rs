@@ -1,6 +1,7 @@
 //! The folder of a campaign, and how far its members came.
 
 use crate::campaign::Campaign;
+use crate::lock::Lock;
 use crate::member::Member;
 use crate::run_state::{RunState, run_state};
 use grainlab_console::{Failure, json};
@@ -8,6 +9,7 @@ use grainlab_node_kit::Exit;
 use grainlab_recordings::input;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// How far a member came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,17 +36,27 @@ impl Folder {
         Path::new("recordings/campaigns").join(&campaign.name)
     }
 
-    /// Creates the folder, or finds it, and writes what its members are.
-    pub fn create(root: &Path, campaign: &Campaign) -> Result<Self, Failure> {
-        let failed = |e: io::Error| Failure::failed(format!("{}: {e}", root.display()));
+    /// Creates the folder, or finds it, for this process alone as long as the lock is held.
+    pub fn create(root: &Path) -> Result<(Self, Lock), Failure> {
+        let failed = |e: io::Error| Failure::failed(format!("the folder {}: {e}", root.display()));
         std::fs::create_dir_all(root).map_err(failed)?;
         let folder = Self { root: root.canonicalize().map_err(failed)? };
+        let lock = folder.lock()?;
         for part in [folder.members(), folder.logs()] {
             std::fs::create_dir_all(part).map_err(failed)?;
         }
-        folder.write("campaign.toml", &campaign.text)?;
-        folder.write(CAMPAIGN, &json(campaign)?)?;
-        Ok(folder)
+        Ok((folder, lock))
+    }
+
+    /// For this process alone, as long as the lock is held.
+    pub fn lock(&self) -> Result<Lock, Failure> {
+        Lock::take(&self.root, PATIENCE)
+    }
+
+    /// Writes what its members are.
+    pub fn plan(&self, campaign: &Campaign) -> Result<(), Failure> {
+        self.write("campaign.toml", &campaign.text)?;
+        self.write(CAMPAIGN, &json(campaign)?).map(|_| ())
     }
 
     /// The folder of a campaign that began, and the campaign.
@@ -87,7 +99,7 @@ impl Folder {
         }
         match run_state(&self.run(member)) {
             RunState::Absent => MemberState::Waiting,
-            RunState::Ended(0) => MemberState::Finished,
+            RunState::Ended(0) if has_recording(&self.run(member)) => MemberState::Finished,
             RunState::Ended(code) if will_end_so_again(code) => MemberState::Failed(code),
             RunState::Begun | RunState::Ended(_) => MemberState::Interrupted,
         }
@@ -128,6 +140,16 @@ impl Folder {
     }
 }
 
+/// Time for another process that works in the folder to end.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Whether there is a file of a recording.
+fn has_recording(run: &Path) -> bool {
+    let is_recording =
+        |e: io::Result<std::fs::DirEntry>| e.is_ok_and(|e| e.path().extension().is_some_and(|x| x == "mcap"));
+    std::fs::read_dir(run).is_ok_and(|mut entries| entries.any(is_recording))
+}
+
 /// Name of the file of the members.
 const CAMPAIGN: &str = "campaign.json";
 
@@ -145,11 +167,13 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let text = "name = 'x'\nscenes = ['s1']\nseeds = [1, 2, 3, 4]";
         let campaign = Campaign::parse(text, root.path()).unwrap();
-        let folder = Folder::create(root.path(), &campaign).unwrap();
+        let (folder, _lock) = Folder::create(root.path()).unwrap();
+        folder.plan(&campaign).unwrap();
         for (member, exit) in campaign.members.iter().zip([0, 4, 130]) {
             let run = folder.run(member);
             std::fs::create_dir_all(&run).unwrap();
             std::fs::write(run.join("summary.json"), format!("{{\"exit\": {exit}}}")).unwrap();
+            std::fs::write(run.join("x_0.mcap"), "").unwrap();
         }
         let (again, known) = Folder::open(root.path()).unwrap();
         assert_eq!(known, campaign);
@@ -157,6 +181,8 @@ mod tests {
         let expected =
             [MemberState::Finished, MemberState::Failed(4), MemberState::Interrupted, MemberState::Waiting];
         assert_eq!(states, expected);
+        std::fs::remove_file(folder.run(&known.members[0]).join("x_0.mcap")).unwrap();
+        assert_eq!(again.state(&known.members[0]), MemberState::Interrupted, "without its recording");
         again.remove(&known.members[0]).unwrap();
         again.remove(&known.members[0]).unwrap();
         assert_eq!(again.state(&known.members[0]), MemberState::Waiting);

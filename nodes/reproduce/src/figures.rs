@@ -119,7 +119,7 @@ impl Reproduction {
                         self.in_paper(Quantity::DeviatoricFabric, 1.0, Marker::Circle, "paper"),
                     ],
                 ),
-                "Almost constant with pressure. The paper's values are 2/5 of its ε (Eq. 20).",
+                "The paper finds it almost constant with pressure. Its values are 2/5 of its ε (Eq. 20).",
             ),
             (
                 plot(
@@ -150,7 +150,7 @@ impl Reproduction {
                         self.in_paper(Quantity::K, 1.0, Marker::Circle, "counted in the paper"),
                     ],
                 ),
-                "Counted, and inferred from the moduli of the same packings. k by the absolute moduli is below 1 and not drawn.",
+                "Counted, and inferred from the moduli of the same packings. k by the absolute moduli is in the table of moduli.",
             ),
             (
                 plot(

@@ -142,7 +142,7 @@ impl Reproduction {
         let caption = self.caption(
             "Moduli in MPa, beside those that the paper's k, k̂ and ε of Table III imply by its Eqs. 16–18, 21 and 22; \
              and k by the effective medium theory from G12 with the strain Δ since the reference state (Table III, k_EMT)",
-            "ti_g12_pa, ti_g13_pa, theta_pa",
+            "g12_pa, g13_pa, theta_pa",
         );
         let header = [
             "sample",

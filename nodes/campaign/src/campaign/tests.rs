@@ -60,7 +60,9 @@ fn faults_are_named() {
     for (text, named) in [
         ("name = 'x'", "no members"),
         ("name = 'x y'\nscenes = ['s1']\nseeds = [1]", "letters, digits"),
-        ("name = 'x'\nscenes = ['s1']", "scenes and seeds are given together"),
+        ("name = 'x'\nscenes = ['s1']", "both are needed"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = [-1]", "whole numbers"),
+        ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nset = { seed = 2 }", "seed is no key to set"),
         ("name = 'x'\nscenes = ['s1']\nseeds = [1, 1]", "two members are called s1-1"),
         ("name = 'x'\nscenes = ['s1']\nseeds = [1]\nvary = { friction = 0.1 }", "vary.friction is 0.1"),
         ("name = 'x'\nscenes = ['s1']\nseed = [1]", "unknown field `seed`"),

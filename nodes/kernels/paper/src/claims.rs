@@ -126,7 +126,7 @@ fn constant_fabric(means: &Means<'_>) -> Claim {
         let (low, high) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Some((high - low) / mean)
+        Some((high - low) / mean.abs())
     };
     let spreads: Option<Vec<f64>> = (0..SAMPLES).map(spread).collect();
     let found = spreads.as_ref().map_or_else(String::new, |all| {

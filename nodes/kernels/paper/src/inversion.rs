@@ -46,7 +46,7 @@ impl Way {
             ..Conditions::at(r.pressure())
         };
         let observation = Observation {
-            grains: Some(r.contacts.grains as u32),
+            grains: Some(r.contacts.grains),
             ..Observation::of_stiffness(&r.stiffness()?.tensor, conditions)
         };
         let estimate = self.model.infer(&observation.with_relative_error(0.01), self.calibration).ok()?;

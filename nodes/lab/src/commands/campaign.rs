@@ -2,10 +2,11 @@
 
 pub(crate) mod gather;
 
-use grainlab_campaign::{Campaign, Engine, Folder, MemberState, Options};
-use grainlab_console::{Failure, Table, print, scenes, worse};
+use super::launch;
+use grainlab_campaign::{Campaign, Engine, Folder, Lock, MemberState, Options};
+use grainlab_console::{Failure, Table, print, worse};
 use grainlab_node_kit::Exit;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 A campaign file:
@@ -102,13 +103,13 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
         (Some(Command::Status(place)), _) => status(place),
         (Some(Command::Gather(place)), _) => {
             let (folder, campaign) = Folder::open(&place.folder)?;
+            let _lock = folder.lock()?;
             gather::run(&campaign, &folder)
         }
         (None, Some(file)) => {
             let campaign = Campaign::read(file)?;
-            check(&campaign)?;
             let root = args.out.clone().unwrap_or_else(|| Folder::default_of(&campaign));
-            let folder = Folder::create(&root, &campaign)?;
+            let (folder, _lock) = begin(&campaign, &root)?;
             let exit = args.engine.run(&campaign, &folder)?;
             if args.engine.only_prints() || exit == Exit::Interrupted {
                 return Ok(exit);
@@ -119,13 +120,18 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     }
 }
 
-/// Reads every scene, so that a fault ends the campaign before it begins.
-fn check(campaign: &Campaign) -> Result<(), Failure> {
+/// The folder of a campaign, locked. Reads every scene and compares it with the runs that are there, so that a fault ends the
+/// campaign before it begins.
+pub(crate) fn begin(campaign: &Campaign, root: &Path) -> Result<(Folder, Lock), Failure> {
+    let (folder, lock) = Folder::create(root)?;
+    let words: Vec<String> = std::iter::once(&campaign.launch).chain(&campaign.arguments).cloned().collect();
     for member in &campaign.members {
-        scenes::load(&member.scene, &member.sets(), Some(member.seed))
+        let of = (member.scene.as_str(), member.sets(), member.seed);
+        launch::check(words.clone(), of, &folder.run(member))
             .map_err(|e| Failure::new(e.exit, format!("member {}: {e}", member.name)))?;
     }
-    Ok(())
+    folder.plan(campaign)?;
+    Ok((folder, lock))
 }
 
 fn status(place: &Place) -> Result<Exit, Failure> {

@@ -1,5 +1,6 @@
 //! `grainlab launch`: the main job.
 
+use grainlab_campaign::{RunState, run_state};
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, Format, scenes};
 use grainlab_launcher::{BUILT_IN, LaunchFile, NodePlan};
@@ -99,19 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(run) = &args.resume {
         return resume::run(run, output);
     }
-    let (path, given) = split(&args.words)?;
-    let file = read_file(path)?;
-    let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
-    let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
-    let scene = scenes::load(name, &args.set, seed)?;
-    let order = |given: BTreeMap<&str, String>| Order {
-        launch: file.text().to_owned(),
-        arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-        seed: scene.scene.seed,
-    };
-    // Invalid input is refused before the directory is created.
-    refuse_unknown(&order(given.clone()).plans(Path::new("."))?)?;
-    let order = order(given);
+    let (scene, order) = planned(args)?;
     // Held to the end of the run.
     let mut _at_work = None;
     let directory = match &args.run {
@@ -133,6 +122,36 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     order.keep(&directory)?;
     let plans = order.plans(&directory)?;
     conduct(plans, domain, lock, &directory, &scene, output)
+}
+
+/// The scene and the order of a launch. Invalid input is refused before a directory is created.
+fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
+    let (path, given) = split(&args.words)?;
+    let file = read_file(path)?;
+    let name = args.scene.as_deref().or(file.default_of("scene")).unwrap_or("demo");
+    let seed = args.seed.or_else(|| file.default_of("seed")?.parse().ok());
+    let scene = scenes::load(name, &args.set, seed)?;
+    let order = Order {
+        launch: file.text().to_owned(),
+        arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+        seed: scene.scene.seed,
+    };
+    refuse_unknown(&order.plans(Path::new("."))?)?;
+    Ok((scene, order))
+}
+
+/// Refuses a launch that could not begin, or whose directory has another run. `words` are the launch file and its arguments.
+pub(crate) fn check(
+    words: Vec<String>,
+    (scene, set, seed): (&str, Vec<String>, u64),
+    directory: &Path,
+) -> Result<(), Failure> {
+    let args = Args { words, scene: Some(scene.to_owned()), set, seed: Some(seed), ..Args::default() };
+    let (scene, order) = planned(&args)?;
+    match run_state(directory) {
+        RunState::Absent => Ok(()),
+        _ => directory::refuse_another(directory, &scene, &order),
+    }
 }
 
 /// Refuses a launch file that names an unknown program, before anything is started.

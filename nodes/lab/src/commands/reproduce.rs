@@ -1,6 +1,6 @@
 //! `grainlab reproduce`: the tables and figures of the paper.
 
-use super::campaign::{EngineArgs, gather};
+use super::campaign::{self, EngineArgs, gather};
 use grainlab_campaign::{Campaign, Folder};
 use grainlab_console::{Failure, Format, Table, fixed, print, worse};
 use grainlab_node_kit::Exit;
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let campaign = Campaign::parse(&campaign_text(size), Path::new(""))?;
     let root =
         args.out.clone().unwrap_or_else(|| PathBuf::from(format!("recordings/campaigns/paper-{grains}")));
-    let folder = Folder::create(&root, &campaign)?;
+    let (folder, _lock) = campaign::begin(&campaign, &root)?;
     let exit = args.engine.run(&campaign, &folder)?;
     if args.engine.only_prints() || exit == Exit::Interrupted {
         return Ok(exit);
@@ -152,6 +152,9 @@ fn provenance(args: &Args, grains: u32, root: &Path) -> Provenance {
         (true, _) => command += " --quick",
         (false, Some(grains)) => command += &format!(" --grains {grains}"),
         (false, None) => {}
+    }
+    if let Some(out) = &args.out {
+        command += &format!(" --out {}", out.display());
     }
     let seeds = (args.first_seed..).take(args.seeds as usize).collect();
     let version = env!("CARGO_PKG_VERSION").to_owned();

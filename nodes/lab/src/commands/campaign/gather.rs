@@ -52,16 +52,35 @@ pub(crate) fn states<'a>(campaign: &'a Campaign, folder: &Folder) -> Result<(Vec
             folder.root().display()
         );
     }
-    let found: Result<Vec<Vec<State<'a>>>, Failure> =
+    let found: Vec<Result<Vec<State<'a>>, String>> =
         finished.into_par_iter().map(|member| of_member(member, &folder.run(member))).collect();
-    let exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
-    Ok((found?.into_iter().flatten().collect(), exit))
+    let mut exit = if missing.is_empty() { Exit::Done } else { Exit::DataLoss };
+    let mut states = Vec::new();
+    for member in found {
+        match member {
+            Ok(found) => states.extend(found),
+            Err(why) => {
+                grainlab_console::say!("grainlab: {why}");
+                exit = Exit::DataLoss;
+            }
+        }
+    }
+    Ok((states, exit))
 }
 
-fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, Failure> {
-    let failed = |e: &dyn std::fmt::Display| Failure::failed(format!("{}: {e}", member.name));
+fn of_member<'a>(member: &'a Member, run: &Path) -> Result<Vec<State<'a>>, String> {
+    let failed = |e: &dyn std::fmt::Display| {
+        let run = run.display();
+        format!("member {} is not in the table: {e}; remove {run} to run it again", member.name)
+    };
     let recording = Recording::open(run).map_err(|e| failed(&e))?;
-    let scene = scenes::load(&run.join("scene.toml").to_string_lossy(), &[], None)?.scene;
+    let path = run.join("scene.toml");
+    let scene = scenes::load(&path.to_string_lossy(), &[], None).map_err(|e| failed(&e))?;
+    let recorded = recording.stored_files().into_iter().find(|file| file.name == "scene.toml");
+    if recorded.is_none_or(|file| file.bytes != scene.text.as_bytes()) || scene.scene.seed != member.seed {
+        return Err(failed(&"its recording has another scene or seed"));
+    }
+    let scene = scene.scene;
     let back = read_back::read(&recording);
     if let Some(complaint) = back.complaints.first() {
         return Err(failed(complaint));

@@ -4,6 +4,7 @@ use super::order::Order;
 use grainlab_campaign::{Lock, RunState, run_state};
 use grainlab_console::Failure;
 use grainlab_console::scenes::SceneText;
+use grainlab_recordings::Recording;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -32,19 +33,24 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
     if run_state(&directory) == RunState::Absent {
         return Ok(Given::Empty(directory, lock));
     }
-    let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
-    let is_same = known == scene.text && Order::read(&directory)?.launch == order.launch;
-    if !is_same {
-        return Err(Failure::usage(format!(
-            "{}: the run there has another scene, seed or launch file: use another directory, or remove it",
-            directory.display()
-        )));
-    }
-    if run_state(&directory) == RunState::Ended(0) {
+    refuse_another(&directory, scene, order)?;
+    if run_state(&directory) == RunState::Ended(0) && Recording::open(&directory).is_ok() {
         grainlab_console::say!("grainlab: {}: the run is finished", directory.display());
         return Ok(Given::Finished);
     }
     Ok(Given::Begun(directory, lock))
+}
+
+/// Refuses a directory with a run of another scene, seed or launch file, or with other arguments.
+pub(super) fn refuse_another(directory: &Path, scene: &SceneText, order: &Order) -> Result<(), Failure> {
+    let known = std::fs::read_to_string(directory.join("scene.toml")).unwrap_or_default();
+    if known == scene.text && Order::read(directory)? == *order {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "{}: the run there has another scene, seed, launch file or arguments: use another directory, or remove it",
+        directory.display()
+    )))
 }
 
 /// Writes a copy of the scene: later edits of the file affect neither the run nor a restart.
