@@ -77,7 +77,12 @@ impl Reproduction {
         body += "<nav><a href=\"#claims\">What holds</a><a href=\"#figures\">Figures</a><a href=\"#tables\">Tables</a>\
                  <a href=\"#inversion\">Inversion</a><a href=\"#protocol\">Protocol</a><a href=\"#repeat\">Repeat it</a></nav>\n";
         body += &section("claims", "What holds", &self.claims_table());
-        body += &section("figures", "Figures", &self.figures());
+        let drawn = format!(
+            "<p>Drawn from {}, which {} writes beside this page.</p>\n",
+            code("reproduction.csv"),
+            code(&self.provenance.command)
+        );
+        body += &section("figures", "Figures", &(drawn + &self.figures()));
         body += &section("tables", "Tables", &self.tables());
         body += &section("inversion", "From moduli to microstructure", &self.inversion());
         body += &section("protocol", "The protocol", &protocol());
@@ -100,11 +105,13 @@ impl Reproduction {
             vec![Cell::text(&claim.text), Cell::classed(verdict, class), Cell::text(&claim.found)]
         };
         let rows: Vec<Vec<Cell>> = self.claims.iter().map(row).collect();
-        table(
-            "Statements of the paper and goals of the reproduction, on the means over seeds",
-            &["statement", "", "found"],
-            &rows,
-        )
+        let caption = format!(
+            "Statements of the paper and goals of the reproduction, on the means over seeds. Key {} of {}, by {}",
+            code("claims"),
+            code("reproduction.json"),
+            code(&self.provenance.command)
+        );
+        table(&caption, &["statement", "", "found"], &rows)
     }
 
     fn tables(&self) -> String {
@@ -155,7 +162,7 @@ impl Reproduction {
             format!("{}    # this page", p.command),
             format!("grainlab campaign gather {runs}    # every number of the packings: states.csv"),
             format!("grainlab analyze {runs}/members/s1-{}    # one sample", p.seeds.first().unwrap_or(&1)),
-            format!("grainlab invert --table {runs}/states.csv --judge --model all    # every model"),
+            format!("grainlab invert --table {runs}/states.csv --judge --gamma all    # every model"),
         ];
         format!(
             "<pre>{}</pre>\n<p>The data of this page: {} and {} beside it.</p>\n",

@@ -25,6 +25,6 @@ fn the_example_of_the_page_holds() {
     let example = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let scene = Draft::of_text(example).unwrap().resolve().unwrap().scene;
     let names: Vec<&str> = scene.phases.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(names[..7], ["gas", "rest", "uniaxial", "isotropic", "unload", "reload", "pause"]);
-    assert_eq!((scene.grains, scene.phases[1].until.all.len(), scene.phases[6].friction), (500, 1, 0.2));
+    assert_eq!(names[5..9], ["isotropic", "extend", "triax", "pause"]);
+    assert_eq!((scene.grains, scene.phases[1].until.all.len(), scene.phases[8].friction), (500, 1, 0.2));
 }
