@@ -80,7 +80,7 @@ pub struct RosArgs {
     pub params_files: Vec<PathBuf>,
     /// The log level of this process's own lines.
     pub log_level: log::LevelFilter,
-    /// Levels of single loggers, `--log-level rustdds:=debug`; the logger is a Rust module path.
+    /// Levels of single loggers, `--log-level ros2_client:=debug`; the logger is a Rust module path.
     pub logger_levels: Vec<(String, log::LevelFilter)>,
     /// Whether log lines are published on `/rosout`.
     pub rosout: bool,
@@ -241,9 +241,10 @@ mod tests {
     #[test]
     fn log_levels_are_read_for_all_and_for_single_loggers() {
         let (ros, _) =
-            parse("--ros-args --log-level WARN --log-level rustdds:=debug --disable-rosout-logs").unwrap();
+            parse("--ros-args --log-level WARN --log-level ros2_client:=debug --disable-rosout-logs")
+                .unwrap();
         assert_eq!(ros.log_level, log::LevelFilter::Warn);
-        assert_eq!(ros.logger_levels, [("rustdds".into(), log::LevelFilter::Debug)]);
+        assert_eq!(ros.logger_levels, [("ros2_client".into(), log::LevelFilter::Debug)]);
         assert!(!ros.rosout && ros.stderr);
     }
 

@@ -163,4 +163,9 @@ pub trait Bus {
 
     /// Wall-clock time, ns since 1970; virtual on the in-memory bus.
     fn wall_nanos(&self) -> u64;
+
+    /// Time of the node, ns since 1970: wall-clock time, or that of `/clock` while its parameter `use_sim_time` is true.
+    fn node_nanos(&self) -> u64 {
+        self.wall_nanos()
+    }
 }

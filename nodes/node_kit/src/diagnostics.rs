@@ -61,8 +61,8 @@ impl Report {
         Self { node: node.into(), pid, health, exit, published, received }
     }
 
-    /// As a message; `wall_nanos` is the time of the report, ns since 1970.
-    pub fn to_message(&self, wall_nanos: u64) -> DiagnosticArray {
+    /// As a message; `nanos` is the time of the report, ns since 1970.
+    pub fn to_message(&self, nanos: u64) -> DiagnosticArray {
         let mut values = Vec::new();
         let mut push = |key: String, value: String| values.push(KeyValue { key, value });
         if let Some(exit) = self.exit {
@@ -85,7 +85,7 @@ impl Report {
             }
         }
         DiagnosticArray {
-            header: Header { stamp: wall_stamp(wall_nanos), frame_id: String::new() },
+            header: Header { stamp: wall_stamp(nanos), frame_id: String::new() },
             status: vec![DiagnosticStatus {
                 level: self.health.level as u8,
                 name: self.node.clone(),

@@ -1,4 +1,4 @@
-//! The common part of all processes. This is the only crate that uses DDS.
+//! The common part of all processes. This is the only crate that uses DDS, by ros2-client; `dds/direct` has what that lacks.
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types
@@ -10,7 +10,8 @@
 //! - [`PackingNode`]: the template of nodes that measure packings
 //! - `diagnostics`: the heartbeat of a process; `peers`: liveliness of processes; [`watchdog`]: detects
 //!   failed DDS threads
-//! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters
+//! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
+//!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
 //! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: stderr and `/rosout`
 
@@ -35,6 +36,7 @@ mod peers;
 pub mod pingpong;
 mod run;
 mod sample;
+mod services;
 mod signals;
 mod typed;
 pub mod watchdog;

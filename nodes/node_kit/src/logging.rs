@@ -1,6 +1,7 @@
 //! Log lines: to stderr in the format of ROS 2, and to `/rosout`.
 
 use crate::args::RosArgs;
+use crate::dds::LOG_TARGET;
 use crate::diagnostics::wall_stamp;
 use grainlab_msgs::rcl_interfaces::Log;
 use log::{Level, LevelFilter, Metadata, Record};
@@ -13,7 +14,7 @@ use std::time::SystemTime;
 const BACKLOG: usize = 1000;
 
 /// Libraries of which only errors are logged: their warnings concern single packets.
-const LIBRARIES: [&str; 3] = ["rustdds", "ros2_client", "mio"];
+const LIBRARIES: [&str; 3] = [LOG_TARGET, "ros2_client", "mio"];
 
 static LOGGER: Logger = Logger {
     settings: Mutex::new(Settings {
@@ -182,11 +183,11 @@ mod tests {
     fn libraries_log_only_errors_by_default() {
         let quiet = settings(LevelFilter::Debug, &[]);
         assert_eq!(quiet.level_of("grainlab_dem_simulator::run"), LevelFilter::Debug);
-        assert_eq!(quiet.level_of("rustdds::rtps::reader"), LevelFilter::Error);
-        assert_eq!(quiet.level_of("rustdds_like"), LevelFilter::Debug);
-        let asked = settings(LevelFilter::Info, &[("rustdds", LevelFilter::Trace)]);
-        assert_eq!(asked.level_of("rustdds::rtps::reader"), LevelFilter::Trace);
-        assert_eq!(asked.level_of("ros2_client"), LevelFilter::Error);
+        assert_eq!(quiet.level_of("ros2_client::node"), LevelFilter::Error);
+        assert_eq!(quiet.level_of("ros2_client_like"), LevelFilter::Debug);
+        let asked = settings(LevelFilter::Info, &[("ros2_client", LevelFilter::Trace)]);
+        assert_eq!(asked.level_of("ros2_client::node"), LevelFilter::Trace);
+        assert_eq!(asked.level_of("mio"), LevelFilter::Error);
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
 use crate::sample::WriterId;
+use crate::services::{Declared, USE_SIM_TIME};
 use crate::signals::Signals;
 use crate::typed::Publisher;
 use crate::watchdog;
@@ -67,6 +68,12 @@ where
     })
 }
 
+/// The parameter that ROS 2 gives to every node.
+fn use_sim_time() -> ParameterSpec {
+    let meaning = "whether /diagnostics is stamped with the time of /clock; all other stamps are the simulator's anyway";
+    ParameterSpec::new(USE_SIM_TIME, false, meaning).changeable()
+}
+
 fn run_process<F>(spec: &NodeSpec, args: &RosArgs, build: F) -> Exit
 where
     F: FnOnce(&mut dyn Bus, &Parameters) -> Result<Box<dyn Node>, NodeError>,
@@ -79,20 +86,22 @@ where
     }
     let start = || -> Result<Exit, Exit> {
         let names = refused(Exit::Usage, Names::from_args(spec.name, args))?;
-        let parameters =
-            refused(Exit::Usage, Parameters::resolve(&spec.parameters, spec.name, &names, args))?;
+        let specs: Vec<ParameterSpec> = spec.parameters.iter().cloned().chain([use_sim_time()]).collect();
+        let parameters = refused(Exit::Usage, Parameters::resolve(&specs, spec.name, &names, args))?;
+        let declared = Declared::new(&specs, parameters.clone());
         let network = refused(Exit::Usage, Network::from_env())?;
         let node_name = names.fully_qualified();
         let logger = Logger::install(&node_name, args);
         let signals = refused(Exit::Failure, Signals::install())?;
         let stop = signals.flag();
         let identity = Identity::from_env(spec.scope);
-        let mut bus = refused(Exit::Failure, DdsBus::join(network, names, identity))?;
+        let mut bus = refused(Exit::Failure, DdsBus::declaring(network, names, identity, declared))?;
         refused(Exit::Failure, bus.watch(signals))?;
         let mut node = build(&mut bus, &parameters).map_err(|error| {
             log::error!("{error}");
             error.exit()
         })?;
+        refused(Exit::Failure, bus.serve())?;
         let stop = move || stop.load(std::sync::atomic::Ordering::Relaxed);
         let driven = drive(node.as_mut(), &mut bus, &node_name, Some(logger), &stop);
         if let Err(DriveError::Dds(failure)) = driven {
@@ -214,7 +223,7 @@ impl<'a> Housekeeping<'a> {
 
     fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {
         let report = Report::of(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
-        let message = report.to_message(bus.wall_nanos());
+        let message = report.to_message(bus.node_nanos());
         self.tolerate_full(self.diagnostics.publish(bus, &message))
     }
 

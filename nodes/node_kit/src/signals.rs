@@ -1,7 +1,7 @@
 //! SIGINT, SIGTERM and SIGHUP: the first signal stops the node, the second ends the process at once.
 
 use crate::exit::Exit;
-use rustdds::mio1::net::UnixStream;
+use mio::net::UnixStream;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::{flag, low_level::pipe};
 use std::io::{self, Read};

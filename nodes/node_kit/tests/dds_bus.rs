@@ -253,36 +253,36 @@ fn seven_participants_find_each_other_on_plain_loopback() {
 
 #[test]
 fn the_ros_graph_shows_the_node_and_its_endpoints() {
-    use ros2_client::builtin_topics::ros_discovery::{QOS_PUB, TOPIC_NAME, TYPE_NAME};
     use ros2_client::entities_info::ParticipantEntitiesInfo;
+    use ros2_client::qos::{Durability, History, WhenFull};
+    use ros2_client::{MessageTypeName, NodeName, NodeOptions, QosProfile};
     let claimed = claim();
     let network = claimed.network();
     let mut a = open(network, "talker");
     a.advertise(&topics::STRESS).unwrap();
     a.subscribe(&topics::STRAIN_RATE, Demand::reliable(10)).unwrap();
 
-    let participant = rustdds::DomainParticipantBuilder::new(network.domain)
-        .with_only_networks([std::net::Ipv4Addr::LOCALHOST])
-        .build()
-        .unwrap();
-    let topic = participant
-        .create_topic(TOPIC_NAME.into(), TYPE_NAME.into(), &QOS_PUB, rustdds::TopicKind::NoKey)
-        .unwrap();
-    let reader = participant
-        .create_subscriber(&QOS_PUB)
-        .unwrap()
-        .create_datareader_no_key_cdr::<ParticipantEntitiesInfo>(&topic, Some(QOS_PUB.clone()));
-    let mut reader = reader.unwrap();
+    let context = network.context().unwrap();
+    let mut spy = context.new_node(NodeName::new("/", "spy").unwrap(), NodeOptions::new()).unwrap();
+    let qos = QosProfile::publisher_default()
+        .reliability_reliable(WhenFull::DEFAULT)
+        .durability(Durability::TransientLocal)
+        .history(History::KeepLast { depth: 1 });
+    let message_type = MessageTypeName::new("rmw_dds_common", "ParticipantEntitiesInfo");
+    let topic = context.create_topic("ros_discovery_info".into(), message_type, &qos).unwrap();
+    let reader = spy.create_subscription::<ParticipantEntitiesInfo>(&topic, Some(qos)).unwrap();
     let mut nodes = Vec::new();
     until(&mut a, "the node in the graph", |_| {
-        while let Ok(Some(sample)) = reader.take_next_sample() {
-            nodes = sample.value().nodes().iter().map(|n| format!("{n:?}")).collect();
+        while let Ok(Some((info, _))) = reader.take() {
+            let all: Vec<String> = info.nodes().iter().map(|n| format!("{n:?}")).collect();
+            nodes.extend(all.into_iter().filter(|n| n.contains("talker")));
         }
-        nodes.len() == 1
+        !nodes.is_empty()
     });
     let stress = a.published()[0].writer.to_string();
-    assert!(nodes[0].contains("talker") && nodes[0].contains("/lab"), "{}", nodes[0]);
-    assert!(nodes[0].contains(&stress), "the writer of stress, {stress}, in {}", nodes[0]);
+    let latest = nodes.last().unwrap();
+    assert!(latest.contains("/lab"), "{latest}");
+    assert!(latest.contains(&stress), "the writer of stress, {stress}, in {latest}");
 }
 
 /// Processor time of this process, all threads.

@@ -7,7 +7,7 @@
 //! steps.
 
 use super::inbox::Inbox;
-use rustdds::mio1::Waker;
+use mio::Waker;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};

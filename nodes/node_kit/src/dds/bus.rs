@@ -1,31 +1,27 @@
 //! The bus over DDS.
 
 use super::background_reader::{BackgroundReader, Inboxes, lock};
+use super::direct::{self, Change, DdsTopic, Discovery, Inlet, Outlet};
 use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
 use super::network::Network;
-use super::qos;
-use super::raw::{RawAdapter, RawPayload};
-use super::ros_graph::RosGraph;
 use super::writer::Writer;
-use crate::admission::Stranger;
+use crate::admission::{Participant, Stranger};
 use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
+use crate::parameters::Parameters;
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
+use crate::services::{Declared, ServiceThread, SimTime};
 use crate::signals::Signals;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
-use rustdds::mio1::{Events, Interest, Poll, Token, Waker};
-use rustdds::no_key::DataWriter;
-use rustdds::{
-    DomainParticipant, DomainParticipantStatusEvent, DomainParticipantStatusListener, GUID, GuidPrefix,
-    QosPolicyBuilder, RTPSEntity, StatusEvented, TopicKind,
-};
+use mio::{Events, Interest, Poll, Token, Waker};
+use ros2_client::{Context, Gid, MessageTypeName, NodeName, QosProfile};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -39,7 +35,7 @@ const FIRST_READER: usize = 3;
 /// One reader of this process, in the waiting thread.
 struct Reader {
     inbox: Arc<Mutex<Inbox>>,
-    guid: GUID,
+    gid: Gid,
     topic: String,
     /// A notification arrived, and the reader was not found empty since.
     ready: bool,
@@ -60,6 +56,9 @@ struct Subscriber {
 /// minute.
 pub struct DdsBus {
     // Fields are dropped in this order, and endpoints have to be dropped before their participant.
+    services: Option<ServiceThread>,
+    declared: Declared,
+    sim_time: SimTime,
     background_reader: BackgroundReader,
     writers: Vec<Writer>,
     subscribers: Vec<Subscriber>,
@@ -68,17 +67,18 @@ pub struct DdsBus {
     waker: Arc<Waker>,
     /// Another thread called, and no wait has returned it yet.
     called: Arc<AtomicBool>,
-    ros_graph: RosGraph,
     signals: Option<Signals>,
     poll: Poll,
     events: Events,
-    topics: BTreeMap<String, rustdds::Topic>,
-    publisher: rustdds::Publisher,
-    subscriber: rustdds::Subscriber,
-    status: DomainParticipantStatusListener,
+    topics: BTreeMap<String, DdsTopic>,
+    discovery: Discovery,
     graph: Graph,
     gate: Arc<Gate>,
-    participant: DomainParticipant,
+    node: Arc<Mutex<ros2_client::Node>>,
+    /// Endpoints were made since the node was last announced to the ROS graph.
+    unannounced: bool,
+    context: Context,
+    participant: Participant,
     _open: OpenParticipant,
     names: Names,
     start: Instant,
@@ -93,40 +93,39 @@ impl DdsBus {
 
     /// Joins the domain with this identity.
     pub fn join(network: Network, names: Names, identity: Identity) -> Result<Self, BusError> {
+        Self::declaring(network, names, identity, Declared::new(&[], Parameters::defaults(&[])))
+    }
+
+    /// The same as a node with these parameters. [`Self::serve`] starts its services.
+    pub(crate) fn declaring(
+        network: Network,
+        names: Names,
+        identity: Identity,
+        declared: Declared,
+    ) -> Result<Self, BusError> {
         let prefix = identity.guid_prefix();
         let gate = Arc::new(Gate::new(identity, prefix));
-        let create = || {
-            let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(&gate));
-            network
-                .participant()
-                .guid_prefix(GuidPrefix::new(&prefix))
-                .data_filter(move |writer, reader| filter.takes(writer, reader))
-                .participant_listener(move |peer| {
-                    listener.discovered(peer.guid, &peer.metatraffic_unicast_addresses);
-                })
-                // Readers outside the run receive what is sent, and are not waited for.
-                .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
-                .build()
-        };
-        // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
-        let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
+        let (context, gid) = direct::context(network, prefix, &gate)?;
         let open = OpenParticipant::new();
-        let none = QosPolicyBuilder::new().build();
-        let publisher = participant.create_publisher(&none).map_err(|e| create_error("DDS publisher", &e))?;
-        let subscriber =
-            participant.create_subscriber(&none).map_err(|e| create_error("DDS subscriber", &e))?;
-        let ros_graph = RosGraph::new(&participant, &publisher, &names)?;
+        let node_error = |reason: String| BusError::Network { what: format!("create node {names}"), reason };
+        let name = NodeName::new(names.namespace(), names.node()).map_err(|e| node_error(e.to_string()))?;
+        let mut node =
+            context.new_node(name, declared.node_options()).map_err(|e| node_error(e.to_string()))?;
+        node.suppress_node_info_updates(true);
 
         let io = |e: std::io::Error| create_error("poll", &e);
         let poll = Poll::new().map_err(io)?;
-        let mut status = participant.status_listener();
-        poll.registry().register(status.as_status_source_mio1(), STATUS, Interest::READABLE).map_err(io)?;
+        let mut discovery = Discovery::new(&context);
+        discovery.register(poll.registry(), STATUS).map_err(io)?;
         let inboxes = Inboxes::default();
         let waker = Arc::new(Waker::new(poll.registry(), WAKER).map_err(io)?);
         let background_reader =
             BackgroundReader::spawn(Arc::clone(&inboxes), Arc::clone(&waker)).map_err(io)?;
-        let graph = Graph::new(participant.guid());
+        let graph = Graph::new(gid);
         Ok(Self {
+            services: None,
+            declared,
+            sim_time: SimTime::default(),
             background_reader,
             writers: Vec::new(),
             subscribers: Vec::new(),
@@ -134,17 +133,17 @@ impl DdsBus {
             inboxes,
             waker,
             called: Arc::default(),
-            ros_graph,
             signals: None,
             poll,
             events: Events::with_capacity(64),
             topics: BTreeMap::new(),
-            publisher,
-            subscriber,
-            status,
+            discovery,
             graph,
             gate,
-            participant,
+            node: Arc::new(Mutex::new(node)),
+            unannounced: true,
+            context,
+            participant: prefix,
             _open: open,
             names,
             start: Instant::now(),
@@ -161,19 +160,26 @@ impl DdsBus {
         Ok(())
     }
 
-    /// Our participant's 12-byte GUID prefix, shared by all our writers.
-    pub fn participant(&self) -> [u8; 12] {
-        WriterId(self.participant.guid().to_bytes()).participant()
+    /// Starts the standard services of the node.
+    pub(crate) fn serve(&mut self) -> Result<(), BusError> {
+        self.services = Some(ServiceThread::start(&self.node, self.declared.clone(), self.sim_time.clone())?);
+        self.unannounced = true;
+        Ok(())
     }
 
-    fn dds_topic(&mut self, resolved: &str, topic: &Topic) -> Result<rustdds::Topic, BusError> {
+    /// Our participant's 12-byte GUID prefix, shared by all our writers.
+    pub fn participant(&self) -> [u8; 12] {
+        self.participant
+    }
+
+    fn dds_topic(&mut self, resolved: &str, topic: &Topic) -> Result<DdsTopic, BusError> {
         if let Some(known) = self.topics.get(resolved) {
             return Ok(known.clone());
         }
-        let type_name = format!("{}::msg::dds_::{}_", topic.info.package, topic.info.name);
+        let message_type = MessageTypeName::new(topic.info.package, topic.info.name);
         let created = self
-            .participant
-            .create_topic(wire_name(resolved), type_name, &QosPolicyBuilder::new().build(), TopicKind::NoKey)
+            .context
+            .create_topic(wire_name(resolved), message_type, &QosProfile::default())
             .map_err(|e| create_error(resolved, &e))?;
         self.topics.insert(resolved.into(), created.clone());
         Ok(created)
@@ -186,22 +192,19 @@ impl DdsBus {
             return Ok(index);
         }
         let dds_topic = self.dds_topic(&resolved, topic)?;
-        let reader = self
-            .subscriber
-            .create_simple_datareader_no_key(&dds_topic, Some(qos::requested(topic, demand)))
-            .map_err(|e| create_error(&resolved, &e))?;
+        let reader = Inlet::new(&mut lock(&self.node), &dds_topic, topic, demand)?;
+        self.unannounced = true;
         let mut inbox = Inbox::new(reader, resolved.clone(), demand, self.participant());
         let index = self.readers.len();
         self.poll
             .registry()
             .register(inbox.reader_mut(), Token(FIRST_READER + index), Interest::READABLE)
             .map_err(|e| create_error(&resolved, &e))?;
-        let guid = inbox.guid();
-        self.gate.add_reader(guid, &resolved);
-        self.ros_graph.add_reader(guid);
+        let gid = inbox.gid();
+        self.gate.add_reader(gid, &resolved);
         let inbox = Arc::new(Mutex::new(inbox));
         lock(&self.inboxes).push(Arc::clone(&inbox));
-        self.readers.push(Reader { inbox, guid, topic: resolved, ready: false, notified: false });
+        self.readers.push(Reader { inbox, gid, topic: resolved, ready: false, notified: false });
         Ok(index)
     }
 
@@ -219,15 +222,22 @@ impl DdsBus {
     /// Processes the events of discovery; true if something changed.
     fn follow_graph(&mut self) -> bool {
         let mut changed = false;
-        while let Some(event) = self.status.try_recv_status() {
-            if let DomainParticipantStatusEvent::ParticipantLost { id, .. } = &event {
-                let mut participant = [0; 12];
-                participant.copy_from_slice(id.as_ref());
-                self.gate.lost(&participant);
+        while let Some(change) = self.discovery.next() {
+            if let Change::ParticipantLost(participant) = &change {
+                self.gate.lost(participant);
             }
-            changed |= self.graph.apply(event);
+            changed |= self.graph.apply(change);
         }
         changed
+    }
+
+    /// Announces the endpoints made since the last call to the ROS graph, in one message.
+    fn announce(&mut self) {
+        if std::mem::take(&mut self.unannounced) {
+            let mut node = lock(&self.node);
+            node.suppress_node_info_updates(false);
+            node.suppress_node_info_updates(true);
+        }
     }
 
     fn has_data(&self) -> bool {
@@ -283,12 +293,9 @@ impl Bus for DdsBus {
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
         let dds_topic = self.dds_topic(&resolved, topic)?;
-        let data: DataWriter<RawPayload, RawAdapter> = self
-            .publisher
-            .create_datawriter_no_key(&dds_topic, Some(qos::offered(topic)))
-            .map_err(|e| create_error(&resolved, &e))?;
-        self.ros_graph.add_writer(data.guid());
-        self.writers.push(Writer::new(data, resolved, qos::window(topic)));
+        let outlet = Outlet::new(&mut lock(&self.node), &dds_topic, topic)?;
+        self.unannounced = true;
+        self.writers.push(Writer::new(outlet, resolved, direct::window(topic)));
         Ok(PublisherId(self.writers.len() - 1))
     }
 
@@ -330,7 +337,7 @@ impl Bus for DdsBus {
     }
 
     fn wait(&mut self, timeout: Duration) -> Wake {
-        self.ros_graph.announce();
+        self.announce();
         self.background_reader.seen();
         // A caller may pass an unlimited time; a day cannot overflow.
         let timeout = timeout.min(Duration::from_secs(86_400));
@@ -365,12 +372,12 @@ impl Bus for DdsBus {
     fn readers(&self, publisher: PublisherId) -> usize {
         self.writers
             .get(publisher.0)
-            .map_or(0, |w| self.graph.matches_of(w.guid, |guid| self.gate.admits(guid)))
+            .map_or(0, |w| self.graph.matches_of(w.gid, |guid| self.gate.admits(guid)))
     }
 
     fn writers(&self, subscription: SubscriptionId) -> usize {
         let reader = self.subscribers.get(subscription.0).map(|s| &self.readers[s.reader]);
-        reader.map_or(0, |r| self.graph.matches_of(r.guid, |guid| self.gate.admits(guid)))
+        reader.map_or(0, |r| self.graph.matches_of(r.gid, |guid| self.gate.admits(guid)))
     }
 
     fn foreign_writers(&self, topic: &Topic) -> Vec<WriterId> {
@@ -432,12 +439,16 @@ impl Bus for DdsBus {
         let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
         self.writers.iter().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
-            writer.data.wait_for_acknowledgments(left).unwrap_or(false)
+            writer.outlet.wait_for_acknowledgments(left)
         })
     }
 
     fn now(&self) -> Duration {
         self.start.elapsed()
+    }
+
+    fn node_nanos(&self) -> u64 {
+        if self.declared.use_sim_time() { self.sim_time.nanos() } else { self.wall_nanos() }
     }
 
     fn wall_nanos(&self) -> u64 {

@@ -3,6 +3,6 @@
 use crate::bus_error::BusError;
 
 /// RustDDS could not create something.
-pub(super) fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
+pub(crate) fn create_error(what: &str, error: &dyn std::error::Error) -> BusError {
     BusError::Network { what: format!("create {what}"), reason: error.to_string() }
 }

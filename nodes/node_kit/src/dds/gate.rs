@@ -5,7 +5,7 @@ use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::identity::{Identity, Scope};
 use crate::sample::WriterId;
-use rustdds::GUID;
+use ros2_client::Gid;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::sync::Mutex;
@@ -19,8 +19,8 @@ pub(super) struct Gate {
     topics: Mutex<BTreeMap<[u8; 16], String>>,
 }
 
-fn prefix(guid: &GUID) -> Participant {
-    WriterId(guid.to_bytes()).participant()
+fn prefix(guid: &Gid) -> Participant {
+    WriterId(guid.to_bytes16()).participant()
 }
 
 impl Gate {
@@ -33,18 +33,19 @@ impl Gate {
     }
 
     /// Registers one of our readers under its topic.
-    pub(super) fn add_reader(&self, reader: GUID, topic: &str) {
-        lock(&self.topics).insert(reader.to_bytes(), topic.to_owned());
+    pub(super) fn add_reader(&self, reader: Gid, topic: &str) {
+        lock(&self.topics).insert(reader.to_bytes16(), topic.to_owned());
     }
 
     /// Whether one of our readers accepts a sample of this writer.
-    pub(super) fn takes(&self, writer: GUID, reader: GUID) -> bool {
+    pub(super) fn takes(&self, writer: Gid, reader: Gid) -> bool {
         let mut admission = lock(&self.admission);
         if admission.admits(&prefix(&writer)) {
             return true;
         }
-        let topic = lock(&self.topics).get(&reader.to_bytes()).cloned().unwrap_or_default();
-        let (taken, new) = admission.takes(WriterId(writer.to_bytes()), &topic);
+        // A reader without a topic is that of a service: anyone may ask.
+        let Some(topic) = lock(&self.topics).get(&reader.to_bytes16()).cloned() else { return true };
+        let (taken, new) = admission.takes(WriterId(writer.to_bytes16()), &topic);
         if new {
             let stranger = admission.describe(&prefix(&writer));
             drop(admission);
@@ -54,7 +55,7 @@ impl Gate {
     }
 
     /// Whether endpoints of this participant count.
-    pub(super) fn admits(&self, guid: &GUID) -> bool {
+    pub(super) fn admits(&self, guid: &Gid) -> bool {
         lock(&self.admission).admits(&prefix(guid))
     }
 
@@ -64,7 +65,7 @@ impl Gate {
     }
 
     /// Records a discovered participant and its addresses.
-    pub(super) fn discovered(&self, participant: GUID, addresses: &[SocketAddr]) {
+    pub(super) fn discovered(&self, participant: Gid, addresses: &[SocketAddr]) {
         let participant = prefix(&participant);
         // The process of a participant is looked up only where admission or a message needs it.
         let ours = self.identity.run.is_some() && lock(&self.admission).admits(&participant);

@@ -1,18 +1,15 @@
 //! One DDS reader and the samples that were read from it but not taken yet.
 
-use super::raw::{RawAdapter, RawBody};
+use super::direct::{Inlet, TakeFailure};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use rustdds::no_key::{DeserializedCacheChange, SimpleDataReader};
-use rustdds::{GUID, Timestamp};
+use crate::sample::Sample;
+use ros2_client::Gid;
 use std::collections::VecDeque;
-
-pub(super) type RawReader = SimpleDataReader<RawBody, RawAdapter>;
 
 /// A reader shared by all subscriptions to its topic, with one queue per subscription.
 pub(super) struct Inbox {
-    reader: RawReader,
+    reader: Inlet,
     topic: String,
     demand: Demand,
     queues: Vec<VecDeque<Sample>>,
@@ -23,7 +20,7 @@ pub(super) struct Inbox {
 }
 
 impl Inbox {
-    pub(super) fn new(reader: RawReader, topic: String, demand: Demand, own: [u8; 12]) -> Self {
+    pub(super) fn new(reader: Inlet, topic: String, demand: Demand, own: [u8; 12]) -> Self {
         Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
     }
 
@@ -34,15 +31,15 @@ impl Inbox {
         }
     }
 
-    pub(super) fn guid(&self) -> GUID {
-        self.reader.guid()
+    pub(super) fn gid(&self) -> Gid {
+        self.reader.gid()
     }
 
     pub(super) fn demand(&self) -> Demand {
         self.demand
     }
 
-    pub(super) fn reader_mut(&mut self) -> &mut RawReader {
+    pub(super) fn reader_mut(&mut self) -> &mut Inlet {
         &mut self.reader
     }
 
@@ -62,7 +59,7 @@ impl Inbox {
 
     /// Clears the reader's notification, so that the next sample raises a new one. Before reading, never after.
     pub(super) fn acknowledge(&self) {
-        self.reader.drain_read_notifications();
+        self.reader.acknowledge();
     }
 
     /// The next sample for one subscriber.
@@ -98,18 +95,15 @@ impl Inbox {
 
     fn read(&mut self) -> Result<Option<Sample>, BusError> {
         loop {
-            match self.reader.try_take_one() {
-                Ok(Some(change)) if WriterId(change.writer_guid.to_bytes()).participant() == self.own => {}
-                Ok(change) => return Ok(change.map(sample)),
-                Err(rustdds::dds::ReadError::Deserialization { reason }) => {
+            match self.reader.take() {
+                Ok(Some(sample)) if sample.info.writer.participant() == self.own => {}
+                Ok(sample) => return Ok(sample),
+                Err(TakeFailure::Representation(reason)) => {
                     self.refused += 1;
                     log::warn!("{}: sample refused: {reason}", self.topic);
                 }
-                Err(error) => {
-                    return Err(BusError::Network {
-                        what: format!("read {}", self.topic),
-                        reason: error.to_string(),
-                    });
+                Err(TakeFailure::Other(reason)) => {
+                    return Err(BusError::Network { what: format!("read {}", self.topic), reason });
                 }
             }
         }
@@ -122,37 +116,4 @@ fn push_bounded(queue: &mut VecDeque<Sample>, sample: Sample, depth: u32) {
         queue.pop_front();
     }
     queue.push_back(sample);
-}
-
-fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
-    let info = SampleInfo {
-        writer: WriterId(change.writer_guid.to_bytes()),
-        sequence: i64::from(change.sequence_number),
-        source_time: change.source_timestamp().filter(|t| *t != Timestamp::INVALID).map(nanos),
-        received: nanos(change.receive_instant),
-        about: change.related_sample_identity().map(|sample| SampleId {
-            writer: WriterId(sample.writer_guid.to_bytes()),
-            sequence: i64::from(sample.sequence_number),
-        }),
-    };
-    Sample { body: change.into_value().0, info }
-}
-
-/// An RTPS time (2⁻³² s since 1970) in nanoseconds.
-fn nanos(time: Timestamp) -> u64 {
-    let ticks = time.to_ticks();
-    let fraction = ((ticks & 0xffff_ffff) * 1_000_000_000 + (1 << 31)) >> 32;
-    (ticks >> 32) * 1_000_000_000 + fraction
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rtps_ticks_become_nanoseconds_to_half_a_tick() {
-        for (ticks, expected) in [(0, 0), (1 << 32, 1_000_000_000), ((5 << 32) | (1 << 31), 5_500_000_000)] {
-            assert_eq!(nanos(Timestamp::from_ticks(ticks)), expected);
-        }
-    }
 }

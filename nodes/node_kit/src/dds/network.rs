@@ -1,7 +1,7 @@
 //! Domain and discovery range from the ROS 2 environment variables, as far as RustDDS supports them.
 
-use rustdds::DomainParticipantBuilder;
-use std::net::Ipv4Addr;
+use super::direct::plain_context;
+use crate::bus_error::BusError;
 
 /// The range of discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,13 +94,9 @@ impl Network {
         Ok(Self { domain, reach })
     }
 
-    /// The settings of a participant in this network.
-    pub(crate) fn participant(&self) -> DomainParticipantBuilder {
-        let builder = DomainParticipantBuilder::new(self.domain);
-        match self.reach {
-            Reach::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Reach::Subnet => builder,
-        }
+    /// A ros2-client context in this network: a participant outside all runs, for tools and tests.
+    pub fn context(&self) -> Result<ros2_client::Context, BusError> {
+        plain_context(*self)
     }
 }
 

@@ -1,19 +1,16 @@
 //! One DDS writer of this process.
 
-use super::raw::{CDR_LE, HEADER, RawAdapter, RawPayload};
+use super::direct::{CDR_LE, HEADER, Outlet, WriteFailure};
 use crate::bus::Published;
 use crate::bus_error::BusError;
 use crate::sample::{SampleId, WriterId};
-use rustdds::bytes::Bytes;
-use rustdds::dds::WriteError;
-use rustdds::no_key::DataWriter;
-use rustdds::{GUID, RTPSEntity, SampleIdentity, SequenceNumber, Timestamp, WriteOptionsBuilder};
+use ros2_client::Gid;
 use std::collections::BTreeMap;
 
 /// A writer and its statistics.
 pub(super) struct Writer {
-    pub(super) data: DataWriter<RawPayload, RawAdapter>,
-    pub(super) guid: GUID,
+    pub(super) outlet: Outlet,
+    pub(super) gid: Gid,
     /// Resolved name.
     pub(super) topic: String,
     window: u32,
@@ -25,13 +22,13 @@ pub(super) struct Writer {
 
 impl Writer {
     /// A writer of a resolved topic; at most `window` samples may be unacknowledged.
-    pub(super) fn new(data: DataWriter<RawPayload, RawAdapter>, topic: String, window: u32) -> Self {
-        let guid = data.guid();
-        Self { data, guid, topic, window, count: 0, full: 0, wholes: BTreeMap::new() }
+    pub(super) fn new(outlet: Outlet, topic: String, window: u32) -> Self {
+        let gid = outlet.gid();
+        Self { outlet, gid, topic, window, count: 0, full: 0, wholes: BTreeMap::new() }
     }
 
     pub(super) fn id(&self) -> WriterId {
-        WriterId(self.guid.to_bytes())
+        WriterId(self.gid.to_bytes16())
     }
 
     /// Publishes a body with its encapsulation header and returns the sequence number.
@@ -40,34 +37,18 @@ impl Writer {
             let found = body[..body.len().min(HEADER)].to_vec();
             return Err(BusError::Encapsulation { topic: self.topic.clone(), found });
         }
-        let payload = RawPayload(Bytes::copy_from_slice(&body[HEADER..]));
-        let related = about.map(|sample| SampleIdentity {
-            writer_guid: GUID::from_bytes(sample.writer.0),
-            sequence_number: SequenceNumber::from(sample.sequence),
-        });
-        let options = WriteOptionsBuilder::new()
-            .source_timestamp(Timestamp::now())
-            .related_sample_identity_opt(related)
-            .build();
-        match self.data.write_with_options(payload, options) {
-            Ok(identity) => {
+        match self.outlet.write(&body[HEADER..], about) {
+            Ok(sequence) => {
                 self.count += 1;
-                Ok(i64::from(identity.sequence_number))
+                Ok(sequence)
             }
-            Err(WriteError::WouldBlock { .. }) => {
+            Err(WriteFailure::Full) => {
                 self.full += 1;
                 Err(BusError::Full { topic: self.topic.clone(), window: self.window })
             }
-            Err(error) => Err(BusError::Network {
-                what: format!("publish {}", self.topic),
-                reason: match error {
-                    WriteError::Serialization { reason, .. }
-                    | WriteError::Poisoned { reason, .. }
-                    | WriteError::Internal { reason, .. } => reason,
-                    WriteError::WouldBlock { .. } => "window full".into(),
-                    WriteError::Io(error) => error.to_string(),
-                },
-            }),
+            Err(WriteFailure::Other(reason)) => {
+                Err(BusError::Network { what: format!("publish {}", self.topic), reason })
+            }
         }
     }
 

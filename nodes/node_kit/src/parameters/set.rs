@@ -6,11 +6,12 @@ use super::value::ParameterValue;
 use super::{file, yaml::Yaml};
 use crate::{args::RosArgs, names::Names};
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Every declared parameter with its value, sorted by name.
-#[derive(Clone, Debug, PartialEq)]
+/// Every declared parameter with its value, sorted by name. Clones share the values.
+#[derive(Clone, Debug)]
 pub struct Parameters {
-    values: BTreeMap<&'static str, ParameterValue>,
+    values: Arc<Mutex<BTreeMap<&'static str, ParameterValue>>>,
 }
 
 impl Parameters {
@@ -24,7 +25,7 @@ impl Parameters {
         names: &Names,
         args: &RosArgs,
     ) -> Result<Self, ParameterError> {
-        let mut set = Self { values: specs.iter().map(|s| (s.name, s.default.clone())).collect() };
+        let set = Self::defaults(specs);
         for path in &args.params_files {
             let origin = path.display().to_string();
             for (name, value) in file::read(path, &names.fully_qualified())? {
@@ -53,11 +54,16 @@ impl Parameters {
 
     /// The defaults alone.
     pub fn defaults(specs: &[ParameterSpec]) -> Self {
-        Self { values: specs.iter().map(|s| (s.name, s.default.clone())).collect() }
+        let values = specs.iter().map(|s| (s.name, s.default.clone())).collect();
+        Self { values: Arc::new(Mutex::new(values)) }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<&'static str, ParameterValue>> {
+        self.values.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn assign(
-        &mut self,
+        &self,
         specs: &[ParameterSpec],
         names: &Names,
         origin: &str,
@@ -65,7 +71,7 @@ impl Parameters {
         value: ParameterValue,
     ) -> Result<(), ParameterError> {
         let Some(spec) = specs.iter().find(|s| s.name == name) else {
-            let known: Vec<&str> = self.values.keys().copied().collect();
+            let known: Vec<&str> = self.lock().keys().copied().collect();
             return Err(ParameterError::Unknown {
                 origin: origin.into(),
                 node: names.fully_qualified(),
@@ -92,23 +98,29 @@ impl Parameters {
                 range: spec.range.to_string(),
             });
         }
-        self.values.insert(spec.name, value);
+        self.change(spec.name, value);
         Ok(())
     }
 
-    /// The value of a declared parameter.
+    /// The value of a declared parameter now.
     ///
     /// # Panics
     /// If the node does not declare `name` or declares it with another type: a mistake in the node's code, found by its
     /// first test.
     pub fn get<T: FromParameter>(&self, name: &str) -> T {
-        let value = self.values.get(name).unwrap_or_else(|| panic!("parameter {name:?} is not declared"));
+        let values = self.lock();
+        let value = values.get(name).unwrap_or_else(|| panic!("parameter {name:?} is not declared"));
         T::from_parameter(value).unwrap_or_else(|| panic!("parameter {name:?} is a {}", value.type_name()))
     }
 
-    /// Names and values, sorted by name.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &ParameterValue)> {
-        self.values.iter().map(|(name, value)| (*name, value))
+    /// The values now.
+    pub(crate) fn snapshot(&self) -> BTreeMap<&'static str, ParameterValue> {
+        self.lock().clone()
+    }
+
+    /// Replaces a value that was checked.
+    pub(crate) fn change(&self, name: &'static str, value: ParameterValue) {
+        self.lock().insert(name, value);
     }
 }
 

@@ -93,6 +93,12 @@ impl ParameterSpec {
         Self { name, default: default.into(), range: Range::Any, description, read_only: true }
     }
 
+    /// The same, but it may be set while the node runs. For what changes no result.
+    #[must_use]
+    pub fn changeable(self) -> Self {
+        Self { read_only: false, ..self }
+    }
+
     /// The same with a range.
     #[must_use]
     pub fn within(self, range: Range) -> Self {

@@ -5,11 +5,10 @@ use crate::bus_error::BusError;
 use crate::dds::Network;
 use grainlab_msgs::msg::{StrainRate, Stress};
 use grainlab_msgs::{Message, Topic, topics};
+use mio::{Events, Interest, Poll, Token};
 use ros2_client::qos::{History, WhenFull};
-use ros2_client::{
-    Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription,
-};
-use rustdds::mio1::{Events, Interest, Poll, Token};
+use ros2_client::{MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription};
+
 use std::fmt::Display;
 use std::time::{Duration, Instant};
 
@@ -28,8 +27,7 @@ struct Ends<Out: serde::Serialize, In> {
 
 impl<Out: Message, In: Message> Ends<Out, In> {
     fn open(network: Network, name: &str, output: &Topic, input: &Topic) -> Result<Self, BusError> {
-        let participant = network.participant().build().map_err(|e| failed("participant", e))?;
-        let context = Context::from_domain_participant(participant).map_err(|e| failed("context", e))?;
+        let context = network.context()?;
         let name = NodeName::new("/", name).map_err(|e| failed("node name", format!("{e:?}")))?;
         let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
         let mut node = context.new_node(name, options).map_err(|e| failed("node", e))?;

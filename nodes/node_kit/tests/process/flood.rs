@@ -1,10 +1,10 @@
 //! Mutated and forged datagrams to every port of a domain on loopback.
 
 use super::rtps::{Datagram, Random, heard, mutated, ports_in_use, send};
-use rustdds::{DomainParticipantBuilder, DomainParticipantStatusEvent as Event, RTPSEntity, StatusEvented};
+use grainlab_node_kit::Network;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::os::fd::OwnedFd;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Numbers that a forged packet may contain.
 const CLAIMS: [i64; 9] = [-1, 0, 1, 2, 300, 1 << 20, 200_000_000, 1 << 40, i64::MAX];
@@ -14,26 +14,16 @@ pub(super) type Endpoint = ([u8; 12], [u8; 4]);
 
 /// Readers and writers of a domain on loopback, from discovery.
 pub(super) fn learn(domain: u16) -> (Vec<Endpoint>, Vec<Endpoint>) {
-    let spy =
-        DomainParticipantBuilder::new(domain).with_only_networks([Ipv4Addr::LOCALHOST]).build().unwrap();
-    let status = spy.status_listener();
-    let (mut readers, mut writers) = (Vec::new(), Vec::new());
-    let split = |guid: rustdds::GUID| {
-        let bytes = guid.to_bytes();
-        (bytes[..12].try_into().unwrap(), bytes[12..].try_into().unwrap())
-    };
-    let start = Instant::now();
-    while start.elapsed() < Duration::from_secs(2) {
-        match status.try_recv_status() {
-            Some(Event::WriterDetected { writer }) => writers.push(split(writer.guid)),
-            Some(Event::ReaderDetected { reader }) => readers.push(split(reader.guid)),
-            Some(_) => {}
-            None => std::thread::sleep(Duration::from_millis(5)),
-        }
-    }
-    let own = spy.guid().to_bytes();
-    writers.retain(|w: &Endpoint| w.0 != own[..12]);
-    readers.retain(|r: &Endpoint| r.0 != own[..12]);
+    let context = Network::localhost(domain).context().unwrap();
+    let spy = context.domain_participant();
+    std::thread::sleep(Duration::from_secs(2));
+    let split = |bytes: [u8; 16]| (bytes[..12].try_into().unwrap(), bytes[12..].try_into().unwrap());
+    let discovered = spy.discovered_writers();
+    let mut writers: Vec<Endpoint> =
+        discovered.iter().map(|w| split(w.writer_proxy.remote_writer_guid.to_bytes())).collect();
+    let discovered = spy.discovered_readers();
+    let mut readers: Vec<Endpoint> =
+        discovered.iter().map(|r| split(r.reader_proxy.remote_reader_guid.to_bytes())).collect();
     // Built-in endpoints have the same identifiers everywhere.
     for (prefix, _) in writers.clone() {
         for (writer, reader) in [([0, 0, 3, 0xc2], [0, 0, 3, 0xc7]), ([0, 0, 4, 0xc2], [0, 0, 4, 0xc7])] {

@@ -1,0 +1,460 @@
+//! The one file that calls RustDDS directly, for what ros2-client does not offer.
+//!
+//! ros2-client makes the node, its topics, endpoints, graph, parameters and services. Directly from RustDDS come:
+//!
+//! - [`context`]: the options of a participant. ros2-client takes a domain only; a run needs its GUID prefix, its filter of
+//!   strangers, and the interfaces.
+//! - [`RawAdapter`]: samples as bytes. Recorder and player know no types, and a node refuses a sample that does not decode
+//!   without losing those behind it.
+//! - [`offered`], [`requested`]: resource limits, which `QosProfile` lacks. The default of 64 samples loses data silently.
+//! - [`Outlet`]: a publisher with the sequence numbers that it wrote, the sample that a message refers to, and waiting for
+//!   acknowledgements.
+//! - [`Inlet`]: a subscription with sequence numbers and source times.
+//! - [`Discovery`]: changes of the graph. ros2-client's spinner reports no lost participants, and subscribes to `/clock` with
+//!   a type that is not `rosgraph_msgs/Clock`.
+
+use super::error::create_error;
+use super::gate::Gate;
+use super::network::{Network, Reach};
+use crate::bus_error::BusError;
+use crate::demand::Demand;
+use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
+use grainlab_msgs::Topic;
+use ros2_client::{Context, Gid, Node};
+use rustdds::bytes::Bytes;
+use rustdds::dds::{ReadError, WriteError};
+use rustdds::no_key::{
+    DataWriter, Decode, DefaultDecoder, DeserializedCacheChange, DeserializerAdapter, SerializerAdapter,
+    SimpleDataReader,
+};
+use rustdds::policy::{Deadline, Durability, History, Lifespan, Liveliness, Reliability, ResourceLimits};
+use rustdds::{
+    DomainParticipantBuilder, DomainParticipantStatusEvent as Event, DomainParticipantStatusListener,
+    Duration, GUID, GuidPrefix, QosPolicies, QosPolicyBuilder, RTPSEntity, RepresentationIdentifier,
+    SampleIdentity, SequenceNumber, StatusEvented, Timestamp, WriteOptionsBuilder,
+};
+use std::convert::Infallible;
+use std::io;
+use std::net::Ipv4Addr;
+use std::sync::Arc;
+
+/// The module path under which RustDDS logs.
+pub(crate) const LOG_TARGET: &str = "rustdds";
+
+/// A topic of DDS, as ros2-client makes it.
+pub(super) type DdsTopic = rustdds::Topic;
+
+// ---- Participant
+
+fn builder(network: Network) -> DomainParticipantBuilder {
+    let builder = DomainParticipantBuilder::new(network.domain);
+    match network.reach {
+        Reach::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+        Reach::Subnet => builder,
+    }
+}
+
+/// A ros2-client context in this network, without the rules of a run.
+pub(super) fn plain_context(network: Network) -> Result<Context, BusError> {
+    let participant = builder(network).build().map_err(|e| create_error("DDS participant", &e))?;
+    Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
+}
+
+/// The ros2-client context of one process of a run, and its 16-byte GUID.
+pub(super) fn context(
+    network: Network,
+    prefix: [u8; 12],
+    gate: &Arc<Gate>,
+) -> Result<(Context, Gid), BusError> {
+    let create = || {
+        let [filter, listener, readers] = std::array::from_fn(|_| Arc::clone(gate));
+        builder(network)
+            .guid_prefix(GuidPrefix::new(&prefix))
+            .data_filter(move |writer, reader| filter.takes(writer.into(), reader.into()))
+            .participant_listener(move |peer| {
+                listener.discovered(peer.guid.into(), &peer.metatraffic_unicast_addresses);
+            })
+            // Readers outside the run receive what is sent, and are not waited for.
+            .reader_may_block(move |prefix| readers.admits_prefix(prefix.as_ref()))
+            .build()
+    };
+    // RustDDS gives its threads ten seconds to start; a process that was suspended meanwhile tries once more.
+    let participant = create().or_else(|_| create()).map_err(|e| create_error("DDS participant", &e))?;
+    let guid = Gid::from(participant.guid());
+    let context =
+        Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))?;
+    Ok((context, guid))
+}
+
+// ---- Samples as bytes
+
+/// Bytes of the encapsulation header: representation identifier and options.
+pub(super) const HEADER: usize = 4;
+/// Plain CDR, little endian: the only representation we write.
+pub(super) const CDR_LE: [u8; 2] = [0, 1];
+
+/// A received sample: header and payload.
+struct RawBody(Vec<u8>);
+
+/// A sample to send: the payload behind the header.
+struct RawPayload(Bytes);
+
+/// The adapter between RustDDS and bytes.
+struct RawAdapter;
+
+/// Restores the header that RustDDS removed, so that a body has all bytes of the sample.
+#[derive(Clone)]
+struct KeepBytes;
+
+impl<'de> Decode<'de, RawBody> for KeepBytes {
+    type Error = Infallible;
+
+    fn decode_bytes(
+        self,
+        payload: &'de [u8],
+        encoding: RepresentationIdentifier,
+    ) -> Result<RawBody, Infallible> {
+        let representation =
+            ENCODINGS.iter().position(|known| *known == encoding).map_or(CDR_LE, |i| IDENTIFIERS[i]);
+        let mut body = Vec::with_capacity(HEADER + payload.len());
+        body.extend_from_slice(&representation);
+        body.extend_from_slice(&[0, 0]);
+        body.extend_from_slice(payload);
+        Ok(RawBody(body))
+    }
+}
+
+/// Representations taken as they are, and their identifiers on the wire; RustDDS hides the bytes of its constants.
+static ENCODINGS: [RepresentationIdentifier; 4] = [
+    RepresentationIdentifier::CDR_LE,
+    RepresentationIdentifier::CDR_BE,
+    RepresentationIdentifier::PL_CDR_LE,
+    RepresentationIdentifier::PL_CDR_BE,
+];
+const IDENTIFIERS: [[u8; 2]; 4] = [CDR_LE, [0, 0], [0, 3], [0, 2]];
+
+impl DeserializerAdapter<RawBody> for RawAdapter {
+    type Error = Infallible;
+    type Decoded = RawBody;
+
+    fn supported_encodings() -> &'static [RepresentationIdentifier] {
+        &ENCODINGS
+    }
+
+    fn transform_decoded(decoded: RawBody) -> RawBody {
+        decoded
+    }
+}
+
+impl DefaultDecoder<RawBody> for RawAdapter {
+    type Decoder = KeepBytes;
+    const DECODER: KeepBytes = KeepBytes;
+}
+
+impl SerializerAdapter<RawPayload> for RawAdapter {
+    type Error = Infallible;
+
+    fn output_encoding() -> RepresentationIdentifier {
+        RepresentationIdentifier::CDR_LE
+    }
+
+    fn to_bytes(value: &RawPayload) -> Result<Bytes, Infallible> {
+        Ok(value.0.clone())
+    }
+}
+
+// ---- QoS with limits
+
+/// How long a reliable write waits while its window is full. Longer than one repair round (10 ms), much shorter than a
+/// step of the slowest node, so that a crashed reader delays a writer but never stops it.
+const MAX_BLOCKING: Duration = Duration::from_millis(20);
+
+/// Unacknowledged samples of a stream. A crashed reader stays matched for up to a minute; at a servo's highest rate of
+/// some kHz the window fills within seconds, and then each sample costs [`MAX_BLOCKING`].
+const STREAM_WINDOW: u32 = 8192;
+
+/// Unacknowledged samples of a latched topic: these are megabytes each, and a few per minute.
+const LATCHED_WINDOW: u32 = 256;
+
+/// Maximum number of unacknowledged samples of a writer of `topic`.
+pub(super) fn window(topic: &Topic) -> u32 {
+    let window = if topic.qos.transient_local && topic.qos.depth < LATCHED_WINDOW {
+        LATCHED_WINDOW
+    } else {
+        STREAM_WINDOW
+    };
+    window.max(topic.qos.depth)
+}
+
+/// The policies that a writer of `topic` offers.
+fn offered(topic: &Topic) -> QosPolicies {
+    let qos = topic.qos;
+    policies(qos.reliable, qos.transient_local, qos.depth, window(topic))
+}
+
+/// The policies that a reader requests; `demand` is within the topic's QoS already.
+fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
+    // RustDDS keeps 64 samples by default: too few for a recorder, too many for packings of megabytes.
+    policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
+}
+
+fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32) -> QosPolicies {
+    let clamped = |n: u32| i32::try_from(n).unwrap_or(i32::MAX);
+    QosPolicyBuilder::new()
+        .reliability(if reliable {
+            Reliability::Reliable { max_blocking_time: MAX_BLOCKING }
+        } else {
+            Reliability::BestEffort
+        })
+        .durability(if transient_local { Durability::TransientLocal } else { Durability::Volatile })
+        .history(History::KeepLast { depth: clamped(depth) })
+        .resource_limits(ResourceLimits {
+            max_samples: clamped(max_samples),
+            max_instances: 1,
+            max_samples_per_instance: clamped(max_samples),
+        })
+        .deadline(Deadline(Duration::INFINITE))
+        .lifespan(Lifespan { duration: Duration::INFINITE })
+        .liveliness(Liveliness::Automatic { lease_duration: Duration::INFINITE })
+        .build()
+}
+
+// ---- Publisher
+
+/// Why a sample was not written.
+pub(super) enum WriteFailure {
+    /// The window stayed full.
+    Full,
+    /// Another reason, as RustDDS says it.
+    Other(String),
+}
+
+/// A publisher of bytes.
+pub(super) struct Outlet(DataWriter<RawPayload, RawAdapter>);
+
+impl Outlet {
+    pub(super) fn new(node: &mut Node, dds: &DdsTopic, topic: &Topic) -> Result<Self, BusError> {
+        let writer = node.create_datawriter(dds, Some(offered(topic)));
+        writer.map(Self).map_err(|e| create_error(topic.name, &e))
+    }
+
+    pub(super) fn gid(&self) -> Gid {
+        self.0.guid().into()
+    }
+
+    /// Writes a payload, the body behind its encapsulation header, and returns its sequence number.
+    pub(super) fn write(&self, payload: &[u8], about: Option<SampleId>) -> Result<i64, WriteFailure> {
+        let related = about.map(|sample| SampleIdentity {
+            writer_guid: GUID::from_bytes(sample.writer.0),
+            sequence_number: SequenceNumber::from(sample.sequence),
+        });
+        let options = WriteOptionsBuilder::new()
+            .source_timestamp(Timestamp::now())
+            .related_sample_identity_opt(related)
+            .build();
+        match self.0.write_with_options(RawPayload(Bytes::copy_from_slice(payload)), options) {
+            Ok(identity) => Ok(i64::from(identity.sequence_number)),
+            Err(WriteError::WouldBlock { .. }) => Err(WriteFailure::Full),
+            Err(
+                WriteError::Serialization { reason, .. }
+                | WriteError::Poisoned { reason, .. }
+                | WriteError::Internal { reason, .. },
+            ) => Err(WriteFailure::Other(reason)),
+            Err(WriteError::Io(error)) => Err(WriteFailure::Other(error.to_string())),
+        }
+    }
+
+    /// Waits until every reliable reader has acknowledged everything; false if it has not within `timeout`.
+    pub(super) fn wait_for_acknowledgments(&self, timeout: std::time::Duration) -> bool {
+        self.0.wait_for_acknowledgments(timeout).unwrap_or(false)
+    }
+}
+
+// ---- Subscription
+
+/// Why a sample was not taken.
+pub(super) enum TakeFailure {
+    /// Its representation is not CDR; the next call takes the sample after it.
+    Representation(String),
+    /// The reader failed.
+    Other(String),
+}
+
+/// A subscription to bytes.
+pub(super) struct Inlet(SimpleDataReader<RawBody, RawAdapter>);
+
+impl Inlet {
+    pub(super) fn new(
+        node: &mut Node,
+        dds: &DdsTopic,
+        topic: &Topic,
+        demand: Demand,
+    ) -> Result<Self, BusError> {
+        let reader = node.create_simpledatareader(dds, Some(requested(topic, demand)));
+        reader.map(Self).map_err(|e| create_error(topic.name, &e))
+    }
+
+    pub(super) fn gid(&self) -> Gid {
+        self.0.guid().into()
+    }
+
+    /// Clears the notification, so that the next sample raises a new one. Before reading, never after.
+    pub(super) fn acknowledge(&self) {
+        self.0.drain_read_notifications();
+    }
+
+    /// The next sample, if any.
+    pub(super) fn take(&self) -> Result<Option<Sample>, TakeFailure> {
+        match self.0.try_take_one() {
+            Ok(change) => Ok(change.map(sample)),
+            Err(ReadError::Deserialization { reason }) => Err(TakeFailure::Representation(reason)),
+            Err(error) => Err(TakeFailure::Other(error.to_string())),
+        }
+    }
+}
+
+impl mio::event::Source for Inlet {
+    fn register(
+        &mut self,
+        registry: &mio::Registry,
+        token: mio::Token,
+        interests: mio::Interest,
+    ) -> io::Result<()> {
+        self.0.register(registry, token, interests)
+    }
+
+    fn reregister(
+        &mut self,
+        registry: &mio::Registry,
+        token: mio::Token,
+        interests: mio::Interest,
+    ) -> io::Result<()> {
+        self.0.reregister(registry, token, interests)
+    }
+
+    fn deregister(&mut self, registry: &mio::Registry) -> io::Result<()> {
+        self.0.deregister(registry)
+    }
+}
+
+fn sample(change: DeserializedCacheChange<RawBody>) -> Sample {
+    let info = SampleInfo {
+        writer: WriterId(change.writer_guid.to_bytes()),
+        sequence: i64::from(change.sequence_number),
+        source_time: change.source_timestamp().filter(|t| *t != Timestamp::INVALID).map(nanos),
+        received: nanos(change.receive_instant),
+        about: change.related_sample_identity().map(|sample| SampleId {
+            writer: WriterId(sample.writer_guid.to_bytes()),
+            sequence: i64::from(sample.sequence_number),
+        }),
+    };
+    Sample { body: change.into_value().0, info }
+}
+
+/// An RTPS time (2⁻³² s since 1970) in nanoseconds.
+fn nanos(time: Timestamp) -> u64 {
+    let ticks = time.to_ticks();
+    let fraction = ((ticks & 0xffff_ffff) * 1_000_000_000 + (1 << 31)) >> 32;
+    (ticks >> 32) * 1_000_000_000 + fraction
+}
+
+// ---- Graph
+
+/// A change that discovery reports.
+pub(super) enum Change {
+    /// A writer of another process, with its DDS topic.
+    Writer { writer: Gid, topic: String },
+    /// An endpoint of this process was matched.
+    Matched { local: Gid, remote: Gid },
+    /// An endpoint is gone.
+    Lost(Gid),
+    /// A participant is gone: its GUID prefix.
+    ParticipantLost([u8; 12]),
+    /// Two endpoints do not fit, in words.
+    Misfit(String),
+    /// Anything else.
+    Other,
+}
+
+/// The queue of changes of the graph.
+///
+/// The endpoints' own status channels hold four events and drop the rest; the participant's holds 2048.
+pub(super) struct Discovery(DomainParticipantStatusListener);
+
+impl Discovery {
+    pub(super) fn new(context: &Context) -> Self {
+        Self(context.domain_participant().status_listener())
+    }
+
+    pub(super) fn register(&mut self, registry: &mio::Registry, token: mio::Token) -> io::Result<()> {
+        registry.register(self.0.as_status_source_mio1(), token, mio::Interest::READABLE)
+    }
+
+    /// The next change, if any.
+    pub(super) fn next(&self) -> Option<Change> {
+        let misfit =
+            |remote: GUID, what: &str, requested: &dyn std::fmt::Debug, offered: &dyn std::fmt::Debug| {
+                let remote = WriterId(remote.to_bytes());
+                Change::Misfit(format!("{what} ({remote}): requested {requested:?}, offered {offered:?}"))
+            };
+        Some(match self.0.try_recv_status()? {
+            Event::WriterDetected { writer } => {
+                Change::Writer { writer: writer.guid.into(), topic: writer.topic_name }
+            }
+            Event::RemoteReaderMatched { local_writer, remote_reader } => {
+                Change::Matched { local: local_writer.into(), remote: remote_reader.into() }
+            }
+            Event::RemoteWriterMatched { local_reader, remote_writer } => {
+                Change::Matched { local: local_reader.into(), remote: remote_writer.into() }
+            }
+            Event::WriterLost { guid, .. } | Event::ReaderLost { guid, .. } => Change::Lost(guid.into()),
+            Event::ParticipantLost { id, .. } => {
+                let mut prefix = [0; 12];
+                prefix.copy_from_slice(id.as_ref());
+                Change::ParticipantLost(prefix)
+            }
+            Event::RemoteReaderQosIncompatible { remote_reader, requested_qos, offered_qos, .. } => misfit(
+                remote_reader,
+                "a reader requests more than this process offers and receives nothing",
+                &requested_qos,
+                &offered_qos,
+            ),
+            Event::RemoteWriterQosIncompatible { remote_writer, requested_qos, offered_qos, .. } => misfit(
+                remote_writer,
+                "a writer offers less than this process requests, so that its samples are not received",
+                &requested_qos,
+                &offered_qos,
+            ),
+            Event::InconsistentTopic { previous_topic_data, discovered_topic_data, .. } => {
+                let [ours, theirs] = [&previous_topic_data, &discovered_topic_data].map(|t| &t.type_name);
+                let name = &previous_topic_data.name;
+                Change::Misfit(format!("{name} has two types: {ours} here, {theirs} in another process"))
+            }
+            _ => Change::Other,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_comes_back_with_the_header_it_travelled_with() {
+        for (encoding, header) in [
+            (RepresentationIdentifier::CDR_LE, [0, 1, 0, 0]),
+            (RepresentationIdentifier::CDR_BE, [0, 0, 0, 0]),
+        ] {
+            let Ok(body) = KeepBytes.decode_bytes(&[7, 8], encoding);
+            assert_eq!(body.0[..4], header);
+            assert_eq!(body.0[4..], [7, 8]);
+        }
+    }
+
+    #[test]
+    fn rtps_ticks_become_nanoseconds_to_half_a_tick() {
+        for (ticks, expected) in [(0, 0), (1 << 32, 1_000_000_000), ((5 << 32) | (1 << 31), 5_500_000_000)] {
+            assert_eq!(nanos(Timestamp::from_ticks(ticks)), expected);
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The parameters of a node as ros2-client declares, checks and changes them.
+
+use super::convert::{from_ros, to_ros};
+use super::descriptor::{FIXED, descriptor, unknown};
+use crate::parameters::{ParameterSpec, Parameters};
+use ros2_client::NodeOptions;
+use ros2_client::parameters::raw::ParameterDescriptor;
+use std::sync::Arc;
+
+/// The parameter that every ROS 2 node has.
+pub(crate) const USE_SIM_TIME: &str = "use_sim_time";
+
+/// The declared parameters of one node and their values. Clones share the values.
+#[derive(Clone, Debug)]
+pub(crate) struct Declared {
+    specs: Arc<[ParameterSpec]>,
+    values: Parameters,
+}
+
+impl Declared {
+    /// These parameters with these values, one for each.
+    pub(crate) fn new(specs: &[ParameterSpec], values: Parameters) -> Self {
+        Self { specs: specs.into(), values }
+    }
+
+    /// The options of a ros2-client node that declares them.
+    pub(crate) fn node_options(&self) -> NodeOptions {
+        let [checks, sets] = [self.clone(), self.clone()];
+        // `/rosout` is a topic of the bus, like all others; our own servers know descriptions and both service mappings.
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let declared = self
+            .values
+            .snapshot()
+            .iter()
+            .fold(options, |options, (name, value)| options.declare_parameter(name, to_ros(value)));
+        declared
+            .parameter_validator(Box::new(move |name, value| checks.check(name, value)))
+            .parameter_set_action(Box::new(move |name, value| sets.set(name, value)))
+    }
+
+    fn spec(&self, name: &str) -> Option<&ParameterSpec> {
+        self.specs.iter().find(|spec| spec.name == name)
+    }
+
+    /// The default of a declared parameter.
+    pub(super) fn default_of(&self, name: &str) -> Option<crate::parameters::ParameterValue> {
+        self.spec(name).map(|spec| spec.default.clone())
+    }
+
+    /// Whether a parameter may take this value now, or the reason why not. The node checks its own initial values with it,
+    /// too.
+    fn check(&self, name: &str, value: &ros2_client::ParameterValue) -> Result<(), String> {
+        let spec = self.spec(name).ok_or_else(|| format!("no parameter {name:?}"))?;
+        let Some(value) = from_ros(value) else {
+            return Err(format!(
+                "{name} is declared and cannot be deleted, or the type is not one of its own"
+            ));
+        };
+        if self.values.snapshot().get(name) == Some(&value) {
+            return Ok(());
+        }
+        if spec.read_only {
+            return Err(format!("{name} is {FIXED}"));
+        }
+        if !spec.range.contains(&value) {
+            return Err(format!("{name} must be {}, not {value}", spec.range));
+        }
+        Ok(())
+    }
+
+    /// Hands an accepted value to the node.
+    fn set(&self, name: &str, value: &ros2_client::ParameterValue) -> Result<(), String> {
+        if let (Some(spec), Some(value)) = (self.spec(name), from_ros(value)) {
+            self.values.change(spec.name, value);
+        }
+        Ok(())
+    }
+
+    /// The value of `use_sim_time`.
+    pub(crate) fn use_sim_time(&self) -> bool {
+        self.values.snapshot().contains_key(USE_SIM_TIME) && self.values.get(USE_SIM_TIME)
+    }
+
+    /// Whether all of these may be set together.
+    pub(super) fn check_all<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a str, ros2_client::ParameterValue)>,
+    ) -> Result<(), String> {
+        values.into_iter().try_for_each(|(name, value)| {
+            let declared = self.spec(name).map(|spec| to_ros(&spec.default));
+            if declared.is_some_and(|d| std::mem::discriminant(&d) != std::mem::discriminant(&value)) {
+                return Err(format!("{name} has another type"));
+            }
+            self.check(name, &value)
+        })
+    }
+
+    /// The names, sorted.
+    pub(super) fn names(&self) -> Vec<String> {
+        self.values.snapshot().keys().map(|name| (*name).to_owned()).collect()
+    }
+
+    /// The description of each name.
+    pub(super) fn describe(&self, names: &[String]) -> Vec<ParameterDescriptor> {
+        names.iter().map(|name| self.spec(name).map_or_else(|| unknown(name), descriptor)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Range;
+    use ros2_client::ParameterValue as Ros;
+
+    fn declared() -> Declared {
+        let specs = [
+            ParameterSpec::new("scene", "demo", "scene"),
+            ParameterSpec::new("wait", 0.1, "time, s").within(Range::Positive).changeable(),
+        ];
+        Declared::new(&specs, Parameters::defaults(&specs))
+    }
+
+    #[test]
+    fn a_changeable_parameter_takes_values_of_its_range_and_the_node_sees_them() {
+        let declared = declared();
+        let its = declared.values.clone();
+        assert_eq!(declared.check("wait", &Ros::Double(0.5)), Ok(()));
+        declared.set("wait", &Ros::Double(0.5)).unwrap();
+        assert_eq!(its.get::<f64>("wait"), 0.5);
+        let error = declared.check("wait", &Ros::Double(-1.0)).unwrap_err();
+        assert!(error.contains("greater than 0"), "{error}");
+    }
+
+    #[test]
+    fn what_is_fixed_unknown_or_deleted_is_refused_with_the_reason() {
+        let declared = declared();
+        for (name, value, needle) in [
+            ("scene", Ros::String("s1".into()), "read-only"),
+            ("scenes", Ros::String("s1".into()), "no parameter"),
+            ("wait", Ros::NotSet, "deleted"),
+        ] {
+            let error = declared.check(name, &value).unwrap_err();
+            assert!(error.contains(needle), "{error}");
+        }
+        assert_eq!(declared.check("scene", &Ros::String("demo".into())), Ok(()), "no change is no error");
+        let both = [("wait", Ros::Double(2.0)), ("scene", Ros::String("s1".into()))];
+        assert!(declared.check_all(both).is_err());
+        assert!(declared.check_all([("wait", Ros::Integer(2))]).unwrap_err().contains("type"));
+    }
+}

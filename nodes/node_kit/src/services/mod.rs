@@ -1,0 +1,20 @@
+//! The standard services of a ROS 2 node, through ros2-client: parameters and type descriptions.
+//!
+//! - `declared`: the parameters of a node as ros2-client declares them
+//! - `descriptor`: types, ranges and units, as `describe_parameters` returns them
+//! - `convert`: values between this crate and ros2-client
+//! - `parameter_servers`: the six parameter services; `sim_time`: `use_sim_time`
+//! - `thread`: answers while the node computes
+//!
+//! Anyone may ask, also processes outside the run: what may be set changes no result.
+
+mod convert;
+mod declared;
+mod descriptor;
+mod parameter_servers;
+mod sim_time;
+mod thread;
+
+pub(crate) use declared::{Declared, USE_SIM_TIME};
+pub(crate) use sim_time::SimTime;
+pub(crate) use thread::ServiceThread;

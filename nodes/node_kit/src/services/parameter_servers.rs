@@ -1,0 +1,196 @@
+//! The six parameter services of one node, served through ros2-client.
+
+use super::convert::to_ros;
+use super::declared::Declared;
+use crate::bus_error::BusError;
+use crate::dds::create_error;
+use mio::{Interest, Registry, Token};
+use ros2_client::parameters::raw::{self, SetParametersResult};
+use ros2_client::qos::{History, WhenFull};
+use ros2_client::rcl_interfaces::{
+    DescribeParametersRequest, DescribeParametersResponse, GetParameterTypesRequest,
+    GetParameterTypesResponse, GetParametersRequest, GetParametersResponse, ListParametersRequest,
+    ListParametersResponse, ListParametersResult, SetParametersAtomicallyResponse, SetParametersRequest,
+    SetParametersResponse,
+};
+use ros2_client::{
+    Message, Name, Node, Parameter, ParameterValue, QosProfile, Server, ServiceMapping, ServiceTypeName,
+};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Requests that wait for an answer, as `rmw_qos_profile_parameters` of ROS 2.
+const DEPTH: usize = 1000;
+
+/// The servers, and what they answer from.
+pub(super) struct ParameterServers {
+    list: Server<ListParametersRequest, ListParametersResponse>,
+    get: Server<GetParametersRequest, GetParametersResponse>,
+    types: Server<GetParameterTypesRequest, GetParameterTypesResponse>,
+    describe: Server<DescribeParametersRequest, DescribeParametersResponse>,
+    set: Server<SetParametersRequest, SetParametersResponse>,
+    set_atomically: Server<SetParametersRequest, SetParametersAtomicallyResponse>,
+    declared: Declared,
+    node: Arc<Mutex<Node>>,
+}
+
+/// One server in the namespace of its node.
+fn server<Req: Message + Clone + 'static, Resp: Message + 'static>(
+    node: &mut Node,
+    name: &str,
+    type_name: &str,
+) -> Result<Server<Req, Resp>, BusError> {
+    let qos = QosProfile::publisher_default()
+        .reliability_reliable(WhenFull::DEFAULT)
+        .history(History::KeepLast { depth: DEPTH as _ });
+    let failed = |reason: String| BusError::Network { what: format!("serve {name}"), reason };
+    let full = Name::new(&node.fully_qualified_name(), name).map_err(|e| failed(format!("{e:?}")))?;
+    let service_type = ServiceTypeName::new("rcl_interfaces", type_name);
+    node.create_server(ServiceMapping::ByClient, &full, &service_type, qos.clone(), qos)
+        .map_err(|e| create_error(name, &e))
+}
+
+impl ParameterServers {
+    pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Declared) -> Result<Self, BusError> {
+        let mut held = node.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(Self {
+            list: server(&mut held, "list_parameters", "ListParameters")?,
+            get: server(&mut held, "get_parameters", "GetParameters")?,
+            types: server(&mut held, "get_parameter_types", "GetParameterTypes")?,
+            describe: server(&mut held, "describe_parameters", "DescribeParameters")?,
+            set: server(&mut held, "set_parameters", "SetParameters")?,
+            set_atomically: server(&mut held, "set_parameters_atomically", "SetParametersAtomically")?,
+            declared,
+            node: Arc::clone(node),
+        })
+    }
+
+    /// Registers all servers under one token: any request ends the wait.
+    pub(super) fn register(&mut self, registry: &Registry, token: Token) -> std::io::Result<()> {
+        registry.register(&mut self.list, token, Interest::READABLE)?;
+        registry.register(&mut self.get, token, Interest::READABLE)?;
+        registry.register(&mut self.types, token, Interest::READABLE)?;
+        registry.register(&mut self.describe, token, Interest::READABLE)?;
+        registry.register(&mut self.set, token, Interest::READABLE)?;
+        registry.register(&mut self.set_atomically, token, Interest::READABLE)
+    }
+
+    /// Answers all requests that arrived.
+    pub(super) fn answer(&self) {
+        let held = || self.node.lock().unwrap_or_else(PoisonError::into_inner);
+        let value = |name: &String| held().get_parameter(name).unwrap_or(ParameterValue::NotSet);
+        answer_all(&self.list, |request| ListParametersResponse {
+            result: listed(self.declared.names(), &request),
+        });
+        answer_all(&self.get, |request| GetParametersResponse {
+            values: request.names.iter().map(|name| value(name).into()).collect(),
+        });
+        answer_all(&self.types, |request| GetParameterTypesResponse {
+            values: request
+                .names
+                .iter()
+                .map(|name| ParameterValue::to_parameter_type_raw(&value(name)))
+                .collect(),
+        });
+        answer_all(&self.describe, |request| DescribeParametersResponse {
+            values: self.declared.describe(&request.names),
+        });
+        answer_all(&self.set, |request| SetParametersResponse {
+            results: request.parameter.into_iter().map(|parameter| self.set(parameter)).collect(),
+        });
+        answer_all(&self.set_atomically, |request| SetParametersAtomicallyResponse {
+            result: self.set_together(request.parameter),
+        });
+    }
+
+    /// Sets one parameter; ros2-client publishes the change on `/parameter_events`.
+    fn set(&self, parameter: raw::Parameter) -> SetParametersResult {
+        let Parameter { name, value } = self.adapted(parameter);
+        let set =
+            self.node.lock().unwrap_or_else(PoisonError::into_inner).set_parameter(&name, value.clone());
+        if set.is_ok() {
+            log::info!("parameter {name} set to {value:?}");
+        }
+        set.into()
+    }
+
+    fn set_together(&self, parameters: Vec<raw::Parameter>) -> SetParametersResult {
+        let adapted: Vec<Parameter> = parameters.iter().cloned().map(|p| self.adapted(p)).collect();
+        let pairs = adapted.iter().map(|p| (p.name.as_str(), p.value.clone()));
+        if let Err(reason) = self.declared.check_all(pairs) {
+            return Err(reason).into();
+        }
+        let results = parameters.into_iter().map(|parameter| self.set(parameter));
+        results.into_iter().find(|r| !r.successful).unwrap_or_else(|| Ok(()).into())
+    }
+
+    /// An integer for a parameter that is a double, as `ros2 param set` sends one, becomes that double.
+    fn adapted(&self, parameter: raw::Parameter) -> Parameter {
+        let Parameter { name, value } = Parameter::from(parameter);
+        let value = match (&value, self.declared.default_of(&name).map(|v| to_ros(&v))) {
+            (ParameterValue::Integer(v), Some(ParameterValue::Double(_))) => {
+                ParameterValue::Double(*v as f64)
+            }
+            _ => value,
+        };
+        Parameter { name, value }
+    }
+}
+
+/// The names below the prefixes, with the rules of rclcpp: `depth` counts dots, 0 is no limit.
+fn listed(names: Vec<String>, request: &ListParametersRequest) -> ListParametersResult {
+    let shallow = |rest: &str| request.depth == 0 || (rest.matches('.').count() as u64) < request.depth;
+    let below = |name: &str, prefix: &str| {
+        name == prefix
+            || name
+                .strip_prefix(prefix)
+                .and_then(|rest| rest.strip_prefix('.'))
+                .is_some_and(|rest| shallow(&format!(".{rest}")))
+    };
+    let wanted = |name: &String| {
+        (request.prefixes.is_empty() && shallow(name)) || request.prefixes.iter().any(|p| below(name, p))
+    };
+    let names: Vec<String> = names.into_iter().filter(wanted).collect();
+    let mut prefixes: Vec<String> =
+        names.iter().filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned())).collect();
+    prefixes.dedup();
+    ListParametersResult { names, prefixes }
+}
+
+fn answer_all<Req: Message + 'static, Resp: Message + 'static>(
+    server: &Server<Req, Resp>,
+    answer: impl Fn(Req) -> Resp,
+) {
+    loop {
+        match server.receive_request() {
+            Ok(Some((id, request))) => {
+                if let Err(error) = server.send_response(id, answer(request)) {
+                    log::warn!("a request for parameters could not be answered: {error:?}");
+                }
+            }
+            Ok(None) => return,
+            // A request that does not decode is gone; the next call reads the one after it.
+            Err(error) => log::warn!("a request for parameters was refused: {error:?}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ask(prefixes: &[&str], depth: u64) -> (Vec<String>, Vec<String>) {
+        let names = ["a", "b.c", "b.d.e", "f"].map(str::to_owned).to_vec();
+        let prefixes = prefixes.iter().map(|p| (*p).to_owned()).collect();
+        let found = listed(names, &ListParametersRequest { prefixes, depth });
+        (found.names, found.prefixes)
+    }
+
+    #[test]
+    fn names_are_listed_by_prefix_and_depth_as_in_rclcpp() {
+        assert_eq!(ask(&[], 0).0, ["a", "b.c", "b.d.e", "f"]);
+        assert_eq!(ask(&[], 1).0, ["a", "f"]);
+        assert_eq!(ask(&["b"], 0), (vec!["b.c".into(), "b.d.e".into()], vec!["b".into(), "b.d".into()]));
+        assert_eq!(ask(&["a"], 5), (vec!["a".into()], vec![]));
+        assert_eq!(ask(&["g"], 0), (vec![], vec![]));
+    }
+}
