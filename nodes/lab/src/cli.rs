@@ -4,6 +4,7 @@ use crate::commands::{analyze, bag, calibrate, campaign, invert, launch, probe, 
 use clap::{Parser, Subcommand};
 use grainlab_bench as bench;
 use grainlab_console::Failure;
+use grainlab_graph::{doctor, node, param, service, topic};
 use grainlab_node_kit::Exit;
 use std::process::ExitCode;
 
@@ -38,6 +39,20 @@ enum Command {
     /// Record, play and inspect recordings.
     #[command(subcommand)]
     Bag(bag::Command),
+    /// List and measure topics: rate, bandwidth, delay, publishers and subscriptions.
+    #[command(subcommand)]
+    Topic(topic::Command),
+    /// List nodes, and what each publishes, subscribes to and serves.
+    #[command(subcommand)]
+    Node(node::Command),
+    /// Read, describe and set parameters of running nodes.
+    #[command(subcommand)]
+    Param(param::Command),
+    /// List and call services.
+    #[command(subcommand)]
+    Service(service::Command),
+    /// Find what keeps nodes from working together: QoS, types, names, network.
+    Doctor(doctor::Args),
     /// Infer the microstructure from moduli: coordination and anisotropy with uncertainty.
     Invert(invert::Args),
     /// Learn the constants of the models from measured packings.
@@ -62,6 +77,11 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Bag(command)) => bag::run(&command),
+        Some(Command::Topic(command)) => topic::run(&command),
+        Some(Command::Node(command)) => node::run(&command),
+        Some(Command::Param(command)) => param::run(&command),
+        Some(Command::Service(command)) => service::run(&command),
+        Some(Command::Doctor(args)) => doctor::run(&args),
         Some(Command::Invert(args)) => invert::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Analyze(args)) => analyze::run(&args),

@@ -60,7 +60,9 @@ pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
 pub use names::{NameError, Names};
 pub use node::{Next, Node, NodeError};
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
-pub use parameters::{FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range};
+pub use parameters::{
+    FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range, parse_value,
+};
 pub use peers::{Liveliness, Peer, PeerWatch, Peers, SILENCE};
 pub use run::{DriveError, HEARTBEAT, NodeSpec, drive, run_node};
 pub use sample::{Sample, SampleId, SampleInfo, WriterId, WriterIdError};

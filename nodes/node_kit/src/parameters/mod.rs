@@ -11,3 +11,4 @@ pub use error::ParameterError;
 pub use set::{FromParameter, Parameters};
 pub use spec::{ParameterSpec, Range};
 pub use value::ParameterValue;
+pub use yaml::parse_value;

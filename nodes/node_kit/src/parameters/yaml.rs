@@ -16,6 +16,14 @@ pub(super) enum Yaml {
     Map(Vec<(String, Yaml)>),
 }
 
+/// The value of a parameter written as YAML, as on a command line: `0.5`, `true`, `[1, 2]`, `text`.
+///
+/// # Errors
+/// With the reason, for text that is not YAML or of a type that no parameter has.
+pub fn parse_value(yaml: &str) -> Result<ParameterValue, String> {
+    Yaml::parse(yaml).and_then(Yaml::into_value)
+}
+
 impl Yaml {
     /// Reads one document. Non-finite numbers are read as numbers; ranges decide on them later.
     pub(super) fn parse(text: &str) -> Result<Yaml, String> {

@@ -1,0 +1,192 @@
+//! Types and QoS of publishers and subscriptions.
+
+use super::finding::Finding;
+use crate::graph::{Endpoint, Graph, TopicEntry, is_reliable, is_transient_local};
+use std::collections::BTreeSet;
+
+/// Findings about all topics.
+pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
+    let topics = graph.topics();
+    let mut found = Vec::new();
+    for (name, topic) in &topics {
+        found.extend(types(graph, name, topic));
+        for reader in &topic.subscriptions {
+            let unheard = topic.publishers.iter().filter(|w| w.type_name == reader.type_name);
+            found.extend(unheard.flat_map(|writer| policies(graph, name, writer, reader)));
+        }
+    }
+    found.extend(unpublished(graph));
+    found
+}
+
+/// Publishers and subscriptions of different types never match.
+fn types(graph: &Graph, name: &str, topic: &TopicEntry<'_>) -> Option<Finding> {
+    let types = topic.types();
+    if types.len() < 2 {
+        return None;
+    }
+    let of_type = |kind: &str| {
+        let owners: BTreeSet<String> = topic
+            .publishers
+            .iter()
+            .chain(&topic.subscriptions)
+            .filter(|e| e.type_name == kind)
+            .map(|e| graph.owner(e))
+            .collect();
+        format!("{kind} ({})", owners.into_iter().collect::<Vec<_>>().join(", "))
+    };
+    let all: Vec<String> = types.iter().map(|t| of_type(t)).collect();
+    Some(Finding::error(
+        "type_mismatch",
+        format!("{name} has more than one type: {}", all.join(" and ")),
+        "give one of them another name with -r, or the type that the other has",
+    ))
+}
+
+/// The policies in which a subscription requests more than a publisher offers (DDS 1.4, 2.2.3).
+fn policies(graph: &Graph, name: &str, writer: &Endpoint, reader: &Endpoint) -> Vec<Finding> {
+    let (offered, requested) = (&writer.qos, &reader.qos);
+    let between = format!("{name}: {} receives nothing from {}", graph.owner(reader), graph.owner(writer));
+    let mut found = Vec::new();
+    let mut add = |kind, what: &str, advice: &str| {
+        found.push(Finding::error(kind, format!("{between}: {what}"), advice));
+    };
+    if is_reliable(requested) && !is_reliable(offered) {
+        add(
+            "reliability_mismatch",
+            "it requests reliable, best_effort is offered",
+            "subscribe with best_effort, or publish with reliable",
+        );
+    }
+    if is_transient_local(requested) && !is_transient_local(offered) {
+        add(
+            "durability_mismatch",
+            "it requests transient_local, volatile is offered",
+            "subscribe with volatile, or publish with transient_local",
+        );
+    }
+    if let Some(limit) = requested.deadline
+        && offered.deadline.is_none_or(|offer| offer > limit)
+    {
+        add(
+            "deadline_mismatch",
+            "it requests a shorter deadline than is offered",
+            "subscribe without a deadline, or publish with one that is as short",
+        );
+    }
+    if let Some(limit) = requested.liveliness_lease
+        && offered.liveliness_lease.is_none_or(|offer| offer > limit)
+    {
+        add(
+            "liveliness_mismatch",
+            "it requests a shorter liveliness lease than is offered",
+            "subscribe without a lease, or publish with one that is as short",
+        );
+    }
+    found
+}
+
+/// Subscriptions without publisher, while the same type is published under the same last name elsewhere: a namespace or
+/// remap that only one side has.
+fn unpublished(graph: &Graph) -> Vec<Finding> {
+    let topics = graph.topics();
+    let last = |name: &str| name.rsplit('/').next().unwrap_or(name).to_owned();
+    let mut found = Vec::new();
+    for (name, topic) in topics.iter().filter(|(_, t)| t.publishers.is_empty()) {
+        let elsewhere = topics.iter().find(|(other, t)| {
+            *other != name
+                && last(other) == last(name)
+                && t.publishers.iter().any(|p| topic.types().contains(p.type_name.as_str()))
+                // A lab of its own in that namespace is complete.
+                && t.subscriptions.is_empty()
+        });
+        if let Some((other, there)) = elsewhere {
+            let readers: BTreeSet<String> = topic.subscriptions.iter().map(|e| graph.owner(e)).collect();
+            let writers: BTreeSet<String> = there.publishers.iter().map(|e| graph.owner(e)).collect();
+            let list = |names: BTreeSet<String>| names.into_iter().collect::<Vec<_>>().join(", ");
+            found.push(Finding::warning(
+                "namespace_mismatch",
+                format!("{name} is subscribed ({}) and not published; {other} is published ({}) and not subscribed",
+                    list(readers), list(writers)),
+                format!("start one of them in the namespace of the other (-r __ns:=), or remap (-r {name}:={other})"),
+            ));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::NodeEntry;
+    use ros2_client::QosProfile;
+    use ros2_client::qos::Durability;
+
+    const TYPE: &str = "grainlab_msgs::msg::dds_::Stress_";
+
+    fn endpoint(n: u8, topic: &str, type_name: &str, writes: bool, qos: QosProfile) -> Endpoint {
+        let mut guid = [n; 16];
+        guid[15] = u8::from(writes);
+        Endpoint::new(guid, topic, type_name, writes, qos)
+    }
+
+    fn graph(endpoints: Vec<Endpoint>) -> Graph {
+        let node = |e: &Endpoint| NodeEntry {
+            name: format!("/node_{}", e.guid[0]),
+            participant: e.guid,
+            endpoints: [e.guid].into(),
+        };
+        Graph { nodes: endpoints.iter().map(node).collect(), endpoints }
+    }
+
+    fn kinds(endpoints: Vec<Endpoint>) -> Vec<&'static str> {
+        findings(&graph(endpoints)).into_iter().map(|f| f.kind).collect()
+    }
+
+    #[test]
+    fn each_policy_that_does_not_fit_is_named_with_both_nodes() {
+        let (best, reliable) = (QosProfile::subscription_default(), QosProfile::publisher_default());
+        let latched = reliable.clone().durability(Durability::TransientLocal);
+        let quick = reliable.clone().deadline(Some(std::time::Duration::from_millis(5)));
+        let leased =
+            QosProfile { liveliness_lease: Some(std::time::Duration::from_secs(1)), ..reliable.clone() };
+        for (offered, requested, expected) in [
+            (&best, &reliable, "reliability_mismatch"),
+            (&reliable, &latched, "durability_mismatch"),
+            (&reliable, &quick, "deadline_mismatch"),
+            (&reliable, &leased, "liveliness_mismatch"),
+        ] {
+            let pair = |offered: &QosProfile, requested: &QosProfile| {
+                vec![
+                    endpoint(1, "rt/stress", TYPE, true, offered.clone()),
+                    endpoint(2, "rt/stress", TYPE, false, requested.clone()),
+                ]
+            };
+            let found = findings(&graph(pair(offered, requested)));
+            assert_eq!(found.len(), 1, "{expected}: {found:?}");
+            assert_eq!(found[0].kind, expected);
+            assert!(
+                found[0].what.contains("/node_1") && found[0].what.contains("/node_2"),
+                "{}",
+                found[0].what
+            );
+            assert!(kinds(pair(requested, offered)).is_empty(), "offering more is no fault: {expected}");
+        }
+    }
+
+    #[test]
+    fn two_types_of_one_topic_and_a_namespace_of_one_side_are_named() {
+        let qos = QosProfile::publisher_default();
+        let other = "std_msgs::msg::dds_::String_";
+        let mixed = vec![
+            endpoint(1, "rt/stress", TYPE, true, qos.clone()),
+            endpoint(2, "rt/stress", other, false, qos.clone()),
+        ];
+        assert_eq!(kinds(mixed), ["type_mismatch"]);
+        let apart = vec![
+            endpoint(1, "rt/lab/stress", TYPE, true, qos.clone()),
+            endpoint(2, "rt/stress", TYPE, false, qos),
+        ];
+        assert_eq!(kinds(apart), ["namespace_mismatch"]);
+    }
+}

@@ -1,0 +1,78 @@
+//! `grainlab doctor`: finds what keeps nodes of a domain from working together.
+//!
+//! - `finding`: what is wrong, where, and what to do
+//! - `endpoints`: types and QoS; `nodes`: names, simulators, heartbeats, parameters; `host`: network and environment
+
+mod endpoints;
+mod finding;
+mod host;
+mod nodes;
+
+use crate::observer::Observer;
+use crate::view::Common;
+use finding::{Finding, Severity};
+use grainlab_console::Failure;
+use grainlab_node_kit::{Exit, Network};
+use serde::Serialize;
+
+/// Arguments of `grainlab doctor`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example:\n  ROS_DOMAIN_ID=7 grainlab doctor\n\nExit 1 if something is wrong that keeps nodes from \
+                  working together, 0 if there are warnings or notes only."
+)]
+pub struct Args {
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Serialize)]
+struct View {
+    domain: Option<u16>,
+    nodes: usize,
+    topics: usize,
+    services: usize,
+    findings: Vec<Finding>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// With the exit code and the message for the user.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let mut findings = host::environment(|name| std::env::var(name).ok());
+    let mut view = View { domain: None, nodes: 0, topics: 0, services: 0, findings: Vec::new() };
+    // Without a valid environment there is no domain to look at.
+    if let Ok(network) = Network::from_env() {
+        findings.extend(host::network(network));
+        let mut observer = Observer::join_network(network)?;
+        let graph = observer.settled(args.common.patience());
+        findings.extend(endpoints::findings(&graph));
+        findings.extend(nodes::findings(&graph));
+        findings.extend(nodes::of_heartbeats(&graph, &nodes::heartbeats(&mut observer)?));
+        findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
+        (view.domain, view.nodes) = (Some(network.domain), graph.nodes.len());
+        (view.topics, view.services) = (graph.topics().len(), graph.services().len());
+    }
+    findings.sort_by_key(|f| f.severity);
+    view.findings = findings;
+    args.common.show(&view, || text(&view))?;
+    let wrong = view.findings.iter().any(|f| f.severity == Severity::Error);
+    Ok(if wrong { Exit::Failure } else { Exit::Done })
+}
+
+fn text(view: &View) -> String {
+    let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let head = view.domain.map_or_else(
+        || "no domain\n".to_owned(),
+        |domain| {
+            let [nodes, topics, services] =
+                [(view.nodes, "node"), (view.topics, "topic"), (view.services, "service")]
+                    .map(|(n, what)| counted(n, what));
+            format!("domain {domain}: {nodes}, {topics}, {services}\n")
+        },
+    );
+    let found: String = view.findings.iter().map(ToString::to_string).collect();
+    let none = if view.findings.is_empty() { "nothing wrong was found\n" } else { "" };
+    format!("{head}{found}{none}")
+}

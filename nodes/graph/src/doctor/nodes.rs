@@ -1,0 +1,181 @@
+//! Names, simulators, heartbeats and parameters of nodes.
+
+use super::finding::Finding;
+use crate::call::call;
+use crate::graph::{Endpoint, Graph};
+use crate::observer::Observer;
+use grainlab_console::Failure;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::topics;
+use grainlab_node_kit::{Report, run_of};
+use ros2_client::qos::{History, WhenFull};
+use ros2_client::rcl_interfaces::{GetParametersRequest, GetParametersResponse};
+use ros2_client::{MessageTypeName, Name, ParameterValue, QosProfile};
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::{Duration, Instant};
+
+/// Time for which heartbeats are listened to: a node sends one each second.
+const LISTEN: Duration = Duration::from_millis(2500);
+
+/// Topics that one process of a run publishes, and what it is.
+const SINGLE: [(&str, &str); 4] = [
+    ("grainlab_msgs/msg/Stress", "simulators"),
+    ("grainlab_msgs/msg/StrainRate", "servos"),
+    ("grainlab_msgs/msg/RunState", "simulators"),
+    ("rosgraph_msgs/msg/Clock", "clocks"),
+];
+
+/// Findings about the nodes of the graph.
+pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+    graph.nodes.iter().for_each(|node| *names.entry(&node.name).or_default() += 1);
+    for (name, count) in names.into_iter().filter(|(_, count)| *count > 1) {
+        found.push(Finding::error(
+            "duplicate_node",
+            format!("{count} nodes are named {name}: which of them answers a service is undefined"),
+            "rename one with -r __node:=NAME, or give it a namespace with -r __ns:=/NAME",
+        ));
+    }
+    for (name, topic) in graph.topics() {
+        let single = SINGLE.iter().find(|(kind, _)| topic.types().contains(kind));
+        let Some((_, what)) = single else { continue };
+        // Runs with an identity of their own share a domain without mixing.
+        let by_hand: BTreeSet<&[u8]> = topic
+            .publishers
+            .iter()
+            .filter(|p| run_of_endpoint(p).is_none())
+            .map(|p| p.participant())
+            .collect();
+        if by_hand.len() > 1 {
+            let owners: BTreeSet<String> = topic.publishers.iter().map(|e| graph.owner(e)).collect();
+            found.push(Finding::error(
+                "duplicate_publisher",
+                format!("{} {what} publish {name}: {}", by_hand.len(),
+                    owners.into_iter().collect::<Vec<_>>().join(", ")),
+                "end one of them, give each lab a namespace (-r __ns:=) or a domain (ROS_DOMAIN_ID) of its own, or name their \
+                 runs (GRAINLAB_RUN)",
+            ));
+        }
+    }
+    found
+}
+
+fn run_of_endpoint(endpoint: &Endpoint) -> Option<grainlab_node_kit::RunId> {
+    <&[u8; 12]>::try_from(endpoint.participant()).ok().and_then(run_of)
+}
+
+/// The nodes whose heartbeats arrive now, with their latest health.
+pub(super) fn heartbeats(observer: &mut Observer) -> Result<BTreeMap<String, Report>, Failure> {
+    let qos = QosProfile::publisher_default()
+        .reliability_reliable(WhenFull::DEFAULT)
+        .history(History::KeepLast { depth: 100 });
+    let name = Name::parse(topics::DIAGNOSTICS.name).map_err(|e| Failure::failed(format!("{e:?}")))?;
+    let info = topics::DIAGNOSTICS.info;
+    let kind = MessageTypeName::new(info.package, info.name);
+    let topic = observer.node.create_topic(&name, kind, &qos).map_err(Failure::failed)?;
+    let reader =
+        observer.node.create_subscription::<DiagnosticArray>(&topic, Some(qos)).map_err(Failure::failed)?;
+    let start = Instant::now();
+    let mut heard = BTreeMap::new();
+    while start.elapsed() < LISTEN {
+        match reader.take() {
+            Ok(Some((message, _))) => {
+                heard.extend(Report::from_message(&message).into_iter().map(|r| (r.node.clone(), r)));
+            }
+            // A message that does not decode is none of ours.
+            Ok(None) | Err(_) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+    Ok(heard)
+}
+
+/// Nodes that publish heartbeats and sent none, and those that report a fault.
+pub(super) fn of_heartbeats(graph: &Graph, heard: &BTreeMap<String, Report>) -> Vec<Finding> {
+    let topics = graph.topics();
+    let sends: BTreeSet<String> = topics
+        .get("/diagnostics")
+        .map(|t| t.publishers.iter().map(|p| graph.owner(p)).collect())
+        .unwrap_or_default();
+    let silent = sends.into_iter().filter(|node| !heard.contains_key(node)).map(|node| {
+        Finding::error(
+            "silent_node",
+            format!("{node} sent no heartbeat for {} s", LISTEN.as_secs_f64()),
+            "see whether its process is stopped (Ctrl-Z, a debugger), hangs, or was killed less than a minute ago",
+        )
+    });
+    let ailing = heard.values().filter(|r| r.health.level > grainlab_node_kit::Level::Warn).map(|report| {
+        Finding::warning(
+            "failing_node",
+            format!("{} reports: {}", report.node, report.health.message),
+            format!("see its log, and the log of process {}", report.pid),
+        )
+    });
+    silent.chain(ailing).collect()
+}
+
+/// Nodes that wait for a clock that nobody publishes.
+pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<Finding>, Failure> {
+    let topics = graph.topics();
+    let clock = topics.get("/clock").is_some_and(|t| !t.publishers.is_empty());
+    let mut found = Vec::new();
+    if clock {
+        return Ok(found);
+    }
+    let services = graph.services();
+    for node in &graph.nodes {
+        let service = format!("{}/get_parameters", node.name);
+        if services.get(service.as_str()).is_none_or(|servers| servers.len() != 1) {
+            continue;
+        }
+        let request = GetParametersRequest { names: vec!["use_sim_time".into()] };
+        let kind = ("rcl_interfaces", "GetParameters");
+        // A node that does not answer was named by its heartbeat, or is none of ours.
+        let Ok(answer) = call::<_, GetParametersResponse>(observer, graph, &service, kind, &request) else {
+            continue;
+        };
+        let value = answer.values.into_iter().next().map(ParameterValue::from);
+        if value == Some(ParameterValue::Boolean(true)) {
+            found.push(Finding::error(
+                "no_clock",
+                format!("{} has use_sim_time true, and nobody publishes /clock: its time stays 0", node.name),
+                format!("start a simulator, or: grainlab param set {} use_sim_time false", node.name),
+            ));
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::NodeEntry;
+
+    fn simulator(prefix: [u8; 12], name: &str) -> (Endpoint, NodeEntry) {
+        let mut guid = [3; 16];
+        guid[..12].copy_from_slice(&prefix);
+        let qos = QosProfile::publisher_default();
+        let endpoint = Endpoint::new(guid, "rt/stress", "grainlab_msgs::msg::dds_::Stress_", true, qos);
+        (endpoint, NodeEntry { name: name.into(), participant: guid, endpoints: [guid].into() })
+    }
+
+    fn kinds(nodes: [(Endpoint, NodeEntry); 2]) -> Vec<&'static str> {
+        let (endpoints, nodes) = nodes.into_iter().unzip();
+        findings(&Graph { nodes, endpoints }).into_iter().map(|f| f.kind).collect()
+    }
+
+    #[test]
+    fn two_simulators_by_hand_are_a_fault_and_two_runs_are_not() {
+        let [a, b] = [[1; 12], [2; 12]];
+        assert_eq!(kinds([simulator(a, "/a"), simulator(b, "/b")]), ["duplicate_publisher"]);
+        assert_eq!(
+            kinds([simulator(a, "/a"), simulator(b, "/a")]),
+            ["duplicate_node", "duplicate_publisher"]
+        );
+        let run = |name: &str| {
+            grainlab_node_kit::Identity::member_of(grainlab_node_kit::RunId::named(name), 1).guid_prefix()
+        };
+        let runs = kinds([simulator(run("left"), "/left/sim"), simulator(run("right"), "/right/sim")]);
+        assert!(runs.is_empty(), "{runs:?}");
+    }
+}

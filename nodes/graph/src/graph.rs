@@ -1,0 +1,137 @@
+//! Nodes and endpoints of a domain.
+
+use crate::names::{RosName, ros_type};
+use ros2_client::QosProfile;
+use ros2_client::qos::{Durability, Reliability};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The 16-byte GUID of an endpoint: 12 of its participant, 4 of its own.
+pub(crate) type Guid = [u8; 16];
+
+/// A publisher or subscription.
+#[derive(Clone, Debug)]
+pub(crate) struct Endpoint {
+    pub(crate) guid: Guid,
+    pub(crate) name: RosName,
+    /// As in `grainlab_msgs/msg/Stress`.
+    pub(crate) type_name: String,
+    /// It writes, else it reads.
+    pub(crate) writes: bool,
+    pub(crate) qos: QosProfile,
+}
+
+impl Endpoint {
+    pub(crate) fn new(guid: Guid, topic: &str, type_name: &str, writes: bool, qos: QosProfile) -> Self {
+        Self { guid, name: RosName::of(topic), type_name: ros_type(type_name), writes, qos }
+    }
+
+    pub(crate) fn participant(&self) -> &[u8] {
+        &self.guid[..12]
+    }
+
+    /// Whether CycloneDDS made it: the vendor id, with which every GUID begins.
+    pub(crate) fn is_cyclone(&self) -> bool {
+        self.guid[..2] == [0x01, 0x10]
+    }
+}
+
+/// A node with its endpoints.
+#[derive(Clone, Debug)]
+pub(crate) struct NodeEntry {
+    /// Fully qualified.
+    pub(crate) name: String,
+    pub(crate) participant: Guid,
+    pub(crate) endpoints: BTreeSet<Guid>,
+}
+
+/// What is in a domain.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Graph {
+    pub(crate) nodes: Vec<NodeEntry>,
+    pub(crate) endpoints: Vec<Endpoint>,
+}
+
+/// The endpoints of one topic.
+#[derive(Default)]
+pub(crate) struct TopicEntry<'a> {
+    pub(crate) publishers: Vec<&'a Endpoint>,
+    pub(crate) subscriptions: Vec<&'a Endpoint>,
+}
+
+impl TopicEntry<'_> {
+    /// The types of its endpoints; more than one is a mistake.
+    pub(crate) fn types(&self) -> BTreeSet<&str> {
+        self.publishers.iter().chain(&self.subscriptions).map(|e| e.type_name.as_str()).collect()
+    }
+}
+
+impl Graph {
+    /// Topics by name.
+    pub(crate) fn topics(&self) -> BTreeMap<&str, TopicEntry<'_>> {
+        let mut topics: BTreeMap<&str, TopicEntry<'_>> = BTreeMap::new();
+        for endpoint in &self.endpoints {
+            if let RosName::Topic(name) = &endpoint.name {
+                let entry = topics.entry(name).or_default();
+                let list = if endpoint.writes { &mut entry.publishers } else { &mut entry.subscriptions };
+                list.push(endpoint);
+            }
+        }
+        topics
+    }
+
+    /// Services by name: the reader of requests of each server.
+    pub(crate) fn services(&self) -> BTreeMap<&str, Vec<&Endpoint>> {
+        let mut services: BTreeMap<&str, Vec<&Endpoint>> = BTreeMap::new();
+        for endpoint in self.endpoints.iter().filter(|e| !e.writes) {
+            if let RosName::Request(name) = &endpoint.name {
+                services.entry(name).or_default().push(endpoint);
+            }
+        }
+        services
+    }
+
+    /// The node of an endpoint, or else the participant in hexadecimal.
+    pub(crate) fn owner(&self, endpoint: &Endpoint) -> String {
+        let named = self.nodes.iter().find(|n| n.endpoints.contains(&endpoint.guid)).or_else(|| {
+            // A program with one node may list fewer endpoints than it has.
+            let mut same = self.nodes.iter().filter(|n| n.participant[..12] == *endpoint.participant());
+            same.next().filter(|_| same.next().is_none())
+        });
+        named.map_or_else(|| format!("participant {}", hex(endpoint.participant())), |node| node.name.clone())
+    }
+
+    /// The endpoints of a node.
+    pub(crate) fn endpoints_of(&self, node: &NodeEntry) -> Vec<&Endpoint> {
+        self.endpoints.iter().filter(|e| node.endpoints.contains(&e.guid)).collect()
+    }
+}
+
+/// Hexadecimal digits.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// The policies of an endpoint in the words of `ros2 topic info`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct QosView {
+    pub(crate) reliability: &'static str,
+    pub(crate) durability: &'static str,
+}
+
+impl From<&QosProfile> for QosView {
+    fn from(qos: &QosProfile) -> Self {
+        Self {
+            reliability: if is_reliable(qos) { "reliable" } else { "best_effort" },
+            durability: if is_transient_local(qos) { "transient_local" } else { "volatile" },
+        }
+    }
+}
+
+pub(crate) fn is_reliable(qos: &QosProfile) -> bool {
+    matches!(qos.reliability, Reliability::Reliable { .. })
+}
+
+pub(crate) fn is_transient_local(qos: &QosProfile) -> bool {
+    !matches!(qos.durability, Durability::Volatile)
+}

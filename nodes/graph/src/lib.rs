@@ -1,0 +1,18 @@
+//! `grainlab topic`, `node`, `param`, `service` and `doctor`: the ROS graph of a domain, over DDS without a ROS installation.
+//!
+//! - `observer`: joins the domain and collects the graph; `graph`: nodes and endpoints; `names`: names on the wire
+//! - `topic`, `node`, `param`, `service`, `doctor`: the commands, one folder each
+//! - `call`: one call of a service; `view`: formats of the output
+//!
+//! The commands belong to no run: what they read holds up no node, and what they set changes no result.
+
+mod call;
+pub mod doctor;
+mod graph;
+mod names;
+pub mod node;
+mod observer;
+pub mod param;
+pub mod service;
+pub mod topic;
+mod view;

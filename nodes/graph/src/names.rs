@@ -1,0 +1,82 @@
+//! Names of topics, services and types on the wire (ROS 2 design, "Topic and Service name mapping to DDS").
+
+/// A topic of DDS as ROS knows it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum RosName {
+    /// A topic, `/stress`.
+    Topic(String),
+    /// The requests of a service, `/dem_simulator/get_parameters`.
+    Request(String),
+    /// The replies of a service.
+    Reply(String),
+    /// No topic or service of ROS.
+    Other(String),
+}
+
+impl RosName {
+    /// From the name of a DDS topic.
+    pub(crate) fn of(dds: &str) -> Self {
+        let other = || Self::Other(dds.to_owned());
+        let service = |rest: &str, suffix: &str| rest.strip_suffix(suffix).map(|name| format!("/{name}"));
+        match dds.split_once('/') {
+            Some(("rt", rest)) => Self::Topic(format!("/{rest}")),
+            Some(("rq", rest)) => service(rest, "Request").map_or_else(other, Self::Request),
+            Some(("rr", rest)) => service(rest, "Reply").map_or_else(other, Self::Reply),
+            _ => other(),
+        }
+    }
+}
+
+/// `grainlab_msgs::msg::dds_::Stress_` as `grainlab_msgs/msg/Stress`; for a service without `_Request` and `_Response`.
+pub(crate) fn ros_type(dds: &str) -> String {
+    let parts: Vec<&str> = dds.split("::").collect();
+    match parts[..] {
+        [package, kind, "dds_", name] => {
+            let name = name.strip_suffix('_').unwrap_or(name);
+            let name = match kind {
+                "srv" => name.strip_suffix("_Request").or(name.strip_suffix("_Response")).unwrap_or(name),
+                _ => name,
+            };
+            format!("{package}/{kind}/{name}")
+        }
+        _ => dds.to_owned(),
+    }
+}
+
+/// Package and name of `package/msg/Name`.
+pub(crate) fn type_parts(ros: &str) -> Option<(&str, &str)> {
+    let mut parts = ros.split('/');
+    match (parts.next(), parts.next(), parts.next(), parts.next()) {
+        (Some(package), Some("msg"), Some(name), None) => Some((package, name)),
+        _ => None,
+    }
+}
+
+/// A name as typed, with a slash before it.
+pub(crate) fn absolute(name: &str) -> String {
+    format!("/{}", name.trim_start_matches('/'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_on_the_wire_become_those_of_ros() {
+        assert_eq!(RosName::of("rt/lab/stress"), RosName::Topic("/lab/stress".into()));
+        assert_eq!(
+            RosName::of("rq/sim/get_parametersRequest"),
+            RosName::Request("/sim/get_parameters".into())
+        );
+        assert_eq!(RosName::of("rr/sim/get_parametersReply"), RosName::Reply("/sim/get_parameters".into()));
+        assert_eq!(RosName::of("ros_discovery_info"), RosName::Other("ros_discovery_info".into()));
+        assert_eq!(ros_type("grainlab_msgs::msg::dds_::Stress_"), "grainlab_msgs/msg/Stress");
+        assert_eq!(
+            ros_type("rcl_interfaces::srv::dds_::GetParameters_Request_"),
+            "rcl_interfaces/srv/GetParameters"
+        );
+        assert_eq!(ros_type("Plain"), "Plain");
+        assert_eq!(type_parts("std_msgs/msg/Header"), Some(("std_msgs", "Header")));
+        assert_eq!(type_parts("std_msgs/Header"), None);
+    }
+}

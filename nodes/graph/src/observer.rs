@@ -1,0 +1,121 @@
+//! Joins a domain and collects its graph.
+
+use crate::graph::{Endpoint, Graph, Guid, NodeEntry};
+use grainlab_console::Failure;
+use grainlab_node_kit::Network;
+use ros2_client::qos::{Durability, History, WhenFull};
+use ros2_client::{Context, MessageTypeName, Node, NodeName, NodeOptions, QosProfile, Subscription};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// Period at which discovery is looked at.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Time without a change after which the graph counts as complete, and the minimum time.
+const QUIET: Duration = Duration::from_millis(500);
+
+/// `rmw_dds_common/msg/ParticipantEntitiesInfo`: the nodes of one participant. ros2-client's own type hides the endpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ParticipantNodes {
+    gid: Guid,
+    nodes: Vec<Entities>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Entities {
+    namespace: String,
+    name: String,
+    readers: Vec<Guid>,
+    writers: Vec<Guid>,
+}
+
+/// A participant that belongs to no run.
+pub(crate) struct Observer {
+    pub(crate) node: Node,
+    pub(crate) context: Context,
+    announcements: Subscription<ParticipantNodes>,
+    announced: BTreeMap<Guid, ParticipantNodes>,
+    own: Vec<u8>,
+}
+
+impl Observer {
+    /// Joins the domain and network of the environment.
+    pub(crate) fn join() -> Result<Self, Failure> {
+        Self::join_network(Network::from_env().map_err(Failure::usage)?)
+    }
+
+    pub(crate) fn join_network(network: Network) -> Result<Self, Failure> {
+        let context = network.context().map_err(Failure::failed)?;
+        // Several tools may run at once.
+        let name = format!("grainlab_tool_{}", std::process::id());
+        let name = NodeName::new("/", &name).map_err(Failure::failed)?;
+        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
+        let mut node = context.new_node(name, options).map_err(Failure::failed)?;
+        let qos = QosProfile::publisher_default()
+            .reliability_reliable(WhenFull::DEFAULT)
+            .durability(Durability::TransientLocal)
+            .history(History::KeepLast { depth: 1000 });
+        let info = MessageTypeName::new("rmw_dds_common", "ParticipantEntitiesInfo");
+        let topic = context.create_topic("ros_discovery_info".into(), info, &qos).map_err(Failure::failed)?;
+        let announcements = node.create_subscription(&topic, Some(qos)).map_err(Failure::failed)?;
+        let own = announcements.gid().to_bytes16()[..12].to_vec();
+        Ok(Self { node, context, announcements, announced: BTreeMap::new(), own })
+    }
+
+    /// The graph once it has not changed for half a second, or after `patience` at the latest.
+    pub(crate) fn settled(&mut self, patience: Duration) -> Graph {
+        let start = Instant::now();
+        let (mut seen, mut changed) = (self.fingerprint(), start);
+        while start.elapsed() < patience && changed.elapsed() < QUIET {
+            std::thread::sleep(LOOK);
+            let now = self.fingerprint();
+            if now != seen {
+                (seen, changed) = (now, Instant::now());
+            }
+        }
+        self.graph()
+    }
+
+    fn fingerprint(&mut self) -> (usize, usize, usize) {
+        while let Ok(Some((participant, _))) = self.announcements.take() {
+            self.announced.insert(participant.gid, participant);
+        }
+        let participant = self.context.domain_participant();
+        let nodes = self.announced.values().flat_map(|p| &p.nodes);
+        let announced = nodes.map(|n| n.readers.len() + n.writers.len()).sum();
+        (participant.discovered_writers().len(), participant.discovered_readers().len(), announced)
+    }
+
+    /// The graph as it is known now, without this process.
+    pub(crate) fn graph(&mut self) -> Graph {
+        self.fingerprint();
+        let participant = self.context.domain_participant();
+        let writers = participant.discovered_writers().into_iter().map(|writer| {
+            let data = &writer.publication_topic_data;
+            let guid = writer.writer_proxy.remote_writer_guid.to_bytes();
+            Endpoint::new(guid, &data.topic_name, &data.type_name, true, QosProfile::from(&data.qos()))
+        });
+        let readers = participant.discovered_readers().into_iter().map(|reader| {
+            let data = &reader.subscription_topic_data;
+            let guid = reader.reader_proxy.remote_reader_guid.to_bytes();
+            Endpoint::new(guid, data.topic_name(), data.type_name(), false, QosProfile::from(&data.qos()))
+        });
+        let endpoints: Vec<Endpoint> =
+            writers.chain(readers).filter(|e| e.participant() != self.own).collect();
+        // An announcement outlasts its participant.
+        let there = |p: &&ParticipantNodes| endpoints.iter().any(|e| e.participant() == &p.gid[..12]);
+        let mut nodes: Vec<NodeEntry> = self.announced.values().filter(there).flat_map(entries).collect();
+        nodes.sort_by(|a, b| a.name.cmp(&b.name));
+        Graph { nodes, endpoints }
+    }
+}
+
+fn entries(participant: &ParticipantNodes) -> Vec<NodeEntry> {
+    let entry = |node: &Entities| NodeEntry {
+        name: format!("{}/{}", node.namespace.trim_end_matches('/'), node.name),
+        participant: participant.gid,
+        endpoints: node.readers.iter().chain(&node.writers).copied().collect(),
+    };
+    participant.nodes.iter().map(entry).collect()
+}

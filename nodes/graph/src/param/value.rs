@@ -1,0 +1,93 @@
+//! Values of parameters as text, YAML and JSON.
+
+use grainlab_console::Failure;
+use grainlab_node_kit::{ParameterValue as Parsed, parse_value};
+use ros2_client::ParameterValue;
+use serde_json::{Value, json};
+
+/// A value from a command line, as YAML: `0.5`, `true`, `[1, 2]`, `text`.
+pub(super) fn parse(text: &str) -> Result<ParameterValue, Failure> {
+    let parsed = parse_value(text).map_err(|reason| Failure::usage(format!("value {text:?}: {reason}")))?;
+    Ok(match parsed {
+        Parsed::Bool(v) => ParameterValue::Boolean(v),
+        Parsed::Integer(v) => ParameterValue::Integer(v),
+        Parsed::Double(v) => ParameterValue::Double(v),
+        Parsed::String(v) => ParameterValue::String(v),
+        Parsed::BoolArray(v) => ParameterValue::BooleanArray(v),
+        Parsed::IntegerArray(v) => ParameterValue::IntegerArray(v),
+        Parsed::DoubleArray(v) => ParameterValue::DoubleArray(v),
+        Parsed::StringArray(v) => ParameterValue::StringArray(v),
+    })
+}
+
+/// As JSON; numbers that are not finite become text.
+pub(super) fn to_json(value: &ParameterValue) -> Value {
+    let number = |v: &f64| if v.is_finite() { json!(v) } else { json!(v.to_string()) };
+    match value {
+        ParameterValue::NotSet => Value::Null,
+        ParameterValue::Boolean(v) => json!(v),
+        ParameterValue::Integer(v) => json!(v),
+        ParameterValue::Double(v) => number(v),
+        ParameterValue::String(v) => json!(v),
+        ParameterValue::ByteArray(v) => json!(v),
+        ParameterValue::BooleanArray(v) => json!(v),
+        ParameterValue::IntegerArray(v) => json!(v),
+        ParameterValue::DoubleArray(v) => Value::Array(v.iter().map(number).collect()),
+        ParameterValue::StringArray(v) => json!(v),
+    }
+}
+
+/// As a value of a parameter file. Doubles keep their point, so that they stay doubles.
+pub(super) fn to_yaml(value: &ParameterValue) -> String {
+    let number = |v: &f64| match v {
+        v if v.is_nan() => ".nan".to_owned(),
+        v if v.is_infinite() => if *v > 0.0 { ".inf" } else { "-.inf" }.to_owned(),
+        v => format!("{v:?}"),
+    };
+    match value {
+        ParameterValue::Double(v) => number(v),
+        ParameterValue::DoubleArray(v) => {
+            format!("[{}]", v.iter().map(number).collect::<Vec<_>>().join(", "))
+        }
+        // Text and lists of JSON are YAML, too.
+        other => to_json(other).to_string(),
+    }
+}
+
+/// The name of the type with this number in `rcl_interfaces/msg/ParameterType`.
+pub(super) fn type_name(number: u8) -> &'static str {
+    const NAMES: [&str; 10] = [
+        "not set",
+        "bool",
+        "integer",
+        "double",
+        "string",
+        "byte array",
+        "bool array",
+        "integer array",
+        "double array",
+        "string array",
+    ];
+    NAMES.get(usize::from(number)).copied().unwrap_or("unknown")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_survive_a_parameter_file() {
+        for value in [
+            ParameterValue::Boolean(true),
+            ParameterValue::Integer(-3),
+            ParameterValue::Double(2.0),
+            ParameterValue::Double(f64::INFINITY),
+            ParameterValue::String("no: \"true\"".into()),
+            ParameterValue::String("true".into()),
+            ParameterValue::DoubleArray(vec![1.0, 0.5]),
+            ParameterValue::StringArray(vec!["a".into()]),
+        ] {
+            assert_eq!(parse(&to_yaml(&value)).unwrap(), value, "{}", to_yaml(&value));
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! `grainlab service call`: requests and answers as JSON.
+
+use crate::call::call;
+use crate::graph::Graph;
+use crate::names::absolute;
+use crate::observer::Observer;
+use crate::view::Common;
+use grainlab_console::{Failure, json, print};
+use grainlab_node_kit::Exit;
+use ros2_client::Message;
+use ros2_client::rcl_interfaces as rcl;
+use serde::{Deserialize, Serialize};
+
+/// Arguments of `grainlab service call`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example:\n  grainlab service call /dem_simulator/list_parameters '{prefixes: [], depth: 0}'"
+)]
+pub struct Args {
+    /// Name of the service
+    service: String,
+    /// Request, as YAML or JSON [default: an empty one]
+    #[arg(default_value = "{}")]
+    request: String,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// `std_srvs/srv/Empty` and the request of `Trigger`: a message without fields has one byte on the wire.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Nothing {
+    structure_needs_at_least_one_member: u8,
+}
+
+/// The request of `std_srvs/srv/SetBool`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Switch {
+    data: bool,
+}
+
+/// The answer of `Trigger` and `SetBool`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Outcome {
+    success: bool,
+    message: String,
+}
+
+impl Message for Nothing {}
+impl Message for Switch {}
+impl Message for Outcome {}
+
+/// One call: the service, its type and the request.
+struct Call<'a> {
+    observer: &'a mut Observer,
+    graph: &'a Graph,
+    service: &'a str,
+    request: &'a str,
+}
+
+impl Call<'_> {
+    fn make<Req, Resp>(self, package: &str, name: &str) -> Result<String, Failure>
+    where
+        Req: Message + Clone + for<'de> Deserialize<'de> + 'static,
+        Resp: Message + Serialize + 'static,
+    {
+        let request: Req = serde_saphyr::from_str(self.request)
+            .map_err(|e| Failure::usage(format!("the request is not one of {package}/srv/{name}: {e}")))?;
+        let answer: Resp = call(self.observer, self.graph, self.service, (package, name), &request)?;
+        json(&answer)
+    }
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let mut observer = Observer::join()?;
+    let graph = observer.settled(args.common.patience());
+    let service = absolute(&args.service);
+    let services = graph.services();
+    let Some(kind) = services.get(service.as_str()).and_then(|s| s.first()).map(|s| s.type_name.clone())
+    else {
+        let known: Vec<&str> = services.keys().copied().collect();
+        return Err(Failure::failed(format!(
+            "no service {service} in this domain; services are: {}",
+            known.join(", ")
+        )));
+    };
+    let call = Call { observer: &mut observer, graph: &graph, service: &service, request: &args.request };
+    let answer = match kind.as_str() {
+        "rcl_interfaces/srv/ListParameters" => call
+            .make::<rcl::ListParametersRequest, rcl::ListParametersResponse>(
+                "rcl_interfaces",
+                "ListParameters",
+            ),
+        "rcl_interfaces/srv/GetParameters" => call
+            .make::<rcl::GetParametersRequest, rcl::GetParametersResponse>("rcl_interfaces", "GetParameters"),
+        "rcl_interfaces/srv/GetParameterTypes" => call
+            .make::<rcl::GetParameterTypesRequest, rcl::GetParameterTypesResponse>(
+                "rcl_interfaces",
+                "GetParameterTypes",
+            ),
+        "rcl_interfaces/srv/DescribeParameters" => call
+            .make::<rcl::DescribeParametersRequest, rcl::DescribeParametersResponse>(
+                "rcl_interfaces",
+                "DescribeParameters",
+            ),
+        "std_srvs/srv/Empty" => call.make::<Nothing, Nothing>("std_srvs", "Empty"),
+        "std_srvs/srv/Trigger" => call.make::<Nothing, Outcome>("std_srvs", "Trigger"),
+        "std_srvs/srv/SetBool" => call.make::<Switch, Outcome>("std_srvs", "SetBool"),
+        "rcl_interfaces/srv/SetParameters" | "rcl_interfaces/srv/SetParametersAtomically" => {
+            Err(Failure::usage("use grainlab param set, which knows the types of values"))
+        }
+        other => Err(Failure::failed(format!(
+            "the definition of {other} is not known to this program: it calls the parameter services and std_srvs"
+        ))),
+    }?;
+    print(&answer)?;
+    Ok(Exit::Done)
+}

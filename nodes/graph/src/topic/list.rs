@@ -1,0 +1,53 @@
+//! `grainlab topic list`.
+
+use crate::observer::Observer;
+use crate::view::Common;
+use grainlab_console::{Failure, Table};
+use grainlab_node_kit::Exit;
+use serde::Serialize;
+
+/// Arguments of `grainlab topic list`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  grainlab topic list --types")]
+pub struct Args {
+    /// Print the types, and the numbers of publishers and subscriptions
+    #[arg(short = 't', long, visible_alias = "show-types")]
+    types: bool,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    /// One, unless publishers and subscriptions disagree.
+    types: Vec<String>,
+    publishers: usize,
+    subscriptions: usize,
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let graph = Observer::join()?.settled(args.common.patience());
+    let topics = graph.topics();
+    let rows: Vec<Row> = topics
+        .iter()
+        .map(|(name, topic)| Row {
+            name: (*name).to_owned(),
+            types: topic.types().into_iter().map(str::to_owned).collect(),
+            publishers: topic.publishers.len(),
+            subscriptions: topic.subscriptions.len(),
+        })
+        .collect();
+    args.common.show(&rows, || {
+        if !args.types {
+            return rows.iter().map(|row| format!("{}\n", row.name)).collect();
+        }
+        let mut table = Table::new(["topic", "type", "publishers", "subscriptions"]);
+        for row in &rows {
+            let counts = [row.publishers.to_string(), row.subscriptions.to_string()];
+            table.row([row.name.clone(), row.types.join(" and ")].into_iter().chain(counts));
+        }
+        table.text()
+    })?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,97 @@
+//! Subscribes to a topic of any type.
+
+use crate::graph::{is_reliable, is_transient_local};
+use crate::names::{absolute, type_parts};
+use crate::observer::Observer;
+use grainlab_console::Failure;
+use grainlab_console::network::tool_bus;
+use grainlab_msgs::{Qos, Topic, TypeInfo};
+use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake};
+use std::time::{Duration, Instant};
+
+/// Samples that may wait for this process: a second of the fastest topic.
+const DEPTH: u32 = 20_000;
+
+/// A subscription to one topic, of which no type needs to be known.
+pub(crate) struct Listener {
+    bus: DdsBus,
+    subscription: SubscriptionId,
+    /// Name and type.
+    pub(crate) topic: Topic,
+}
+
+/// The topic does not exist, with what is there.
+pub(super) fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Failure {
+    let known: Vec<&str> = known.collect();
+    let list = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    Failure::failed(format!(
+        "no topic {name} in this domain (ROS_DOMAIN_ID); topics are: {list}. See grainlab doctor"
+    ))
+}
+
+impl Listener {
+    /// Finds the topic and its type, and subscribes with what its publishers offer.
+    ///
+    /// `whole` asks for every sample, latched ones included; else losses are accepted, and no publisher keeps anything for
+    /// this process.
+    pub(crate) fn open(name: &str, whole: bool, patience: Duration) -> Result<Self, Failure> {
+        let name = absolute(name);
+        let graph = Observer::join()?.settled(patience);
+        let topics = graph.topics();
+        let Some(entry) = topics.get(name.as_str()) else {
+            return Err(unknown(&name, topics.keys().copied()));
+        };
+        let types = entry.types();
+        let type_name = match types.first() {
+            Some(one) if types.len() == 1 => one,
+            _ => {
+                let list = types.into_iter().collect::<Vec<_>>().join(" and ");
+                return Err(Failure::failed(format!("{name} has more than one type: {list}")));
+            }
+        };
+        let Some((package, short)) = type_parts(type_name) else {
+            return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
+        };
+        let offers = |policy: fn(&ros2_client::QosProfile) -> bool| {
+            !entry.publishers.is_empty() && entry.publishers.iter().all(|p| policy(&p.qos))
+        };
+        let reliable = whole && offers(is_reliable);
+        let qos = Qos { reliable, depth: DEPTH, transient_local: reliable && offers(is_transient_local) };
+        // The names of a topic are constants of the program everywhere else; one tool has one topic.
+        let constant = |text: &str| -> &'static str { String::from(text).leak() };
+        let info = TypeInfo::by_name(type_name).copied().unwrap_or(TypeInfo {
+            package: constant(package),
+            name: constant(short),
+            type_name: constant(type_name),
+            hash: "",
+            definition: "",
+        });
+        let topic = Topic { name: constant(&name), info, qos, writer: "", reproducible: false, summary: "" };
+        let mut bus = tool_bus("grainlab_topic")?;
+        let demand = if reliable { Demand::reliable(DEPTH) } else { Demand::best_effort(DEPTH) };
+        let subscription = bus.subscribe(&topic, demand).map_err(Failure::failed)?;
+        Ok(Self { bus, subscription, topic })
+    }
+
+    /// The samples that arrive before `end`; an interruption is an error with exit 130.
+    pub(crate) fn until(
+        &mut self,
+        end: Instant,
+        mut each: impl FnMut(Sample) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        loop {
+            while let Some(sample) = self.bus.take(self.subscription).map_err(Failure::failed)? {
+                if !each(sample)? {
+                    return Ok(());
+                }
+            }
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(());
+            }
+            if self.bus.wait(left) == Wake::Shutdown {
+                return Err(Failure::new(Exit::Interrupted, "interrupted"));
+            }
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! The output of these commands.
+
+use clap::ValueEnum;
+use grainlab_console::{Failure, json, print};
+use serde::Serialize;
+
+/// How to print a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OutputFormat {
+    /// Text.
+    #[default]
+    Text,
+    /// One JSON document; the keys are stable.
+    Json,
+}
+
+/// The arguments that every command has.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub(crate) struct Common {
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: OutputFormat,
+    /// Time limit of discovery, s
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    pub(crate) spin_time: f64,
+}
+
+impl Common {
+    pub(crate) fn patience(&self) -> std::time::Duration {
+        std::time::Duration::from_secs_f64(self.spin_time)
+    }
+
+    /// Prints the value as JSON, or as this text.
+    pub(crate) fn show<T: Serialize + ?Sized>(
+        &self,
+        value: &T,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), Failure> {
+        print(&match self.format {
+            OutputFormat::Text => text(),
+            OutputFormat::Json => json(value)?,
+        })
+    }
+}
+
+/// A time of at least 0 s, at most a day.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "a number of seconds".to_owned())?;
+    if (0.0..=86_400.0).contains(&value) { Ok(value) } else { Err("between 0 and 86400 s".into()) }
+}
