@@ -1,9 +1,9 @@
 //! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
-use super::acoustic_text;
-use super::inference::{Inference, Origin, by_origin};
-use super::read_back::InvertedPacking;
-use super::summary::Summary;
+use crate::acoustic_text;
+use crate::inference::{Inference, Origin, by_origin};
+use crate::read_back::InvertedPacking;
+use crate::summary::Summary;
 use grainlab_console::{Table, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::PackingReport;
@@ -24,7 +24,7 @@ const MOST_NOTES: usize = 1;
 const MOST_ROWS: usize = 10;
 
 /// The result of a run as text. `program` is the name of the binary on the command line.
-pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
+pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
     let mut lines: Vec<String> = ended(s.exit).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing at the end of a phase")),

@@ -1,9 +1,20 @@
 //! A measured packing as text.
 
-use super::measured_packing::MeasuredPacking;
+use crate::measured_packing::{self, MeasuredPacking};
+use crate::printer::Printed;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
+
+impl Printed for MeasuredPacking {
+    fn text(&self) -> String {
+        format!("{}, step {}\n{}", self.source, self.step, text(self))
+    }
+
+    fn table(packings: &[Self]) -> Table {
+        measured_packing::table(packings)
+    }
+}
 
 /// The block of one packing: structure in two lines, then the moduli, affine and relaxed.
 pub(crate) fn text(m: &MeasuredPacking) -> String {
