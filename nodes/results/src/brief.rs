@@ -25,7 +25,8 @@ const MOST_ROWS: usize = 10;
 
 /// The result of a run as text. `program` is the name of the binary on the command line.
 pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
-    let mut lines: Vec<String> = ended(s.exit).map(|why| row("Ended", &why)).into_iter().collect();
+    let mut lines: Vec<String> =
+        ended(s.exit, s.reason.as_deref()).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing at the end of a phase")),
         [state] => lines.extend(one(state)),
@@ -48,14 +49,16 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
 }
 
 /// What an exit code other than 0 means for the lines below it.
-fn ended(code: u8) -> Option<String> {
+fn ended(code: u8, reason: Option<&str>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let why = match exit {
         Exit::Done => return None,
         Exit::Failure => "a process failed; the last state is in the recording",
         Exit::Usage => "invalid arguments",
         Exit::DataLoss => "messages or results are missing in the recording",
-        Exit::PhysicsInvalid => "the loading path was not completed; the last state is in the recording",
+        Exit::PhysicsInvalid => {
+            reason.unwrap_or("the loading path was not completed; the last state is in the recording")
+        }
         Exit::Interrupted => "interrupted; the last state is in the recording",
     };
     Some(format!("with exit code {code}: {why}"))
@@ -276,7 +279,9 @@ mod tests {
     #[test]
     fn only_a_run_that_is_done_ends_without_a_reason() {
         for exit in Exit::ALL {
-            assert_eq!(ended(exit.code()).is_none(), exit == Exit::Done, "{exit:?}");
+            assert_eq!(ended(exit.code(), None).is_none(), exit == Exit::Done, "{exit:?}");
         }
+        let ended = ended(4, Some("phase 2 (rest) did not meet its end conditions")).unwrap();
+        assert_eq!(ended, "with exit code 4: phase 2 (rest) did not meet its end conditions");
     }
 }

@@ -51,7 +51,7 @@ pub struct ReadBack {
     /// Steps of the packings with a result, by topic.
     pub results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Processes on the bus that are not part of the run.
-    pub(crate) strangers: Vec<StrangerView>,
+    pub strangers: Vec<StrangerView>,
     /// Messages that could not be read.
     pub complaints: Vec<String>,
 }

@@ -17,7 +17,7 @@ pub struct Summary {
     pub(crate) wall_seconds: f64,
     pub(crate) nodes: Vec<NodeEnd>,
     /// Processes whose messages were left out.
-    pub strangers: Vec<StrangerView>,
+    pub(crate) strangers: Vec<StrangerView>,
     pub(crate) topics: Vec<TopicCount>,
     pub(crate) exchanges: Option<u64>,
     pub(crate) exchanges_per_second: Option<f64>,
@@ -31,8 +31,11 @@ pub struct Summary {
     pub(crate) film: Film,
     pub(crate) recording: Option<String>,
     pub(crate) exit: u8,
-    /// What is missing or could not be read, one line each.
-    pub warnings: Vec<String>,
+    /// Why `exit` is not 0, if the launcher knows.
+    #[serde(skip)]
+    pub(crate) reason: Option<String>,
+    /// Why the run did not end as it should, and what is missing or could not be read, one line each.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// One node of a run.
@@ -101,6 +104,7 @@ impl Summary {
     /// Combines the data of the launcher with those of the recording.
     pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
         let counters = Counters::of(back.reports.values());
+        let warnings = launched.reasons.iter().cloned().chain(back.complaints).collect();
         let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
         Self {
             scene: launched.scene,
@@ -119,7 +123,8 @@ impl Summary {
             film: back.film,
             recording: launched.recording,
             exit: launched.exit.code(),
-            warnings: back.complaints,
+            reason: launched.reasons.into_iter().next(),
+            warnings,
         }
     }
 }
@@ -143,4 +148,6 @@ pub struct Launched {
     pub recording: Option<String>,
     /// How the run ended.
     pub exit: Exit,
+    /// Why it did not end as it should, one line each.
+    pub reasons: Vec<String>,
 }

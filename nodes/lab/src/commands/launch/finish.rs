@@ -75,12 +75,14 @@ pub(super) fn finish(
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),
         exit,
+        reasons: supervised.reasons,
     };
+    back.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    // The launcher has printed its reasons.
+    back.complaints.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
-    summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
     // Printed before writing, so that a full disk does not lose the result.
     let printed = print(&match output.format {
