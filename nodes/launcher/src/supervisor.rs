@@ -299,6 +299,7 @@ impl Supervisor {
                     RunStatus::Failed => self.failed = Some(state.message),
                 }
             }
+            Event::Unmet(conditions) => self.progress.unmet(conditions),
             Event::Goodbye(pid) => {
                 self.left.insert(pid);
             }
