@@ -129,6 +129,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;
     let outlet = Outlet::new(printer, tape);
     if args.live {
+        let given = options.flags_given().join(", ");
+        if !given.is_empty() {
+            return Err(Failure::usage(format!("{given}: published packings have these data; leave it out")));
+        }
         live::run(&args.import.topic, args.count, &measure, outlet)
     } else {
         files::run(&args.files, &options, &measure, outlet)
