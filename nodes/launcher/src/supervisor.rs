@@ -48,6 +48,17 @@ const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 /// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
+/// What the launcher knows of the loading path of its run.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    /// Number of phases.
+    pub phases: usize,
+    /// The run starts from a packing, which is published as that of step 0.
+    pub starts_from_packing: bool,
+    /// The last packing is recorded within a phase: it may have no results.
+    pub ends_within: bool,
+}
+
 /// A run from its first process to its last.
 pub struct Supervisor {
     pub(super) children: Vec<Child>,
@@ -60,8 +71,7 @@ pub struct Supervisor {
     pub(super) terminate: Signal,
     hangup: Signal,
     pub(super) progress: Progress,
-    /// The last packing was recorded within a phase: it may have no results.
-    ends_within: bool,
+    outline: Outline,
     begun: bool,
     /// The step at which the run began or resumed.
     first_step: Option<u64>,
@@ -111,13 +121,7 @@ pub struct Received {
 
 impl Supervisor {
     /// Call this inside the runtime.
-    pub fn new(
-        plans: Vec<NodePlan>,
-        run: Run,
-        directory: &Path,
-        phases: usize,
-        ends_within: bool,
-    ) -> Result<Self, Failure> {
+    pub fn new(plans: Vec<NodePlan>, run: Run, directory: &Path, outline: Outline) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         let pending = PendingResults::of(&plans);
@@ -131,8 +135,8 @@ impl Supervisor {
             interrupt: handler(SignalKind::interrupt())?,
             terminate: handler(SignalKind::terminate())?,
             hangup: handler(SignalKind::hangup())?,
-            progress: Progress::new(phases),
-            ends_within,
+            progress: Progress::new(outline.phases),
+            outline,
             begun: false,
             first_step: None,
             finished: None,
@@ -248,7 +252,7 @@ impl Supervisor {
             let Some(step) = last else { return self.caught_up().await };
             match self.pending.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
-                ResultState::Declined(_) if self.ends_within => return self.caught_up().await,
+                ResultState::Declined(_) if self.outline.ends_within => return self.caught_up().await,
                 ResultState::Declined(node) => {
                     self.complain(format!("the last packing has no {}", nothing(node)));
                     return Exit::PhysicsInvalid;
@@ -257,7 +261,8 @@ impl Supervisor {
                     // Bursts through a long path may take any time; the run waits for a probe that works.
                     let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
-                        let of = if self.ends_within { Deadline::within_a_phase } else { Deadline::of };
+                        let of =
+                            if self.outline.ends_within { Deadline::within_a_phase } else { Deadline::of };
                         deadline = Some(of(standing));
                     }
                 }
@@ -323,7 +328,12 @@ impl Supervisor {
                 self.note_result(topics::MICROSTRUCTURE.name, step);
                 self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
+                let is_of_start =
+                    self.outline.starts_from_packing && self.pending.is_measured_by_node(&source);
                 self.progress.say(&match step {
+                    0 if is_of_start => {
+                        format!("the packing that the run starts from measured and inverted, by its {data}")
+                    }
                     // Data of an external instrument do not belong to a packing of the run.
                     0 => format!("the {data} of an instrument inverted"),
                     _ => format!("packing of step {step} measured and inverted, by its {data}"),
