@@ -5,6 +5,7 @@ use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_console::network::bus_as;
 use grainlab_dem_simulator::UNMET;
+use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
@@ -181,6 +182,9 @@ impl RunSubscriptions {
             for report in Report::from_message(&message) {
                 if let Some(step) = step_under(DECLINED_STEP, &report) {
                     send(Event::Declined(topics::WAVE_SPEEDS.name, step));
+                }
+                if let Some(step) = step_under(WITHOUT_MODULI, &report) {
+                    send(Event::Declined(topics::MODULI.name, step));
                 }
                 if let Some(step) = step_under(MEASURING, &report) {
                     send(Event::Probing(step));

@@ -142,9 +142,18 @@ fn counted(r: &PackingReport) -> String {
         format!(" about ({:.2}, {:.2}, {:.2})", axis.x, axis.y, axis.z)
     };
     format!(
-        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {:.4}{about}",
-        c.contacts, c.rattlers, c.coordination, c.mechanical_coordination, r.fabric.contact_anisotropy
+        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {}{about}",
+        c.contacts,
+        c.rattlers,
+        c.coordination,
+        c.mechanical_coordination,
+        fixed(eps(r), 4)
     )
+}
+
+/// The counted anisotropy; `None` without contacts.
+fn eps(r: &PackingReport) -> Option<f64> {
+    (r.contacts.contacts > 0).then_some(r.fabric.contact_anisotropy)
 }
 
 /// G12, G13 and Theta, MPa.
@@ -221,7 +230,7 @@ fn several(states: &[InvertedPacking]) -> Vec<String> {
             format!("{:.2}", r.pressure() / 1e3),
             format!("{:.3}", r.contacts.coordination),
             format!("{:.3}", r.contacts.mechanical_coordination),
-            format!("{:.4}", r.fabric.contact_anisotropy),
+            fixed(eps(r), 4),
             g12,
             g13,
             theta,

@@ -147,6 +147,9 @@ pub(crate) mod tests {
             "force_contacts",
             "mobilised_mean",
             "orientation_eps",
+            "eps",
+            "axis_eps",
+            "p4",
         ] {
             assert!(s[key].is_null(), "{key}");
         }

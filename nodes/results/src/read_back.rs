@@ -6,7 +6,7 @@ use crate::measured_packing::MeasuredPacking;
 use grainlab_core::Packing;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
 use grainlab_experiment::PathPosition;
-use grainlab_micromechanics::{PackingView, ReportParts, report};
+use grainlab_micromechanics::{PackingView, ReportParts, min_contacts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
@@ -186,8 +186,16 @@ pub fn read(recording: &Recording) -> ReadBack {
 /// The report from the messages about a packing.
 fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticStiffness>) -> PackingReport {
     let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
-    let elasticity =
-        stiffness.map_or(Elasticity::NotJammed(NotJammed::NotReported), |s| Elasticity::Jammed(Box::new(s)));
+    let elasticity = match (stiffness, packing.ids.len()) {
+        (Some(stiffness), _) => Elasticity::Jammed(Box::new(stiffness)),
+        (None, grains) => Elasticity::NotJammed(match contacts.contacts as usize {
+            0 => NotJammed::NoContacts { grains },
+            _ if contacts.rattlers as usize == grains => {
+                NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }
+            }
+            _ => NotJammed::NotReported,
+        }),
+    };
     let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
     report(&PackingView::new(packing), parts)
 }
