@@ -84,6 +84,12 @@ fn a_killed_member_is_continued_and_a_failed_one_costs_nothing_else() {
     assert_eq!(ended.code, Some(4), "{}{}", ended.stdout, ended.stderr);
     assert!(ended.stderr.contains("tiny-1 was interrupted, and is continued"), "{}", ended.stderr);
     assert!(ended.stderr.contains("-9 failed with exit code 4"), "{}", ended.stderr);
+    let members = std::fs::read_dir(folder.join("members")).unwrap().map(|m| m.unwrap().path());
+    let failed = members.into_iter().find(|m| m.to_string_lossy().ends_with("-9")).unwrap();
+    let summary: Value =
+        serde_json::from_slice(&std::fs::read(failed.join("summary.json")).unwrap()).unwrap();
+    let reason = summary["warnings"][0].as_str().unwrap();
+    assert!(reason.contains("(rest) did not meet its end conditions within"), "{summary}");
     let csv = String::from_utf8(gathered(&lab, "c")[0].clone()).unwrap();
     let rows: Vec<&str> = csv.lines().skip(1).map(|l| l.split(',').next().unwrap()).collect();
     assert_eq!(rows, ["tiny-1", "tiny-1", "tiny-2", "tiny-2"]);

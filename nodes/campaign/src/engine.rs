@@ -12,6 +12,7 @@ use crate::campaign::Campaign;
 use crate::folder::{Folder, MemberState};
 use crate::member::Member;
 use crate::progress::Progress;
+use crate::run_state::reason;
 use grainlab_console::{Failure, worse};
 use grainlab_node_kit::Exit;
 
@@ -71,14 +72,15 @@ fn report(campaign: &Campaign, folder: &Folder) -> Exit {
             MemberState::Finished => continue,
             MemberState::Failed(code) => {
                 let of = Exit::ALL.into_iter().find(|e| e.code() == code).unwrap_or(Exit::Failure);
-                (format!("failed with exit code {code}"), of)
+                let reason = reason(&folder.run(member)).map_or_else(String::new, |r| format!(": {r}"));
+                (format!("failed with exit code {code}{reason}"), of)
             }
             MemberState::Waiting => ("did not begin".to_owned(), Exit::Failure),
             MemberState::Interrupted => ("is not finished".to_owned(), Exit::Failure),
         };
         exit = worse(exit, code);
         grainlab_console::say!(
-            "grainlab: {} {why}: {}",
+            "grainlab: {} {why} ({})",
             member.name,
             folder.logs().join(format!("{}.log", member.name)).display()
         );

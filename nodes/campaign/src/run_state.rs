@@ -18,6 +18,8 @@ pub enum RunState {
 #[derive(Deserialize)]
 struct Summary {
     exit: u8,
+    #[serde(default)]
+    warnings: Vec<String>,
 }
 
 /// The state of the run in this directory. The launcher writes `launch.json` before the run, and `summary.json` after it,
@@ -29,6 +31,12 @@ pub fn run_state(directory: &Path) -> RunState {
         None if directory.join("launch.json").exists() => RunState::Begun,
         None => RunState::Absent,
     }
+}
+
+/// Why the run in this directory ended as it did, in one line; `None` if its summary has no reason.
+pub(crate) fn reason(directory: &Path) -> Option<String> {
+    let summary = std::fs::read(directory.join("summary.json")).ok()?;
+    serde_json::from_slice::<Summary>(&summary).ok()?.warnings.into_iter().next()
 }
 
 #[cfg(test)]
@@ -48,5 +56,8 @@ mod tests {
         assert_eq!(run_state(folder.path()), RunState::Begun);
         write("summary.json", "{\"scene\": \"s1\", \"exit\": 3}");
         assert_eq!(run_state(folder.path()), RunState::Ended(3));
+        assert_eq!(reason(folder.path()), None);
+        write("summary.json", "{\"exit\": 4, \"warnings\": [\"phase 2 did not end\"]}");
+        assert_eq!(reason(folder.path()).as_deref(), Some("phase 2 did not end"));
     }
 }

@@ -43,7 +43,8 @@ pub fn load(name_or_path: &str, sets: &[String], seed: Option<u64>) -> Result<Sc
     for set in sets.iter().chain(&seed) {
         draft.set(assignment(set).map_err(refused)?).map_err(refused)?;
     }
-    let start = draft.start().map(|file| start::read(&draft, &file)).transpose()?;
+    let start = draft.start().map(|file| start::read(&draft, &file)).transpose();
+    let start = start.map_err(|f| Failure::new(f.exit, format!("{}: {f}", with(sets))))?;
     let resolved = match &start {
         None => draft.resolve(),
         Some(found) => {
@@ -107,6 +108,18 @@ mod tests {
             "{failure}"
         );
         assert!(sets(&["grains"]).unwrap_err().to_string().contains("KEY=VALUE"));
+    }
+
+    #[test]
+    fn a_start_that_cannot_be_read_names_the_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        std::fs::write(&path, "base = 's2'\nname = 'mine'\nstart.packing = 'nothing.csv'").unwrap();
+        let failure = load(&path.to_string_lossy(), &[], None).unwrap_err().to_string();
+        assert!(
+            failure.contains("mine.toml: start.packing: ") && failure.contains("nothing.csv"),
+            "{failure}"
+        );
     }
 
     #[test]

@@ -20,5 +20,5 @@ mod settings;
 mod speculative_step;
 mod start;
 
-pub use node::{DemSimulator, SimulatorError};
+pub use node::{DemSimulator, SimulatorError, UNMET};
 pub use settings::{Mode, Settings, parameters};

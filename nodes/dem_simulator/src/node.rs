@@ -20,6 +20,9 @@ use grainlab_node_kit::{
 use grainlab_scene::Scene;
 use std::time::Duration;
 
+/// Key of the diagnostics with the end conditions of the phase that do not hold.
+pub const UNMET: &str = "unmet";
+
 /// Period of `run_state` where nothing happens, wall time.
 pub(crate) const BEAT: Duration = Duration::from_secs(1);
 /// Least period of `/clock`, wall time.
@@ -275,6 +278,7 @@ impl Node for DemSimulator {
         };
         Health::ok(message)
             .with("phase", phase)
+            .with(UNMET, if self.stage == Stage::Running { self.run.unmet() } else { String::new() })
             .with("step", self.run.engine().steps())
             .with("steps", steps)
             .with("exchanges", counts.exchanges)

@@ -9,5 +9,5 @@ mod node;
 mod settings;
 
 pub use measure::{MeasureError, Measured, measure, messages};
-pub use node::{Analysis, FabricAnalyzer};
+pub use node::{Analysis, FabricAnalyzer, WITHOUT_MODULI};
 pub use settings::{Settings, SettingsError, parameters};

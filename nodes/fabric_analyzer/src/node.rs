@@ -7,6 +7,9 @@ use grainlab_node_kit::{
     Bus, BusError, Declined, Health, Measure, PackingNode, Publisher, SampleId, Tally, Words, step_or_none,
 };
 
+/// Key of the diagnostics with the step of the last packing that was measured and has no moduli.
+pub const WITHOUT_MODULI: &str = "step_without_moduli";
+
 /// The analyzer: measures every packing, one after the other, on a worker thread.
 pub type FabricAnalyzer = PackingNode<Analysis>;
 
@@ -15,6 +18,7 @@ pub type FabricAnalyzer = PackingNode<Analysis>;
 pub struct Analysis {
     fabric: Publisher<Fabric>,
     moduli: Publisher<Moduli>,
+    without_moduli: Option<u64>,
 }
 
 impl Measure for Analysis {
@@ -28,6 +32,7 @@ impl Measure for Analysis {
         Ok(Self {
             fabric: Publisher::advertise(bus, &topics::FABRIC)?,
             moduli: Publisher::advertise(bus, &topics::MODULI)?,
+            without_moduli: None,
         })
     }
 
@@ -62,6 +67,7 @@ impl Measure for Analysis {
             Err(none) => {
                 log::warn!("packing of step {step} has a fabric but no moduli: {none}");
                 tally.count_without_network(none.to_string());
+                self.without_moduli = Some(step);
             }
         }
         Ok(())
@@ -78,6 +84,7 @@ impl Measure for Analysis {
         health
             .with("analysed", tally.measured)
             .with("without_network", tally.without_network)
+            .with(WITHOUT_MODULI, step_or_none(self.without_moduli))
             .with("failed", tally.failed)
             .with("last_step", step_or_none(tally.last_step))
     }

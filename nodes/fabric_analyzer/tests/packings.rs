@@ -1,7 +1,7 @@
 //! The analyzer node on the bus in memory, with a packing of known properties.
 
 use grainlab_core::{Cell, Contact, Mat3, Material, Vec3};
-use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, measure, parameters};
+use grainlab_fabric_analyzer::{FabricAnalyzer, MeasureError, Settings, WITHOUT_MODULI, measure, parameters};
 use grainlab_msgs::boundary::packing_message;
 use grainlab_msgs::msg::{ElasticStiffness, Fabric, Moduli, Packing};
 use grainlab_msgs::{to_cdr, topics};
@@ -116,6 +116,8 @@ fn without_a_network_there_is_a_fabric_and_a_warning_and_no_moduli() {
     assert!(moduli.take_valid(&mut bus).unwrap().is_none());
     let health = node.health();
     assert!(health.level == Level::Warn && health.message.contains("no contact network"), "{health:?}");
+    let (_, step) = health.values.iter().find(|(key, _)| key == WITHOUT_MODULI).unwrap();
+    assert_eq!(*step, message(-OVERLAP).step.to_string(), "the launcher does not wait for its moduli");
     source.publish(&mut bus, &message(OVERLAP)).unwrap();
     node.step(&mut node_bus).unwrap();
     assert!(moduli.take_valid(&mut bus).unwrap().is_some());

@@ -3,13 +3,11 @@
 //! - [`cli`]: the command line
 //! - [`commands`]: one module per command, with the checks of its arguments
 //! - [`memory`]: settings of the allocator
-//! - [`results`]: results as text, JSON and CSV: states, inferences, tables
 //! - [`tape`]: a recording of the messages that a node would publish
 
 mod cli;
 mod commands;
 mod memory;
-mod results;
 mod tape;
 
 fn main() -> std::process::ExitCode {

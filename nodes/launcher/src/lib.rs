@@ -27,4 +27,4 @@ mod watch;
 pub use nodes::{NodeKind, UnknownNode};
 pub use plan::{BUILT_IN, LaunchFile, NodePlan};
 pub use run::Run;
-pub use supervisor::{Received, Supervised, Supervisor};
+pub use supervisor::{Outline, Received, Supervised, Supervisor};

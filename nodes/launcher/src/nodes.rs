@@ -11,7 +11,7 @@ use grainlab_emt_inversion::EmtInversion;
 use grainlab_fabric_analyzer::FabricAnalyzer;
 use grainlab_msgs::{Topic, topics};
 use grainlab_node_kit::NodeSpec;
-use grainlab_node_kit::{Bus, Exit, Node, NodeError, ParameterSpec, Parameters, Scope};
+use grainlab_node_kit::{Bus, Exit, Names, Node, NodeError, ParameterSpec, Parameters, RosArgs, Scope};
 use grainlab_recorder::{self as recorder, Recorder, ResultSlot};
 use grainlab_recordings::input;
 use grainlab_servo_controller::ServoController;
@@ -106,6 +106,17 @@ impl NodeKind {
             scope: self.scope(),
             parameters: self.parameters(),
         }
+    }
+
+    /// The values of its parameters with these ROS arguments; the error is text.
+    pub(crate) fn parse(self, arguments: &[String]) -> Result<Parameters, String> {
+        let text = |e: &dyn fmt::Display| e.to_string();
+        let (ros, plain) = RosArgs::parse(arguments).map_err(|e| text(&e))?;
+        if let Some(word) = plain.first() {
+            return Err(format!("unexpected argument {word:?}; ROS arguments come after --ros-args"));
+        }
+        let names = Names::from_args(self.name(), &ros).map_err(|e| text(&e))?;
+        Parameters::resolve(&self.parameters(), self.name(), &names, &ros).map_err(|e| text(&e))
     }
 
     /// Number of such nodes that a run may have, as a range and as text: a second one of a unique node would

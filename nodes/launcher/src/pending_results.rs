@@ -125,6 +125,11 @@ impl PendingResults {
         });
     }
 
+    /// Whether a node of the run measures the data of this topic.
+    pub(crate) fn is_measured_by_node(&self, topic: &str) -> bool {
+        self.kinds.iter().any(|k| k.topic == topic && matches!(k.source, Source::Node(_)))
+    }
+
     fn of_topic<'a>(&'a mut self, topic: &str) -> impl Iterator<Item = &'a mut Kind> {
         self.kinds.iter_mut().filter(move |k| k.topic == topic)
     }
@@ -187,6 +192,7 @@ mod tests {
         d.measured("wave_speeds", 0);
         assert_eq!(d.state_of(9), ResultState::Complete, "speeds of no packing");
         d.measured("wave_speeds", 7);
+        assert!(d.is_measured_by_node("moduli") && !d.is_measured_by_node("wave_speeds"));
         assert_eq!(d.state_of(9), ResultState::Open(Source::Instrument));
         d.measured("wave_speeds", 9);
         assert_eq!(d.state_of(9), ResultState::Measured(Source::Instrument));

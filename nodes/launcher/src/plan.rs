@@ -47,6 +47,9 @@ pub enum PlanError {
     /// A required node is missing, or a node occurs too often.
     #[error("the launch file starts {count} of {node}; there must be {allowed}")]
     Count { node: NodeKind, count: usize, allowed: &'static str },
+    /// A node does not take these arguments.
+    #[error("executable {name}: {reason}")]
+    Arguments { name: String, reason: String },
     /// More processes than a run may have.
     #[error("the launch file starts {count} processes; a run has at most {most}")]
     Many { count: usize, most: usize },
@@ -105,6 +108,18 @@ impl NodePlan {
     /// Whether it is this node of grainlab.
     pub fn is(&self, node: NodeKind) -> bool {
         self.node == Some(node)
+    }
+
+    /// Refuses parameters that its node does not have, or whose values it does not take, before anything is started.
+    ///
+    /// # Errors
+    /// If there is such a parameter; the text names the process, the parameter and its valid values.
+    pub fn check_parameters(&self) -> Result<(), PlanError> {
+        let Some(node) = self.node else { return Ok(()) };
+        // After `run NODE`.
+        node.parse(&self.arguments[2..])
+            .map(drop)
+            .map_err(|reason| PlanError::Arguments { name: self.name.clone(), reason })
     }
 
     /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.

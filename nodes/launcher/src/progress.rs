@@ -12,6 +12,8 @@ pub(crate) struct Progress {
     begin: Instant,
     phases: usize,
     phase: Option<u32>,
+    /// The end conditions of the phase that did not hold when the simulator last reported.
+    unmet: String,
     finished: bool,
     printed_at: Instant,
 }
@@ -20,7 +22,7 @@ impl Progress {
     /// For a path with this many phases.
     pub(crate) fn new(phases: usize) -> Self {
         let now = Instant::now();
-        Self { begin: now, phases, phase: None, finished: false, printed_at: now }
+        Self { begin: now, phases, phase: None, unmet: String::new(), finished: false, printed_at: now }
     }
 
     /// Prints a line with the time.
@@ -34,6 +36,11 @@ impl Progress {
             self.printed_at = Instant::now();
             self.say(text);
         }
+    }
+
+    /// The end conditions of the present phase that do not hold: for the next line of a long phase.
+    pub(crate) fn unmet(&mut self, conditions: String) {
+        self.unmet = conditions;
     }
 
     /// Prints a line if a phase began or takes long.
@@ -50,15 +57,20 @@ impl Progress {
         {
             return;
         }
-        let verb = if self.phase == Some(state.phase) { "continues at" } else { "from" };
-        self.phase = Some(state.phase);
         self.printed_at = Instant::now();
-        let (number, of) = (state.phase + 1, self.phases);
-        let left_out = if verb == "from" && !state.message.is_empty() {
-            format!(", {}", state.message)
+        let (number, of, name) = (state.phase + 1, self.phases, &state.phase_name);
+        if self.phase.replace(state.phase) == Some(state.phase) {
+            let unmet = after(": ", &self.unmet);
+            self.say(&format!("phase {number} of {of}, {name} continues at step {step}{unmet}"));
         } else {
-            String::new()
-        };
-        self.say(&format!("phase {number} of {of}, {} {verb} step {step}{left_out}", state.phase_name));
+            self.unmet.clear();
+            let left_out = after(", ", &state.message);
+            self.say(&format!("phase {number} of {of}, {name} from step {step}{left_out}"));
+        }
     }
+}
+
+/// A text after a separator; nothing if the text is empty.
+fn after(separator: &str, text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!("{separator}{text}") }
 }

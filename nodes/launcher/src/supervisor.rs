@@ -48,6 +48,17 @@ const SIMULATOR: NodeKind = NodeKind::DemSimulator;
 /// The last packing is being measured by the probe, or is in its queue.
 const PROBED: ResultState = ResultState::Open(Source::Node(NodeKind::AcousticProbe));
 
+/// What the launcher knows of the loading path of its run.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    /// Number of phases.
+    pub phases: usize,
+    /// The run starts from a packing, which is published as that of step 0.
+    pub starts_from_packing: bool,
+    /// The last packing is recorded within a phase: it may have no results.
+    pub ends_within: bool,
+}
+
 /// A run from its first process to its last.
 pub struct Supervisor {
     pub(super) children: Vec<Child>,
@@ -60,8 +71,7 @@ pub struct Supervisor {
     pub(super) terminate: Signal,
     hangup: Signal,
     pub(super) progress: Progress,
-    /// The last packing was recorded within a phase: it may have no results.
-    ends_within: bool,
+    outline: Outline,
     begun: bool,
     /// The step at which the run began or resumed.
     first_step: Option<u64>,
@@ -77,6 +87,8 @@ pub struct Supervisor {
     crashes: Vec<u64>,
     /// A third-party program failed.
     foreign_failure: bool,
+    /// Why the run did not end as it should.
+    reasons: Vec<String>,
     /// Received results: steps of packings by topic.
     results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Ids of the processes that sent their last report.
@@ -88,6 +100,8 @@ pub struct Supervisor {
 pub struct Supervised {
     /// Its exit.
     pub exit: Exit,
+    /// Why it is not [`Exit::Done`], one line each, as printed.
+    pub reasons: Vec<String>,
     /// Every process with its last process id.
     pub children: Vec<Child>,
     /// From the first start to the last end.
@@ -107,13 +121,7 @@ pub struct Received {
 
 impl Supervisor {
     /// Call this inside the runtime.
-    pub fn new(
-        plans: Vec<NodePlan>,
-        run: Run,
-        directory: &Path,
-        phases: usize,
-        ends_within: bool,
-    ) -> Result<Self, Failure> {
+    pub fn new(plans: Vec<NodePlan>, run: Run, directory: &Path, outline: Outline) -> Result<Self, Failure> {
         let handler = |kind| signal(kind).map_err(|e| Failure::failed(format!("signal handler: {e}")));
         let (report_end, ended) = unbounded_channel();
         let pending = PendingResults::of(&plans);
@@ -127,8 +135,8 @@ impl Supervisor {
             interrupt: handler(SignalKind::interrupt())?,
             terminate: handler(SignalKind::terminate())?,
             hangup: handler(SignalKind::hangup())?,
-            progress: Progress::new(phases),
-            ends_within,
+            progress: Progress::new(outline.phases),
+            outline,
             begun: false,
             first_step: None,
             finished: None,
@@ -139,6 +147,7 @@ impl Supervisor {
             stopped: Stopped::default(),
             crashes: Vec::new(),
             foreign_failure: false,
+            reasons: Vec::new(),
             results: BTreeMap::new(),
             left: BTreeSet::new(),
         })
@@ -156,26 +165,26 @@ impl Supervisor {
             Ok(()) if self.blind => Exit::Failure,
             Ok(()) => self.attend(&mut events).await,
             Err(failure) => {
-                grainlab_console::say!("grainlab: {failure}");
+                self.complain(failure.to_string());
                 failure.exit
             }
         };
         if self.end_all(exit, &mut events, &watch).await {
             exit = Exit::Interrupted;
         }
-        let code = |node: NodeKind| self.children.iter().find(|c| c.plan.is(node)).and_then(|c| c.code);
-        if code(RECORDER) != Some(0) {
+        if self.code(RECORDER) != Some(0) {
             // Data loss is in the table; other errors are only in the recorder's log.
-            if let Some(recorder) = self.children.iter().find(|c| c.plan.is(RECORDER) && c.code == Some(1)) {
-                grainlab_console::say!("grainlab: {RECORDER} ended with exit code 1:");
-                recorder.quote_log(&self.logs);
+            let failed = self.children.iter().position(|c| c.plan.is(RECORDER) && c.code == Some(1));
+            if let Some(recorder) = failed {
+                self.complain(format!("{RECORDER} ended with exit code 1: see logs/{RECORDER}.log"));
+                self.children[recorder].quote_log(&self.logs);
             }
             exit = worse(exit, Exit::DataLoss);
         }
         // A simulator that ended with an error fails the run, whatever was received before.
-        let simulator = code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
+        let simulator = self.code(SIMULATOR).and_then(Exit::from_code).unwrap_or(Exit::Failure);
         if exit == Exit::Done && simulator != Exit::Done {
-            grainlab_console::say!("grainlab: {SIMULATOR} ended with exit code {}", simulator.code());
+            self.complain(format!("{SIMULATOR} ended with exit code {}", simulator.code()));
             exit = simulator;
         }
         if self.foreign_failure {
@@ -184,7 +193,13 @@ impl Supervisor {
         drop(watch);
         let packings = self.finished.as_ref().map(|state| state.packings);
         let received = Received { packings, results: self.results };
-        Ok(Supervised { exit, children: self.children, wall: begin.elapsed(), received })
+        let (reasons, children) = (self.reasons, self.children);
+        Ok(Supervised { exit, reasons, children, wall: begin.elapsed(), received })
+    }
+
+    /// The exit code of a node that has ended by itself.
+    fn code(&self, node: NodeKind) -> Option<i32> {
+        self.children.iter().find(|c| c.plan.is(node))?.code
     }
 
     fn start_all(&mut self) -> Result<(), Failure> {
@@ -222,8 +237,9 @@ impl Supervisor {
                     if let Some(late) = deadline.as_mut()
                         && late.limit.is_over(suspended)
                     {
-                        grainlab_console::say!("grainlab: {}", late.message);
-                        return late.exit;
+                        let (message, exit) = (std::mem::take(&mut late.message), late.exit);
+                        self.complain(message);
+                        return exit;
                     }
                     if !self.begun && beginning.is_over(suspended) {
                         beginning = TimeLimit::new(BEGINS_WITHIN);
@@ -236,16 +252,17 @@ impl Supervisor {
             let Some(step) = last else { return self.caught_up().await };
             match self.pending.state_of(step) {
                 ResultState::Complete => return self.caught_up().await,
-                ResultState::Declined(_) if self.ends_within => return self.caught_up().await,
+                ResultState::Declined(_) if self.outline.ends_within => return self.caught_up().await,
                 ResultState::Declined(node) => {
-                    grainlab_console::say!("grainlab: the last packing has no {}", nothing(node));
+                    self.complain(format!("the last packing has no {}", nothing(node)));
                     return Exit::PhysicsInvalid;
                 }
                 standing => {
                     // Bursts through a long path may take any time; the run waits for a probe that works.
                     let at_work = std::mem::take(&mut self.probing) && standing == PROBED;
                     if deadline.as_ref().is_none_or(|known| known.of != standing || at_work) {
-                        let of = if self.ends_within { Deadline::within_a_phase } else { Deadline::of };
+                        let of =
+                            if self.outline.ends_within { Deadline::within_a_phase } else { Deadline::of };
                         deadline = Some(of(standing));
                     }
                 }
@@ -287,6 +304,7 @@ impl Supervisor {
                     RunStatus::Failed => self.failed = Some(state.message),
                 }
             }
+            Event::Unmet(conditions) => self.progress.unmet(conditions),
             Event::Goodbye(pid) => {
                 self.left.insert(pid);
             }
@@ -310,7 +328,12 @@ impl Supervisor {
                 self.note_result(topics::MICROSTRUCTURE.name, step);
                 self.pending.inverted(&source, step, member);
                 let data = source.replace('_', " ");
+                let is_of_start =
+                    self.outline.starts_from_packing && self.pending.is_measured_by_node(&source);
                 self.progress.say(&match step {
+                    0 if is_of_start => {
+                        format!("the packing that the run starts from measured and inverted, by its {data}")
+                    }
                     // Data of an external instrument do not belong to a packing of the run.
                     0 => format!("the {data} of an instrument inverted"),
                     _ => format!("packing of step {step} measured and inverted, by its {data}"),
@@ -320,10 +343,16 @@ impl Supervisor {
                 grainlab_console::say!("grainlab: {text} and is not of this run: it is ignored")
             }
             Event::Failed(message) => {
-                grainlab_console::say!("grainlab: the launcher cannot use the bus: {message}; the run ends");
+                self.complain(format!("the launcher cannot use the bus: {message}; the run ends"));
                 self.blind = true;
             }
         }
+    }
+
+    /// Prints why the run does not end as it should, and keeps it for the result.
+    fn complain(&mut self, reason: String) {
+        grainlab_console::say!("grainlab: {reason}");
+        self.reasons.push(reason);
     }
 
     /// Data of an external instrument do not belong to a packing of the run.
@@ -383,7 +412,8 @@ impl Supervisor {
             _ => Exit::Failure,
         };
         let reason = self.failed.as_deref().filter(|_| node == SIMULATOR).unwrap_or("the run ends");
-        grainlab_console::say!("grainlab: {name} {how}: {reason}");
+        let text = format!("{name} {how}: {reason}");
+        self.complain(text);
         self.children[ended.index].quote_log(&self.logs);
         Some(exit)
     }
@@ -400,7 +430,7 @@ impl Supervisor {
         if child.code == Some(0) {
             self.progress.say(&format!("{} {how}", child.plan.name));
         } else {
-            grainlab_console::say!("grainlab: {} {how}: see logs/{}.log", child.plan.name, child.plan.name);
+            self.complain(format!("{name} {how}: see logs/{name}.log", name = child.plan.name));
             self.foreign_failure = true;
         }
         None
@@ -412,9 +442,9 @@ impl Supervisor {
         self.crashes.push(packings);
         // Three attempts ended at the same packing: a fourth one would, too.
         if self.crashes.iter().filter(|known| **known == packings).count() > 3 {
-            grainlab_console::say!(
-                "grainlab: {SIMULATOR} {how}, for the fourth time after packing {packings}: not restarted"
-            );
+            self.complain(format!(
+                "{SIMULATOR} {how}, for the fourth time after packing {packings}: not restarted"
+            ));
             self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
@@ -432,10 +462,8 @@ impl Supervisor {
         let now = Instant::now();
         let recent = child.restarts.iter().filter(|at| now.duration_since(**at) < RESTART_WINDOW).count() + 1;
         if recent > RESTARTS {
-            grainlab_console::say!(
-                "grainlab: {name} {how}, {recent} times within {} s: not restarted",
-                RESTART_WINDOW.as_secs()
-            );
+            let window = RESTART_WINDOW.as_secs();
+            self.complain(format!("{name} {how}, {recent} times within {window} s: not restarted"));
             self.children[index].quote_log(&self.logs);
             return Some(Exit::Failure);
         }
@@ -448,7 +476,7 @@ impl Supervisor {
         sleep(RESTART_PAUSE).await;
         let started = self.start(index);
         started.err().map(|failure| {
-            grainlab_console::say!("grainlab: {failure}");
+            self.complain(failure.to_string());
             failure.exit
         })
     }

@@ -4,6 +4,8 @@ use crate::run::Run;
 use grainlab_acoustic_probe::{DECLINED_STEP, MEASURING};
 use grainlab_console::Failure;
 use grainlab_console::network::bus_as;
+use grainlab_dem_simulator::UNMET;
+use grainlab_fabric_analyzer::WITHOUT_MODULI;
 use grainlab_msgs::boundary::RunStateReading;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::msg::{Fabric, Microstructure, Moduli, RunState, WaveSpeeds};
@@ -65,6 +67,8 @@ pub(crate) enum Event {
     /// The process with this member number inferred the microstructure of the packing of this step from data of this
     /// topic.
     Microstructure { source: String, step: u64, member: u8 },
+    /// The end conditions of the present phase that do not hold.
+    Unmet(String),
     /// The process with this id sent its last report.
     Goodbye(u32),
     /// The bus is open: messages are received from now on.
@@ -179,8 +183,14 @@ impl RunSubscriptions {
                 if let Some(step) = step_under(DECLINED_STEP, &report) {
                     send(Event::Declined(topics::WAVE_SPEEDS.name, step));
                 }
+                if let Some(step) = step_under(WITHOUT_MODULI, &report) {
+                    send(Event::Declined(topics::MODULI.name, step));
+                }
                 if let Some(step) = step_under(MEASURING, &report) {
                     send(Event::Probing(step));
+                }
+                if let Some(unmet) = value_under(UNMET, &report) {
+                    send(Event::Unmet(unmet.to_owned()));
                 }
                 if report.is_final() {
                     send(Event::Goodbye(report.pid));
@@ -225,8 +235,12 @@ fn strangers(bus: &dyn Bus) -> Vec<(&'static str, Stranger)> {
     OF_THE_RUN.iter().flat_map(|topic| -> Vec<_> { of(topic) }).collect()
 }
 
-/// The step that an acoustic probe reports under this key.
+/// The step that a node reports under this key.
 fn step_under(key: &str, report: &Report) -> Option<u64> {
-    let (_, step) = report.health.values.iter().find(|(k, _)| k == key)?;
-    step.parse().ok()
+    value_under(key, report)?.parse().ok()
+}
+
+/// The value that a node reports under this key.
+fn value_under<'a>(key: &str, report: &'a Report) -> Option<&'a str> {
+    report.health.values.iter().find(|(k, _)| k == key).map(|(_, value)| value.as_str())
 }

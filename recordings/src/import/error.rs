@@ -167,6 +167,13 @@ pub enum ImportError {
         /// The error.
         problem: String,
     },
+    /// Data were given for a recording, which has its own.
+    #[error(
+        "a recording has its own cell, grains, material, friction and forces: leave out {}, or export the packing with \
+         `grainlab bag export` and analyze the file",
+        .0.join(", ")
+    )]
+    HasItsOwn(Vec<&'static str>),
     /// The file contains no packing.
     #[error("it contains no packing")]
     Empty,

@@ -15,12 +15,17 @@ use crate::reader::{Message, ReadError, Recording, Selection};
 /// warnings.
 ///
 /// # Errors
-/// If the topic does not exist, carries another type, or a message on it is not a packing.
+/// If the options give data that a recording has itself, the topic does not exist or carries another type, or a message on it
+/// is not a packing.
 pub fn each(
     recording: &Recording,
     options: &ImportOptions,
     take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
 ) -> Result<(), ImportError> {
+    let given = options.flags_given();
+    if !given.is_empty() {
+        return Err(ImportError::HasItsOwn(given));
+    }
     let topic = options.topic.as_deref().unwrap_or(topics::PACKING.name);
     let channel = recording.channel(topic)?;
     if channel.ros_type != msg::Packing::TYPE {

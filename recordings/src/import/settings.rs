@@ -33,6 +33,25 @@ pub struct ImportOptions {
     pub contact_columns: Vec<String>,
 }
 
+impl ImportOptions {
+    /// The command-line flags of the data given: all of them, except the topic, are for files that lack these data.
+    pub fn flags_given(&self) -> Vec<&'static str> {
+        [
+            ("--cell", self.cell.is_some()),
+            ("--shear-modulus", self.shear_modulus.is_some()),
+            ("--poisson", self.poisson_ratio.is_some()),
+            ("--density", self.density.is_some()),
+            ("--friction", self.friction.is_some()),
+            ("--contact-law", self.law.is_some()),
+            ("--radius", self.radius.is_some()),
+            ("--contact-forces", self.contact_forces.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(flag, given)| given.then_some(flag))
+        .collect()
+    }
+}
+
 /// The properties in a file, to be completed by the options.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Known {

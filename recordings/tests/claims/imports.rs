@@ -277,3 +277,17 @@ fn the_format_is_recognised_by_name_and_then_by_content() {
     std::fs::write(&broken, [0x1f, 0x8b, 8, 0, 1]).unwrap();
     assert!(matches!(load(&broken, &glass()), Err(ImportError::Io { .. })));
 }
+
+#[test]
+fn a_recording_refuses_data_that_it_has_itself_and_names_the_flags() {
+    let root = tempfile::tempdir().unwrap();
+    let (_, bytes) = crate::support::run_in(&root, 100);
+    let recording = grainlab_recordings::Recording::from_bytes("r.mcap", bytes).unwrap();
+    let options =
+        ImportOptions { shear_modulus: Some(29e9), friction: Some(0.3), ..ImportOptions::default() };
+    let taken = grainlab_recordings::import::recording::each(&recording, &options, &mut |_| {
+        panic!("a packing is taken with other data")
+    });
+    let error = taken.unwrap_err().to_string();
+    assert!(error.contains("leave out --shear-modulus, --friction"), "{error}");
+}

@@ -4,6 +4,9 @@ use crate::moduli::Modulus;
 use grainlab_core::results::InferredQuantity;
 use std::fmt;
 
+/// Decimals beyond which two numbers are printed as equal.
+const MOST_DIGITS: usize = 16;
+
 /// A limitation of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
@@ -126,25 +129,23 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Warning::CoordinationOutsideFit { quantity, value, range: [low, high] } => {
-                if value < low {
+            Warning::CoordinationOutsideFit { quantity, value, range } => {
+                let [shown, low, high] = apart(*value, *range, 3);
+                if *value < range[0] {
                     return write!(
                         f,
-                        "{quantity} = {value:.3} is below {low:.3}, the lowest of the calibration's packings"
+                        "{quantity} = {shown} is below {low}, the lowest of the calibration's packings"
                     );
                 }
+                write!(f, "{quantity} = {shown} is above {high}, the highest of the calibration's packings")
+            }
+            Warning::PressureOutsideFit { pressure, range } => {
+                let [shown, low, high] = apart(pressure / 1e3, range.map(|p| p / 1e3), 4);
                 write!(
                     f,
-                    "{quantity} = {value:.3} is above {high:.3}, the highest of the calibration's packings"
+                    "a pressure of {shown} kPa is outside {low} to {high} kPa, the range of the calibration's packings"
                 )
             }
-            Warning::PressureOutsideFit { pressure, range: [low, high] } => write!(
-                f,
-                "a pressure of {:.4} kPa is outside {:.4} to {:.4} kPa, the range of the calibration's packings",
-                pressure / 1e3,
-                low / 1e3,
-                high / 1e3
-            ),
             Warning::CoordinationImpossible { coordination } => {
                 write!(
                     f,
@@ -160,10 +161,10 @@ impl fmt::Display for Warning {
                     "eps = {eps:.4} is outside [-1/2, 1]: the contact density would be negative in some directions"
                 )
             }
-            Warning::EpsOutsideFit { eps, range: [low, high] } => write!(
-                f,
-                "eps = {eps:.4} is outside [{low:.3}, {high:.3}], the range of the calibration's packings"
-            ),
+            Warning::EpsOutsideFit { eps, range } => {
+                let [shown, low, high] = apart(*eps, *range, 4);
+                write!(f, "eps = {shown} is outside [{low}, {high}], the range of the calibration's packings")
+            }
             Warning::GammaLarge { g } => {
                 write!(
                     f,
@@ -183,11 +184,14 @@ impl fmt::Display for Warning {
                     "the solid fraction is not known: taken as {phi:.3}, with the scatter of the calibration's packings"
                 )
             }
-            Warning::SolidFractionOutsideFit { phi, range: [low, high] } => write!(
-                f,
-                "the solid fraction {phi:.4} is outside {low:.3} to {high:.3}, the range of the calibration's packings: k is \
-                 not reliable"
-            ),
+            Warning::SolidFractionOutsideFit { phi, range } => {
+                let [shown, low, high] = apart(*phi, *range, 4);
+                write!(
+                    f,
+                    "the solid fraction {shown} is outside {low} to {high}, the range of the calibration's packings: k is \
+                     not reliable"
+                )
+            }
             Warning::OtherGrains { nu, calibrated } => write!(
                 f,
                 "the Poisson ratio of the grains is {nu}, that of the calibration {calibrated}: moduli are scaled by the \
@@ -225,5 +229,35 @@ impl fmt::Display for Warning {
                  degrees of freedom, {modulus} is {sigma:.1} sigma from its prediction by the others"
             ),
         }
+    }
+}
+
+/// A value outside a range, and the ends of the range, with `digits` decimals, or more if the value and the nearer end would
+/// look equal.
+fn apart(value: f64, range: [f64; 2], digits: usize) -> [String; 3] {
+    let [low, high] = range;
+    let end = if value < low { low } else { high };
+    let differ = |digits: &usize| format!("{value:.digits$}") != format!("{end:.digits$}");
+    let digits = (digits..=MOST_DIGITS).find(differ).unwrap_or(MOST_DIGITS);
+    [value, low, high].map(|v| format!("{v:.digits$}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_just_outside_a_range_is_printed_outside_of_it() {
+        let text = |phi| Warning::SolidFractionOutsideFit { phi, range: [0.61834, 0.64663] }.to_string();
+        assert!(text(0.65).starts_with("the solid fraction 0.6500 is outside 0.6183 to 0.6466,"));
+        assert!(text(0.64667).starts_with("the solid fraction 0.6467 is outside 0.6183 to 0.6466,"));
+        assert!(text(0.646634).starts_with("the solid fraction 0.646634 is outside 0.618340 to 0.646630,"));
+        assert!(text(0.618339).starts_with("the solid fraction 0.618339 is outside 0.618340 to 0.646630,"));
+        let text = Warning::CoordinationOutsideFit {
+            quantity: InferredQuantity::Z,
+            value: 4.000_01,
+            range: [3.0, 4.0],
+        };
+        assert!(text.to_string().starts_with("z = 4.00001 is above 4.00000,"), "{text}");
     }
 }

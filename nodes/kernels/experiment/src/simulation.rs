@@ -217,14 +217,7 @@ impl Simulation {
         self.engine.gather();
         self.observables = self.engine.observables()?;
         self.sequence += 1;
-        let input = Observation {
-            time: self.engine.time(),
-            stress: self.observables.stress.tensor,
-            strain: logarithmic_strain(&self.phase_deformation),
-            solid_fraction: self.observables.solid_fraction,
-            unbalanced: self.observables.unbalanced,
-            speed: self.engine.speed(),
-        };
+        let input = self.observation();
         let energy = self.engine.energy();
         let index = self.path.phase;
         match self.path.observe(&self.scene, &input)? {
@@ -248,6 +241,24 @@ impl Simulation {
                 Ok(StepOutcome { ended, packing_due: publish, finished, energy })
             }
         }
+    }
+
+    /// The present state, as the path evaluates it.
+    fn observation(&self) -> Observation {
+        Observation {
+            time: self.engine.time(),
+            stress: self.observables.stress.tensor,
+            strain: logarithmic_strain(&self.phase_deformation),
+            solid_fraction: self.observables.solid_fraction,
+            unbalanced: self.observables.unbalanced,
+            speed: self.engine.speed(),
+        }
+    }
+
+    /// The conditions of the present phase that do not hold, each with its value and its bound, in one line; empty once the
+    /// path is done.
+    pub fn unmet(&self) -> String {
+        self.path.unmet(&self.scene, &self.observation())
     }
 
     /// Progress of the phase.

@@ -1,6 +1,7 @@
 //! The loading path as a state machine.
 
 use crate::model::{Condition, Measure, Phase, Scene};
+use crate::until::COMPONENTS;
 use grainlab_core::{ComponentControl, SymTensor};
 
 /// The state of the packing that the path evaluates at each exchange.
@@ -86,8 +87,7 @@ impl PathState {
     pub fn observe(&mut self, scene: &Scene, seen: &Observation) -> Result<PathEvent, PathError> {
         let Some(phase) = scene.phases.get(self.phase) else { return Ok(PathEvent::Stay) };
         let elapsed = seen.time - self.began;
-        let unmet: Vec<_> = phase.until.all.iter().filter(|c| !holds(c, phase, seen, elapsed)).collect();
-        if unmet.is_empty() {
+        if phase.until.all.iter().all(|c| holds(c, phase, seen, elapsed)) {
             let since = *self.holding_since.get_or_insert(seen.time);
             if seen.time - since >= phase.until.hold {
                 *self = PathState { phase: self.phase + 1, began: seen.time, holding_since: None };
@@ -102,12 +102,25 @@ impl PathState {
             self.holding_since = None;
         }
         if elapsed > phase.until.timeout {
-            let unmet: Vec<String> = unmet.iter().map(|c| describe(c, phase, seen, elapsed)).collect();
-            let unmet = if unmet.is_empty() { "not held long enough".into() } else { unmet.join(", ") };
+            let unmet = self.unmet(scene, seen);
             let (index, name, timeout) = (self.phase, phase.name.clone(), phase.until.timeout);
             return Err(PathError::Timeout { index, name, timeout, unmet });
         }
         Ok(PathEvent::Stay)
+    }
+
+    /// The conditions of the present phase that do not hold, each with its value and its bound; or for how long all of them
+    /// have held. Empty once the path is done.
+    pub fn unmet(&self, scene: &Scene, seen: &Observation) -> String {
+        let Some(phase) = self.phase(scene) else { return String::new() };
+        let elapsed = seen.time - self.began;
+        let unmet = phase.until.all.iter().filter(|c| !holds(c, phase, seen, elapsed));
+        let unmet: Vec<String> = unmet.map(|c| describe(c, phase, seen, elapsed)).collect();
+        if unmet.is_empty() {
+            let held = seen.time - self.holding_since.unwrap_or(seen.time);
+            return format!("every condition has held for {held:.4e} s of {:e} s", phase.until.hold);
+        }
+        unmet.join(", ")
     }
 }
 
@@ -148,12 +161,37 @@ fn holds(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64)
     }
 }
 
+/// The key of a condition on this measure, without its direction.
+fn name(measure: Measure) -> String {
+    match measure {
+        Measure::SolidFraction => "solid_fraction".to_owned(),
+        Measure::Elapsed => "elapsed".to_owned(),
+        Measure::Strain(c) => format!("strain {}", COMPONENTS[c]),
+        Measure::Stress(c) => format!("stress {}", COMPONENTS[c]),
+        Measure::Pressure => "pressure".to_owned(),
+        Measure::Deviator => "deviator".to_owned(),
+        Measure::Unbalanced => "unbalanced".to_owned(),
+        Measure::Speed => "speed".to_owned(),
+    }
+}
+
+/// A value with five digits, or with all of them if it would look equal to its bound.
+fn beside(value: f64, bound: f64) -> String {
+    let short = format!("{value:.4e}");
+    if short.parse() == Ok(bound) { format!("{value:e}") } else { short }
+}
+
 fn describe(condition: &Condition, phase: &Phase, seen: &Observation, elapsed: f64) -> String {
     match *condition {
-        Condition::AtLeast(m, v) => format!("{m:?} is {:.4e}, below {v:e}", measured(m, seen, elapsed)),
-        Condition::AtMost(m, v) => format!("{m:?} is {:.4e}, above {v:e}", measured(m, seen, elapsed)),
+        Condition::AtLeast(m, v) => {
+            format!("{} is {}, below {v:e}", name(m), beside(measured(m, seen, elapsed), v))
+        }
+        Condition::AtMost(m, v) => {
+            format!("{} is {}, above {v:e}", name(m), beside(measured(m, seen, elapsed), v))
+        }
         Condition::OnTarget { fraction } => {
-            format!("stress is off target by {:.4e}, above {fraction:e}", target_error(phase, seen))
+            let error = beside(target_error(phase, seen), fraction);
+            format!("stress is off target by {error}, above {fraction:e}")
         }
     }
 }

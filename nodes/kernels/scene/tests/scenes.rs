@@ -187,7 +187,11 @@ fn the_last_phase_finishes_the_path_and_a_timeout_names_what_was_not_met() {
     let Err(PathError::Timeout { index: 5, unmet, .. }) = state.observe(&scene, &off) else {
         panic!("a timeout")
     };
-    assert!(unmet.contains("Unbalanced") && !unmet.contains("target"), "{unmet}");
+    assert!(unmet.contains("unbalanced is ") && !unmet.contains("target"), "{unmet}");
+    // As it is printed, the value is beyond its bound.
+    let limit = Observation { unbalanced: 1.000_000_1e-6, ..seen(2.4) };
+    let printed = state.unmet(&scene, &limit);
+    assert!(printed.starts_with("unbalanced is 1.0000001e-6, above 1e-6"), "{printed}");
     let on = Observation { unbalanced: 1e-7, ..seen(2.4) };
     let ended = PathEvent::PhaseEnded { reference: false, publish: true, finished: true };
     assert_eq!(state.observe(&scene, &on), Ok(ended));

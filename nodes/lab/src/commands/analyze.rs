@@ -8,9 +8,8 @@ mod live;
 mod measure;
 mod outlet;
 
+use super::packings::files;
 use super::packings::import::{self, in_range};
-use super::packings::{files, printer::Printer};
-use crate::results::quantities::help;
 use crate::tape::Tape;
 use grainlab_console::{Failure, Format, print};
 use grainlab_core::Vec3;
@@ -20,6 +19,8 @@ use grainlab_micromechanics::probe::StrainProbe;
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::import::yade;
+use grainlab_results::Printer;
+use grainlab_results::quantities::help;
 use measure::Analysis;
 use outlet::Outlet;
 use std::path::PathBuf;
@@ -128,6 +129,10 @@ pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
     let tape = args.record.as_deref().map(|at| Tape::create(at, &recorded, "analyze")).transpose()?;
     let outlet = Outlet::new(printer, tape);
     if args.live {
+        let given = options.flags_given().join(", ");
+        if !given.is_empty() {
+            return Err(Failure::usage(format!("{given}: published packings have these data; leave it out")));
+        }
         live::run(&args.import.topic, args.count, &measure, outlet)
     } else {
         files::run(&args.files, &options, &measure, outlet)

@@ -136,7 +136,9 @@ fn planned(args: &Args) -> Result<(SceneText, Order), Failure> {
         arguments: given.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         seed: scene.scene.seed,
     };
-    refuse_unknown(&order.plans(Path::new("."))?)?;
+    let plans = order.plans(Path::new("."))?;
+    refuse_unknown(&plans)?;
+    plans.iter().try_for_each(NodePlan::check_parameters).map_err(Failure::usage)?;
     Ok((scene, order))
 }
 

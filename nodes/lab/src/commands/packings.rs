@@ -3,12 +3,10 @@
 //! - [`import`]: flags for data that files lack
 //! - [`files`]: many files at once
 //! - [`sink`]: results in order
-//! - [`printer`]: results, one after the other, as one table, one JSON array or one CSV
 
 pub(crate) mod bar;
 pub(crate) mod files;
 pub(crate) mod import;
-pub(crate) mod printer;
 pub(crate) mod sink;
 
 use bar::Bar;

@@ -7,14 +7,14 @@ mod flags;
 mod measure;
 mod outlet;
 
-use super::packings::{files, import, printer::Printer};
-use crate::results::acoustic::ACOUSTIC;
-use crate::results::quantities::help;
+use super::packings::{files, import};
 use crate::tape::Tape;
 use flags::Flags;
 use grainlab_console::{Failure, Format};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
+use grainlab_results::quantities::help;
+use grainlab_results::{ACOUSTIC, Printer};
 use measure::Probe;
 use outlet::Outlet;
 use std::path::PathBuf;

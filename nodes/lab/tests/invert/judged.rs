@@ -56,6 +56,18 @@ fn intervals_that_have_the_truth_in_them_are_counted() {
 }
 
 #[test]
+fn a_plot_without_a_counted_eps_is_refused_and_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let plot = folder.path().join("plot.svg");
+    let input = b"p_kpa,g12_pa,g13_pa,theta_pa,k\n50,1.2e8,1.27e8,1.44e8,5.7\n";
+    let arguments = ["invert", "--table=-", "--judge", "--model=ratio", "--plot", plot.to_str().unwrap()];
+    let output = grainlab(&arguments, input);
+    let err = text(&output.stderr);
+    assert!(output.status.code() == Some(2) && err.contains("plot.svg is not written"), "{err}");
+    assert!(!plot.exists() && text(&output.stdout).contains("ratio"));
+}
+
+#[test]
 fn groups_come_in_the_order_of_their_first_row_and_are_judged_alone() {
     let judged =
         judge(&said(&[(5.73, 0.0), (5.63, 0.0), (5.73, 0.0), (5.63, 0.0)]), &["--model=ratio", "--by=mu"]);

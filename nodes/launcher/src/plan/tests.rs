@@ -84,6 +84,23 @@ fn what_is_not_supported_is_refused_and_named() {
 }
 
 #[test]
+fn a_value_that_a_node_does_not_take_is_refused_before_anything_is_started() {
+    let refused = |values: &[(&'static str, &str)]| {
+        let plans = nodes(DEFAULT, values).unwrap();
+        plans.iter().try_for_each(NodePlan::check_parameters).map_err(|e| e.to_string())
+    };
+    assert_eq!(refused(&[]), Ok(()));
+    assert_eq!(refused(&[("threads", "2"), ("simd", "scalar")]), Ok(()));
+    for (name, value) in [("threads", "nope"), ("threads", "-1"), ("simd", "mmx"), ("out", "[1]")] {
+        let error = refused(&[(name, value)]).unwrap_err();
+        assert!(error.starts_with("executable ") && error.contains(value), "{error}");
+    }
+    let misspelt = DEFAULT.replace("-p threads:=", "-p treads:=");
+    let error = nodes(&misspelt, &[]).unwrap().iter().find_map(|p| p.check_parameters().err()).unwrap();
+    assert!(error.to_string().contains("treads") && error.to_string().contains("dem_simulator"), "{error}");
+}
+
+#[test]
 fn a_launched_simulator_does_not_look_for_duplicates_by_default() {
     let mut plans = nodes(DEFAULT, &[]).unwrap();
     plans.iter_mut().for_each(NodePlan::do_not_look_around);

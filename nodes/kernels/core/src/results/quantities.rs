@@ -31,7 +31,7 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     "z" "z" "1" "coordination number without rattlers and their contacts"
         Scalar, |r| r.contacts.mechanical_coordination;
     "eps" "ε" "1" "anisotropy of the contacts about h, 5/2 (L_hh - (tr L - L_hh)/2) (Eq. 20)"
-        Scalar, |r| r.fabric.contact_anisotropy;
+        Scalar, |r| of_contacts(r, r.fabric.contact_anisotropy);
     "eps_stiffness" "ε_k" "1" "the same with every contact weighted by its normal stiffness"
         Scalar, |r| r.stiffness_anisotropy();
     // Orientation of the contacts.
@@ -42,14 +42,14 @@ pub static QUANTITIES: &[Quantity<PackingReport>] = quantities! { PackingReport:
     "stiffness_fabric" "" "1" "fabric tensor weighted by normal stiffness" Tensor, |r| r.fabric.stiffness_fabric;
     "axis" "" "1" "unit principal axis of the fabric that stands out most"
         Vector, |r| r.fabric.principal_axis.direction;
-    "axis_eps" "" "1" "eps about it" Scalar, |r| r.fabric.principal_axis.contact_anisotropy;
+    "axis_eps" "" "1" "eps about it" Scalar, |r| of_contacts(r, r.fabric.principal_axis.contact_anisotropy);
     "axis_eps_stddev" "" "1" "standard deviation of eps among packings like this one, about any axis"
         Scalar, |r| r.fabric.principal_axis.contact_anisotropy_stddev;
     "axis_angle_stddev_rad" "" "rad" "standard deviation of the direction of the axis"
         Scalar, |r| r.fabric.principal_axis.angle_stddev;
     "axis_determined" "" "" "whether the anisotropy exceeds its noise and one axis stands out"
         Scalar, |r| r.fabric.principal_axis.determined;
-    "p4" "a4" "1" "coefficient of P4(cos) in the contact distribution about h" Scalar, |r| r.fabric.p4_coefficient;
+    "p4" "a4" "1" "coefficient of P4(cos) in the contact distribution about h" Scalar, |r| of_contacts(r, r.fabric.p4_coefficient);
     "fourth_order_fabric" "" "1" "mean of n n n n: xxxx xxxy xxxz xxyy xxyz xxzz xyyy xyyz xyzz xzzz yyyy yyyz yyzz yzzz zzzz"
         List, |r| r.fabric.fourth_order.components;
     "fourth_order_magnitude" "" "1" "magnitude of its harmonic part: |a4| where that is a4 P4 about some axis"
@@ -218,6 +218,11 @@ fn bin_edges() -> [f64; ORIENTATION_BINS + 1] {
 }
 
 /// Means of the bins that have contacts.
+/// A property of the orientation of contacts: unknown without contacts.
+fn of_contacts(r: &PackingReport, value: f64) -> Option<f64> {
+    (r.contacts.contacts > 0).then_some(value)
+}
+
 fn known(r: &PackingReport, means: &[f64; ORIENTATION_BINS]) -> [Option<f64>; ORIENTATION_BINS] {
     let counts = &r.fabric.orientation.contacts;
     std::array::from_fn(|b| (counts[b] > 0).then_some(means[b]))

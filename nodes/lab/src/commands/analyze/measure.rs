@@ -1,9 +1,6 @@
 //! One packing measured: its state, and the messages that a node would publish.
 
 use crate::commands::packings::Measure;
-use crate::results::measured_packing::MeasuredPacking;
-use crate::results::probe::{ProbeView, ScanView};
-use crate::results::state_warnings::state_warnings;
 use grainlab_core::Packing;
 use grainlab_experiment::PathPosition;
 use grainlab_fabric_analyzer::{Measured, messages};
@@ -11,6 +8,7 @@ use grainlab_micromechanics::network::{SpringNetwork, Springs, relaxed_stiffness
 use grainlab_micromechanics::probe::{StrainProbe, StrainProbeResult, amplitude_sweep};
 use grainlab_micromechanics::{MicroError, PackingView, Settings, analyze};
 use grainlab_recordings::import::Imported;
+use grainlab_results::{MeasuredPacking, ProbeView, ScanView, state_warnings};
 use std::time::Instant;
 
 /// Relative difference of the forward and the backward stiffness of a probe without a warning: half of it is

@@ -3,13 +3,11 @@
 use super::measure::Found;
 use crate::commands::packings;
 use crate::commands::packings::bar::Bar;
-use crate::commands::packings::printer::{Printed, Printer};
-use crate::results::measured_packing::MeasuredPacking;
-use crate::results::{measured_packing, packing_text};
 use crate::tape::Tape;
-use grainlab_console::{Failure, Table, print};
+use grainlab_console::{Failure, print};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
+use grainlab_results::{MeasuredPacking, Printer};
 
 /// Prints and records results.
 pub(super) struct Outlet {
@@ -57,15 +55,5 @@ impl packings::Outlet for Outlet {
         let printed = self.printer.printed();
         let none = printed > 0 && self.without == printed;
         Ok(if none { Exit::PhysicsInvalid } else { Exit::Done })
-    }
-}
-
-impl Printed for MeasuredPacking {
-    fn text(&self) -> String {
-        format!("{}, step {}\n{}", self.source, self.step, packing_text::text(self))
-    }
-
-    fn table(packings: &[Self]) -> Table {
-        measured_packing::table(packings)
     }
 }

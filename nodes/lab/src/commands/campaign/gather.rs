@@ -1,15 +1,14 @@
 //! The states of a campaign in one table, from the recordings alone.
 
-use crate::results::inference::Inference;
-use crate::results::measured_packing::ORIGIN;
-use crate::results::quantities::{columns, typed_cells};
-use crate::results::read_back::{self, InvertedPacking};
 use grainlab_campaign::{Campaign, Folder, Member, MemberState};
 use grainlab_console::{Cell, Dataset, Failure, print, scenes};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
+use grainlab_results::quantities::{columns, typed_cells};
+use grainlab_results::read_back::{self, InvertedPacking};
+use grainlab_results::{Inference, ORIGIN};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -5,11 +5,11 @@ use super::explain::Explained;
 use super::sampled::Sampled;
 use super::state::State;
 use super::way::Way;
-use crate::results::inference::Inference;
 use grainlab_console::worse;
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::{EmtError, Estimate};
 use grainlab_node_kit::Exit;
+use grainlab_results::Inference;
 use serde::Serialize;
 
 /// One state and one outcome per way.

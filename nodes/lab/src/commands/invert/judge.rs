@@ -89,6 +89,14 @@ pub(super) fn run(
         Format::Csv => csv(&judged, by),
         Format::Table => people(&judged, by),
     })?;
+    if let Some(path) = plot.filter(|_| points.iter().all(Vec::is_empty)) {
+        tally.end(rows.name())?;
+        return Err(Failure::usage(format!(
+            "{} is not written: no row of {} has eps, and a model that infers it",
+            path.display(),
+            rows.name()
+        )));
+    }
     if let Some(path) = plot {
         std::fs::write(path, plot::svg(ways, points))
             .map_err(|e| Failure::failed(format!("{}: {e}", path.display())))?;

@@ -3,9 +3,8 @@
 use super::answer::{Answer, More};
 use super::way::Way;
 use super::{explain, sampled};
-use crate::results::inference::Inference;
-use crate::results::inference_text;
 use grainlab_console::{CsvText, Failure, Table, exact, json};
+use grainlab_results::{Inference, inference_text};
 
 /// Converts results to text.
 pub(super) struct Printer<'a> {

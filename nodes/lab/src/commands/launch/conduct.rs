@@ -7,9 +7,7 @@ use grainlab_campaign::Lock;
 use grainlab_console::Failure;
 use grainlab_console::network::FreeDomain;
 use grainlab_console::scenes::SceneText;
-use grainlab_launcher::NodePlan;
-use grainlab_launcher::Run;
-use grainlab_launcher::{Supervised, Supervisor};
+use grainlab_launcher::{NodePlan, Outline, Run, Supervised, Supervisor};
 use grainlab_node_kit::{Exit, Network, RunId};
 use grainlab_scene::Scene;
 use std::path::Path;
@@ -79,12 +77,15 @@ pub(super) fn domain() -> Result<(u16, Option<FreeDomain>), Failure> {
 }
 
 fn supervise(plans: Vec<NodePlan>, run: Run, directory: &Path, scene: &Scene) -> Result<Supervised, Failure> {
-    let phases = scene.phases.len();
     let last = scene.phases.iter().rfind(|p| p.publish || p.record.is_some());
-    let ends_within = last.is_some_and(|p| !p.publish);
+    let outline = Outline {
+        phases: scene.phases.len(),
+        starts_from_packing: scene.start.is_some(),
+        ends_within: last.is_some_and(|p| !p.publish),
+    };
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(|e| Failure::failed(format!("tokio: {e}")))?;
-    runtime.block_on(async { Supervisor::new(plans, run, directory, phases, ends_within)?.run().await })
+    runtime.block_on(async { Supervisor::new(plans, run, directory, outline)?.run().await })
 }
 
 #[cfg(test)]

@@ -1,12 +1,6 @@
 //! The result of a run, read back from its recording.
 
 use super::output::Output;
-use crate::results::brief;
-use crate::results::continuity;
-use crate::results::measured_packing;
-use crate::results::read_back::{self, ReadBack};
-use crate::results::summary::{Launched, NodeEnd, Summary};
-use crate::results::summary_text;
 use grainlab_console::scenes::SceneText;
 use grainlab_console::{Failure, worse};
 use grainlab_console::{Format, json, print};
@@ -15,6 +9,9 @@ use grainlab_launcher::Run;
 use grainlab_launcher::{Received, Supervised};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Recording;
+use grainlab_results::read_back::{self, ReadBack};
+use grainlab_results::{Launched, MeasuredPacking, NodeEnd, Printed, Summary};
+use grainlab_results::{brief, continuity, summary_text};
 use std::path::{Path, PathBuf};
 
 /// Published results that the recording lacks.
@@ -42,14 +39,13 @@ pub(super) fn finish(
 ) -> Result<Exit, Failure> {
     let mut exit = supervised.exit;
     let recording = Recording::open(directory);
-    let (back, tallies) = match &recording {
+    let (mut back, tallies) = match &recording {
         Ok(recording) => (read_back::read(recording), recording.ledger()),
-        Err(error) => (ReadBack { complaints: vec![error.to_string()], ..ReadBack::default() }, None),
+        Err(error) => (ReadBack::failed(error), None),
     };
     if tallies.as_ref().is_none_or(|t| t.iter().any(|t| t.lost > 0)) {
         exit = worse(exit, Exit::DataLoss);
     }
-    let mut back = back;
     let mut missing = missing(&supervised.received, &back);
     // An interrupted run may end with an unanswered request.
     if let (Some(_), Ok(recording)) = (supervised.received.packings, &recording) {
@@ -79,17 +75,19 @@ pub(super) fn finish(
         nodes: nodes.collect(),
         recording: recording.is_ok().then(|| directory.display().to_string()),
         exit,
+        reasons: supervised.reasons,
     };
+    back.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
+    // The launcher has printed its reasons.
+    back.complaints.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let summary = Summary::new(launched, back, tallies.as_deref());
     let path = directory.join("summary.json");
     let text = json(&summary)?;
-    summary.strangers.iter().for_each(|s| grainlab_console::say!("grainlab: {}", s.line()));
-    summary.warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
     let packings: Vec<_> = summary.states.iter().map(|s| s.packing.clone()).collect();
     // Printed before writing, so that a full disk does not lose the result.
     let printed = print(&match output.format {
         Format::Json => text.clone(),
-        Format::Csv => measured_packing::table(&packings).csv(),
+        Format::Csv => MeasuredPacking::table(&packings).csv(),
         Format::Table => {
             let all = if output.verbose { summary_text::text(&summary) + "\n" } else { String::new() };
             all + &brief::text(&summary, &from_here(directory), &program())

@@ -68,7 +68,8 @@ pub(super) fn run(directory: &Path, output: Output) -> Result<Exit, Failure> {
 fn report(directory: &Path, scene: &SceneText, output: Output) -> Result<Exit, Failure> {
     let packings = u32::try_from(last_packing::count(directory)).ok();
     let received = Received { packings, ..Received::default() };
-    let ended = Supervised { exit: Exit::Done, children: Vec::new(), wall: Duration::ZERO, received };
+    let (reasons, children) = (Vec::new(), Vec::new());
+    let ended = Supervised { exit: Exit::Done, reasons, children, wall: Duration::ZERO, received };
     finish(output, directory, scene, Run { id: RunId::fresh(), domain: 0 }, ended)
 }
 

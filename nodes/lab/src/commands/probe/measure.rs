@@ -1,15 +1,13 @@
 //! One packing: its structure and stiffness, its wave speeds, and the messages that the node would publish.
 
 use crate::commands::packings::Measure;
-use crate::results::acoustic::AcousticReport;
-use crate::results::measured_packing::MeasuredPacking;
-use crate::results::probed::Probed;
 use grainlab_acoustic_probe::{Measured, Settings, messages};
 use grainlab_acoustics::AcousticsError;
 use grainlab_micromechanics::analyze;
 use grainlab_micromechanics::network::Springs;
 use grainlab_msgs::boundary::WaveSpeedsReading;
 use grainlab_recordings::import::Imported;
+use grainlab_results::{AcousticReport, MeasuredPacking, Probed};
 
 /// Settings of the measurement.
 #[derive(Clone, Debug)]

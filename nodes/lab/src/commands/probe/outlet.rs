@@ -3,12 +3,11 @@
 use super::measure::Found;
 use crate::commands::packings;
 use crate::commands::packings::bar::Bar;
-use crate::commands::packings::printer::Printer;
-use crate::results::probed::Probed;
 use crate::tape::Tape;
 use grainlab_console::{Failure, print};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
+use grainlab_results::{Printer, Probed};
 
 /// Prints and records results.
 pub(super) struct Outlet {

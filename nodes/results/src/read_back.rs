@@ -1,12 +1,12 @@
 //! The results in the recording of a run: its states, and the counters of its nodes.
 
-use super::acoustic::AcousticReport;
-use super::inference::Inference;
-use super::measured_packing::MeasuredPacking;
+use crate::acoustic::AcousticReport;
+use crate::inference::Inference;
+use crate::measured_packing::MeasuredPacking;
 use grainlab_core::Packing;
 use grainlab_core::results::{ElasticStiffness, Elasticity, NotJammed, PackingReport};
 use grainlab_experiment::PathPosition;
-use grainlab_micromechanics::{PackingView, ReportParts, report};
+use grainlab_micromechanics::{PackingView, ReportParts, min_contacts, report};
 use grainlab_msgs::boundary::{FabricReading, MicrostructureReading, ModuliReading, WaveSpeedsReading};
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
 use grainlab_msgs::{Message, Topic, from_cdr, msg, topics};
@@ -18,12 +18,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A packing and the estimates from it.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct InvertedPacking {
+pub struct InvertedPacking {
+    /// Structure and stiffness.
     #[serde(flatten)]
-    pub(crate) packing: MeasuredPacking,
+    pub packing: MeasuredPacking,
     /// Null where no wave speeds were published.
     pub(crate) acoustic: Option<AcousticReport>,
-    pub(crate) results: Vec<Inference>,
+    /// What each model infers from the data of each topic.
+    pub results: Vec<Inference>,
 }
 
 /// Topics of data that an inversion reads.
@@ -31,27 +33,34 @@ const INVERTED: [&str; 2] = [topics::MODULI.name, topics::WAVE_SPEEDS.name];
 
 /// The results read back.
 #[derive(Debug, Default)]
-pub(crate) struct ReadBack {
+pub struct ReadBack {
     /// Every packing, in order of steps.
-    pub(crate) states: Vec<InvertedPacking>,
+    pub states: Vec<InvertedPacking>,
     /// The last report of each process, by node and process id.
     pub(crate) reports: BTreeMap<(String, u32), Report>,
     /// Number of packing messages.
-    pub(crate) packings: usize,
+    pub packings: usize,
     /// Data of packings without a microstructure.
-    pub(crate) not_inverted: usize,
+    pub not_inverted: usize,
     /// Packings without a structure.
-    pub(crate) not_analysed: usize,
+    pub not_analysed: usize,
     /// Packings published within phases, and the number of those measured. They are only in the recording.
     pub(crate) film: Film,
     /// Microstructures, by the topic of their data and the step of the packing.
     pub(crate) inverted: BTreeSet<(String, u64)>,
     /// Steps of the packings with a result, by topic.
-    pub(crate) results: BTreeMap<&'static str, BTreeSet<u64>>,
+    pub results: BTreeMap<&'static str, BTreeSet<u64>>,
     /// Processes on the bus that are not part of the run.
-    pub(crate) strangers: Vec<StrangerView>,
+    pub strangers: Vec<StrangerView>,
     /// Messages that could not be read.
-    pub(crate) complaints: Vec<String>,
+    pub complaints: Vec<String>,
+}
+
+impl ReadBack {
+    /// A recording that cannot be read, with the reason.
+    pub fn failed(error: impl ToString) -> Self {
+        Self { complaints: vec![error.to_string()], ..Self::default() }
+    }
 }
 
 /// Packings published within phases.
@@ -85,7 +94,7 @@ impl About {
 }
 
 /// Reads a recording back.
-pub(crate) fn read(recording: &Recording) -> ReadBack {
+pub fn read(recording: &Recording) -> ReadBack {
     let mut back = ReadBack::default();
     let wanted = [
         topics::PACKING,
@@ -177,8 +186,16 @@ pub(crate) fn read(recording: &Recording) -> ReadBack {
 /// The report from the messages about a packing.
 fn reported(packing: &Packing, found: FabricReading, stiffness: Option<ElasticStiffness>) -> PackingReport {
     let FabricReading { contacts, fabric, stress_decomposition, strain_ratios } = found;
-    let elasticity =
-        stiffness.map_or(Elasticity::NotJammed(NotJammed::NotReported), |s| Elasticity::Jammed(Box::new(s)));
+    let elasticity = match (stiffness, packing.ids.len()) {
+        (Some(stiffness), _) => Elasticity::Jammed(Box::new(stiffness)),
+        (None, grains) => Elasticity::NotJammed(match contacts.contacts as usize {
+            0 => NotJammed::NoContacts { grains },
+            _ if contacts.rattlers as usize == grains => {
+                NotJammed::OnlyRattlers { grains, needed: min_contacts(packing.friction) }
+            }
+            _ => NotJammed::NotReported,
+        }),
+    };
     let parts = ReportParts { contacts, fabric, stress_decomposition, strain_ratios, elasticity };
     report(&PackingView::new(packing), parts)
 }

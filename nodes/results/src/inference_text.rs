@@ -1,16 +1,16 @@
 //! Results of the models, as cells of a table or of CSV.
 
-use super::inference::Inference;
+use crate::inference::Inference;
 use grainlab_console::{Table, exact, fixed};
 use grainlab_core::results::InferredQuantity;
 
 impl Inference {
     /// Names of the cells of [`Inference::cells`].
-    pub(crate) const COLUMNS: [&str; 11] =
+    pub const COLUMNS: [&str; 11] =
         ["model", "calibration", "k", "sigma", "k_hat", "sigma", "z", "sigma", "eps", "sigma", "status"];
 
     /// Cells of a text table; columns without values should be left out.
-    pub(crate) fn cells(&self) -> Vec<String> {
+    pub fn cells(&self) -> Vec<String> {
         let (v, s) = (&self.values, &self.sigma);
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
         for (value, sigma, digits) in [(v.k, s.k, 3), (v.k_hat, s.k_hat, 3), (v.z, s.z, 3), (v.eps, s.eps, 4)]
@@ -22,7 +22,7 @@ impl Inference {
     }
 
     /// Names of the cells of [`Inference::exact_cells`].
-    pub(crate) fn exact_columns() -> Vec<String> {
+    pub fn exact_columns() -> Vec<String> {
         let names = InferredQuantity::ALL.map(InferredQuantity::name);
         let with = |prefix: &'static str| names.into_iter().map(move |name| format!("{prefix}{name}"));
         let mut columns: Vec<String> = ["model", "calibration"].map(str::to_owned).into();
@@ -33,7 +33,7 @@ impl Inference {
     }
 
     /// As cells at full precision.
-    pub(crate) fn exact_cells(&self) -> Vec<String> {
+    pub fn exact_cells(&self) -> Vec<String> {
         let mut cells = vec![self.model.clone(), self.calibration.clone()];
         for numbers in [&self.values, &self.sigma, &self.sigma_model] {
             cells.extend(numbers.all().map(exact));
@@ -49,7 +49,7 @@ impl Inference {
 }
 
 /// The warnings of several results as lines, each with its models.
-pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
+pub fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>) -> String {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for r in results {
         for w in &r.warnings {
@@ -63,7 +63,7 @@ pub(crate) fn warning_lines<'a>(results: impl IntoIterator<Item = &'a Inference>
 }
 
 /// Results as a text table, warnings below.
-pub(crate) fn table(results: &[Inference]) -> String {
+pub fn table(results: &[Inference]) -> String {
     let mut t = Table::new(Inference::COLUMNS);
     results.iter().for_each(|r| t.row(r.cells()));
     let best = Inference::recommended(&results.iter().collect::<Vec<_>>());

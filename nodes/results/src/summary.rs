@@ -1,6 +1,6 @@
 //! The result of a launched run, with the stable keys of `summary.json`.
 
-use super::read_back::{Film, InvertedPacking, ReadBack};
+use crate::read_back::{Film, InvertedPacking, ReadBack};
 use grainlab_node_kit::{Exit, Report};
 use grainlab_recorder::strangers::StrangerView;
 use grainlab_recordings::TopicTally;
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// A run.
 #[derive(Debug, Serialize)]
-pub(crate) struct Summary {
+pub struct Summary {
     pub(crate) scene: String,
     pub(crate) seed: u64,
     pub(crate) domain: u16,
@@ -25,23 +25,30 @@ pub(crate) struct Summary {
     pub(crate) waiting_fraction: Option<f64>,
     /// Steps per second while computing.
     pub(crate) particle_steps_per_second: Option<f64>,
-    pub(crate) states: Vec<InvertedPacking>,
+    /// Packings at the ends of phases, with what was inferred.
+    pub states: Vec<InvertedPacking>,
     /// Packings published within phases.
     pub(crate) film: Film,
     pub(crate) recording: Option<String>,
     pub(crate) exit: u8,
+    /// Why `exit` is not 0, if the launcher knows.
+    #[serde(skip)]
+    pub(crate) reason: Option<String>,
+    /// Why the run did not end as it should, and what is missing or could not be read, one line each.
     pub(crate) warnings: Vec<String>,
 }
 
 /// One node of a run.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct NodeEnd {
-    pub(crate) name: String,
+pub struct NodeEnd {
+    /// Name of the node.
+    pub name: String,
     /// Process id of its last process.
-    pub(crate) pid: u32,
+    pub pid: u32,
     /// Exit code; null if a signal ended it.
-    pub(crate) exit: Option<i32>,
-    pub(crate) restarts: usize,
+    pub exit: Option<i32>,
+    /// How often it was started again.
+    pub restarts: usize,
 }
 
 /// Messages of one topic.
@@ -95,8 +102,9 @@ impl Counters {
 
 impl Summary {
     /// Combines the data of the launcher with those of the recording.
-    pub(crate) fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
+    pub fn new(launched: Launched, back: ReadBack, tallies: Option<&[TopicTally]>) -> Self {
         let counters = Counters::of(back.reports.values());
+        let warnings = launched.reasons.iter().cloned().chain(back.complaints).collect();
         let per_wall = |v: Option<f64>| Some(v? / counters.wall?);
         Self {
             scene: launched.scene,
@@ -115,20 +123,31 @@ impl Summary {
             film: back.film,
             recording: launched.recording,
             exit: launched.exit.code(),
-            warnings: back.complaints,
+            reason: launched.reasons.into_iter().next(),
+            warnings,
         }
     }
 }
 
 /// The data that the launcher has of a run.
 #[derive(Debug)]
-pub(crate) struct Launched {
-    pub(crate) scene: String,
-    pub(crate) seed: u64,
-    pub(crate) domain: u16,
-    pub(crate) run: String,
-    pub(crate) wall_seconds: f64,
-    pub(crate) nodes: Vec<NodeEnd>,
-    pub(crate) recording: Option<String>,
-    pub(crate) exit: Exit,
+pub struct Launched {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its seed.
+    pub seed: u64,
+    /// DDS domain.
+    pub domain: u16,
+    /// Id of the run.
+    pub run: String,
+    /// From the first start of a process to the last end, s.
+    pub wall_seconds: f64,
+    /// Every process.
+    pub nodes: Vec<NodeEnd>,
+    /// The directory of the recording; `None` if it cannot be read.
+    pub recording: Option<String>,
+    /// How the run ended.
+    pub exit: Exit,
+    /// Why it did not end as it should, one line each.
+    pub reasons: Vec<String>,
 }

@@ -15,7 +15,7 @@ const RESTLESS: f64 = 0.01;
 const BELOW: f64 = 1e-3;
 
 /// All warnings about `packing` and its measurement; `notes` are those of the reader of the file.
-pub(crate) fn state_warnings(
+pub fn state_warnings(
     packing: &Packing,
     report: &PackingReport,
     position: Option<PathPosition>,

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// One probe: all six columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ProbeView {
+pub struct ProbeView {
     pub(crate) amplitude: f64,
     /// Largest |C_ab - C_ba| over the largest entry of C.
     pub(crate) asymmetry: f64,
@@ -24,7 +24,8 @@ pub(crate) struct ProbeView {
 }
 
 impl ProbeView {
-    pub(crate) fn new(amplitude: f64, probe: &StrainProbeResult) -> Self {
+    /// The details of a probe with strains of this amplitude.
+    pub fn new(amplitude: f64, probe: &StrainProbeResult) -> Self {
         Self {
             amplitude,
             asymmetry: probe.asymmetry,
@@ -40,7 +41,7 @@ impl ProbeView {
 
 /// Probes of several amplitudes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct ScanView {
+pub struct ScanView {
     pub(crate) probes: Vec<ScannedView>,
     /// Least and largest amplitude of the linear regime; null if no two neighbours agree.
     pub(crate) linear: Option<[f64; 2]>,
@@ -59,7 +60,7 @@ pub(crate) struct ScannedView {
 
 impl ScanView {
     /// With the stiffness of the frozen network, if it has one.
-    pub(crate) fn new(scan: &AmplitudeSweep, network: Option<&Stiffness>) -> Self {
+    pub fn new(scan: &AmplitudeSweep, network: Option<&Stiffness>) -> Self {
         let probes = scan.probes.iter().map(|(amplitude, found)| ScannedView {
             amplitude: *amplitude,
             probe: found.as_ref().ok().map(|p| ProbeView::new(*amplitude, p)),

@@ -1,6 +1,6 @@
 //! Wave speeds of one packing, and the moduli of the medium with these speeds.
 
-use super::quantities::entries;
+use crate::quantities::entries;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::*};
 use grainlab_core::{MeasuredWave, Packing};
@@ -11,7 +11,7 @@ use serde::ser::{SerializeMap, Serializer};
 
 /// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct AcousticReport {
+pub struct AcousticReport {
     pub(crate) reading: WaveSpeedsReading,
     /// Density of all grains, kg/m³.
     pub(crate) bulk_density: f64,
@@ -19,7 +19,7 @@ pub(crate) struct AcousticReport {
 }
 
 /// Every quantity of an [`AcousticReport`]. Moduli that the speeds do not determine are null.
-pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
+pub static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { AcousticReport:
     "method" "" "" "how the speeds were measured; several if they are not all of one kind" Scalar, |a| a.method();
     "speed_count" "" "1" "number of speeds" Scalar, |a| a.reading.speeds.len();
     "density" "ρ" "kg/m3" "density of the mass that moves with the waves" Scalar, |a| a.reading.density;
@@ -52,7 +52,7 @@ pub(crate) static ACOUSTIC: &[Quantity<AcousticReport>] = quantities! { Acoustic
 
 impl AcousticReport {
     /// From the speeds of this packing.
-    pub(crate) fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
+    pub fn new(packing: &Packing, reading: WaveSpeedsReading) -> Self {
         let density = Measured { value: reading.density, stddev: reading.density_stddev.unwrap_or(0.0) };
         let conditions = Conditions::at(reading.pressure);
         let medium = WaveModuli::of_speeds(&reading.measured(), density, reading.axis, conditions);

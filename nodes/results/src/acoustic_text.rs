@@ -1,7 +1,7 @@
 //! Wave speeds as text: the measured ones, and their moduli compared with those of the network.
 
-use super::acoustic::AcousticReport;
-use super::packing_text::indented;
+use crate::acoustic::AcousticReport;
+use crate::packing_text::indented;
 use grainlab_console::{Table, fixed};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::marker::PhantomData;
 
 /// A result that can be printed in every format.
-pub(crate) trait Printed: Serialize + Sized {
+pub trait Printed: Serialize + Sized {
     /// As text.
     fn text(&self) -> String;
 
@@ -15,7 +15,7 @@ pub(crate) trait Printed: Serialize + Sized {
 }
 
 /// Prints results one after the other.
-pub(crate) struct Printer<R> {
+pub struct Printer<R> {
     format: Format,
     /// Columns of CSV; empty for all.
     columns: Vec<String>,
@@ -25,7 +25,7 @@ pub(crate) struct Printer<R> {
 
 impl<R: Printed> Printer<R> {
     /// `columns` of CSV; empty for all. An unknown column is refused before the measurements.
-    pub(crate) fn new(format: Format, columns: Vec<String>) -> Result<Self, Failure> {
+    pub fn new(format: Format, columns: Vec<String>) -> Result<Self, Failure> {
         if !columns.is_empty() && format != Format::Csv {
             return Err(Failure::usage("--columns is for --format csv"));
         }
@@ -35,12 +35,12 @@ impl<R: Printed> Printer<R> {
     }
 
     /// Number of results printed.
-    pub(crate) fn printed(&self) -> usize {
+    pub fn printed(&self) -> usize {
         self.printed
     }
 
     /// The text of the next result.
-    pub(crate) fn next(&mut self, result: &R) -> Result<String, Failure> {
+    pub fn next(&mut self, result: &R) -> Result<String, Failure> {
         let first = self.printed == 0;
         self.printed += 1;
         Ok(match self.format {
@@ -66,7 +66,7 @@ impl<R: Printed> Printer<R> {
     }
 
     /// The text after the last result.
-    pub(crate) fn end(&self) -> Result<String, Failure> {
+    pub fn end(&self) -> Result<String, Failure> {
         Ok(match (self.format, self.printed) {
             (Format::Json, 0) => "[]\n".to_owned(),
             (Format::Json, _) => "\n]\n".to_owned(),
@@ -91,7 +91,7 @@ impl<R: Printed> Printer<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::measured_packing::{MeasuredPacking, table, tests};
+    use crate::measured_packing::{MeasuredPacking, tests};
 
     fn measured(step: u64) -> MeasuredPacking {
         let packing = grainlab_core::Packing { step, ..tests::lattice(false) };
@@ -108,7 +108,7 @@ mod tests {
                 parts + &printer.end().unwrap()
             };
             assert_eq!(text(Format::Json), grainlab_console::json(&packings).unwrap());
-            assert_eq!(text(Format::Csv), table(&packings).csv());
+            assert_eq!(text(Format::Csv), MeasuredPacking::table(&packings).csv());
         }
     }
 }

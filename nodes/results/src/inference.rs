@@ -8,22 +8,22 @@ use std::collections::BTreeMap;
 
 /// One model's result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Inference {
+pub struct Inference {
     /// Topic of the data; absent if they came from a command line or a file.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) source: Option<String>,
+    pub source: Option<String>,
     /// Node that inferred it; absent if unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) by: Option<String>,
+    pub by: Option<String>,
     /// Name of the model.
-    pub(crate) model: String,
+    pub model: String,
     /// Name of the calibration.
     pub(crate) calibration: String,
     /// Inferred values.
     #[serde(flatten)]
-    pub(crate) values: Quantities<Option<f64>>,
+    pub values: Quantities<Option<f64>>,
     /// Standard deviations, from data and model.
-    pub(crate) sigma: Quantities<Option<f64>>,
+    pub sigma: Quantities<Option<f64>>,
     /// Their part due to the model.
     pub(crate) sigma_model: Quantities<Option<f64>>,
     /// Credible intervals.
@@ -35,17 +35,17 @@ pub(crate) struct Inference {
     /// Condition number: how much the effects of errors of the data differ between combinations.
     pub(crate) condition_number: Option<f64>,
     /// `ok`, `extrapolated`, `undetermined` or `failed`.
-    pub(crate) status: &'static str,
+    pub status: &'static str,
     /// The strain ratio that the model used, and its source; null if it uses none.
-    pub(crate) gamma_over_delta: Option<f64>,
+    pub gamma_over_delta: Option<f64>,
     pub(crate) gamma_over_delta_source: Option<String>,
     /// Notes.
-    pub(crate) warnings: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 /// One value per quantity of the microstructure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Quantities<T> {
+pub struct Quantities<T> {
     /// Coordination number.
     pub(crate) k: T,
     /// Coordination number of the equivalent isotropic packing, in the sense of the calibration.
@@ -59,7 +59,7 @@ pub(crate) struct Quantities<T> {
 }
 
 impl<T> Quantities<T> {
-    pub(super) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
+    pub(crate) fn of(value: impl FnMut(InferredQuantity) -> T) -> Self {
         let [k, k_hat, z, eps, eps_stiffness] = InferredQuantity::ALL.map(value);
         Self { k, k_hat, z, eps, eps_stiffness }
     }
@@ -67,7 +67,7 @@ impl<T> Quantities<T> {
 
 impl<T: Copy> Quantities<T> {
     /// In the order of [`InferredQuantity::ALL`].
-    pub(crate) fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
+    pub fn all(&self) -> [T; grainlab_core::results::InferredQuantity::COUNT] {
         [self.k, self.k_hat, self.z, self.eps, self.eps_stiffness]
     }
 }
@@ -112,12 +112,7 @@ impl Inference {
     }
 
     /// A model without an estimate, and the reason.
-    pub(crate) fn failed(
-        model: &str,
-        calibration: &str,
-        status: &'static str,
-        warnings: Vec<String>,
-    ) -> Self {
+    pub fn failed(model: &str, calibration: &str, status: &'static str, warnings: Vec<String>) -> Self {
         Self {
             by: None,
             source: None,
@@ -172,7 +167,7 @@ impl Inference {
     }
 
     /// From the result of a model of the kernel.
-    pub(crate) fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
+    pub fn of(model: &str, calibration: &str, outcome: &Result<Estimate, EmtError>) -> Self {
         let estimate = match outcome {
             Ok(estimate) => estimate,
             Err(e) => return Self::failed(model, calibration, "failed", vec![e.to_string()]),

@@ -16,7 +16,7 @@ pub(crate) fn entries<R, M: SerializeMap>(
 }
 
 /// Names of the columns of these quantities.
-pub(crate) fn columns<'a, R: 'static>(
+pub fn columns<'a, R: 'static>(
     quantities: impl IntoIterator<Item = &'a Quantity<R>>,
 ) -> impl Iterator<Item = String> {
     quantities.into_iter().flat_map(Quantity::columns)
@@ -31,7 +31,7 @@ pub(crate) fn cells<'a, R: 'static>(
 }
 
 /// The values of these columns.
-pub(crate) fn typed_cells<'a, R: 'static>(
+pub fn typed_cells<'a, R: 'static>(
     quantities: impl IntoIterator<Item = &'a Quantity<R>>,
     result: &R,
 ) -> impl Iterator<Item = Cell> {
@@ -78,7 +78,7 @@ impl Serialize for Json {
 }
 
 /// A table as text, for the help of a command: key, symbol, unit and meaning, one line each.
-pub(crate) fn help<R: 'static>(table: &[Quantity<R>]) -> String {
+pub fn help<R: 'static>(table: &[Quantity<R>]) -> String {
     let line = |q: &Quantity<R>| {
         let unit = if matches!(q.unit, "" | "1") { String::new() } else { format!(", {}", q.unit) };
         format!("  {:<32} {}{unit}\n", q.key, q.meaning)
@@ -107,8 +107,8 @@ fn markdown<R: 'static>(table: &[Quantity<R>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::acoustic::ACOUSTIC;
-    use crate::results::measured_packing::ORIGIN;
+    use crate::acoustic::ACOUSTIC;
+    use crate::measured_packing::ORIGIN;
     use grainlab_core::results::QUANTITIES;
 
     /// The reference in the repository equals that of the tables. If it differs, the test writes it and fails
@@ -119,8 +119,8 @@ mod tests {
         let text = format!(
             "# Quantities\n\nWhat `grainlab analyze`, `grainlab probe` and `grainlab launch` report: keys of JSON and columns\n\
              of CSV, as `grainlab invert --table` and `grainlab calibrate` read them. Values that are undefined or not known are\n\
-             null in JSON and empty in CSV. The tests of the crate `grainlab` write this page from the tables in\n\
-             `nodes/kernels/core/src/results/quantities.rs` and `nodes/lab/src/results/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
+             null in JSON and empty in CSV. The tests of the crate `grainlab_results` write this page from the tables in\n\
+             `nodes/kernels/core/src/results/quantities.rs` and `nodes/results/src/`.\n\n## Origin\n\n{}\n## Packing\n\n{}\n\
              ## Waves, by `grainlab probe`\n\nIn JSON under `acoustic`.\n\n{}",
             markdown(ORIGIN),
             markdown(QUANTITIES),

@@ -5,7 +5,7 @@ use grainlab_msgs::{from_cdr, topics};
 use grainlab_recordings::{ReadError, Recording, Selection};
 
 /// Missing messages of a finished run, one line per topic.
-pub(crate) fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
+pub fn missing(recording: &Recording) -> Result<Vec<String>, ReadError> {
     let stress =
         numbers(recording, topics::STRESS.name, |body| from_cdr::<Stress>(body).ok().map(|m| m.sequence))?;
     let rates = numbers(recording, topics::STRAIN_RATE.name, |body| {

@@ -1,9 +1,20 @@
 //! A measured packing as text.
 
-use super::measured_packing::MeasuredPacking;
+use crate::measured_packing::{self, MeasuredPacking};
+use crate::printer::Printed;
 use grainlab_console::{Table, fixed};
 use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
+
+impl Printed for MeasuredPacking {
+    fn text(&self) -> String {
+        format!("{}, step {}\n{}", self.source, self.step, text(self))
+    }
+
+    fn table(packings: &[Self]) -> Table {
+        measured_packing::table(packings)
+    }
+}
 
 /// The block of one packing: structure in two lines, then the moduli, affine and relaxed.
 pub(crate) fn text(m: &MeasuredPacking) -> String {
@@ -21,10 +32,11 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
         small(r.stress_ratio()),
         small(r.unbalanced_force_ratio),
     );
-    text += &format!(
-        "  k {:.3}, z {:.3}; L11 {l11:.4}, L22 {l22:.4}, L33 {l33:.4}, eps {:.4}\n",
-        c.coordination, c.mechanical_coordination, f.contact_anisotropy
-    );
+    text += &format!("  k {:.3}, z {:.3}; ", c.coordination, c.mechanical_coordination);
+    text += &match c.contacts {
+        0 => "no contacts, and so no L and eps\n".to_owned(),
+        _ => format!("L11 {l11:.4}, L22 {l22:.4}, L33 {l33:.4}, eps {:.4}\n", f.contact_anisotropy),
+    };
     if f.reference_axis != Vec3::z() {
         text += &format!("  eps, gamma/Delta, G12 and G13 are about {}\n", direction(&f.reference_axis));
     }

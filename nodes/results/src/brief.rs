@@ -1,9 +1,9 @@
 //! A launched run in at most 20 lines: preparation, measurements, estimates, and the directory.
 
-use super::acoustic_text;
-use super::inference::{Inference, Origin, by_origin};
-use super::read_back::InvertedPacking;
-use super::summary::Summary;
+use crate::acoustic_text;
+use crate::inference::{Inference, Origin, by_origin};
+use crate::read_back::InvertedPacking;
+use crate::summary::Summary;
 use grainlab_console::{Table, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::PackingReport;
@@ -24,8 +24,9 @@ const MOST_NOTES: usize = 1;
 const MOST_ROWS: usize = 10;
 
 /// The result of a run as text. `program` is the name of the binary on the command line.
-pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
-    let mut lines: Vec<String> = ended(s.exit).map(|why| row("Ended", &why)).into_iter().collect();
+pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
+    let mut lines: Vec<String> =
+        ended(s.exit, s.reason.as_deref()).map(|why| row("Ended", &why)).into_iter().collect();
     match s.states.as_slice() {
         [] => lines.push(row("Prepared", "no packing at the end of a phase")),
         [state] => lines.extend(one(state)),
@@ -48,14 +49,16 @@ pub(crate) fn text(s: &Summary, directory: &Path, program: &str) -> String {
 }
 
 /// What an exit code other than 0 means for the lines below it.
-fn ended(code: u8) -> Option<String> {
+fn ended(code: u8, reason: Option<&str>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let why = match exit {
         Exit::Done => return None,
         Exit::Failure => "a process failed; the last state is in the recording",
         Exit::Usage => "invalid arguments",
         Exit::DataLoss => "messages or results are missing in the recording",
-        Exit::PhysicsInvalid => "the loading path was not completed; the last state is in the recording",
+        Exit::PhysicsInvalid => {
+            reason.unwrap_or("the loading path was not completed; the last state is in the recording")
+        }
         Exit::Interrupted => "interrupted; the last state is in the recording",
     };
     Some(format!("with exit code {code}: {why}"))
@@ -139,9 +142,18 @@ fn counted(r: &PackingReport) -> String {
         format!(" about ({:.2}, {:.2}, {:.2})", axis.x, axis.y, axis.z)
     };
     format!(
-        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {:.4}{about}",
-        c.contacts, c.rattlers, c.coordination, c.mechanical_coordination, r.fabric.contact_anisotropy
+        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {}{about}",
+        c.contacts,
+        c.rattlers,
+        c.coordination,
+        c.mechanical_coordination,
+        fixed(eps(r), 4)
     )
+}
+
+/// The counted anisotropy; `None` without contacts.
+fn eps(r: &PackingReport) -> Option<f64> {
+    (r.contacts.contacts > 0).then_some(r.fabric.contact_anisotropy)
 }
 
 /// G12, G13 and Theta, MPa.
@@ -218,7 +230,7 @@ fn several(states: &[InvertedPacking]) -> Vec<String> {
             format!("{:.2}", r.pressure() / 1e3),
             format!("{:.3}", r.contacts.coordination),
             format!("{:.3}", r.contacts.mechanical_coordination),
-            format!("{:.4}", r.fabric.contact_anisotropy),
+            fixed(eps(r), 4),
             g12,
             g13,
             theta,
@@ -276,7 +288,9 @@ mod tests {
     #[test]
     fn only_a_run_that_is_done_ends_without_a_reason() {
         for exit in Exit::ALL {
-            assert_eq!(ended(exit.code()).is_none(), exit == Exit::Done, "{exit:?}");
+            assert_eq!(ended(exit.code(), None).is_none(), exit == Exit::Done, "{exit:?}");
         }
+        let ended = ended(4, Some("phase 2 (rest) did not meet its end conditions")).unwrap();
+        assert_eq!(ended, "with exit code 4: phase 2 (rest) did not meet its end conditions");
     }
 }

@@ -1,18 +1,18 @@
 //! A launched run as text.
 
-use super::acoustic_text;
-use super::inference::{Inference, Origin, by_origin};
-use super::inference_text::warning_lines;
-use super::packing_text;
-use super::packing_text::indented;
-use super::read_back::{Film, InvertedPacking};
-use super::summary::Summary;
+use crate::acoustic_text;
+use crate::inference::{Inference, Origin, by_origin};
+use crate::inference_text::warning_lines;
+use crate::packing_text;
+use crate::packing_text::indented;
+use crate::read_back::{Film, InvertedPacking};
+use crate::summary::Summary;
 use grainlab_console::{Table, fixed};
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
 /// The result table of a run.
-pub(crate) fn text(s: &Summary) -> String {
+pub fn text(s: &Summary) -> String {
     let mut text = String::new();
     for (n, state) in s.states.iter().enumerate() {
         let (number, of, step) = (n + 1, s.states.len(), state.packing.step);

@@ -1,7 +1,7 @@
 //! One measured packing: the output of `grainlab analyze`, and an entry of `summary.json`.
 
-use super::probe::{ProbeView, ScanView};
-use super::quantities::{cells, columns, entries};
+use crate::probe::{ProbeView, ScanView};
+use crate::quantities::{cells, columns, entries};
 use grainlab_console::Table;
 use grainlab_core::quantities;
 use grainlab_core::quantity::{Quantity, Shape::Scalar};
@@ -11,25 +11,27 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// A report, and its source.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MeasuredPacking {
+pub struct MeasuredPacking {
     /// File, recording or topic.
-    pub(crate) source: String,
+    pub source: String,
     /// Step of the packing in its source.
-    pub(crate) step: u64,
-    pub(crate) report: PackingReport,
+    pub step: u64,
+    /// What was measured.
+    pub report: PackingReport,
     /// Position on the loading path; `None` if no simulator recorded it.
-    pub(crate) position: Option<PathPosition>,
+    pub position: Option<PathPosition>,
     /// Wall time of the measurement, s; `None` if it was read from a recording.
-    pub(crate) seconds: Option<f64>,
-    pub(crate) warnings: Vec<String>,
+    pub seconds: Option<f64>,
+    /// Warnings about the packing and its measurement, one line each.
+    pub warnings: Vec<String>,
     /// Details of the probe, if the stiffness was measured by one.
-    pub(crate) probe: Option<ProbeView>,
+    pub probe: Option<ProbeView>,
     /// Probes of several amplitudes, if set.
-    pub(crate) scan: Option<ScanView>,
+    pub scan: Option<ScanView>,
 }
 
 /// Quantities that precede those of the packing.
-pub(crate) static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
+pub static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredPacking:
     "source" "" "" "file, recording or topic" Scalar, |m| m.source.clone();
     "step" "" "1" "solver step of the packing" Scalar, |m| m.step;
     "phase" "" "1" "number of the phase of the scene, from 1; 0 for the packing that a run started from"
@@ -40,7 +42,8 @@ pub(crate) static ORIGIN: &[Quantity<MeasuredPacking>] = quantities! { MeasuredP
 };
 
 impl MeasuredPacking {
-    pub(crate) fn new(source: String, report: PackingReport) -> Self {
+    /// The report of a packing of this source; the other fields are empty.
+    pub fn new(source: String, report: PackingReport) -> Self {
         let step = report.step;
         Self {
             source,
@@ -144,6 +147,9 @@ pub(crate) mod tests {
             "force_contacts",
             "mobilised_mean",
             "orientation_eps",
+            "eps",
+            "axis_eps",
+            "p4",
         ] {
             assert!(s[key].is_null(), "{key}");
         }

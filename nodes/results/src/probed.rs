@@ -1,11 +1,11 @@
 //! A packing with its wave speeds: the output of `grainlab probe`.
 
-use super::acoustic::{ACOUSTIC, AcousticReport};
-use super::acoustic_text;
-use super::measured_packing::{MeasuredPacking, ORIGIN};
-use super::packing_text;
-use super::quantities::{cells, columns};
-use crate::commands::packings::printer::Printed;
+use crate::acoustic::{ACOUSTIC, AcousticReport};
+use crate::acoustic_text;
+use crate::measured_packing::{MeasuredPacking, ORIGIN};
+use crate::packing_text;
+use crate::printer::Printed;
+use crate::quantities::{cells, columns};
 use grainlab_console::Table;
 use grainlab_core::quantity::{Quantity, by_key};
 use grainlab_core::results::{PackingReport, QUANTITIES};
@@ -13,11 +13,12 @@ use serde::Serialize;
 
 /// The measurements on one packing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Probed {
+pub struct Probed {
+    /// Structure and stiffness.
     #[serde(flatten)]
-    pub(crate) packing: MeasuredPacking,
-    /// Null if no wave propagates.
-    pub(crate) acoustic: Option<AcousticReport>,
+    pub packing: MeasuredPacking,
+    /// The waves; null if no wave propagates.
+    pub acoustic: Option<AcousticReport>,
 }
 
 /// Quantities of the packing in CSV: the inputs of an inversion besides the speeds, and its truth. The moduli

@@ -1,0 +1,34 @@
+//! Results of a run as text, JSON and CSV: what `launch`, `analyze`, `probe`, `invert`, `campaign` and `reproduce` print.
+//!
+//! - [`quantities`]: values, columns and help from the tables of quantities; [`ORIGIN`], [`ACOUSTIC`]: two of the tables
+//! - [`MeasuredPacking`], [`AcousticReport`], [`Probed`], [`Inference`]: one packing, its waves, and what a model infers
+//! - [`state_warnings()`]: warnings about a packing; [`ProbeView`], [`ScanView`]: details of a strain probe
+//! - [`Printed`], [`Printer`]: results one after the other; [`inference_text`]: results of models as text
+//! - [`read_back`]: the results in a recording; [`continuity`]: the messages that it lacks
+//! - [`Summary`]: a launched run; [`summary_text`]: all of it as text; [`brief`]: at most 20 lines
+
+mod acoustic;
+mod acoustic_text;
+pub mod brief;
+pub mod continuity;
+mod inference;
+pub mod inference_text;
+mod measured_packing;
+mod packing_text;
+mod printer;
+mod probe;
+mod probed;
+pub mod quantities;
+pub mod read_back;
+mod state_warnings;
+mod summary;
+pub mod summary_text;
+
+pub use acoustic::{ACOUSTIC, AcousticReport};
+pub use inference::{Inference, Quantities};
+pub use measured_packing::{MeasuredPacking, ORIGIN};
+pub use printer::{Printed, Printer};
+pub use probe::{ProbeView, ScanView};
+pub use probed::Probed;
+pub use state_warnings::state_warnings;
+pub use summary::{Launched, NodeEnd, Summary};
