@@ -5,17 +5,45 @@ use crate::names::{absolute, type_parts};
 use crate::observer::Observer;
 use grainlab_console::Failure;
 use grainlab_console::network::tool_bus;
-use grainlab_msgs::{Qos, Topic, TypeInfo};
-use grainlab_node_kit::{Bus, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake};
+use grainlab_msgs::{Qos, Topic, TypeInfo, topics};
+use grainlab_node_kit::{
+    BulkSubscription, Bus, BusError, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake,
+};
 use std::time::{Duration, Instant};
 
 /// Samples that may wait for this process: a second of the fastest topic.
 const DEPTH: u32 = 20_000;
 
+/// Packings that may wait for this process.
+const PACKINGS: u32 = 16;
+
+/// Messages of one sample, or packings, which may come in parts.
+enum Source {
+    Samples(SubscriptionId),
+    Packings(Box<BulkSubscription>),
+}
+
+impl Source {
+    fn take(&mut self, bus: &mut DdsBus) -> Result<Option<Sample>, BusError> {
+        match self {
+            Self::Samples(id) => bus.take(*id),
+            Self::Packings(packings) => packings.take(bus),
+        }
+    }
+
+    /// How long this process may wait at most.
+    fn patience(&self, bus: &DdsBus) -> Duration {
+        match self {
+            Self::Samples(_) => Duration::MAX,
+            Self::Packings(packings) => packings.patience(bus.now()),
+        }
+    }
+}
+
 /// A subscription to one topic, of which no type needs to be known.
 pub(crate) struct Listener {
     bus: DdsBus,
-    subscription: SubscriptionId,
+    source: Source,
     /// Name and type.
     pub(crate) topic: Topic,
 }
@@ -37,9 +65,9 @@ impl Listener {
     pub(crate) fn open(name: &str, whole: bool, patience: Duration) -> Result<Self, Failure> {
         let name = absolute(name);
         let graph = Observer::join()?.settled(patience);
-        let topics = graph.topics();
-        let Some(entry) = topics.get(name.as_str()) else {
-            return Err(unknown(&name, topics.keys().copied()));
+        let all = graph.topics();
+        let Some(entry) = all.get(name.as_str()) else {
+            return Err(unknown(&name, all.keys().copied()));
         };
         let types = entry.types();
         let type_name = match types.first() {
@@ -69,8 +97,14 @@ impl Listener {
         let topic = Topic { name: constant(&name), info, qos, writer: "", reproducible: false, summary: "" };
         let mut bus = tool_bus("grainlab_topic")?;
         let demand = if reliable { Demand::reliable(DEPTH) } else { Demand::best_effort(DEPTH) };
-        let subscription = bus.subscribe(&topic, demand).map_err(Failure::failed)?;
-        Ok(Self { bus, subscription, topic })
+        let source = if whole && topic.info == topics::PACKING.info {
+            let demand = Demand { depth: PACKINGS, ..demand };
+            let packings = BulkSubscription::subscribe(&mut bus, &topic, demand);
+            Source::Packings(Box::new(packings.map_err(Failure::failed)?))
+        } else {
+            Source::Samples(bus.subscribe(&topic, demand).map_err(Failure::failed)?)
+        };
+        Ok(Self { bus, source, topic })
     }
 
     /// The samples that arrive before `end`; an interruption is an error with exit 130.
@@ -80,7 +114,7 @@ impl Listener {
         mut each: impl FnMut(Sample) -> Result<bool, Failure>,
     ) -> Result<(), Failure> {
         loop {
-            while let Some(sample) = self.bus.take(self.subscription).map_err(Failure::failed)? {
+            while let Some(sample) = self.source.take(&mut self.bus).map_err(Failure::failed)? {
                 if !each(sample)? {
                     return Ok(());
                 }
@@ -89,7 +123,7 @@ impl Listener {
             if left.is_zero() {
                 return Ok(());
             }
-            if self.bus.wait(left) == Wake::Shutdown {
+            if self.bus.wait(left.min(self.source.patience(&self.bus))) == Wake::Shutdown {
                 return Err(Failure::new(Exit::Interrupted, "interrupted"));
             }
         }

@@ -1,5 +1,7 @@
 //! `grainlab topic`.
 
+mod definition;
+mod echo;
 mod hz;
 mod info;
 mod list;
@@ -17,6 +19,8 @@ pub enum Command {
     List(list::Args),
     /// Show the publishers and subscriptions of a topic, with their QoS.
     Info(info::Args),
+    /// Print the messages of a topic, of any type whose definition is known.
+    Echo(echo::Args),
     /// Measure the rate of a topic, and what was lost.
     Hz(hz::RateArgs),
     /// Measure the bandwidth of a topic.
@@ -33,6 +37,7 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::List(args) => list::run(args),
         Command::Info(args) => info::run(args),
+        Command::Echo(args) => echo::run(args),
         Command::Hz(args) => hz::rate(args),
         Command::Bw(args) => hz::bandwidth(args),
         Command::Delay(args) => hz::delay(args),
