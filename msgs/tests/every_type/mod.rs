@@ -40,6 +40,9 @@ macro_rules! for_every_type {
         $check!(grainlab_msgs::msg::WaveSpeeds);
         $check!(grainlab_msgs::msg::Waveform);
         $check!(grainlab_msgs::rcl_interfaces::Log);
+        $check!(grainlab_msgs::rcl_interfaces::Parameter);
+        $check!(grainlab_msgs::rcl_interfaces::ParameterEvent);
+        $check!(grainlab_msgs::rcl_interfaces::ParameterValue);
         $check!(grainlab_msgs::rosgraph_msgs::Clock);
         $check!(grainlab_msgs::std_msgs::Header);
         $check!(grainlab_msgs::tf2_msgs::TFMessage);

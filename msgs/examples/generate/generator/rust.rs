@@ -75,7 +75,7 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
         if long_array(field) {
             out += "    #[serde(with = \"crate::fixed_array\")]\n";
         }
-        out += &format!("    pub {}: {},\n", field.name, rust_type(field));
+        out += &format!("    pub {}: {},\n", field_name(&field.name), rust_type(field));
     }
     out += "}\n";
     if !file.constants.is_empty() {
@@ -135,7 +135,8 @@ fn default_impl(file: &MessageFile) -> String {
             (None, _) => "Default::default()".to_owned(),
         }
     };
-    let fields: Vec<String> = file.fields.iter().map(|f| format!("{}: {}", f.name, value(f))).collect();
+    let fields: Vec<String> =
+        file.fields.iter().map(|f| format!("{}: {}", field_name(&f.name), value(f))).collect();
     let line = format!("        Self {{ {} }}", fields.join(", "));
     let body = if line.len() <= MAX_WIDTH {
         line
@@ -219,4 +220,10 @@ pub(crate) fn snake_case(name: &str) -> String {
         out.push(c.to_ascii_lowercase());
     }
     out
+}
+
+/// The name of a field in Rust; serde drops the `r#`.
+fn field_name(name: &str) -> String {
+    const KEYWORDS: [&str; 8] = ["type", "match", "move", "ref", "loop", "impl", "use", "mod"];
+    if KEYWORDS.contains(&name) { format!("r#{name}") } else { name.to_owned() }
 }

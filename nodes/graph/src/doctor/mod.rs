@@ -1,12 +1,14 @@
 //! `grainlab doctor`: finds what keeps nodes of a domain from working together.
 //!
 //! - `finding`: what is wrong, where, and what to do
-//! - `endpoints`: types and QoS; `nodes`: names, simulators, heartbeats, parameters; `host`: network and environment
+//! - `endpoints`: types and QoS; `nodes`: names, simulators, heartbeats, parameters; `host`: network and environment; `processes`:
+//!   stopped ones
 
 mod endpoints;
 mod finding;
 mod host;
 mod nodes;
+mod processes;
 
 use crate::observer::Observer;
 use crate::view::Common;
@@ -45,20 +47,34 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     // Without a valid environment there is no domain to look at.
     if let Ok(network) = Network::from_env() {
         findings.extend(host::network(network));
-        let mut observer = Observer::join_network(network)?;
-        let graph = observer.settled(args.common.patience());
-        findings.extend(endpoints::findings(&graph));
-        findings.extend(nodes::findings(&graph));
-        findings.extend(nodes::of_heartbeats(&graph, &nodes::heartbeats(&mut observer)?));
-        findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
-        (view.domain, view.nodes) = (Some(network.domain), graph.nodes.len());
-        (view.topics, view.services) = (graph.topics().len(), graph.services().len());
+        findings.extend(processes::stopped(network.domain));
+        view.domain = Some(network.domain);
+        match Observer::join_network(network) {
+            Ok(observer) => findings.extend(of_domain(observer, args, &mut view)?),
+            Err(failure) => findings.push(Finding::error(
+                "cannot_join",
+                format!("this process cannot join the domain: {failure}"),
+                "see the other findings; without loopback (ip link set lo up) no node runs",
+            )),
+        }
     }
     findings.sort_by_key(|f| f.severity);
     view.findings = findings;
     args.common.show(&view, || text(&view))?;
     let wrong = view.findings.iter().any(|f| f.severity == Severity::Error);
     Ok(if wrong { Exit::Failure } else { Exit::Done })
+}
+
+/// What the graph of the domain shows.
+fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec<Finding>, Failure> {
+    let graph = observer.settled(args.common.patience());
+    let mut findings = endpoints::findings(&graph);
+    findings.extend(nodes::findings(&graph));
+    findings.extend(nodes::of_heartbeats(&graph, &nodes::heartbeats(&mut observer)?));
+    findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
+    view.nodes = graph.nodes.len();
+    (view.topics, view.services) = (graph.topics().len(), graph.services().len());
+    Ok(findings)
 }
 
 fn text(view: &View) -> String {

@@ -1,0 +1,67 @@
+//! Processes of a domain that are stopped. Discovery does not show them to a process that starts later.
+
+use super::finding::Finding;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// Findings about stopped processes of this host that hold a UDP port of the domain.
+pub(super) fn stopped(domain: u16) -> Vec<Finding> {
+    let inodes = inodes_of(domain);
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let found = processes.filter_map(|entry| {
+        let pid: u32 = entry.file_name().to_str()?.parse().ok()?;
+        let (name, state) = name_and_state(&fs::read_to_string(entry.path().join("stat")).ok()?)?;
+        let stopped = matches!(state, 'T' | 't') && holds_any(&entry.path(), &inodes);
+        stopped.then(|| {
+            Finding::error(
+                "stopped_process",
+                format!("process {pid} ({name}) takes part in domain {domain} and is stopped"),
+                format!("continue it (fg in its shell, or kill -CONT {pid}), or end it"),
+            )
+        })
+    });
+    found.collect()
+}
+
+/// Inodes of the UDP sockets in the range of ports of a domain. `/proc/net/udp` has the port in the second column, and the
+/// inode in the tenth.
+fn inodes_of(domain: u16) -> BTreeSet<String> {
+    let first = 7400 + 250 * domain;
+    let ports = first..=first.saturating_add(249);
+    let text = fs::read_to_string("/proc/net/udp").unwrap_or_default();
+    let inode = |line: &str| {
+        let columns: Vec<&str> = line.split_whitespace().collect();
+        let (_, port) = columns.get(1)?.split_once(':')?;
+        let port = u16::from_str_radix(port, 16).ok()?;
+        ports.contains(&port).then(|| columns.get(9).map(|inode| (*inode).to_owned()))?
+    };
+    text.lines().skip(1).filter_map(inode).collect()
+}
+
+fn holds_any(process: &Path, inodes: &BTreeSet<String>) -> bool {
+    let descriptors = fs::read_dir(process.join("fd")).into_iter().flatten().flatten();
+    let mut links = descriptors.filter_map(|fd| fs::read_link(fd.path()).ok()?.to_str().map(str::to_owned));
+    links.any(|link| {
+        let inode = link.strip_prefix("socket:[").and_then(|rest| rest.strip_suffix(']'));
+        inode.is_some_and(|inode| inodes.contains(inode))
+    })
+}
+
+/// From `/proc/PID/stat`; the name, in brackets, may contain spaces and brackets.
+fn name_and_state(stat: &str) -> Option<(String, char)> {
+    let (before, behind) = stat.rsplit_once(')')?;
+    let (_, name) = before.split_once('(')?;
+    Some((name.to_owned(), behind.trim_start().chars().next()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_state_is_found_behind_any_name() {
+        assert_eq!(name_and_state("12 (a b) c) T 1 1"), Some(("a b) c".into(), 'T')));
+        assert_eq!(name_and_state("12"), None);
+    }
+}
