@@ -7,6 +7,7 @@
 //! steps.
 
 use super::inbox::Inbox;
+use super::lock::lock;
 use mio::Waker;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -18,11 +19,6 @@ const ABSENCE: Duration = Duration::from_millis(20);
 
 /// Readers of one bus, shared with the background reader.
 pub(super) type Inboxes = Arc<Mutex<Vec<Arc<Mutex<Inbox>>>>>;
-
-/// Locks, whether or not another thread panicked while it held the lock: queues are valid after every statement.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 struct Shared {
     start: Instant,

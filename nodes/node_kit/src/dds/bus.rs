@@ -1,11 +1,12 @@
 //! The bus over DDS.
 
-use super::background_reader::{BackgroundReader, Inboxes, lock};
+use super::background_reader::{BackgroundReader, Inboxes};
 use super::direct::{self, Change, DdsTopic, Discovery, Inlet, Outlet};
 use super::error::create_error;
 use super::gate::Gate;
 use super::graph::Graph;
 use super::inbox::Inbox;
+use super::lock::lock;
 use super::network::Network;
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};

@@ -54,10 +54,15 @@ fn builder(network: Network) -> DomainParticipantBuilder {
     }
 }
 
-/// A ros2-client context in this network, without the rules of a run.
-pub(super) fn plain_context(network: Network) -> Result<Context, BusError> {
-    let participant = builder(network).build().map_err(|e| create_error("DDS participant", &e))?;
-    Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
+impl Network {
+    /// A ros2-client context in this network: a participant outside all runs, for tools and tests.
+    ///
+    /// # Errors
+    /// If DDS cannot open its sockets.
+    pub fn context(&self) -> Result<Context, BusError> {
+        let participant = builder(*self).build().map_err(|e| create_error("DDS participant", &e))?;
+        Context::from_domain_participant(participant).map_err(|e| create_error("ROS context", &e))
+    }
 }
 
 /// The ros2-client context of one process of a run, and its 16-byte GUID.

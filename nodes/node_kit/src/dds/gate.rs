@@ -1,6 +1,6 @@
 //! Applies the rules of admission in RustDDS's threads.
 
-use super::background_reader::lock;
+use super::lock::lock;
 use super::processes;
 use crate::admission::{Admission, Participant, Stranger};
 use crate::identity::{Identity, Scope};

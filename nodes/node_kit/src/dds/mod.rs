@@ -4,7 +4,7 @@
 //! - `inbox`: a reader with the samples that were read but not taken; `background_reader`: reads while a node computes
 //! - `gate`: which samples are accepted; `processes`: the process of a participant
 //! - `graph`: endpoints of other processes; `network`: domain and reach; `test_domain`: domains for tests
-//! - `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
+//! - `lock`: locks that survive a panic; `writer`: one writer; `direct`: what ros2-client lacks, from RustDDS
 
 mod background_reader;
 mod bus;
@@ -13,6 +13,7 @@ mod error;
 mod gate;
 mod graph;
 mod inbox;
+mod lock;
 mod network;
 mod processes;
 mod test_domain;

@@ -1,8 +1,5 @@
 //! Domain and discovery range from the ROS 2 environment variables, as far as RustDDS supports them.
 
-use super::direct::plain_context;
-use crate::bus_error::BusError;
-
 /// The range of discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
@@ -92,11 +89,6 @@ impl Network {
             },
         };
         Ok(Self { domain, reach })
-    }
-
-    /// A ros2-client context in this network: a participant outside all runs, for tools and tests.
-    pub fn context(&self) -> Result<ros2_client::Context, BusError> {
-        plain_context(*self)
     }
 }
 
