@@ -5,6 +5,7 @@
 //!   project in `msg/`, those of ROS 2 in `std/` (same fields, same type hashes). After a change of a message
 //!   file: `cargo run --release -p grainlab_msgs --example generate`, then `tests/golden/make_golden.py`
 //! - `message`: name, hash and schema of a type; [`TypeInfo`]: the same as a value
+//! - `description`: the type description of a type, as `~/get_type_description` returns it
 //! - `cdr`: serialization
 //! - [`topics`]: the table of topics, types and QoS
 //! - `clock`: simulated time as a ROS stamp
@@ -13,6 +14,7 @@
 pub mod boundary;
 mod cdr;
 mod clock;
+mod description;
 mod fixed_array;
 mod generated;
 mod message;
@@ -22,9 +24,10 @@ mod types;
 
 pub use cdr::{DecodeError, from_cdr, to_cdr};
 pub use clock::{EPOCH_SECONDS, simulated_seconds, stamp};
+pub use description::{FieldDescription, FieldTypeDescription, MessageDescription, TypeDescription};
 pub use generated::grainlab_msgs as msg;
 pub use generated::{
     builtin_interfaces, diagnostic_msgs, geometry_msgs, rcl_interfaces, rosgraph_msgs, std_msgs, tf2_msgs,
 };
-pub use message::{Message, TypeInfo};
+pub use message::{FieldInfo, Message, TypeInfo};
 pub use topic::{Qos, Topic};

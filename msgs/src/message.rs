@@ -12,6 +12,8 @@ pub trait Message: Serialize + DeserializeOwned + Send + 'static {
     const TYPE: &'static str;
     /// Type hash (REP-2016), `RIHS01_` and 64 hexadecimal digits.
     const HASH: &'static str;
+    /// Its fields, as in a type description.
+    const FIELDS: &'static [FieldInfo];
     /// Schema text as rosbag2 writes it: the message file, then every message file that it depends on.
     const DEFINITION: &'static str;
 }
@@ -27,6 +29,8 @@ pub struct TypeInfo {
     pub type_name: &'static str,
     /// [`Message::HASH`].
     pub hash: &'static str,
+    /// [`Message::FIELDS`].
+    pub fields: &'static [FieldInfo],
     /// [`Message::DEFINITION`].
     pub definition: &'static str,
 }
@@ -39,10 +43,32 @@ impl TypeInfo {
             name: T::NAME,
             type_name: T::TYPE,
             hash: T::HASH,
+            fields: T::FIELDS,
             definition: T::DEFINITION,
         }
     }
 }
+
+/// A field in a type description, `type_description_interfaces/msg/FieldType` (REP-2016).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Number of its type: 1 for a message, 11 for `float64`, 17 for `string`, …; plus 48 for an array, 144 for a sequence.
+    pub type_id: u8,
+    /// Length of an array, else 0.
+    pub capacity: u64,
+    /// Full name of its type if that is a message, else empty.
+    pub nested: &'static str,
+}
+
+/// The fields of a message, `"name" => (type_id, capacity, "nested")`.
+macro_rules! fields {
+    ($($name:literal => ($type_id:literal, $capacity:literal, $nested:literal)),* $(,)?) => {
+        &[$(FieldInfo { name: $name, type_id: $type_id, capacity: $capacity, nested: $nested }),*]
+    };
+}
+pub(crate) use fields;
 
 /// Assembles a schema text from message files: rosbag2 separates them by 80 equals signs.
 macro_rules! definition {

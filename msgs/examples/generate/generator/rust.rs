@@ -2,7 +2,7 @@
 
 use super::Library;
 use super::parse::{Base, Constant, Field, MessageFile, Shape};
-use super::type_hash::{lookup, rihs01};
+use super::type_hash::{described, lookup, rihs01};
 use std::collections::BTreeSet;
 
 /// serde and the standard library support arrays up to this length; longer ones need `fixed_array`.
@@ -50,7 +50,7 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
     let full = format!("{}/msg/{}", file.package, file.name);
     let mut out = format!("// Generated from {} by examples/generate; not edited by hand.\n\n", file.path);
     let mut uses = vec![
-        "crate::message::{Message, definition}".to_owned(),
+        "crate::message::{FieldInfo, Message, definition, fields}".to_owned(),
         "serde::{Deserialize, Serialize}".to_owned(),
     ];
     for name in file.dependencies() {
@@ -90,8 +90,19 @@ pub(crate) fn message(file: &MessageFile, library: &Library) -> Result<String, S
         out += &format!("    const {name}: &'static str = \"{value}\";\n");
     }
     out += &format!("    const HASH: &'static str = \"{}\";\n", rihs01(file, library)?);
+    out += &fields(file);
     out += &definition(file, library)?;
     Ok(out + "}\n")
+}
+
+/// The fields as in a type description (REP-2016).
+fn fields(file: &MessageFile) -> String {
+    let mut out = String::from("    const FIELDS: &'static [FieldInfo] = fields!(\n");
+    for field in &file.fields {
+        let (id, capacity, nested) = described(field);
+        out += &format!("        \"{}\" => ({id}, {capacity}, \"{nested}\"),\n", field.name);
+    }
+    out + "    );\n"
 }
 
 /// The compiler assembles the schema in rosbag2's convention from the message files, so that it cannot differ

@@ -45,8 +45,8 @@ fn description(file: &MessageFile) -> String {
     format!(r#"{{"type_name": "{}/msg/{}", "fields": [{}]}}"#, file.package, file.name, fields.join(", "))
 }
 
-/// Default values are not part of it.
-fn field(field: &Field) -> String {
+/// Number of the type, capacity and nested type of a field, as in `type_description_interfaces/msg/FieldType`.
+pub(crate) fn described(field: &Field) -> (u32, usize, String) {
     let (increment, capacity) = match field.shape {
         Shape::One => (0, 0),
         Shape::Array(length) => (48, length),
@@ -56,9 +56,14 @@ fn field(field: &Field) -> String {
         Base::Primitive(p) => (p.type_id, String::new()),
         Base::Message(name) => (1, name.replacen('/', "/msg/", 1)),
     };
+    (id + increment, capacity, nested)
+}
+
+/// Default values are not part of it.
+fn field(field: &Field) -> String {
+    let (id, capacity, nested) = described(field);
     format!(
-        r#"{{"name": "{}", "type": {{"type_id": {}, "capacity": {capacity}, "string_capacity": 0, "nested_type_name": "{nested}"}}}}"#,
-        field.name,
-        id + increment
+        r#"{{"name": "{}", "type": {{"type_id": {id}, "capacity": {capacity}, "string_capacity": 0, "nested_type_name": "{nested}"}}}}"#,
+        field.name
     )
 }

@@ -2,7 +2,7 @@
 
 use crate::generated::diagnostic_msgs::DiagnosticStatus;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `diagnostic_msgs/msg/DiagnosticArray`.
@@ -19,6 +19,10 @@ impl Message for DiagnosticArray {
     const NAME: &'static str = "DiagnosticArray";
     const TYPE: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
     const HASH: &'static str = "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "status" => (145, 0, "diagnostic_msgs/msg/DiagnosticStatus"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/diagnostic_msgs/msg/DiagnosticArray.msg",
         "diagnostic_msgs/DiagnosticStatus" => "std/diagnostic_msgs/msg/DiagnosticStatus.msg",

@@ -1,7 +1,7 @@
 // Generated from std/diagnostic_msgs/msg/DiagnosticStatus.msg by examples/generate; not edited by hand.
 
 use crate::generated::diagnostic_msgs::KeyValue;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `diagnostic_msgs/msg/DiagnosticStatus`.
@@ -38,6 +38,13 @@ impl Message for DiagnosticStatus {
     const NAME: &'static str = "DiagnosticStatus";
     const TYPE: &'static str = "diagnostic_msgs/msg/DiagnosticStatus";
     const HASH: &'static str = "RIHS01_b0e3e692ea2d54a8af2f4ef1930e81556a2db55216b771f8a7d2724ed47bf0e4";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "level" => (16, 0, ""),
+        "name" => (17, 0, ""),
+        "message" => (17, 0, ""),
+        "hardware_id" => (17, 0, ""),
+        "values" => (145, 0, "diagnostic_msgs/msg/KeyValue"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/diagnostic_msgs/msg/DiagnosticStatus.msg",
         "diagnostic_msgs/KeyValue" => "std/diagnostic_msgs/msg/KeyValue.msg",

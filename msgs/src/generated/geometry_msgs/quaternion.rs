@@ -1,6 +1,6 @@
 // Generated from std/geometry_msgs/msg/Quaternion.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `geometry_msgs/msg/Quaternion`.
@@ -27,5 +27,11 @@ impl Message for Quaternion {
     const NAME: &'static str = "Quaternion";
     const TYPE: &'static str = "geometry_msgs/msg/Quaternion";
     const HASH: &'static str = "RIHS01_8a765f66778c8ff7c8ab94afcc590a2ed5325a1d9a076ffff38fbce36f458684";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "x" => (11, 0, ""),
+        "y" => (11, 0, ""),
+        "z" => (11, 0, ""),
+        "w" => (11, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("std/geometry_msgs/msg/Quaternion.msg");
 }

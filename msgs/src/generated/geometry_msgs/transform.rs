@@ -2,7 +2,7 @@
 
 use crate::generated::geometry_msgs::Quaternion;
 use crate::generated::geometry_msgs::Vector3;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `geometry_msgs/msg/Transform`.
@@ -19,6 +19,10 @@ impl Message for Transform {
     const NAME: &'static str = "Transform";
     const TYPE: &'static str = "geometry_msgs/msg/Transform";
     const HASH: &'static str = "RIHS01_beb83fbe698636351461f6f35d1abb20010c43d55374d81bd041f1ba2581fddc";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "translation" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "rotation" => (1, 0, "geometry_msgs/msg/Quaternion"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/geometry_msgs/msg/Transform.msg",
         "geometry_msgs/Quaternion" => "std/geometry_msgs/msg/Quaternion.msg",

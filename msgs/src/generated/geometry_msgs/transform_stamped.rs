@@ -2,7 +2,7 @@
 
 use crate::generated::geometry_msgs::Transform;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `geometry_msgs/msg/TransformStamped`.
@@ -21,6 +21,11 @@ impl Message for TransformStamped {
     const NAME: &'static str = "TransformStamped";
     const TYPE: &'static str = "geometry_msgs/msg/TransformStamped";
     const HASH: &'static str = "RIHS01_0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "child_frame_id" => (17, 0, ""),
+        "transform" => (1, 0, "geometry_msgs/msg/Transform"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/geometry_msgs/msg/TransformStamped.msg",
         "geometry_msgs/Transform" => "std/geometry_msgs/msg/Transform.msg",

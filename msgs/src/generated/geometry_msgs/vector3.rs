@@ -1,6 +1,6 @@
 // Generated from std/geometry_msgs/msg/Vector3.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `geometry_msgs/msg/Vector3`.
@@ -19,5 +19,10 @@ impl Message for Vector3 {
     const NAME: &'static str = "Vector3";
     const TYPE: &'static str = "geometry_msgs/msg/Vector3";
     const HASH: &'static str = "RIHS01_cc12fe83e4c02719f1ce8070bfd14aecd40f75a96696a67a2a1f37f7dbb0765d";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "x" => (11, 0, ""),
+        "y" => (11, 0, ""),
+        "z" => (11, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("std/geometry_msgs/msg/Vector3.msg");
 }

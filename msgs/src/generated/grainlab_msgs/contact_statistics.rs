@@ -2,7 +2,7 @@
 
 use crate::generated::grainlab_msgs::ForceStatistics;
 use crate::generated::grainlab_msgs::MobilisedFriction;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Contacts of a packing, and the forces they carry.
@@ -31,6 +31,16 @@ impl Message for ContactStatistics {
     const NAME: &'static str = "ContactStatistics";
     const TYPE: &'static str = "grainlab_msgs/msg/ContactStatistics";
     const HASH: &'static str = "RIHS01_2d71efd7f8ec94b939711a2dd33ebb2bba24e964c7d565e117242052ecb3a70f";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "grains" => (7, 0, ""),
+        "contacts" => (7, 0, ""),
+        "rattlers" => (7, 0, ""),
+        "coordination" => (11, 0, ""),
+        "mechanical_coordination" => (11, 0, ""),
+        "sliding_fraction" => (11, 0, ""),
+        "forces" => (145, 0, "grainlab_msgs/msg/ForceStatistics"),
+        "friction" => (145, 0, "grainlab_msgs/msg/MobilisedFriction"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/ContactStatistics.msg",
         "grainlab_msgs/ForceStatistics" => "msg/ForceStatistics.msg",

@@ -1,6 +1,6 @@
 // Generated from msg/ElasticStiffness.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Stiffness of a packing, in the frame of the cell. Voigt order xx yy zz yz xz xy, engineering shear, row-major.
@@ -59,5 +59,15 @@ impl Message for ElasticStiffness {
     const NAME: &'static str = "ElasticStiffness";
     const TYPE: &'static str = "grainlab_msgs/msg/ElasticStiffness";
     const HASH: &'static str = "RIHS01_9204beee23cc53ecfe3778b2da10e7b45377c314e6b93fd34f828142fbcf21dc";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "method" => (3, 0, ""),
+        "stiffness" => (59, 36, ""),
+        "stddev" => (59, 36, ""),
+        "residual" => (11, 0, ""),
+        "iterations" => (7, 0, ""),
+        "affine" => (59, 36, ""),
+        "uniform_rotation" => (59, 36, ""),
+        "bulk_reuss_bound" => (155, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/ElasticStiffness.msg");
 }

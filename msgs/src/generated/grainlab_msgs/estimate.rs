@@ -1,6 +1,6 @@
 // Generated from msg/Estimate.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// What one model infers. Numbers hold for STATUS_OK and STATUS_EXTRAPOLATED. What may be missing is an array of one entry, or of none.
@@ -94,5 +94,26 @@ impl Message for Estimate {
     const NAME: &'static str = "Estimate";
     const TYPE: &'static str = "grainlab_msgs/msg/Estimate";
     const HASH: &'static str = "RIHS01_91ac000b067ddf1a2c03467ed6cba39f9b55eb9c2d2d77ccc0030908f57e0524";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "model" => (17, 0, ""),
+        "calibration" => (17, 0, ""),
+        "status" => (3, 0, ""),
+        "gamma_over_delta" => (155, 0, ""),
+        "gamma_over_delta_source" => (17, 0, ""),
+        "k" => (155, 0, ""),
+        "k_hat" => (155, 0, ""),
+        "z" => (155, 0, ""),
+        "eps" => (155, 0, ""),
+        "eps_stiffness" => (155, 0, ""),
+        "covariance" => (155, 0, ""),
+        "covariance_model" => (155, 0, ""),
+        "interval" => (155, 0, ""),
+        "credible_level" => (11, 0, ""),
+        "chi_square" => (11, 0, ""),
+        "degrees_of_freedom" => (7, 0, ""),
+        "condition_number" => (155, 0, ""),
+        "information" => (59, 45, ""),
+        "warnings" => (161, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/Estimate.msg");
 }

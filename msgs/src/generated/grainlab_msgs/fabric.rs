@@ -8,7 +8,7 @@ use crate::generated::grainlab_msgs::StrainRatios;
 use crate::generated::grainlab_msgs::StressDecomposition;
 use crate::generated::grainlab_msgs::SymmetricTensor;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Structure of one packing. h is the reference axis, e3 = z unless the analyzer was told another; n is a contact normal.
@@ -54,6 +54,24 @@ impl Message for Fabric {
     const NAME: &'static str = "Fabric";
     const TYPE: &'static str = "grainlab_msgs/msg/Fabric";
     const HASH: &'static str = "RIHS01_eef676cb4a232ae39780d508c5c32e1c995750d1e4b1c97fcc2408539f88d700";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "source_step" => (9, 0, ""),
+        "contacts" => (1, 0, "grainlab_msgs/msg/ContactStatistics"),
+        "reference_axis" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "contact_fabric" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "normal_force_fabric" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "tangential_force_fabric" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "stiffness_fabric" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "contact_anisotropy" => (11, 0, ""),
+        "p4_coefficient" => (11, 0, ""),
+        "fourth_order_fabric" => (59, 15, ""),
+        "fourth_order_magnitude" => (11, 0, ""),
+        "principal_axis" => (1, 0, "grainlab_msgs/msg/PrincipalAxis"),
+        "orientation" => (1, 0, "grainlab_msgs/msg/OrientationHistogram"),
+        "stress" => (1, 0, "grainlab_msgs/msg/StressDecomposition"),
+        "strain_ratios" => (1, 0, "grainlab_msgs/msg/StrainRatios"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Fabric.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

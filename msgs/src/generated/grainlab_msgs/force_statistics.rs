@@ -1,6 +1,6 @@
 // Generated from msg/ForceStatistics.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Distribution of normal forces, f = Fn over its mean.
@@ -23,5 +23,12 @@ impl Message for ForceStatistics {
     const NAME: &'static str = "ForceStatistics";
     const TYPE: &'static str = "grainlab_msgs/msg/ForceStatistics";
     const HASH: &'static str = "RIHS01_f5bab78414577f3507df661b97f7f1a5804957c6b0dc68d29dbc69eb8ce95128";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "mean_normal" => (11, 0, ""),
+        "mean_tangential" => (11, 0, ""),
+        "moments" => (59, 3, ""),
+        "largest" => (11, 0, ""),
+        "histogram" => (55, 20, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/ForceStatistics.msg");
 }

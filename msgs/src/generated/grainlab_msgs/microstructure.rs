@@ -2,7 +2,7 @@
 
 use crate::generated::grainlab_msgs::Estimate;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// What the moduli, or the wave speeds, say about the packing.
@@ -23,6 +23,12 @@ impl Message for Microstructure {
     const NAME: &'static str = "Microstructure";
     const TYPE: &'static str = "grainlab_msgs/msg/Microstructure";
     const HASH: &'static str = "RIHS01_9897c63c07bdcb0ff119df4aeac2dbd997010d883b3fdd88621aefc99001ef43";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "source_step" => (9, 0, ""),
+        "source" => (17, 0, ""),
+        "estimates" => (145, 0, "grainlab_msgs/msg/Estimate"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Microstructure.msg",
         "grainlab_msgs/Estimate" => "msg/Estimate.msg",

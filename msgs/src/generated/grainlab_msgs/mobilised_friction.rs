@@ -1,6 +1,6 @@
 // Generated from msg/MobilisedFriction.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Mobilised friction |Ft|/(mu Fn), at most 1.
@@ -17,5 +17,9 @@ impl Message for MobilisedFriction {
     const NAME: &'static str = "MobilisedFriction";
     const TYPE: &'static str = "grainlab_msgs/msg/MobilisedFriction";
     const HASH: &'static str = "RIHS01_1fc98aa74493c6d139c27ba8b583a08f0470234e331577734235af3c52114581";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "mean" => (11, 0, ""),
+        "histogram" => (55, 10, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/MobilisedFriction.msg");
 }

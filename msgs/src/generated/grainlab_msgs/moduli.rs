@@ -4,7 +4,7 @@ use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::ElasticStiffness;
 use crate::generated::grainlab_msgs::StrainRatios;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Elastic moduli of a sample, and what an inversion needs beside them. The structure of a packing is in its Fabric, which has the
@@ -50,6 +50,24 @@ impl Message for Moduli {
     const NAME: &'static str = "Moduli";
     const TYPE: &'static str = "grainlab_msgs/msg/Moduli";
     const HASH: &'static str = "RIHS01_282b9d9f16ea1f2c93b0ddc2b7e050200589d8571ad525a493da43120fb335f4";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "source_step" => (9, 0, ""),
+        "grains" => (7, 0, ""),
+        "reference_axis" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "g12" => (155, 0, ""),
+        "g13" => (155, 0, ""),
+        "theta" => (155, 0, ""),
+        "covariance" => (155, 0, ""),
+        "pressure" => (11, 0, ""),
+        "solid_fraction" => (155, 0, ""),
+        "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "strain_ratios" => (1, 0, "grainlab_msgs/msg/StrainRatios"),
+        "grain_shear_modulus" => (11, 0, ""),
+        "grain_poisson_ratio" => (11, 0, ""),
+        "grain_density" => (11, 0, ""),
+        "stiffness" => (145, 0, "grainlab_msgs/msg/ElasticStiffness"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Moduli.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

@@ -1,6 +1,6 @@
 // Generated from msg/OrientationFit.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Maximum likelihood of the distribution (1 - eps) + 3 eps x^2 of contacts (Eq. 6).
@@ -19,5 +19,10 @@ impl Message for OrientationFit {
     const NAME: &'static str = "OrientationFit";
     const TYPE: &'static str = "grainlab_msgs/msg/OrientationFit";
     const HASH: &'static str = "RIHS01_10fd1701211e6e29b604c892576f5e5065ddbfa8d2633d72143bc1ce2d4a02a3";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "eps" => (11, 0, ""),
+        "eps_stddev" => (11, 0, ""),
+        "chi2_per_dof" => (11, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/OrientationFit.msg");
 }

@@ -1,7 +1,7 @@
 // Generated from msg/Packing.msg by examples/generate; not edited by hand.
 
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The complete mechanical state: measures, displays and resumes bit for bit.
@@ -71,6 +71,34 @@ impl Message for Packing {
     const NAME: &'static str = "Packing";
     const TYPE: &'static str = "grainlab_msgs/msg/Packing";
     const HASH: &'static str = "RIHS01_efb90efc0a1bb9f476b26e0486fff1b14a644a4dbc73314730daf1a9d2ca4646";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "step" => (9, 0, ""),
+        "time" => (11, 0, ""),
+        "cell" => (59, 9, ""),
+        "deformation" => (59, 9, ""),
+        "id" => (151, 0, ""),
+        "radius" => (155, 0, ""),
+        "position" => (155, 0, ""),
+        "velocity" => (155, 0, ""),
+        "angular_velocity" => (155, 0, ""),
+        "contact_pair" => (151, 0, ""),
+        "contact_image" => (146, 0, ""),
+        "contact_overlap" => (155, 0, ""),
+        "contact_normal" => (155, 0, ""),
+        "contact_normal_force" => (155, 0, ""),
+        "contact_tangential_force" => (155, 0, ""),
+        "contact_rolling_force" => (155, 0, ""),
+        "shear_modulus" => (11, 0, ""),
+        "poisson_ratio" => (11, 0, ""),
+        "density" => (11, 0, ""),
+        "contact_law" => (17, 0, ""),
+        "contact_law_parameters" => (155, 0, ""),
+        "friction" => (11, 0, ""),
+        "time_step" => (11, 0, ""),
+        "run_state" => (147, 0, ""),
+        "scene" => (17, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Packing.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",

@@ -1,6 +1,6 @@
 // Generated from msg/PackingChunk.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// A part of a packing that is too large for one sample. The data of all parts in a row are its CDR, encapsulation included.
@@ -30,5 +30,15 @@ impl Message for PackingChunk {
     const NAME: &'static str = "PackingChunk";
     const TYPE: &'static str = "grainlab_msgs/msg/PackingChunk";
     const HASH: &'static str = "RIHS01_eb8997168562ddce7f8048fb7f5f25e90707b7ad3cbdd51b4d1a427ba5e83f1c";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "body" => (9, 0, ""),
+        "length" => (9, 0, ""),
+        "body_crc" => (7, 0, ""),
+        "stride" => (7, 0, ""),
+        "count" => (7, 0, ""),
+        "index" => (7, 0, ""),
+        "crc" => (7, 0, ""),
+        "data" => (147, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/PackingChunk.msg");
 }

@@ -1,6 +1,6 @@
 // Generated from msg/PackingCredit.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// What one reader holds of a packing that one writer sends in parts, and whether it takes more. Said on every change and
@@ -24,5 +24,12 @@ impl Message for PackingCredit {
     const NAME: &'static str = "PackingCredit";
     const TYPE: &'static str = "grainlab_msgs/msg/PackingCredit";
     const HASH: &'static str = "RIHS01_ae300f49e419eed7e811996cdfa2d0646fee1e95013a0fab7ecf958aac88a6f0";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "writer" => (51, 16, ""),
+        "body" => (9, 0, ""),
+        "next" => (7, 0, ""),
+        "held" => (9, 0, ""),
+        "ready" => (15, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/PackingCredit.msg");
 }

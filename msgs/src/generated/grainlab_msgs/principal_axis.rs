@@ -1,7 +1,7 @@
 // Generated from msg/PrincipalAxis.msg by examples/generate; not edited by hand.
 
 use crate::generated::geometry_msgs::Vector3;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The principal axis of the contact fabric that stands out most, and its noise among packings prepared alike.
@@ -24,6 +24,13 @@ impl Message for PrincipalAxis {
     const NAME: &'static str = "PrincipalAxis";
     const TYPE: &'static str = "grainlab_msgs/msg/PrincipalAxis";
     const HASH: &'static str = "RIHS01_b9bd81493b313eca1ff19f20ab62485aa1b52927dcd95ecacdbb8bc5db5654c9";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "direction" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "contact_anisotropy" => (11, 0, ""),
+        "contact_anisotropy_stddev" => (155, 0, ""),
+        "angle_stddev" => (155, 0, ""),
+        "determined" => (15, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/PrincipalAxis.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

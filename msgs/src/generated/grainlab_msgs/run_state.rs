@@ -1,7 +1,7 @@
 // Generated from msg/RunState.msg by examples/generate; not edited by hand.
 
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Where the run stands.
@@ -43,6 +43,17 @@ impl Message for RunState {
     const NAME: &'static str = "RunState";
     const TYPE: &'static str = "grainlab_msgs/msg/RunState";
     const HASH: &'static str = "RIHS01_b375ca50ba6b32a74683442b09b2e3153e0e61a9c74755927dbdbcb27a23d002";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "state" => (3, 0, ""),
+        "phase" => (7, 0, ""),
+        "phase_name" => (17, 0, ""),
+        "progress" => (11, 0, ""),
+        "step" => (9, 0, ""),
+        "last_packing_step" => (9, 0, ""),
+        "packings" => (7, 0, ""),
+        "message" => (17, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/RunState.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",

@@ -1,7 +1,7 @@
 // Generated from msg/StrainRate.msg by examples/generate; not edited by hand.
 
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The answer to one Stress. Voigt order xx yy zz yz xz xy, tensor components.
@@ -22,6 +22,12 @@ impl Message for StrainRate {
     const NAME: &'static str = "StrainRate";
     const TYPE: &'static str = "grainlab_msgs/msg/StrainRate";
     const HASH: &'static str = "RIHS01_a7c8a9b3d41976170056a34e9b4187b9a68686f0ee059bc1ae29f97c7a76b43a";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "sequence" => (9, 0, ""),
+        "rate" => (59, 6, ""),
+        "saturated" => (63, 6, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/StrainRate.msg",
         "std_msgs/Header" => "std/std_msgs/msg/Header.msg",

@@ -1,6 +1,6 @@
 // Generated from msg/StrainRatios.msg by examples/generate; not edited by hand.
 
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Ratios gamma/Delta of deviatoric to volumetric strain about a reference axis; each one number, or none if not known.
@@ -19,5 +19,10 @@ impl Message for StrainRatios {
     const NAME: &'static str = "StrainRatios";
     const TYPE: &'static str = "grainlab_msgs/msg/StrainRatios";
     const HASH: &'static str = "RIHS01_3da6fb7bc1e5b890b3df7019a57626c5c958ab4a7dc6c2390799dccfa72a3ad9";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "total" => (155, 0, ""),
+        "elastic" => (155, 0, ""),
+        "contact" => (155, 0, ""),
+    );
     const DEFINITION: &'static str = definition!("msg/StrainRatios.msg");
 }

@@ -2,7 +2,7 @@
 
 use crate::generated::grainlab_msgs::SymmetricTensor;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// One request of the lockstep: everything a servo needs to answer, and nothing it must remember.
@@ -76,6 +76,28 @@ impl Message for Stress {
     const NAME: &'static str = "Stress";
     const TYPE: &'static str = "grainlab_msgs/msg/Stress";
     const HASH: &'static str = "RIHS01_9364b43d15d5b1c74c7c7656b340449e349a58d2acfc6bf5507970b8ecdf53eb";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "sequence" => (9, 0, ""),
+        "step" => (9, 0, ""),
+        "phase" => (7, 0, ""),
+        "stress" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "asymmetry" => (11, 0, ""),
+        "mode" => (51, 6, ""),
+        "setpoint" => (59, 6, ""),
+        "rate" => (59, 6, ""),
+        "rate_limit" => (11, 0, ""),
+        "law" => (3, 0, ""),
+        "gain" => (11, 0, ""),
+        "leak" => (11, 0, ""),
+        "response_time" => (11, 0, ""),
+        "tangent" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "control_interval" => (11, 0, ""),
+        "strain" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "solid_fraction" => (11, 0, ""),
+        "coordination" => (11, 0, ""),
+        "unbalanced_force_ratio" => (11, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Stress.msg",
         "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",

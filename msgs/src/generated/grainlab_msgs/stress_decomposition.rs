@@ -3,7 +3,7 @@
 use crate::generated::grainlab_msgs::StressForceFabric;
 use crate::generated::grainlab_msgs::SubNetwork;
 use crate::generated::grainlab_msgs::SymmetricTensor;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Which forces and which contacts carry the stress; positive in compression.
@@ -26,6 +26,13 @@ impl Message for StressDecomposition {
     const NAME: &'static str = "StressDecomposition";
     const TYPE: &'static str = "grainlab_msgs/msg/StressDecomposition";
     const HASH: &'static str = "RIHS01_a0178e161cb22c62a819ec34d92e51a1d667f6f3e94cc8f109f17b6a4ae31e3a";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "normal" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "tangential" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "strong" => (1, 0, "grainlab_msgs/msg/SubNetwork"),
+        "weak" => (1, 0, "grainlab_msgs/msg/SubNetwork"),
+        "stress_force_fabric" => (145, 0, "grainlab_msgs/msg/StressForceFabric"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/StressDecomposition.msg",
         "grainlab_msgs/StressForceFabric" => "msg/StressForceFabric.msg",

@@ -1,7 +1,7 @@
 // Generated from msg/StressForceFabric.msg by examples/generate; not edited by hand.
 
 use crate::generated::grainlab_msgs::SymmetricTensor;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// Second-order anisotropies of contacts and forces; traceless tensors.
@@ -22,6 +22,12 @@ impl Message for StressForceFabric {
     const NAME: &'static str = "StressForceFabric";
     const TYPE: &'static str = "grainlab_msgs/msg/StressForceFabric";
     const HASH: &'static str = "RIHS01_cba70b5c787dd210ceb331f0389db2e388a8b57b1fb59b26e3fcd1e0c474fd92";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "contacts" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "normal_forces" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "branches" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "tangential_forces" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/StressForceFabric.msg",
         "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",

@@ -1,7 +1,7 @@
 // Generated from msg/SubNetwork.msg by examples/generate; not edited by hand.
 
 use crate::generated::grainlab_msgs::SymmetricTensor;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The strong or the weak contacts of a packing.
@@ -22,6 +22,12 @@ impl Message for SubNetwork {
     const NAME: &'static str = "SubNetwork";
     const TYPE: &'static str = "grainlab_msgs/msg/SubNetwork";
     const HASH: &'static str = "RIHS01_3369b9d0e0a05fe59ce0309c2e81d80c8f7672a25205746b5ac076038e88aeff";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "contacts" => (7, 0, ""),
+        "fabric" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+        "contact_anisotropy" => (11, 0, ""),
+        "stress" => (1, 0, "grainlab_msgs/msg/SymmetricTensor"),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/SubNetwork.msg",
         "grainlab_msgs/SymmetricTensor" => "msg/SymmetricTensor.msg",

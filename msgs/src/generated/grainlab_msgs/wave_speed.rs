@@ -1,7 +1,7 @@
 // Generated from msg/WaveSpeed.msg by examples/generate; not edited by hand.
 
 use crate::generated::geometry_msgs::Vector3;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// One speed of one mode.
@@ -45,6 +45,15 @@ impl Message for WaveSpeed {
     const NAME: &'static str = "WaveSpeed";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeed";
     const HASH: &'static str = "RIHS01_ba27be9cf51b8cc9761c34799d4d2712cd6e8c0b70ef506bf9982bf7d383ceba";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "method" => (3, 0, ""),
+        "direction" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "polarization" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "speed" => (11, 0, ""),
+        "speed_stddev" => (11, 0, ""),
+        "frequency" => (11, 0, ""),
+        "strain_amplitude" => (11, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/WaveSpeed.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

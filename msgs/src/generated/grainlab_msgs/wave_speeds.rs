@@ -3,7 +3,7 @@
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::grainlab_msgs::WaveSpeed;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// What an acoustic instrument, real or virtual, hands to the inversion.
@@ -38,6 +38,19 @@ impl Message for WaveSpeeds {
     const NAME: &'static str = "WaveSpeeds";
     const TYPE: &'static str = "grainlab_msgs/msg/WaveSpeeds";
     const HASH: &'static str = "RIHS01_40fe8b2a58ee2c4c5120d6142ef4034b138f33be736eca8e0c7646952acb066b";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "source_step" => (9, 0, ""),
+        "density" => (11, 0, ""),
+        "density_stddev" => (11, 0, ""),
+        "pressure" => (11, 0, ""),
+        "solid_fraction" => (11, 0, ""),
+        "axis" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "grain_shear_modulus" => (11, 0, ""),
+        "grain_poisson_ratio" => (11, 0, ""),
+        "speeds" => (145, 0, "grainlab_msgs/msg/WaveSpeed"),
+        "warnings" => (161, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/WaveSpeeds.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

@@ -2,7 +2,7 @@
 
 use crate::generated::geometry_msgs::Vector3;
 use crate::generated::std_msgs::Header;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The traces of one wave behind a WaveSpeeds.
@@ -41,6 +41,21 @@ impl Message for Waveform {
     const NAME: &'static str = "Waveform";
     const TYPE: &'static str = "grainlab_msgs/msg/Waveform";
     const HASH: &'static str = "RIHS01_b3a83380ea40c914f3d9e392d8cc5ddf60b466010f45cffae0ef6006334fc79e";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "header" => (1, 0, "std_msgs/msg/Header"),
+        "source_step" => (9, 0, ""),
+        "method" => (3, 0, ""),
+        "direction" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "polarization" => (1, 0, "geometry_msgs/msg/Vector3"),
+        "frequency" => (11, 0, ""),
+        "sample_rate" => (11, 0, ""),
+        "start" => (11, 0, ""),
+        "quantity" => (17, 0, ""),
+        "unit" => (17, 0, ""),
+        "channel" => (161, 0, ""),
+        "distance" => (155, 0, ""),
+        "sample" => (154, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "msg/Waveform.msg",
         "geometry_msgs/Vector3" => "std/geometry_msgs/msg/Vector3.msg",

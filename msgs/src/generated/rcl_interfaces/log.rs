@@ -1,7 +1,7 @@
 // Generated from std/rcl_interfaces/msg/Log.msg by examples/generate; not edited by hand.
 
 use crate::generated::builtin_interfaces::Time;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `rcl_interfaces/msg/Log`.
@@ -45,6 +45,15 @@ impl Message for Log {
     const NAME: &'static str = "Log";
     const TYPE: &'static str = "rcl_interfaces/msg/Log";
     const HASH: &'static str = "RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "stamp" => (1, 0, "builtin_interfaces/msg/Time"),
+        "level" => (3, 0, ""),
+        "name" => (17, 0, ""),
+        "msg" => (17, 0, ""),
+        "file" => (17, 0, ""),
+        "function" => (17, 0, ""),
+        "line" => (7, 0, ""),
+    );
     const DEFINITION: &'static str = definition!(
         "std/rcl_interfaces/msg/Log.msg",
         "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",

@@ -1,7 +1,7 @@
 // Generated from std/rcl_interfaces/msg/Parameter.msg by examples/generate; not edited by hand.
 
 use crate::generated::rcl_interfaces::ParameterValue;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `rcl_interfaces/msg/Parameter`.
@@ -18,6 +18,10 @@ impl Message for Parameter {
     const NAME: &'static str = "Parameter";
     const TYPE: &'static str = "rcl_interfaces/msg/Parameter";
     const HASH: &'static str = "RIHS01_ddfe6442cffc462317adb5c92536a7b6dd55858c5c3e1e328165a6b73c2831af";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "name" => (17, 0, ""),
+        "value" => (1, 0, "rcl_interfaces/msg/ParameterValue"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/rcl_interfaces/msg/Parameter.msg",
         "rcl_interfaces/ParameterValue" => "std/rcl_interfaces/msg/ParameterValue.msg",

@@ -2,7 +2,7 @@
 
 use crate::generated::builtin_interfaces::Time;
 use crate::generated::rcl_interfaces::Parameter;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `rcl_interfaces/msg/ParameterEvent`.
@@ -25,6 +25,13 @@ impl Message for ParameterEvent {
     const NAME: &'static str = "ParameterEvent";
     const TYPE: &'static str = "rcl_interfaces/msg/ParameterEvent";
     const HASH: &'static str = "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "stamp" => (1, 0, "builtin_interfaces/msg/Time"),
+        "node" => (17, 0, ""),
+        "new_parameters" => (145, 0, "rcl_interfaces/msg/Parameter"),
+        "changed_parameters" => (145, 0, "rcl_interfaces/msg/Parameter"),
+        "deleted_parameters" => (145, 0, "rcl_interfaces/msg/Parameter"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/rcl_interfaces/msg/ParameterEvent.msg",
         "builtin_interfaces/Time" => "std/builtin_interfaces/msg/Time.msg",

@@ -1,7 +1,7 @@
 // Generated from std/tf2_msgs/msg/TFMessage.msg by examples/generate; not edited by hand.
 
 use crate::generated::geometry_msgs::TransformStamped;
-use crate::message::{Message, definition};
+use crate::message::{FieldInfo, Message, definition, fields};
 use serde::{Deserialize, Serialize};
 
 /// The standard message `tf2_msgs/msg/TFMessage`.
@@ -16,6 +16,9 @@ impl Message for TFMessage {
     const NAME: &'static str = "TFMessage";
     const TYPE: &'static str = "tf2_msgs/msg/TFMessage";
     const HASH: &'static str = "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087";
+    const FIELDS: &'static [FieldInfo] = fields!(
+        "transforms" => (145, 0, "geometry_msgs/msg/TransformStamped"),
+    );
     const DEFINITION: &'static str = definition!(
         "std/tf2_msgs/msg/TFMessage.msg",
         "geometry_msgs/TransformStamped" => "std/geometry_msgs/msg/TransformStamped.msg",

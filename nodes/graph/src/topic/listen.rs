@@ -92,6 +92,7 @@ impl Listener {
             name: constant(short),
             type_name: constant(type_name),
             hash: "",
+            fields: &[],
             definition: "",
         });
         let topic = Topic { name: constant(&name), info, qos, writer: "", reproducible: false, summary: "" };
