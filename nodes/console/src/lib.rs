@@ -2,11 +2,13 @@
 //!
 //! - [`Failure`], [`worse`]: the end of a command
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
+//! - [`count()`]: counts with their noun
 //! - [`Dataset`]: typed columns, as CSV and Parquet
 //! - [`plot`]: plots as SVG
 //! - [`scenes`]: built-in scenes, and those in files
 //! - [`network`]: buses of tools, free domains
 
+mod count;
 mod dataset;
 mod failure;
 pub mod network;
@@ -15,6 +17,7 @@ pub mod plot;
 pub mod scenes;
 mod start;
 
+pub use count::count;
 pub use dataset::{Cell, Dataset};
 pub use failure::{Failure, worse};
 pub use output::{CsvText, Format, Table, exact, fixed, json, print};

@@ -67,7 +67,7 @@ fn missing_properties_of_a_file_are_listed_and_the_exit_code_is_that_of_usage() 
     }
     let out = analyze().arg(&path).args(GLASS).args(["--cell", "1,1,1"]).output().unwrap();
     assert_eq!(out.status.code(), Some(4), "two grains have no network");
-    assert!(String::from_utf8_lossy(&out.stdout).contains("1 contacts"));
+    assert!(String::from_utf8_lossy(&out.stdout).contains("2 grains, 1 contact, 2 rattlers"));
 }
 
 #[test]
@@ -118,5 +118,5 @@ fn an_interrupted_analysis_prints_what_it_has() {
     let states: Value = serde_json::from_str(&text).unwrap();
     let count = states.as_array().unwrap().len();
     assert!((1..FILES).contains(&count), "{count}");
-    assert!(err.contains(&format!("{count} packings measured")), "{err}");
+    assert!(err.contains(&format!("interrupted: {count} packing")), "{err}");
 }

@@ -359,7 +359,7 @@ impl Node for Recorder {
 
     fn health(&self) -> Health {
         let lost: u64 = self.writer.as_ref().map_or(0, |w| w.ledger().tallies().iter().map(|t| t.lost).sum());
-        let text = format!("{} messages", self.recorded);
+        let text = grainlab_console::count(self.recorded, "message");
         if lost == 0 { Health::ok(text) } else { Health::warn(text) }
             .with("recorded", self.recorded)
             .with("missing", lost)

@@ -2,7 +2,7 @@
 
 use crate::acoustic::AcousticReport;
 use crate::packing_text::indented;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, count, fixed};
 use grainlab_core::Stiffness;
 use grainlab_core::results::PackingReport;
 use grainlab_emt::Modulus;
@@ -11,7 +11,7 @@ use grainlab_emt::Modulus;
 pub(crate) fn heading(a: &AcousticReport) -> String {
     let method = a.method().map_or_else(String::new, |m| format!("{}, ", m.replace('_', " ")));
     let error = a.relative_error().map_or_else(String::new, |e| format!(", each +- {}", percent(e)));
-    format!("wave speeds ({method}{} speeds{error})", a.reading.speeds.len())
+    format!("wave speeds ({method}{}{error})", count(a.reading.speeds.len(), "speed"))
 }
 
 /// The block of one packing: its density, its moduli compared with the static ones of `report`, and notes.

@@ -4,7 +4,7 @@ use crate::acoustic_text;
 use crate::inference::{Inference, Origin, by_origin};
 use crate::read_back::InvertedPacking;
 use crate::summary::Summary;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, count, fixed};
 use grainlab_core::Vec3;
 use grainlab_core::results::PackingReport;
 use grainlab_msgs::topics;
@@ -142,9 +142,9 @@ fn counted(r: &PackingReport) -> String {
         format!(" about ({:.2}, {:.2}, {:.2})", axis.x, axis.y, axis.z)
     };
     format!(
-        "{} contacts, {} rattlers: k {:.3}, z {:.3}, eps {}{about}",
-        c.contacts,
-        c.rattlers,
+        "{}, {}: k {:.3}, z {:.3}, eps {}{about}",
+        count(c.contacts, "contact"),
+        count(c.rattlers, "rattler"),
         c.coordination,
         c.mechanical_coordination,
         fixed(eps(r), 4)
@@ -242,7 +242,7 @@ fn several(states: &[InvertedPacking]) -> Vec<String> {
     }
     let mut lines: Vec<String> = t.without_empty_columns().text().lines().map(str::to_owned).collect();
     if left_out > 0 {
-        lines.push(format!("and {left_out} packings before these: summary.json has all"));
+        lines.push(format!("and {} before these: summary.json has all", count(left_out, "packing")));
     }
     lines
 }
@@ -262,15 +262,15 @@ fn pace(s: &Summary) -> String {
         text += &format!(", {:.1} M particle-steps/s", rate / 1e6);
     }
     if let Some(n) = s.exchanges {
-        text += &format!(", {n} exchanges");
+        text += &format!(", {}", count(n, "exchange"));
     }
     let (messages, lost) = s.topics.iter().fold((0, 0), |(m, l), t| (m + t.recorded, l + t.lost));
-    text += &format!("; {messages} messages recorded, {lost} lost");
+    text += &format!("; {} recorded, {lost} lost", count(messages, "message"));
     if s.film.packings > 0 {
-        text += &format!(", {} packings within phases", s.film.packings);
+        text += &format!(", {} within phases", count(s.film.packings, "packing"));
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("; {} was restarted {} times", node.name, node.restarts);
+        text += &format!("; {} was restarted {}", node.name, count(node.restarts, "time"));
     }
     text
 }

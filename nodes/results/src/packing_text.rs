@@ -2,7 +2,7 @@
 
 use crate::measured_packing::{self, MeasuredPacking};
 use crate::printer::Printed;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, count, fixed};
 use grainlab_core::results::{PackingReport, StressForceFabric};
 use grainlab_core::{Stiffness, Symmetry, Vec3};
 
@@ -23,10 +23,10 @@ pub(crate) fn text(m: &MeasuredPacking) -> String {
     let [l11, l22, l33, ..] = f.contact_fabric.voigt();
     let small = |ratio: Option<f64>| ratio.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}"));
     let mut text = format!(
-        "  {} grains, {} contacts, {} rattlers; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}\n",
-        c.grains,
-        c.contacts,
-        c.rattlers,
+        "  {}, {}, {}; phi {:.4}, p {:.4} kPa, q/p {}, unbalanced {}\n",
+        count(c.grains, "grain"),
+        count(c.contacts, "contact"),
+        count(c.rattlers, "rattler"),
         r.solid_fraction,
         r.pressure() / 1e3,
         small(r.stress_ratio()),

@@ -66,10 +66,11 @@ fn pulling(packing: &Packing) -> Option<String> {
     let mut pulling = packing.contacts.iter().filter(|c| c.normal_force < 0.0);
     let first = pulling.next()?;
     let [i, j] = [first.i, first.j].map(|g| packing.ids[g as usize]);
-    let count = pulling.count() + 1;
-    Some(format!(
-        "{count} contact(s) pull (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"
-    ))
+    let pull = match pulling.count() + 1 {
+        1 => "1 contact pulls".to_owned(),
+        n => format!("{n} contacts pull"),
+    };
+    Some(format!("{pull} (normal force below 0), the first of grains {i} and {j}: Hertz's law only presses"))
 }
 
 fn left_out(packing: &Packing, report: &PackingReport) -> Option<String> {
@@ -78,7 +79,7 @@ fn left_out(packing: &Packing, report: &PackingReport) -> Option<String> {
 
 /// Contacts by position that are missing in the list; the readers of some files have already reported them.
 fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
-    if notes.iter().any(|w| w.contains("are not listed")) {
+    if notes.iter().any(|w| w.contains("not listed")) {
         return None;
     }
     let force = |r_eff, overlap| packing.law.normal_force(&packing.material, r_eff, overlap);
@@ -94,10 +95,11 @@ fn missing(packing: &Packing, notes: &[String]) -> Option<String> {
     let mut missing = found.iter().filter(|c| c.overlap > rounding && !has(c));
     let first = missing.next()?;
     let [i, j] = [first.i, first.j].map(|g| packing.ids[g as usize]);
-    let count = missing.count() + 1;
-    Some(format!(
-        "{count} contact(s) overlap by position but are not listed, the first of grains {i} and {j}"
-    ))
+    let overlap = match missing.count() + 1 {
+        1 => "1 contact overlaps by position but is not listed".to_owned(),
+        n => format!("{n} contacts overlap by position but are not listed"),
+    };
+    Some(format!("{overlap}, the first of grains {i} and {j}"))
 }
 
 #[cfg(test)]
@@ -162,11 +164,10 @@ mod tests {
     #[test]
     fn missing_and_tensile_contacts_are_reported() {
         assert!(
-            warnings(|p| _ = p.contacts.pop())
-                .contains("1 contact(s) overlap by position but are not listed")
+            warnings(|p| _ = p.contacts.pop()).contains("1 contact overlaps by position but is not listed")
         );
         let pulls = warnings(|p| p.contacts[1].normal_force *= -1.0);
-        assert!(pulls.contains("1 contact(s) pull") && pulls.contains("grains 5 and 5"), "{pulls}");
+        assert!(pulls.contains("1 contact pulls") && pulls.contains("grains 5 and 5"), "{pulls}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::packing_text;
 use crate::packing_text::indented;
 use crate::read_back::{Film, InvertedPacking};
 use crate::summary::Summary;
-use grainlab_console::{Table, fixed};
+use grainlab_console::{Table, count, fixed};
 use grainlab_msgs::topics;
 use std::collections::BTreeSet;
 
@@ -27,8 +27,9 @@ pub fn text(s: &Summary) -> String {
     if s.film.packings > 0 {
         let Film { packings, structures, moduli } = s.film;
         text += &format!(
-            "Within phases: {packings} packings recorded, {structures} with a structure, {moduli} with moduli: \
-             grainlab analyze RECORDING --format csv\n\n"
+            "Within phases: {} recorded, {structures} with a structure, {moduli} with moduli: \
+             grainlab analyze RECORDING --format csv\n\n",
+            count(packings, "packing")
         );
     }
     text += "Run\n";
@@ -37,7 +38,8 @@ pub fn text(s: &Summary) -> String {
         text += &format!(", {:.2} M particle-steps/s while computing", rate / 1e6);
     }
     if let (Some(n), Some(rate), Some(waiting)) = (s.exchanges, s.exchanges_per_second, s.waiting_fraction) {
-        text += &format!("; {n} exchanges, {rate:.0}/s, {:.1} % of the time waiting", 100.0 * waiting);
+        text +=
+            &format!("; {}, {rate:.0}/s, {:.1} % of the time waiting", count(n, "exchange"), 100.0 * waiting);
     }
     text.push('\n');
     let mut t = Table::new(["topic", "published", "recorded", "lost", "repeated"]);
@@ -49,7 +51,7 @@ pub fn text(s: &Summary) -> String {
         text += &indented(&t.text());
     }
     for node in s.nodes.iter().filter(|n| n.restarts > 0) {
-        text += &format!("  {} was restarted {} times\n", node.name, node.restarts);
+        text += &format!("  {} was restarted {}\n", node.name, count(node.restarts, "time"));
     }
     text
 }

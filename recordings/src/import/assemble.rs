@@ -310,11 +310,21 @@ fn compare(p: &Packing, listed: &[Contact], found: &[Contact], notes: &mut Vec<S
         (listed.iter().map(key).collect(), found.iter().map(key).collect());
     let name =
         |k: &(u32, u32, [i8; 3])| format!("grains {} and {}", p.ids[k.0 as usize], p.ids[k.1 as usize]);
-    let mut note = |mut missing: std::collections::btree_set::Difference<'_, _>, what: &str| {
+    let mut note = |mut missing: std::collections::btree_set::Difference<'_, _>, [one, many]: [&str; 2]| {
         if let Some(first) = missing.next() {
-            notes.push(format!("{} contact(s) {what}, the first of {}", missing.count() + 1, name(first)));
+            let what = match missing.count() + 1 {
+                1 => format!("1 contact {one}"),
+                n => format!("{n} contacts {many}"),
+            };
+            notes.push(format!("{what}, the first of {}", name(first)));
         }
     };
-    note(b.difference(&a), "overlap by position but are not listed");
-    note(a.difference(&b), "are listed but do not overlap by position");
+    note(
+        b.difference(&a),
+        ["overlaps by position but is not listed", "overlap by position but are not listed"],
+    );
+    note(
+        a.difference(&b),
+        ["is listed but does not overlap by position", "are listed but do not overlap by position"],
+    );
 }

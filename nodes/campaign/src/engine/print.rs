@@ -8,10 +8,10 @@ use grainlab_console::Failure;
 /// Prints one command for each member.
 pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<(), Failure> {
     let mut script = format!(
-        "#!/bin/sh\n# Campaign {}: {} runs, in any order. Each line can be repeated: a finished run is left as it is, an\n\
+        "#!/bin/sh\n# Campaign {}: {}, in any order. Each line can be repeated: a finished run is left as it is, an\n\
          # interrupted one is continued.\nunset ROS_DOMAIN_ID\n",
         campaign.name,
-        campaign.members.len()
+        grainlab_console::count(campaign.members.len(), "run")
     );
     for member in &campaign.members {
         script += &line(&command(campaign, folder, member)?);

@@ -145,9 +145,9 @@ fn status(place: &Place) -> Result<Exit, Failure> {
     ];
     let failed = states.len() - finished - interrupted - waiting;
     print(&format!(
-        "{}: {} members: {finished} finished, {interrupted} begun, {waiting} waiting, {failed} failed\n",
+        "{}: {}: {finished} finished, {interrupted} begun, {waiting} waiting, {failed} failed\n",
         campaign.name,
-        states.len()
+        grainlab_console::count(states.len(), "member")
     ))?;
     let mut table = Table::new(["member", "state", "directory"]);
     for (member, state) in campaign.members.iter().zip(&states) {

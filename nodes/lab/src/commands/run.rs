@@ -52,5 +52,9 @@ pub(crate) fn print_recorded(recorded: &ResultSlot) -> Result<(), Failure> {
     let recorded = recorded.borrow();
     let Some(finished) = recorded.as_ref() else { return Ok(()) };
     let (counts, file) = (tallies::counts(&finished.ledger.tallies()), finished.file.display());
-    print(&format!("{counts}{file}: {} messages, {} bytes\n", finished.messages, finished.bytes))
+    print(&format!(
+        "{counts}{file}: {}, {} bytes\n",
+        grainlab_console::count(finished.messages, "message"),
+        finished.bytes
+    ))
 }

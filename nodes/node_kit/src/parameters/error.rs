@@ -18,7 +18,7 @@ pub enum ParameterError {
         known: String,
     },
     /// A value of the wrong type.
-    #[error("{origin}: parameter {name:?} is a {expected}, but {value} is a {found}{hint}")]
+    #[error("{origin}: parameter {name:?} is of type {expected}, but {value} is of type {found}{hint}")]
     Type {
         /// Where it was set.
         origin: String,

@@ -1,6 +1,6 @@
 //! `grainlab bag check`.
 
-use grainlab_console::{Failure, Format, Table, json, print, say};
+use grainlab_console::{Failure, Format, Table, count, json, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::Check;
 use grainlab_recordings::Recording;
@@ -42,13 +42,13 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 fn text(check: &Check) -> String {
     let mut lines = vec![format!(
-        "{} file(s), {} bytes: {} records, {} chunks, {} messages, {} stored files",
-        check.files.len(),
-        check.bytes,
-        check.records,
-        check.chunks,
-        check.messages,
-        check.attachments
+        "{}, {}: {}, {}, {}, {}",
+        count(check.files.len(), "file"),
+        count(check.bytes, "byte"),
+        count(check.records, "record"),
+        count(check.chunks, "chunk"),
+        count(check.messages, "message"),
+        count(check.attachments, "stored file")
     )];
     lines.extend(check.warnings.iter().map(ToString::to_string));
     for path in &check.unaccounted {

@@ -65,7 +65,11 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(failure) = failure {
         return Err(failure);
     }
-    print(&format!("{} packings written to {}\n", writer.packings, args.out.display()))?;
+    print(&format!(
+        "{} written to {}\n",
+        grainlab_console::count(writer.packings, "packing"),
+        args.out.display()
+    ))?;
     warnings.iter().for_each(|w| say!("grainlab: {w}"));
     Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
 }

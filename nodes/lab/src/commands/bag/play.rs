@@ -142,7 +142,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         );
     }
     let Some(sent) = sent else { return Ok(Exit::Interrupted) };
-    grainlab_console::say!("grainlab: {sent} messages sent");
+    grainlab_console::say!("grainlab: {} sent", grainlab_console::count(sent, "message"));
     if !acknowledged {
         grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
     }

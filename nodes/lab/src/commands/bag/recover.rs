@@ -34,9 +34,16 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     for file in &done.files {
         let path = file.path.display();
         text += &match &file.original {
-            None => format!("{path}: complete, {} messages; nothing to do\n", file.messages),
+            None => format!(
+                "{path}: complete, {}; nothing to do\n",
+                grainlab_console::count(file.messages, "message")
+            ),
             Some(original) => {
-                format!("{path}: recovered, {} messages; original: {}\n", file.messages, original.display())
+                format!(
+                    "{path}: recovered, {}; original: {}\n",
+                    grainlab_console::count(file.messages, "message"),
+                    original.display()
+                )
             }
         };
     }

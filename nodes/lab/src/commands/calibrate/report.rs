@@ -36,9 +36,9 @@ fn summary(kind: &str, samples: &[CalibrationSample]) -> String {
     };
     let ([p, q], [y, z], [a, b]) = (range(|s| s.pressure / 1e3), range(|s| s.z), range(|s| s.eps));
     format!(
-        "{} states of {} packings {kind} ({}): p {p:.4} to {q:.4} kPa, z {y:.3} to {z:.3}, eps {a:.3} to {b:.3}",
-        samples.len(),
-        packings.len(),
+        "{} of {} {kind} ({}): p {p:.4} to {q:.4} kPa, z {y:.3} to {z:.3}, eps {a:.3} to {b:.3}",
+        grainlab_console::count(samples.len(), "state"),
+        grainlab_console::count(packings.len(), "packing"),
         preparations.into_iter().collect::<Vec<_>>().join(", "),
     )
 }

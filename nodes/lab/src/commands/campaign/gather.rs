@@ -1,7 +1,7 @@
 //! The states of a campaign in one table, from the recordings alone.
 
 use grainlab_campaign::{Campaign, Folder, Member, MemberState};
-use grainlab_console::{Cell, Dataset, Failure, print, scenes};
+use grainlab_console::{Cell, Dataset, Failure, count, print, scenes};
 use grainlab_core::results::{InferredQuantity, QUANTITIES};
 use grainlab_msgs::topics;
 use grainlab_node_kit::Exit;
@@ -25,7 +25,7 @@ pub(crate) struct State<'a> {
 pub(super) fn run(campaign: &Campaign, folder: &Folder) -> Result<Exit, Failure> {
     let (states, exit) = states(campaign, folder)?;
     let [csv, parquet] = write(campaign, folder, &states)?;
-    print(&format!("{} states: {}, {}\n", states.len(), csv.display(), parquet.display()))?;
+    print(&format!("{}: {}, {}\n", count(states.len(), "state"), csv.display(), parquet.display()))?;
     Ok(exit)
 }
 

@@ -42,7 +42,7 @@ impl Tally {
             return Err(Failure::usage(format!("{name}: there is no state below the header")));
         }
         let seconds = self.begin.elapsed().as_secs_f64();
-        say!("grainlab: {} rows, {} bad, {seconds:.1} s", self.rows, self.bad);
+        say!("grainlab: {}, {} bad, {seconds:.1} s", grainlab_console::count(self.rows, "row"), self.bad);
         Ok(self.exit)
     }
 }

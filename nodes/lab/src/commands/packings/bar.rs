@@ -28,7 +28,7 @@ impl Bar {
     }
 
     pub(crate) fn packings(&self, count: usize) {
-        self.0.set_message(format!("{count} packings"));
+        self.0.set_message(grainlab_console::count(count, "packing"));
     }
 
     pub(crate) fn file_done(&self) {

@@ -3,7 +3,7 @@
 use super::bar::Bar;
 use super::sink::{Ending, Place, Sink};
 use super::{Measure, Outlet};
-use grainlab_console::{Failure, worse};
+use grainlab_console::{Failure, count, worse};
 use grainlab_node_kit::Exit;
 use grainlab_node_kit::Signals;
 use grainlab_recordings::Recording;
@@ -61,7 +61,9 @@ where
     }
     let left = files.len() - desk.read_to_end;
     grainlab_console::say!(
-        "grainlab: interrupted: {measured} packings measured, {left} files not read to their end"
+        "grainlab: interrupted: {} measured, {} not read to the end",
+        count(measured, "packing"),
+        count(left, "file")
     );
     Ok(worse(exit, Exit::Interrupted))
 }

@@ -31,7 +31,10 @@ pub(super) fn svg(ways: &[Way], points: Vec<Vec<[f64; 2]>>) -> String {
     });
     Figure {
         title: "Contact anisotropy inferred from moduli, against what was counted".into(),
-        subtitle: format!("{rows} packings; rms error of each model; the line is an inference without error"),
+        subtitle: format!(
+            "{}; rms error of each model; the line is an inference without error",
+            grainlab_console::count(rows, "packing")
+        ),
         x: Axis::linear("contact anisotropy counted"),
         y: Axis::linear("contact anisotropy inferred"),
         series: drawn.chain([exact]).collect(),
