@@ -3,7 +3,7 @@
 //! - `declared`: the parameters of a node as ros2-client declares them
 //! - `descriptor`: types, ranges and units, as `describe_parameters` returns them
 //! - `convert`: values between this crate and ros2-client
-//! - `parameter_servers`: the six parameter services; `sim_time`: `use_sim_time`
+//! - `servers`: the services; `type_description`: the fields of types; `sim_time`: `use_sim_time`
 //! - `thread`: answers while the node computes
 //!
 //! Anyone may ask, also processes outside the run: what may be set changes no result.
@@ -11,9 +11,10 @@
 mod convert;
 mod declared;
 mod descriptor;
-mod parameter_servers;
+mod servers;
 mod sim_time;
 mod thread;
+mod type_description;
 
 pub(crate) use declared::{Declared, USE_SIM_TIME};
 pub(crate) use sim_time::SimTime;

@@ -1,7 +1,7 @@
 //! The thread that answers services while the node computes.
 
 use super::declared::Declared;
-use super::parameter_servers::ParameterServers;
+use super::servers::NodeServers;
 use super::sim_time::{ClockReader, SimTime};
 use crate::bus_error::BusError;
 use crate::dds::create_error;
@@ -30,7 +30,7 @@ impl ServiceThread {
     ) -> Result<Self, BusError> {
         let io = |e: std::io::Error| create_error("service thread", &e);
         let clock = ClockReader::new(node, declared.clone(), time);
-        let mut servers = ParameterServers::new(node, declared)?;
+        let mut servers = NodeServers::new(node, declared)?;
         let poll = Poll::new().map_err(io)?;
         servers.register(poll.registry(), REQUESTS).map_err(io)?;
         let waker = Waker::new(poll.registry(), STOP).map_err(io)?;
@@ -44,7 +44,7 @@ impl ServiceThread {
     }
 }
 
-fn serve(servers: &ParameterServers, mut clock: ClockReader, mut poll: Poll, stop: &AtomicBool) {
+fn serve(servers: &NodeServers, mut clock: ClockReader, mut poll: Poll, stop: &AtomicBool) {
     let mut events = Events::with_capacity(16);
     while !stop.load(Ordering::Acquire) {
         // Requests that came before the registration raise no event.

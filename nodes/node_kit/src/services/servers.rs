@@ -1,7 +1,8 @@
-//! The six parameter services of one node, served through ros2-client.
+//! The standard services of one node, served through ros2-client: six of its parameters, and that of type descriptions.
 
 use super::convert::to_ros;
 use super::declared::Declared;
+use super::type_description::{GetTypeDescriptionRequest, GetTypeDescriptionResponse, described};
 use crate::bus_error::BusError;
 use crate::dds::create_error;
 use mio::{Interest, Registry, Token};
@@ -21,14 +22,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Requests that wait for an answer, as `rmw_qos_profile_parameters` of ROS 2.
 const DEPTH: usize = 1000;
 
+/// The type of `~/get_type_description`.
+const TYPE_DESCRIPTION: (&str, &str) = ("type_description_interfaces", "GetTypeDescription");
+
 /// The servers, and what they answer from.
-pub(super) struct ParameterServers {
+pub(super) struct NodeServers {
     list: Server<ListParametersRequest, ListParametersResponse>,
     get: Server<GetParametersRequest, GetParametersResponse>,
     types: Server<GetParameterTypesRequest, GetParameterTypesResponse>,
     describe: Server<DescribeParametersRequest, DescribeParametersResponse>,
     set: Server<SetParametersRequest, SetParametersResponse>,
     set_atomically: Server<SetParametersRequest, SetParametersAtomicallyResponse>,
+    type_description: Server<GetTypeDescriptionRequest, GetTypeDescriptionResponse>,
     declared: Declared,
     node: Arc<Mutex<Node>>,
 }
@@ -37,28 +42,33 @@ pub(super) struct ParameterServers {
 fn server<Req: Message + Clone + 'static, Resp: Message + 'static>(
     node: &mut Node,
     name: &str,
-    type_name: &str,
+    (package, type_name): (&str, &str),
 ) -> Result<Server<Req, Resp>, BusError> {
     let qos = QosProfile::publisher_default()
         .reliability_reliable(WhenFull::DEFAULT)
         .history(History::KeepLast { depth: DEPTH as _ });
     let failed = |reason: String| BusError::Network { what: format!("serve {name}"), reason };
     let full = Name::new(&node.fully_qualified_name(), name).map_err(|e| failed(format!("{e:?}")))?;
-    let service_type = ServiceTypeName::new("rcl_interfaces", type_name);
+    let service_type = ServiceTypeName::new(package, type_name);
     node.create_server(ServiceMapping::ByClient, &full, &service_type, qos.clone(), qos)
         .map_err(|e| create_error(name, &e))
 }
 
-impl ParameterServers {
+impl NodeServers {
     pub(super) fn new(node: &Arc<Mutex<Node>>, declared: Declared) -> Result<Self, BusError> {
         let mut held = node.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(Self {
-            list: server(&mut held, "list_parameters", "ListParameters")?,
-            get: server(&mut held, "get_parameters", "GetParameters")?,
-            types: server(&mut held, "get_parameter_types", "GetParameterTypes")?,
-            describe: server(&mut held, "describe_parameters", "DescribeParameters")?,
-            set: server(&mut held, "set_parameters", "SetParameters")?,
-            set_atomically: server(&mut held, "set_parameters_atomically", "SetParametersAtomically")?,
+            list: server(&mut held, "list_parameters", ("rcl_interfaces", "ListParameters"))?,
+            get: server(&mut held, "get_parameters", ("rcl_interfaces", "GetParameters"))?,
+            types: server(&mut held, "get_parameter_types", ("rcl_interfaces", "GetParameterTypes"))?,
+            describe: server(&mut held, "describe_parameters", ("rcl_interfaces", "DescribeParameters"))?,
+            set: server(&mut held, "set_parameters", ("rcl_interfaces", "SetParameters"))?,
+            set_atomically: server(
+                &mut held,
+                "set_parameters_atomically",
+                ("rcl_interfaces", "SetParametersAtomically"),
+            )?,
+            type_description: server(&mut held, "get_type_description", TYPE_DESCRIPTION)?,
             declared,
             node: Arc::clone(node),
         })
@@ -71,7 +81,8 @@ impl ParameterServers {
         registry.register(&mut self.types, token, Interest::READABLE)?;
         registry.register(&mut self.describe, token, Interest::READABLE)?;
         registry.register(&mut self.set, token, Interest::READABLE)?;
-        registry.register(&mut self.set_atomically, token, Interest::READABLE)
+        registry.register(&mut self.set_atomically, token, Interest::READABLE)?;
+        registry.register(&mut self.type_description, token, Interest::READABLE)
     }
 
     /// Answers all requests that arrived.
@@ -100,6 +111,7 @@ impl ParameterServers {
         answer_all(&self.set_atomically, |request| SetParametersAtomicallyResponse {
             result: self.set_together(request.parameter),
         });
+        answer_all(&self.type_description, |request| described(&request));
     }
 
     /// Sets one parameter; ros2-client publishes the change on `/parameter_events`.
@@ -164,12 +176,12 @@ fn answer_all<Req: Message + 'static, Resp: Message + 'static>(
         match server.receive_request() {
             Ok(Some((id, request))) => {
                 if let Err(error) = server.send_response(id, answer(request)) {
-                    log::warn!("a request for parameters could not be answered: {error:?}");
+                    log::warn!("a request of a service could not be answered: {error:?}");
                 }
             }
             Ok(None) => return,
             // A request that does not decode is gone; the next call reads the one after it.
-            Err(error) => log::warn!("a request for parameters was refused: {error:?}"),
+            Err(error) => log::warn!("a request of a service was refused: {error:?}"),
         }
     }
 }
