@@ -17,7 +17,7 @@ from cyclonedds.idl.annotations import final
 from cyclonedds.util import duration
 
 ROOT = Path(__file__).resolve().parents[2] / "msgs"
-FIELD = re.compile(r"([\w/]+)(\[(\d*)\])?\s+([a-z]\w*)\s*(?:#.*)?$")
+FIELD = re.compile(r"([\w/]+)(\[(\d*)\])?\s+([a-z]\w*)(?:\s+[^#\s]+)?\s*(?:#.*)?$")
 CONSTANT = re.compile(r"\w+\s+([A-Z]\w*)\s*=\s*(\d+)\s*(?:#.*)?$")
 PRIMITIVES = {"string": str, "bool": bool, "byte": idl.uint8} | {
     name: getattr(idl, name)
