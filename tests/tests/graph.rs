@@ -91,6 +91,10 @@ fn commands_show_and_set_what_a_running_laboratory_has() {
     let answer = lab.run(&["service", "call", "/recorder/get_parameters", "{names: [append]}"]);
     assert_eq!(json(&answer)["values"][0]["boolean_value"], false);
 
+    let states = json(&lab.run(&["node", "state", "--format", "json"]));
+    for state in states.as_array().unwrap() {
+        assert!(state["level"] == "ok" && !state["state"].as_str().unwrap().is_empty(), "{state}");
+    }
     let healthy = lab.run(&["doctor", "--format", "json"]);
     assert_eq!(healthy.code, Some(0), "{}", healthy.stdout);
     run.signal(libc::SIGINT);

@@ -10,6 +10,7 @@ mod host;
 mod nodes;
 mod processes;
 
+use crate::heartbeats::heartbeats;
 use crate::observer::Observer;
 use crate::view::Common;
 use finding::{Finding, Severity};
@@ -70,7 +71,7 @@ fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec
     let graph = observer.settled(args.common.patience());
     let mut findings = endpoints::findings(&graph);
     findings.extend(nodes::findings(&graph));
-    findings.extend(nodes::of_heartbeats(&graph, &nodes::heartbeats(&mut observer)?));
+    findings.extend(nodes::of_heartbeats(&graph, &heartbeats(&mut observer)?));
     findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
     view.nodes = graph.nodes.len();
     (view.topics, view.services) = (graph.topics().len(), graph.services().len());

@@ -3,19 +3,13 @@
 use super::finding::Finding;
 use crate::call::call;
 use crate::graph::{Endpoint, Graph};
+use crate::heartbeats::LISTEN;
 use crate::observer::Observer;
 use grainlab_console::Failure;
-use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::topics;
 use grainlab_node_kit::{Report, run_of};
-use ros2_client::qos::{History, WhenFull};
+use ros2_client::ParameterValue;
 use ros2_client::rcl_interfaces::{GetParametersRequest, GetParametersResponse};
-use ros2_client::{MessageTypeName, Name, ParameterValue, QosProfile};
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::{Duration, Instant};
-
-/// Time for which heartbeats are listened to: a node sends one each second.
-const LISTEN: Duration = Duration::from_millis(2500);
 
 /// Topics that one process of a run publishes, and what it is.
 const SINGLE: [(&str, &str); 4] = [
@@ -63,31 +57,6 @@ pub(super) fn findings(graph: &Graph) -> Vec<Finding> {
 
 fn run_of_endpoint(endpoint: &Endpoint) -> Option<grainlab_node_kit::RunId> {
     <&[u8; 12]>::try_from(endpoint.participant()).ok().and_then(run_of)
-}
-
-/// The nodes whose heartbeats arrive now, with their latest health.
-pub(super) fn heartbeats(observer: &mut Observer) -> Result<BTreeMap<String, Report>, Failure> {
-    let qos = QosProfile::publisher_default()
-        .reliability_reliable(WhenFull::DEFAULT)
-        .history(History::KeepLast { depth: 100 });
-    let name = Name::parse(topics::DIAGNOSTICS.name).map_err(|e| Failure::failed(format!("{e:?}")))?;
-    let info = topics::DIAGNOSTICS.info;
-    let kind = MessageTypeName::new(info.package, info.name);
-    let topic = observer.node.create_topic(&name, kind, &qos).map_err(Failure::failed)?;
-    let reader =
-        observer.node.create_subscription::<DiagnosticArray>(&topic, Some(qos)).map_err(Failure::failed)?;
-    let start = Instant::now();
-    let mut heard = BTreeMap::new();
-    while start.elapsed() < LISTEN {
-        match reader.take() {
-            Ok(Some((message, _))) => {
-                heard.extend(Report::from_message(&message).into_iter().map(|r| (r.node.clone(), r)));
-            }
-            // A message that does not decode is none of ours.
-            Ok(None) | Err(_) => std::thread::sleep(Duration::from_millis(10)),
-        }
-    }
-    Ok(heard)
 }
 
 /// Nodes that publish heartbeats and sent none, and those that report a fault.
@@ -150,6 +119,7 @@ pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<
 mod tests {
     use super::*;
     use crate::graph::NodeEntry;
+    use ros2_client::QosProfile;
 
     fn simulator(prefix: [u8; 12], name: &str) -> (Endpoint, NodeEntry) {
         let mut guid = [3; 16];

@@ -2,6 +2,7 @@
 
 mod info;
 mod list;
+mod state;
 
 pub(crate) use info::find;
 
@@ -16,6 +17,8 @@ pub enum Command {
     List(list::Args),
     /// Show the publishers, subscriptions and services of a node.
     Info(info::Args),
+    /// Show what each node does or waits for, by its latest report.
+    State(state::Args),
 }
 
 /// Runs the command.
@@ -26,5 +29,6 @@ pub fn run(command: &Command) -> Result<Exit, Failure> {
     match command {
         Command::List(args) => list::run(args),
         Command::Info(args) => info::run(args),
+        Command::State(args) => state::run(args),
     }
 }

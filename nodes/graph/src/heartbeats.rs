@@ -1,0 +1,39 @@
+//! The reports that nodes send once a second.
+
+use crate::observer::Observer;
+use grainlab_console::Failure;
+use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
+use grainlab_msgs::topics;
+use grainlab_node_kit::Report;
+use ros2_client::qos::{History, WhenFull};
+use ros2_client::{MessageTypeName, Name, QosProfile};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+/// Time for which heartbeats are listened to: a node sends one each second.
+pub(crate) const LISTEN: Duration = Duration::from_millis(2500);
+
+/// The nodes whose heartbeats arrive now, with their latest health.
+pub(crate) fn heartbeats(observer: &mut Observer) -> Result<BTreeMap<String, Report>, Failure> {
+    let qos = QosProfile::publisher_default()
+        .reliability_reliable(WhenFull::DEFAULT)
+        .history(History::KeepLast { depth: 100 });
+    let name = Name::parse(topics::DIAGNOSTICS.name).map_err(|e| Failure::failed(format!("{e:?}")))?;
+    let info = topics::DIAGNOSTICS.info;
+    let kind = MessageTypeName::new(info.package, info.name);
+    let topic = observer.node.create_topic(&name, kind, &qos).map_err(Failure::failed)?;
+    let reader =
+        observer.node.create_subscription::<DiagnosticArray>(&topic, Some(qos)).map_err(Failure::failed)?;
+    let start = Instant::now();
+    let mut heard = BTreeMap::new();
+    while start.elapsed() < LISTEN {
+        match reader.take() {
+            Ok(Some((message, _))) => {
+                heard.extend(Report::from_message(&message).into_iter().map(|r| (r.node.clone(), r)));
+            }
+            // A message that does not decode is none of ours.
+            Ok(None) | Err(_) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+    Ok(heard)
+}

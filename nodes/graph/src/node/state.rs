@@ -1,0 +1,72 @@
+//! `grainlab node state`.
+
+use crate::heartbeats::heartbeats;
+use crate::observer::Observer;
+use crate::view::Common;
+use grainlab_console::{Failure, Table};
+use grainlab_node_kit::{Exit, Level, Report};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Arguments of `grainlab node state`.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example:\n  grainlab node state --format json\n\nListens to the reports on /diagnostics for 2.5 s. Exit 1 if a \
+                        node reports an error, or does not report."
+)]
+pub struct Args {
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Serialize)]
+struct Row {
+    node: String,
+    /// `ok`, `warning`, `error`, or `silent`.
+    level: &'static str,
+    /// What the node does or waits for.
+    state: String,
+    pid: Option<u32>,
+    values: BTreeMap<String, String>,
+}
+
+fn row(report: &Report) -> Row {
+    let level = match report.health.level {
+        Level::Ok => "ok",
+        Level::Warn => "warning",
+        _ => "error",
+    };
+    let values = report.health.values.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
+    let state = report.health.message.clone();
+    Row { node: report.node.clone(), level, state, pid: Some(report.pid), values }
+}
+
+pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let mut observer = Observer::join()?;
+    let graph = observer.settled(args.common.patience());
+    let heard = heartbeats(&mut observer)?;
+    let topics = graph.topics();
+    let reporting = topics.get("/diagnostics").map(|t| t.publishers.as_slice()).unwrap_or_default();
+    let mut rows: BTreeMap<String, Row> =
+        heard.iter().map(|(node, report)| (node.clone(), row(report))).collect();
+    for node in reporting.iter().map(|publisher| graph.owner(publisher)) {
+        rows.entry(node.clone()).or_insert_with(|| Row {
+            node,
+            level: "silent",
+            state: "no report: stopped, hanging, or killed less than a minute ago".into(),
+            pid: None,
+            values: BTreeMap::new(),
+        });
+    }
+    let rows: Vec<Row> = rows.into_values().collect();
+    args.common.show(&rows, || {
+        let mut table = Table::new(["node", "level", "pid", "state"]);
+        for r in &rows {
+            let pid = r.pid.map_or_else(|| "-".to_owned(), |pid| pid.to_string());
+            table.row([r.node.clone(), r.level.to_owned(), pid, r.state.clone()]);
+        }
+        table.text()
+    })?;
+    let wrong = rows.iter().any(|r| matches!(r.level, "error" | "silent"));
+    Ok(if wrong { Exit::Failure } else { Exit::Done })
+}
