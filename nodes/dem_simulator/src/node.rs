@@ -92,6 +92,8 @@ pub struct DemSimulator {
     pub(crate) wall: Duration,
     pub(crate) next_beat: Duration,
     pub(crate) next_clock: Duration,
+    /// What the start waits for, in words.
+    pub(crate) awaited: String,
     pub(crate) next_notice: Duration,
 }
 
@@ -154,6 +156,7 @@ impl DemSimulator {
             wall: Duration::ZERO,
             next_beat: now,
             next_clock: now,
+            awaited: String::new(),
             next_notice: now + NOTICE_PERIOD,
             run,
             settings,
@@ -272,7 +275,8 @@ impl Node for DemSimulator {
         let computing = self.computing.as_secs_f64();
         let particle_steps = steps as f64 * f64::from(self.run.scene().grains);
         let message = match self.stage {
-            Stage::Starting => "starting".into(),
+            Stage::Starting if self.awaited.is_empty() => "starting".into(),
+            Stage::Starting => format!("waiting for {}", self.awaited),
             Stage::Running => format!("phase {phase}"),
             Stage::Finished => "finished".into(),
         };

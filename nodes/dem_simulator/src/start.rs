@@ -43,6 +43,7 @@ impl DemSimulator {
         match self.duplicates.verdict(&simulators, now) {
             Verdict::Clear => {}
             Verdict::Wait(writer) => {
+                self.awaited = "a silent simulator to publish or leave".into();
                 if self.notice_due(now) {
                     log::warn!(
                         "another writer of stress ({writer}) is present and silent; waiting until it publishes or leaves"
@@ -68,12 +69,14 @@ impl DemSimulator {
                 );
                 return Err(NodeError::new(Exit::Failure, message));
             }
+            self.awaited = "one of two servos to leave".into();
             if self.notice_due(now) {
                 log::warn!("two writers of strain_rate: {both}; waiting for one to leave");
             }
             return Ok(Next::Wait(LOOK_AGAIN));
         }
         if let Some(missing) = self.missing(bus) {
+            self.awaited.clone_from(&missing);
             if self.notice_due(now) {
                 log::info!("waiting for {missing}");
             }
