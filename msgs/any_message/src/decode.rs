@@ -1,0 +1,278 @@
+//! From bytes to values.
+
+use std::sync::Arc;
+
+use crate::cursor::{Cursor, Short};
+use crate::schema::Schema;
+use crate::types::{Element, FieldType, Length, MessageType, Primitive};
+use crate::value::{Array, Message, Value};
+
+/// Memory of a decoded message per byte of it, and for any message, bytes.
+const PER_BYTE: usize = 256;
+const ALWAYS: usize = 64 << 10;
+
+/// RTPS pads a payload to four bytes.
+const PADDING: usize = 3;
+
+/// Why bytes are not a message of the schema.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DecodeError {
+    /// Too few bytes for a header.
+    #[error("{type_name}: {length} bytes are too few for a CDR header of 4")]
+    NoHeader {
+        /// The type.
+        type_name: String,
+        /// Number of bytes.
+        length: usize,
+    },
+    /// Not plain CDR.
+    #[error(
+        "{type_name}: encapsulation {found:02x?} is not plain CDR ([00, 01] little endian or [00, 00] big endian)"
+    )]
+    Encapsulation {
+        /// The type.
+        type_name: String,
+        /// First two bytes.
+        found: [u8; 2],
+    },
+    /// The bytes end within a field: truncated, a false length, or another type.
+    #[error(
+        "{type_name}: {field} at byte {at} needs {needed} bytes or more, and {left} are left (truncated, or another type)"
+    )]
+    Truncated {
+        /// The type.
+        type_name: String,
+        /// The field.
+        field: String,
+        /// Byte after the header at which it starts.
+        at: usize,
+        /// Bytes needed.
+        needed: u64,
+        /// Bytes left.
+        left: usize,
+    },
+    /// An array or a string is longer than its type allows.
+    #[error("{type_name}: {field} has {length} entries, and its type allows at most {bound}")]
+    TooLong {
+        /// The type.
+        type_name: String,
+        /// The field.
+        field: String,
+        /// Its length.
+        length: u32,
+        /// The bound in the schema.
+        bound: u32,
+    },
+    /// Bytes after the message.
+    #[error("{type_name}: {extra} bytes follow the message (at most 3 of padding may; another type?)")]
+    Trailing {
+        /// The type.
+        type_name: String,
+        /// Number of extra bytes.
+        extra: usize,
+    },
+    /// The values would take far more memory than the bytes.
+    #[error("{type_name}: its {length} bytes would take more than {PER_BYTE} times their size in memory")]
+    Expands {
+        /// The type.
+        type_name: String,
+        /// Number of bytes.
+        length: usize,
+    },
+}
+
+enum Fault {
+    Short(Short),
+    TooLong { length: u32, bound: u32 },
+    Expands,
+}
+
+impl From<Short> for Fault {
+    fn from(short: Short) -> Self {
+        Self::Short(short)
+    }
+}
+
+impl Schema {
+    /// Decodes a message: CDR (XCDR1), little or big endian, with its encapsulation header of four bytes. The memory of the
+    /// values is at most 256 times the bytes plus 64 KiB, whatever they and the schema state.
+    ///
+    /// # Errors
+    /// See [`DecodeError`].
+    pub fn decode(&self, bytes: &[u8]) -> Result<Message, DecodeError> {
+        let type_name = || self.root().name.clone();
+        let length = bytes.len();
+        let Some((header, body)) = bytes.split_at_checked(4) else {
+            return Err(DecodeError::NoHeader { type_name: type_name(), length });
+        };
+        // Bytes 2 and 3 are options: some writers store the number of padding bytes there.
+        let found = [header[0], header[1]];
+        let big_endian = match found {
+            [0, 0] => true,
+            [0, 1] => false,
+            _ => return Err(DecodeError::Encapsulation { type_name: type_name(), found }),
+        };
+        let mut decoder = Decoder {
+            cursor: Cursor::new(body, big_endian),
+            budget: length.saturating_mul(PER_BYTE).saturating_add(ALWAYS),
+            field: String::new(),
+        };
+        let message = decoder.message(self.root()).map_err(|fault| match fault {
+            Fault::Short(Short { needed, at }) => {
+                let left = body.len() - at;
+                DecodeError::Truncated {
+                    type_name: type_name(),
+                    field: decoder.field.clone(),
+                    at,
+                    needed,
+                    left,
+                }
+            }
+            Fault::TooLong { length, bound } => {
+                DecodeError::TooLong { type_name: type_name(), field: decoder.field.clone(), length, bound }
+            }
+            Fault::Expands => DecodeError::Expands { type_name: type_name(), length },
+        })?;
+        match decoder.cursor.left() {
+            0..=PADDING => Ok(message),
+            extra => Err(DecodeError::Trailing { type_name: type_name(), extra }),
+        }
+    }
+}
+
+struct Decoder<'a> {
+    cursor: Cursor<'a>,
+    /// Memory that may still be allocated, bytes.
+    budget: usize,
+    /// The field with an error; set on the way back.
+    field: String,
+}
+
+impl Decoder<'_> {
+    fn spend(&mut self, count: usize, size: usize) -> Result<(), Fault> {
+        let cost = count.checked_mul(size).ok_or(Fault::Expands)?;
+        self.budget = self.budget.checked_sub(cost).ok_or(Fault::Expands)?;
+        Ok(())
+    }
+
+    fn message(&mut self, kind: &Arc<MessageType>) -> Result<Message, Fault> {
+        self.spend(kind.fields.len(), size_of::<Value>())?;
+        let mut values = Vec::with_capacity(kind.fields.len());
+        if kind.fields.is_empty() {
+            self.cursor.one::<u8>()?;
+        }
+        for field in &kind.fields {
+            let value = self.value(&field.kind);
+            values.push(value.inspect_err(|_| {
+                let inner = std::mem::take(&mut self.field);
+                let dot = if inner.is_empty() { "" } else { "." };
+                self.field = format!("{}{dot}{inner}", field.name);
+            })?);
+        }
+        Ok(Message { kind: kind.clone(), values })
+    }
+
+    fn value(&mut self, kind: &FieldType) -> Result<Value, Fault> {
+        let length = match kind.length {
+            Length::One => return self.one(&kind.element),
+            Length::Fixed(length) => length,
+            Length::Any(bound) => {
+                let length = self.cursor.one::<u32>()?;
+                within(length, bound)?;
+                length
+            }
+        };
+        Ok(Value::Array(self.array(&kind.element, length as usize)?))
+    }
+
+    fn one(&mut self, element: &Element) -> Result<Value, Fault> {
+        let c = &mut self.cursor;
+        Ok(match element {
+            Element::Primitive(primitive) => match primitive {
+                Primitive::Bool => Value::Bool(c.one()?),
+                Primitive::I8 => Value::I8(c.one()?),
+                Primitive::U8 => Value::U8(c.one()?),
+                Primitive::I16 => Value::I16(c.one()?),
+                Primitive::U16 => Value::U16(c.one()?),
+                Primitive::I32 => Value::I32(c.one()?),
+                Primitive::U32 => Value::U32(c.one()?),
+                Primitive::I64 => Value::I64(c.one()?),
+                Primitive::U64 => Value::U64(c.one()?),
+                Primitive::F32 => Value::F32(c.one()?),
+                Primitive::F64 => Value::F64(c.one()?),
+            },
+            Element::String(bound) => Value::Text(self.string(*bound)?),
+            Element::WString(bound) => Value::Text(self.wide_string(*bound)?),
+            Element::Message(kind) => Value::Message(self.message(kind)?),
+        })
+    }
+
+    fn array(&mut self, element: &Element, length: usize) -> Result<Array, Fault> {
+        // Nothing is reserved for values that cannot be there.
+        self.cursor.require(element.least().saturating_mul(length as u64))?;
+        if let Element::Primitive(primitive) = element {
+            self.spend(length, primitive.size())?;
+        }
+        let c = &mut self.cursor;
+        Ok(match element {
+            Element::Primitive(primitive) => match primitive {
+                Primitive::Bool => Array::Bool(c.many(length)?),
+                Primitive::I8 => Array::I8(c.many(length)?),
+                Primitive::U8 => Array::U8(c.many(length)?),
+                Primitive::I16 => Array::I16(c.many(length)?),
+                Primitive::U16 => Array::U16(c.many(length)?),
+                Primitive::I32 => Array::I32(c.many(length)?),
+                Primitive::U32 => Array::U32(c.many(length)?),
+                Primitive::I64 => Array::I64(c.many(length)?),
+                Primitive::U64 => Array::U64(c.many(length)?),
+                Primitive::F32 => Array::F32(c.many(length)?),
+                Primitive::F64 => Array::F64(c.many(length)?),
+            },
+            Element::String(bound) => Array::Text(self.each(length, |d| d.string(*bound))?),
+            Element::WString(bound) => Array::Text(self.each(length, |d| d.wide_string(*bound))?),
+            Element::Message(kind) => Array::Message(self.each(length, |d| d.message(kind))?),
+        })
+    }
+
+    fn each<T>(
+        &mut self,
+        length: usize,
+        mut read: impl FnMut(&mut Self) -> Result<T, Fault>,
+    ) -> Result<Vec<T>, Fault> {
+        self.spend(length, size_of::<T>())?;
+        let mut values = Vec::with_capacity(length);
+        for _ in 0..length {
+            values.push(read(self)?);
+        }
+        Ok(values)
+    }
+
+    /// Length with the final zero, and the bytes.
+    fn string(&mut self, bound: Option<u32>) -> Result<String, Fault> {
+        let length = self.cursor.one::<u32>()?;
+        let bytes = self.cursor.bytes(length as usize)?;
+        let bytes = bytes.strip_suffix(&[0]).unwrap_or(bytes);
+        within(bytes.len() as u32, bound)?;
+        // A byte that is not UTF-8 becomes three.
+        self.spend(bytes.len(), 3)?;
+        Ok(String::from_utf8_lossy(bytes).into_owned())
+    }
+
+    /// Number of UTF-16 units, and each unit as four bytes, without a final zero: as rmw_fastrtps and rmw_cyclonedds.
+    fn wide_string(&mut self, bound: Option<u32>) -> Result<String, Fault> {
+        let length = self.cursor.one::<u32>()?;
+        within(length, bound)?;
+        self.cursor.require(u64::from(length) * 4)?;
+        self.spend(length as usize, 3 + size_of::<u16>() + size_of::<u32>())?;
+        let units: Vec<u16> =
+            self.cursor.many::<u32>(length as usize)?.into_iter().map(|c| c as u16).collect();
+        Ok(String::from_utf16_lossy(&units))
+    }
+}
+
+fn within(length: u32, bound: Option<u32>) -> Result<(), Fault> {
+    match bound {
+        Some(bound) if length > bound => Err(Fault::TooLong { length, bound }),
+        _ => Ok(()),
+    }
+}

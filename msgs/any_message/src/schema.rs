@@ -1,0 +1,242 @@
+//! Schema texts.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::lines::{ArrayText, TypeText, declaration, type_text};
+use crate::types::{Constant, Element, Field, FieldType, Length, MessageType, Primitive};
+
+/// Maximum number of levels of nested messages.
+const DEEPEST: usize = 64;
+
+/// Types that every ROS 2 system has; some writers leave their text out.
+const BUILT_IN: [(&str, &str); 2] = [
+    ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
+    ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"),
+];
+
+/// A parsed schema: the type of a topic with all types that it depends on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Schema {
+    root: Arc<MessageType>,
+}
+
+/// Why a schema text cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SchemaError {
+    /// A line is not a field, a constant or a comment.
+    #[error("schema of {type_name}, line {line}: {problem}")]
+    Line {
+        /// The type with the line.
+        type_name: String,
+        /// Number of the line within the text of the type, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The text of a type is missing.
+    #[error("the schema of {in_type} has no text for the type {name} of one of its fields")]
+    Missing {
+        /// The type that has a field of it.
+        in_type: String,
+        /// The missing type.
+        name: String,
+    },
+    /// A type contains itself.
+    #[error("the type {0} contains itself")]
+    Circle(String),
+    /// Types are nested too deep.
+    #[error("messages in {0} are nested in more than {DEEPEST} levels")]
+    Depth(String),
+    /// Not a message: a service, an action or another schema language.
+    #[error("the schema of {0} is not a ROS 2 message file (ros2msg)")]
+    NotMessage(String),
+}
+
+impl Schema {
+    /// Parses the schema of `type_name` (`pkg/msg/Type`): the text of its message file, then for each type that it depends on
+    /// a line of equals signs, a line `MSG: pkg/Type` and its text.
+    ///
+    /// # Errors
+    /// See [`SchemaError`].
+    pub fn parse(type_name: &str, text: &str) -> Result<Self, SchemaError> {
+        let mut texts = BTreeMap::new();
+        let root = short(type_name);
+        let mut sections = sections(text);
+        texts.insert(root.clone(), sections.next().map_or("", |(_, text)| text));
+        for (name, text) in sections {
+            let name = name.strip_prefix("MSG:").ok_or_else(|| SchemaError::NotMessage(root.clone()))?;
+            texts.entry(short(name.trim())).or_insert(text);
+        }
+        for (name, text) in BUILT_IN {
+            texts.entry(name.to_owned()).or_insert(text);
+        }
+        let mut resolver = Resolver { texts, known: BTreeMap::new(), open: Vec::new() };
+        Ok(Self { root: resolver.message(&root)? })
+    }
+
+    /// The type of the topic.
+    pub fn root(&self) -> &Arc<MessageType> {
+        &self.root
+    }
+}
+
+/// `pkg/msg/Type` as `pkg/Type`.
+fn short(name: &str) -> String {
+    match name.split('/').collect::<Vec<_>>()[..] {
+        [package, _, last] => format!("{package}/{last}"),
+        _ => name.to_owned(),
+    }
+}
+
+/// The parts of a schema between lines of equals signs, each with its first line; that of the first part is empty.
+fn sections(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut rest = Some(text);
+    let mut first = true;
+    std::iter::from_fn(move || {
+        let section = rest?;
+        let (mut body, mut behind, mut at) = (section, None, 0);
+        for line in section.split_inclusive('\n') {
+            let is_separator = line.len() > 3 && line.trim_end().bytes().all(|b| b == b'=');
+            if is_separator && line.trim_end().len() > 3 {
+                (body, behind) = (&section[..at], Some(&section[at + line.len()..]));
+                break;
+            }
+            at += line.len();
+        }
+        rest = behind;
+        if std::mem::take(&mut first) {
+            return Some(("", body));
+        }
+        Some(body.split_once('\n').unwrap_or((body, "")))
+    })
+}
+
+struct Resolver<'a> {
+    texts: BTreeMap<String, &'a str>,
+    known: BTreeMap<String, Arc<MessageType>>,
+    /// Types whose fields are being resolved.
+    open: Vec<String>,
+}
+
+impl Resolver<'_> {
+    fn message(&mut self, name: &str) -> Result<Arc<MessageType>, SchemaError> {
+        if let Some(known) = self.known.get(name) {
+            return Ok(known.clone());
+        }
+        if self.open.iter().any(|open| open == name) {
+            return Err(SchemaError::Circle(name.to_owned()));
+        }
+        if self.open.len() >= DEEPEST {
+            return Err(SchemaError::Depth(self.open[0].clone()));
+        }
+        self.open.push(name.to_owned());
+        let text = self.texts.get(name).copied().unwrap_or("");
+        let mut made = MessageType {
+            name: name.to_owned(),
+            fields: Vec::new(),
+            constants: Vec::new(),
+            least: 0,
+            depth: 1,
+        };
+        for (number, line) in text.lines().enumerate() {
+            let wrong =
+                |problem: String| SchemaError::Line { type_name: name.to_owned(), line: number + 1, problem };
+            if line.trim() == "---" || line.starts_with("IDL:") {
+                return Err(SchemaError::NotMessage(name.to_owned()));
+            }
+            let Some(line) = declaration(line).map_err(wrong)? else { continue };
+            let parts = type_text(line.type_text).map_err(wrong)?;
+            let element = self.element(name, &parts)?;
+            if let Some(value) = line.constant {
+                let (name, value) = (line.name.to_owned(), value.to_owned());
+                made.constants.push(Constant { name, kind: element, value });
+                continue;
+            }
+            let length = match parts.array {
+                None => Length::One,
+                Some(ArrayText::Fixed(n)) => Length::Fixed(n),
+                Some(ArrayText::Any(bound)) => Length::Any(bound),
+            };
+            if let Element::Message(inner) = &element {
+                made.depth = made.depth.max(inner.depth + 1);
+            }
+            let kind = FieldType { element, length };
+            made.least = made.least.saturating_add(kind.least());
+            let default = line.default.map(str::to_owned);
+            made.fields.push(Field { name: line.name.to_owned(), kind, default });
+        }
+        // ROS 2 writes a message without fields as one byte.
+        made.least = made.least.max(1);
+        if made.depth > DEEPEST {
+            return Err(SchemaError::Depth(name.to_owned()));
+        }
+        self.open.pop();
+        let made = Arc::new(made);
+        self.known.insert(name.to_owned(), made.clone());
+        Ok(made)
+    }
+
+    fn element(&mut self, in_type: &str, parts: &TypeText<'_>) -> Result<Element, SchemaError> {
+        if let Some(primitive) = Primitive::by_name(parts.base) {
+            return Ok(Element::Primitive(primitive));
+        }
+        match parts.base {
+            "string" => return Ok(Element::String(parts.bound)),
+            "wstring" => return Ok(Element::WString(parts.bound)),
+            _ => {}
+        }
+        let package = in_type.split('/').next().unwrap_or_default();
+        let base = parts.base;
+        let candidates = match base {
+            _ if base.contains('/') => vec![short(base)],
+            "time" => vec!["builtin_interfaces/Time".to_owned()],
+            "duration" => vec!["builtin_interfaces/Duration".to_owned()],
+            "Header" => vec![format!("{package}/Header"), "std_msgs/Header".to_owned()],
+            _ => vec![format!("{package}/{base}")],
+        };
+        match candidates.iter().find(|name| self.texts.contains_key(*name)) {
+            Some(name) => Ok(Element::Message(self.message(name)?)),
+            None => Err(SchemaError::Missing { in_type: in_type.to_owned(), name: candidates[0].clone() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn types_are_found_by_every_form_of_their_name() {
+        let bar = "=".repeat(80);
+        let text = format!(
+            "Header header\nB b\nx_msgs/C[2] c\ny_msgs/msg/D d\ntime t\n{bar}\nMSG: std_msgs/Header\nbuiltin_interfaces/Time \
+             stamp\nstring frame_id\n{bar}\nMSG: x_msgs/B\nuint8 LIMIT=3\nint8 v 5\n\n{bar}\nMSG: x_msgs/C\n{bar}\nMSG: \
+             y_msgs/msg/D\nfloat32[<=4] f\n"
+        );
+        let schema = Schema::parse("x_msgs/msg/A", &text).unwrap();
+        let names: Vec<&str> = schema.root().fields.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(names, ["header", "b", "c", "d", "t"]);
+        // 4 + 4 + 4 (header), 1, 2 x 1 (no fields), 4, 8.
+        assert_eq!((schema.root().least, schema.root().depth), (27, 3));
+        let Element::Message(b) = &schema.root().fields[1].kind.element else { panic!("not a message") };
+        assert_eq!((b.constants[0].value.as_str(), b.fields[0].default.as_deref()), ("3", Some("5")));
+    }
+
+    #[test]
+    fn a_schema_that_cannot_be_used_is_an_error_that_names_the_type() {
+        let bar = "=".repeat(80);
+        let of = |text: &str| Schema::parse("p/msg/A", text).unwrap_err();
+        assert_eq!(of("B b"), SchemaError::Missing { in_type: "p/A".into(), name: "p/B".into() });
+        assert_eq!(of("A a"), SchemaError::Circle("p/A".into()));
+        assert_eq!(of(&format!("B b\n{bar}\nMSG: p/B\nA[] a\n")), SchemaError::Circle("p/A".into()));
+        assert_eq!(of("int8 a\n---\nint8 b"), SchemaError::NotMessage("p/A".into()));
+        assert_eq!(
+            of(&format!("{bar}\nIDL: p/msg/A\nmodule p {{}};")),
+            SchemaError::NotMessage("p/A".into())
+        );
+        assert!(of("int8 a\n\nint8[ b").to_string().contains("line 3"));
+        let chain: String = (1..70).map(|n| format!("{bar}\nMSG: p/T{n}\nT{} t\n", n + 1)).collect();
+        assert!(matches!(of(&format!("T1 t\n{chain}")), SchemaError::Depth(_)));
+    }
+}

@@ -1,0 +1,151 @@
+//! The types of a schema.
+
+use std::sync::Arc;
+
+/// A message type: its fields in order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MessageType {
+    /// Package and name, `std_msgs/Header`.
+    pub name: String,
+    /// Its fields.
+    pub fields: Vec<Field>,
+    /// Its constants.
+    pub constants: Vec<Constant>,
+    /// Fewest bytes of a message in CDR, without padding.
+    pub(crate) least: u64,
+    /// Levels of nested messages in it, at least 1.
+    pub(crate) depth: usize,
+}
+
+/// A field of a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub kind: FieldType,
+    /// The default in the schema, as its text.
+    pub default: Option<String>,
+}
+
+/// A constant of a message type. It is not part of a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Constant {
+    /// Its name.
+    pub name: String,
+    /// Its type.
+    pub kind: Element,
+    /// Its value, as its text.
+    pub value: String,
+}
+
+/// The type of a field: what it has, and how many.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldType {
+    /// Type of one value.
+    pub element: Element,
+    /// How many.
+    pub length: Length,
+}
+
+/// How many values a field has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// One, not an array.
+    One,
+    /// An array of so many.
+    Fixed(u32),
+    /// An array of any length, up to the bound if there is one.
+    Any(Option<u32>),
+}
+
+/// The type of one value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Element {
+    /// A number, a flag or a byte.
+    Primitive(Primitive),
+    /// A text of at most so many bytes.
+    String(Option<u32>),
+    /// A text of at most so many UTF-16 units.
+    WString(Option<u32>),
+    /// Another message.
+    Message(Arc<MessageType>),
+}
+
+/// Types of fixed size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Primitive {
+    /// `bool`.
+    Bool,
+    /// `int8`.
+    I8,
+    /// `uint8`, `byte` and `char`.
+    U8,
+    /// `int16`.
+    I16,
+    /// `uint16`.
+    U16,
+    /// `int32`.
+    I32,
+    /// `uint32`.
+    U32,
+    /// `int64`.
+    I64,
+    /// `uint64`.
+    U64,
+    /// `float32`.
+    F32,
+    /// `float64`.
+    F64,
+}
+
+impl Primitive {
+    /// The type of this name in a message file. `char` is `uint8` in ROS 2, and so is `byte`.
+    pub(crate) fn by_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "bool" => Self::Bool,
+            "int8" => Self::I8,
+            "uint8" | "byte" | "char" => Self::U8,
+            "int16" => Self::I16,
+            "uint16" => Self::U16,
+            "int32" => Self::I32,
+            "uint32" => Self::U32,
+            "int64" => Self::I64,
+            "uint64" => Self::U64,
+            "float32" => Self::F32,
+            "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of a value, which is also its alignment.
+    pub const fn size(self) -> usize {
+        match self {
+            Self::Bool | Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+impl Element {
+    /// Fewest bytes of a value in CDR, without padding.
+    pub(crate) fn least(&self) -> u64 {
+        match self {
+            Self::Primitive(primitive) => primitive.size() as u64,
+            Self::String(_) | Self::WString(_) => 4,
+            Self::Message(inner) => inner.least,
+        }
+    }
+}
+
+impl FieldType {
+    pub(crate) fn least(&self) -> u64 {
+        match self.length {
+            Length::One => self.element.least(),
+            Length::Fixed(n) => self.element.least().saturating_mul(u64::from(n)),
+            Length::Any(_) => 4,
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Decoded messages.
+
+use std::sync::Arc;
+
+use crate::types::MessageType;
+
+/// A decoded message: one value for each field of its type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    /// Its type.
+    pub kind: Arc<MessageType>,
+    /// Its values, in the order of the fields.
+    pub values: Vec<Value>,
+}
+
+/// The value of a field.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the variants are the types of ROS 2")]
+pub enum Value {
+    Bool(bool),
+    I8(i8),
+    U8(u8),
+    I16(i16),
+    U16(u16),
+    I32(i32),
+    U32(u32),
+    I64(i64),
+    U64(u64),
+    F32(f32),
+    F64(f64),
+    /// A `string` or `wstring`; parts that are not Unicode are replaced by U+FFFD.
+    Text(String),
+    Message(Message),
+    Array(Array),
+}
+
+/// The values of a field that is an array.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the variants are the types of ROS 2")]
+pub enum Array {
+    Bool(Vec<bool>),
+    I8(Vec<i8>),
+    U8(Vec<u8>),
+    I16(Vec<i16>),
+    U16(Vec<u16>),
+    I32(Vec<i32>),
+    U32(Vec<u32>),
+    I64(Vec<i64>),
+    U64(Vec<u64>),
+    F32(Vec<f32>),
+    F64(Vec<f64>),
+    Text(Vec<String>),
+    Message(Vec<Message>),
+}
+
+impl Message {
+    /// The fields, each with its name.
+    pub fn fields(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.kind.fields.iter().map(|f| f.name.as_str()).zip(&self.values)
+    }
+
+    /// The value of the field of this name.
+    pub fn get(&self, name: &str) -> Option<&Value> {
+        self.fields().find(|(field, _)| *field == name).map(|(_, value)| value)
+    }
+}
+
+/// Runs the same expression for every kind of array.
+macro_rules! for_each_array {
+    ($array:expr, $values:ident => $result:expr) => {
+        match $array {
+            $crate::Array::Bool($values) => $result,
+            $crate::Array::I8($values) => $result,
+            $crate::Array::U8($values) => $result,
+            $crate::Array::I16($values) => $result,
+            $crate::Array::U16($values) => $result,
+            $crate::Array::I32($values) => $result,
+            $crate::Array::U32($values) => $result,
+            $crate::Array::I64($values) => $result,
+            $crate::Array::U64($values) => $result,
+            $crate::Array::F32($values) => $result,
+            $crate::Array::F64($values) => $result,
+            $crate::Array::Text($values) => $result,
+            $crate::Array::Message($values) => $result,
+        }
+    };
+}
+impl Array {
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        for_each_array!(self, values => values.len())
+    }
+
+    /// Whether it has no values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value at this place, if there is one.
+    pub fn get(&self, at: usize) -> Option<Value> {
+        Some(match self {
+            Self::Bool(v) => Value::Bool(*v.get(at)?),
+            Self::I8(v) => Value::I8(*v.get(at)?),
+            Self::U8(v) => Value::U8(*v.get(at)?),
+            Self::I16(v) => Value::I16(*v.get(at)?),
+            Self::U16(v) => Value::U16(*v.get(at)?),
+            Self::I32(v) => Value::I32(*v.get(at)?),
+            Self::U32(v) => Value::U32(*v.get(at)?),
+            Self::I64(v) => Value::I64(*v.get(at)?),
+            Self::U64(v) => Value::U64(*v.get(at)?),
+            Self::F32(v) => Value::F32(*v.get(at)?),
+            Self::F64(v) => Value::F64(*v.get(at)?),
+            Self::Text(v) => Value::Text(v.get(at)?.clone()),
+            Self::Message(v) => Value::Message(v.get(at)?.clone()),
+        })
+    }
+}
