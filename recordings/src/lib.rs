@@ -21,6 +21,7 @@ pub mod import;
 pub mod input;
 mod ledger;
 mod metadata_keys;
+mod new_path;
 mod player;
 mod reader;
 mod recover;
@@ -29,6 +30,7 @@ mod writer;
 
 pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+pub use new_path::NewPath;
 pub use player::{Play, PlayError, PlayOptions, Player};
 pub use reader::{
     ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredFile,

@@ -6,8 +6,10 @@
 //!
 //! Each has the arguments of its command and `run`.
 
+pub mod cat;
 pub mod compress;
 pub mod cut;
+mod decoders;
 pub mod filter;
 pub mod merge;
 mod opened;

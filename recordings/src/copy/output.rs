@@ -1,10 +1,8 @@
 //! The output of a copy: a temporary file or directory that becomes the named one at the end.
 
 use std::borrow::Cow;
-use std::ffi::{CString, OsString};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
 use mcap::records::{MessageHeader, Metadata};
@@ -13,6 +11,7 @@ use mcap::{Attachment, McapError};
 use super::error::CopyError;
 use super::options::CopyOptions;
 use crate::bag_metadata::{BagMetadata, TopicCount};
+use crate::new_path::NewPath;
 use crate::reader::{ChannelInfo, FileCount, StoredFile};
 use crate::writer::TopicSpec;
 
@@ -20,14 +19,13 @@ use crate::writer::TopicSpec;
 const BUFFER: usize = 1 << 20;
 
 pub(super) struct Output {
+    mcap: Option<mcap::Writer<BufWriter<File>>>,
     /// The final name.
     path: PathBuf,
-    /// The temporary file or directory; removed unless it was renamed.
-    partial: PathBuf,
+    new: NewPath,
     /// The MCAP file, with its temporary name.
     file: PathBuf,
     is_directory: bool,
-    mcap: Option<mcap::Writer<BufWriter<File>>>,
     bag: BagMetadata,
     /// Id and topic of each channel, in the order in which they were declared.
     channels: Vec<(u16, String)>,
@@ -38,35 +36,26 @@ pub(super) struct Output {
 impl Output {
     /// Begins `path`: one file if its name ends with `.mcap`, else a directory.
     pub(super) fn begin(path: &Path, profile: &str, options: &CopyOptions) -> Result<Self, CopyError> {
-        if path.symlink_metadata().is_ok() {
-            return Err(CopyError::Exists { path: path.to_owned() });
-        }
         let io = |action| {
             let path = path.to_owned();
             move |source| CopyError::Io { path, action, source }
         };
-        let name = path.file_name().ok_or_else(|| {
-            io("write")(io::Error::new(io::ErrorKind::InvalidInput, "the output needs a name"))
-        })?;
-        let mut hidden = OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".part-{}", std::process::id()));
-        let partial = path.with_file_name(hidden);
+        let new = NewPath::begin(path).map_err(|source| exists_or(path, "begin the output", source))?;
         let is_directory = path.extension().is_none_or(|e| e != "mcap");
         let file = if is_directory {
-            fs::create_dir(&partial).map_err(io("create the directory"))?;
-            let mut first = name.to_owned();
+            fs::create_dir(new.partial()).map_err(io("create the directory"))?;
+            let mut first = path.file_name().unwrap_or_default().to_owned();
             first.push("_0.mcap");
-            partial.join(first)
+            new.partial().join(first)
         } else {
-            partial.clone()
+            new.partial().to_owned()
         };
         let mut output = Self {
+            mcap: None,
             path: path.to_owned(),
-            partial,
+            new,
             file,
             is_directory,
-            mcap: None,
             bag: BagMetadata::default(),
             channels: Vec::new(),
             counts: Vec::new(),
@@ -165,43 +154,17 @@ impl Output {
                     t.messages += count;
                 }
             }
-            self.bag.write(&self.partial).map_err(io(&self.path, "write metadata.yaml"))?;
+            self.bag.write(self.new.partial()).map_err(io(&self.path, "write metadata.yaml"))?;
         }
-        rename_new(&self.partial, &self.path).map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => CopyError::Exists { path: self.path.clone() },
-            _ => io(&self.path, "give the output its name")(source),
-        })?;
+        self.new.finish().map_err(|source| exists_or(&self.path, "give the output its name", source))?;
         Ok(bytes)
     }
 }
 
-impl Drop for Output {
-    fn drop(&mut self) {
-        // After the end, nothing of this name is left.
-        drop(self.mcap.take());
-        let _ = match self.is_directory {
-            true => fs::remove_dir_all(&self.partial),
-            false => fs::remove_file(&self.partial),
-        };
+fn exists_or(path: &Path, action: &'static str, source: io::Error) -> CopyError {
+    let path = path.to_owned();
+    match source.kind() {
+        io::ErrorKind::AlreadyExists => CopyError::Exists { path },
+        _ => CopyError::Io { path, action, source },
     }
-}
-
-/// Renames unless `to` exists; on a file system that cannot do both at once, after a look.
-fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
-    let (a, b) = (CString::new(from.as_os_str().as_bytes())?, CString::new(to.as_os_str().as_bytes())?);
-    // SAFETY: both names end in NUL and outlive the call.
-    let status = unsafe {
-        libc::renameat2(libc::AT_FDCWD, a.as_ptr(), libc::AT_FDCWD, b.as_ptr(), libc::RENAME_NOREPLACE)
-    };
-    if status == 0 {
-        return Ok(());
-    }
-    let error = io::Error::last_os_error();
-    if !matches!(error.raw_os_error(), Some(libc::EINVAL | libc::ENOSYS)) {
-        return Err(error);
-    }
-    if to.symlink_metadata().is_ok() {
-        return Err(io::ErrorKind::AlreadyExists.into());
-    }
-    fs::rename(from, to)
 }

@@ -8,7 +8,7 @@ mod record;
 mod recover;
 
 use clap::Subcommand;
-use grainlab_bag_tools::{compress, cut, filter, merge};
+use grainlab_bag_tools::{cat, compress, cut, filter, merge};
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
@@ -23,6 +23,8 @@ pub(crate) enum Command {
     Info(info::Args),
     /// Read every record of a recording and list all faults.
     Check(check::Args),
+    /// Print messages as JSON or text.
+    Cat(cat::Args),
     /// Write an interval of time as a new recording.
     Cut(cut::Args),
     /// Write several recordings as one.
@@ -44,6 +46,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Play(args) => play::run(args),
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
+        Command::Cat(args) => cat::run(args),
         Command::Cut(args) => cut::run(args),
         Command::Merge(args) => merge::run(args),
         Command::Filter(args) => filter::run(args),
