@@ -113,7 +113,8 @@ struct Line<'a> {
     data: Shown<'a>,
 }
 
-fn json(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
+/// Writes a message as one line of JSON.
+pub(crate) fn json(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
     let line = Line {
         topic: &message.channel.topic,
         ros_type: &message.channel.ros_type,

@@ -8,6 +8,7 @@
 
 pub mod cat;
 pub mod compress;
+pub mod convert;
 pub mod cut;
 mod decoders;
 pub mod filter;
@@ -15,4 +16,6 @@ pub mod merge;
 mod opened;
 mod output;
 mod selection;
+mod table;
+mod tables;
 mod times;

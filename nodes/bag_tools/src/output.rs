@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use grainlab_console::{Failure, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where and how to write.
 #[derive(Clone, Debug, clap::Args)]
@@ -96,12 +96,17 @@ pub(crate) struct Job<'a> {
 impl Job<'_> {
     /// Copies, and prints what was written.
     pub(crate) fn run(&self, output: &Output) -> Result<Exit, Failure> {
+        self.write(&output.output, &output.form)
+    }
+
+    /// The same with the parts of the arguments.
+    pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
         let recordings = open(self.paths)?;
         self.topics.check(&recordings)?;
         let (start, end) = self.interval.of(&recordings)?;
         let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
-        let options = output.form.options(self.operation);
-        let copied = copy::copy(&recordings, &select, &output.output, &options);
+        let options = form.options(self.operation);
+        let copied = copy::copy(&recordings, &select, output, &options);
         let copied = copied.map_err(|e| match e {
             CopyError::Clash { .. } | CopyError::Exists { .. } => Failure::usage(e),
             other => Failure::failed(other),

@@ -8,7 +8,7 @@ mod record;
 mod recover;
 
 use clap::Subcommand;
-use grainlab_bag_tools::{cat, compress, cut, filter, merge};
+use grainlab_bag_tools::{cat, compress, convert, cut, filter, merge};
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 
@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Check(check::Args),
     /// Print messages as JSON or text.
     Cat(cat::Args),
+    /// Write one table per topic, as JSON lines, CSV or Parquet; or a recording again.
+    Convert(convert::Args),
     /// Write an interval of time as a new recording.
     Cut(cut::Args),
     /// Write several recordings as one.
@@ -47,6 +49,7 @@ pub(crate) fn run(command: &Command) -> Result<Exit, Failure> {
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
         Command::Cat(args) => cat::run(args),
+        Command::Convert(args) => convert::run(args),
         Command::Cut(args) => cut::run(args),
         Command::Merge(args) => merge::run(args),
         Command::Filter(args) => filter::run(args),
