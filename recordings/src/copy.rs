@@ -20,5 +20,5 @@ mod output;
 mod work;
 
 pub use error::CopyError;
-pub use options::{Compression, CopyOptions, Preset, Select};
+pub use options::{CopyOptions, Preset, Select};
 pub use work::{Copied, copy};

@@ -15,6 +15,7 @@
 //! the player.
 
 mod bag_metadata;
+mod compression;
 pub mod copy;
 pub mod export;
 pub mod import;
@@ -28,6 +29,7 @@ mod recover;
 pub mod runs;
 mod writer;
 
+pub use compression::Compression;
 pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;

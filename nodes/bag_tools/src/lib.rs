@@ -8,6 +8,7 @@
 
 pub mod cat;
 pub mod compress;
+mod compression;
 pub mod convert;
 pub mod cut;
 mod decoders;
@@ -19,3 +20,7 @@ mod selection;
 mod table;
 mod tables;
 mod times;
+mod topic_names;
+
+pub use compression::Compression;
+pub use topic_names::TopicNames;

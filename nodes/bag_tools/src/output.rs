@@ -1,5 +1,6 @@
 //! The recording that a command writes.
 
+use crate::compression::Compression;
 use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
@@ -36,17 +37,6 @@ pub(crate) struct Form {
     chunk_size: Option<u64>,
 }
 
-/// Compression of the chunks.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Compression {
-    /// Not compressed
-    None,
-    /// LZ4
-    Lz4,
-    /// Zstandard
-    Zstd,
-}
-
 /// The presets of rosbag2.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 #[value(rename_all = "snake_case")]
@@ -68,11 +58,7 @@ impl Form {
             Some(Preset::ZstdSmall) => CopyOptions::of_preset(copy::Preset::ZstdSmall),
         };
         if let Some(kind) = self.compression {
-            options.compression = match kind {
-                Compression::None => copy::Compression::None,
-                Compression::Lz4 => copy::Compression::Lz4,
-                Compression::Zstd => copy::Compression::Zstd,
-            };
+            options.compression = kind.into();
             options.chunk_size = options.chunk_size.or(Some(1 << 20));
         }
         options.level = self.level.unwrap_or(options.level);

@@ -1,5 +1,6 @@
 //! Topics on the command line.
 
+use crate::topic_names::whole;
 use grainlab_console::Failure;
 use grainlab_recordings::{ChannelInfo, Recording};
 use regex::Regex;
@@ -11,7 +12,7 @@ pub(crate) struct Topics {
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     topics: Vec<String>,
     /// Topics to take, by a regular expression that matches their whole name
-    #[arg(long, value_name = "REGEX")]
+    #[arg(long, value_name = "REGEX", value_parser = whole)]
     regex: Option<Regex>,
     /// Topics to take, by type: sensor_msgs/msg/Imu
     #[arg(long, num_args = 1.., value_name = "TYPE")]
@@ -20,17 +21,12 @@ pub(crate) struct Topics {
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     exclude: Vec<String>,
     /// Topics to leave out of those, by a regular expression that matches their whole name
-    #[arg(long, value_name = "REGEX")]
+    #[arg(long, value_name = "REGEX", value_parser = whole)]
     exclude_regex: Option<Regex>,
 }
 
 fn bare(name: &str) -> &str {
     name.trim_start_matches('/')
-}
-
-fn whole(regex: &Regex, name: &str) -> bool {
-    // The longest match may be another alternative than the first one.
-    Regex::new(&format!("^(?:{})$", regex.as_str())).is_ok_and(|r| r.is_match(name))
 }
 
 impl Topics {
@@ -45,9 +41,9 @@ impl Topics {
         let all = self.topics.is_empty() && self.regex.is_none() && self.types.is_empty();
         let taken = all
             || is_one(&self.topics)
-            || self.regex.as_ref().is_some_and(|r| whole(r, name))
+            || self.regex.as_ref().is_some_and(|r| r.is_match(name))
             || of_type(&self.types);
-        taken && !is_one(&self.exclude) && !self.exclude_regex.as_ref().is_some_and(|r| whole(r, name))
+        taken && !is_one(&self.exclude) && !self.exclude_regex.as_ref().is_some_and(|r| r.is_match(name))
     }
 
     /// An error if a name or type is in none of the recordings, or nothing is taken.

@@ -1,17 +1,7 @@
 //! What is copied, and how it is written.
 
+use crate::compression::Compression;
 use crate::reader::ChannelInfo;
-
-/// Compression of the chunks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Compression {
-    /// Not compressed.
-    None,
-    /// LZ4.
-    Lz4,
-    /// Zstandard.
-    Zstd,
-}
 
 /// How a copy is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,15 +59,10 @@ impl CopyOptions {
     }
 
     pub(super) fn writer(&self, profile: &str) -> mcap::WriteOptions {
-        let compression = match self.compression {
-            Compression::None => None,
-            Compression::Lz4 => Some(mcap::Compression::Lz4),
-            Compression::Zstd => Some(mcap::Compression::Zstd),
-        };
         mcap::WriteOptions::new()
             .profile(profile)
             .library(format!("grainlab {} (copied)", env!("CARGO_PKG_VERSION")))
-            .compression(compression)
+            .compression(self.compression.of_chunks())
             .compression_level(self.level)
             .compression_threads(0)
             .use_chunks(self.chunk_size.is_some())

@@ -1,9 +1,9 @@
 //! Copies have the messages of their sources, and nothing is lost or overwritten on the way.
 
 use crate::support::{START, run_in, write_run};
-use grainlab_recordings::copy::{Compression, CopyError, CopyOptions, Preset, Select, copy};
+use grainlab_recordings::copy::{CopyError, CopyOptions, Preset, Select, copy};
 use grainlab_recordings::{
-    COPY_RECORD, ChannelInfo, METADATA_RECORD, Recording, RunWriter, Selection, TopicSpec,
+    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, Selection, TopicSpec,
 };
 use std::path::Path;
 
