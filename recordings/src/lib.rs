@@ -5,6 +5,7 @@
 //! - `ledger`: counts of recorded, lost and repeated messages, per topic and per writer
 //! - `reader`: reads recordings by topic and time; truncation and damage are reported
 //! - [`recover()`]: completes the files of a recorder that was killed
+//! - [`copy`]: recordings made from others: cut, merged, filtered, compressed
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
@@ -14,19 +15,24 @@
 //! the player.
 
 mod bag_metadata;
+mod compression;
+pub mod copy;
 pub mod export;
 pub mod import;
 pub mod input;
 mod ledger;
 mod metadata_keys;
+mod new_path;
 mod player;
 mod reader;
 mod recover;
 pub mod runs;
 mod writer;
 
+pub use compression::Compression;
 pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
-pub use metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+pub use new_path::NewPath;
 pub use player::{Play, PlayError, PlayOptions, Player};
 pub use reader::{
     ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredFile,

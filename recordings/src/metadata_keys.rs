@@ -3,6 +3,9 @@
 /// Name of the metadata record of the laboratory: the caller's keys, and [`LEDGER_KEY`].
 pub const METADATA_RECORD: &str = "grainlab";
 
+/// Name of the metadata record of a copy: how it was made, and from which recordings.
+pub const COPY_RECORD: &str = "grainlab_copy";
+
 /// Key of the ledger, as JSON, in the metadata record [`METADATA_RECORD`].
 pub const LEDGER_KEY: &str = "ledger";
 

@@ -177,7 +177,7 @@ impl RunWriter {
             let needed = options.free_to_start;
             return Err(WriteError::NoSpace { path: file, free, needed, state: "not begun" });
         }
-        let part = Part::create(file.clone(), options.chunk_size, Instant::now())?;
+        let part = Part::create(file.clone(), &options, Instant::now())?;
         let mut writer = Self {
             directory: directory.to_owned(),
             name: name.to_owned(),
@@ -413,7 +413,7 @@ impl RunWriter {
         let split = self.close_part("continued").and_then(|()| {
             self.number += 1;
             self.file = part_path(&self.directory, &self.name, self.number);
-            let mut next = Part::create(self.file.clone(), self.options.chunk_size, now)?;
+            let mut next = Part::create(self.file.clone(), &self.options, now)?;
             let specs = self.topics.iter().filter_map(|name| self.bag.topics.get(name));
             for topic in specs {
                 let declared = next.declare(&topic.spec);

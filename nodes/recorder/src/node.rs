@@ -3,6 +3,7 @@
 use crate::Settings;
 use crate::binding::{Binding, Outside};
 use crate::repeats::{Novelty, Repeats};
+use crate::snapshot::{Kept, Snapshot};
 use crate::strangers::{self, Authors, StrangerView};
 use crate::tallies::losses;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
@@ -14,11 +15,11 @@ use grainlab_node_kit::{
 use grainlab_node_kit::{Published, member_of, run_of};
 use grainlab_recordings::Finished;
 use grainlab_recordings::Guid;
-use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec, WriterOptions};
+use grainlab_recordings::{Incoming, Outcome, Recording, RunWriter, TopicSpec};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Maximum number of samples queued while the disk is slow: some seconds of the fastest lockstep. RustDDS
 /// keeps as many of each topic, also after they were taken, so that a topic with few or long messages gets
@@ -98,6 +99,8 @@ pub struct Recorder {
     stepped: Option<Duration>,
     /// The recorder had no step for [`STALLED`]. It may have missed the last report of a process that left meanwhile.
     stalled: bool,
+    /// Messages that are written only when asked to.
+    snapshot: Option<Snapshot>,
 }
 
 /// The processes that published, and those that sent their last report, which counts all messages of the process.
@@ -163,8 +166,7 @@ impl Recorder {
             }
         }
         let begin = if before.is_some() { RunWriter::append } else { RunWriter::create };
-        let mut writer =
-            begin(&directory, &name, &specs, WriterOptions::default()).map_err(|e| failed(&e))?;
+        let mut writer = begin(&directory, &name, &specs, settings.writer.clone()).map_err(|e| failed(&e))?;
         if let Some(scene) = &settings.scene {
             writer.attach("scene.toml", "application/toml", scene.text.as_bytes()).map_err(|e| failed(&e))?;
             writer.set_metadata("scene", &scene.scene.name);
@@ -194,6 +196,7 @@ impl Recorder {
             authors,
             stepped: None,
             stalled: false,
+            snapshot: settings.snapshot.clone().map(Snapshot::new).transpose().map_err(|e| failed(&e))?,
         })
     }
 
@@ -216,13 +219,12 @@ impl Recorder {
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
-                let incoming = Incoming {
-                    guid: Guid(sample.info.writer.0),
-                    sequence: sample.info.sequence,
-                    source_time: sample.info.source_time,
-                    receive_time: sample.info.received,
-                    payload: &sample.body,
-                };
+                if let Some(snapshot) = &mut self.snapshot {
+                    let (topic, latched) = (channel.name.clone(), channel.topic.qos.transient_local);
+                    snapshot.keep(Kept { topic, sample, latched });
+                    continue;
+                }
+                let incoming = incoming(&sample);
                 let novelty = self.repeats.as_mut().map_or(Novelty::New, |repeats| {
                     repeats.enter(&channel.topic, author(sample.info.writer), &sample.body)
                 });
@@ -252,6 +254,9 @@ impl Recorder {
                     writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
                 }
             }
+        }
+        if let Some(snapshot) = &mut self.snapshot {
+            self.recorded += keep_last(snapshot, writer)?;
         }
         writer.tick(Instant::now()).map_err(|e| lost(&e))?;
         Ok(any)
@@ -288,6 +293,36 @@ impl Recorder {
             bus.wait(Duration::from_millis(20));
         }
     }
+}
+
+fn incoming(sample: &Sample) -> Incoming<'_> {
+    Incoming {
+        guid: Guid(sample.info.writer.0),
+        sequence: sample.info.sequence,
+        source_time: sample.info.source_time,
+        receive_time: sample.info.received,
+        payload: &sample.body,
+    }
+}
+
+/// Writes the messages of a snapshot if it was asked for; counts those that are too old as left out. Returns the number of
+/// messages written.
+fn keep_last(snapshot: &mut Snapshot, writer: &mut RunWriter) -> Result<u64, NodeError> {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
+    snapshot.expire(now, |kept| leave_out(writer, &kept));
+    let Some(messages) = snapshot.taken() else { return Ok(0) };
+    for kept in &messages {
+        writer.write(&kept.topic, &incoming(&kept.sample)).map_err(|e| lost(&e))?;
+    }
+    // With this time the writer counts all queued messages as old enough.
+    writer.tick(Instant::now() + OLD_ENOUGH).map_err(|e| lost(&e))?;
+    log::info!("snapshot: {} messages written to {}", messages.len(), writer.file().display());
+    Ok(messages.len() as u64)
+}
+
+fn leave_out(writer: &mut RunWriter, kept: &Kept) {
+    let info = &kept.sample.info;
+    writer.ledger_mut().leave_out(&kept.topic, Guid(info.writer.0), info.sequence);
 }
 
 /// The same value for a process of a launched run and for its restarted successor.
@@ -371,6 +406,9 @@ impl Node for Recorder {
         let missing = self.company.missing(&bus.foreign_writers(&topics::DIAGNOSTICS));
         let strangers = self.strangers(bus);
         let Some(mut writer) = self.writer.take() else { return Ok(Exit::Done) };
+        for kept in self.snapshot.iter_mut().flat_map(Snapshot::rest) {
+            leave_out(&mut writer, &kept);
+        }
         let express = |value: serde_json::Result<String>| value.map_err(|e| lost(&e));
         writer.set_metadata(strangers::STRANGERS, &express(serde_json::to_string(&strangers))?);
         writer.set_metadata(strangers::AUTHORS, &express(serde_json::to_string(&self.authors))?);

@@ -1,10 +1,12 @@
 //! Settings of the recorder.
 
+use crate::snapshot::SnapshotSettings;
 use grainlab_console::Failure;
 use grainlab_console::scenes::{self, SceneText};
 use grainlab_msgs::Topic;
 use grainlab_msgs::topics::TOPICS;
 use grainlab_node_kit::{ParameterSpec, Parameters};
+use grainlab_recordings::WriterOptions;
 use grainlab_recordings::runs::{RUNS, create_run_directory};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,6 +23,10 @@ pub struct Settings {
     /// One run is recorded, from its first message: messages missing at its start count as lost, and
     /// repetitions are recorded once.
     pub whole_run: bool,
+    /// Size of files, compression.
+    pub writer: WriterOptions,
+    /// Keeps the last messages in memory and writes them when asked to, instead of all messages.
+    pub snapshot: Option<SnapshotSettings>,
     /// Continues the existing recording, in its next file.
     pub append: bool,
 }
@@ -61,6 +67,8 @@ impl Settings {
                 .map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed))
                 .transpose()?,
             whole_run: true,
+            writer: WriterOptions::default(),
+            snapshot: None,
             append: parameters.get("append"),
         })
     }

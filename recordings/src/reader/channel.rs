@@ -1,5 +1,7 @@
 //! Topics of a recording.
 
+use std::collections::BTreeMap;
+
 /// The description of one topic in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChannelInfo {
@@ -9,6 +11,8 @@ pub struct ChannelInfo {
     pub ros_type: String,
     /// Schema text; `ros2msg` in recordings of ROS 2.
     pub definition: String,
+    /// The schema as it is in the file, which need not be text in other encodings.
+    pub schema: Vec<u8>,
     /// Encoding of the schema.
     pub schema_encoding: String,
     /// Encoding of the messages; `cdr` in recordings of ROS 2.
@@ -17,15 +21,28 @@ pub struct ChannelInfo {
     pub qos: String,
     /// `RIHS01_…`, or empty if unknown.
     pub type_hash: String,
+    /// All metadata of the channel, QoS and type hash included.
+    pub metadata: BTreeMap<String, String>,
 }
 
 impl ChannelInfo {
     /// Whether the recorded QoS is transient local: late readers get the last message.
     pub fn is_latched(&self) -> bool {
         // rosbag2 writes an integer up to version 8 of its metadata, a word from version 9 on.
-        self.qos.lines().any(|line| {
-            let mut parts = line.trim_start_matches(['-', ' ']).splitn(2, ':').map(str::trim);
-            parts.next() == Some("durability") && matches!(parts.next(), Some("1" | "transient_local"))
+        self.qos_values("durability").any(|v| matches!(v, "1" | "transient_local"))
+    }
+
+    /// How many messages a late reader of a latched topic gets, by the recorded QoS: its depth, at least 1 and at most 1000.
+    pub fn latched_depth(&self) -> usize {
+        let depths = self.qos_values("depth").filter_map(|v| v.parse::<usize>().ok());
+        depths.max().unwrap_or(1).clamp(1, 1000)
+    }
+
+    /// The values of a key in the profiles of all publishers.
+    fn qos_values<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a str> {
+        self.qos.lines().filter_map(move |line| {
+            let (found, value) = line.trim_start_matches(['-', ' ']).split_once(':')?;
+            (found.trim() == key).then_some(value.trim())
         })
     }
 }

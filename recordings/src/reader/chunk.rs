@@ -1,5 +1,6 @@
 //! Content of a chunk: decompressed, and checked against its size and checksum before it is used.
 
+use std::borrow::Cow;
 use std::io::Read;
 
 use mcap::records::{ChunkHeader, Record};
@@ -15,6 +16,9 @@ const RATIO: u64 = 64;
 /// Maximum size of a chunk.
 const LARGEST: u64 = 1 << 30;
 
+/// Size for which memory is reserved because the header states it, bytes.
+const ONCE: u64 = 4 << 20;
+
 /// Logarithm of the largest window of zstd for which memory is allocated.
 const WINDOW: u32 = 26;
 
@@ -24,15 +28,24 @@ pub(super) fn limit(compressed: usize) -> u64 {
     (compressed as u64).saturating_mul(RATIO).clamp(SMALL, LARGEST)
 }
 
-/// The records of a chunk, as bytes to iterate over; or the error of the chunk.
-pub(super) fn content(record: &RawRecord<'_>) -> Result<Vec<u8>, String> {
+/// The records of a chunk, as bytes to iterate over, those of the file if they are not compressed; or the error of the chunk.
+pub(super) fn content<'a>(record: &RawRecord<'a>) -> Result<Cow<'a, [u8]>, String> {
+    content_in(record, Vec::new())
+}
+
+/// The same; the memory of `spare` is used if the content is compressed.
+pub(super) fn content_in<'a>(record: &RawRecord<'a>, spare: Vec<u8>) -> Result<Cow<'a, [u8]>, String> {
     match record.parse()? {
-        Record::Chunk { header, data } => decompress(&header, &data),
+        Record::Chunk { header, data } => decompress(&header, data, spare),
         other => Err(format!("there is a record of type 0x{:02x} instead of a chunk", other.opcode())),
     }
 }
 
-fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
+fn decompress<'a>(
+    header: &ChunkHeader,
+    data: Cow<'a, [u8]>,
+    spare: Vec<u8>,
+) -> Result<Cow<'a, [u8]>, String> {
     let size = header.uncompressed_size;
     let most = limit(data.len());
     if size > most {
@@ -41,12 +54,18 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
             data.len()
         ));
     }
-    let mut content = Vec::with_capacity(size.min(4 << 20) as usize);
+    if header.compression.is_empty() {
+        return checked(header, data);
+    }
+    let data = &*data;
+    let mut content = spare;
+    content.clear();
+    content.reserve_exact(size.min(ONCE) as usize);
     // One byte more than stated is read, to detect a longer stream.
     let read = match header.compression.as_str() {
-        "" => {
-            content.extend_from_slice(data);
-            Ok(data.len())
+        // In one call, without a window: twice as fast.
+        "zstd" if size <= ONCE => {
+            zstd::bulk::Decompressor::new().and_then(|mut d| d.decompress_to_buffer(data, &mut content))
         }
         "zstd" => {
             let decoder = zstd::stream::read::Decoder::new(data).and_then(|mut d| {
@@ -59,6 +78,12 @@ fn decompress(header: &ChunkHeader, data: &[u8]) -> Result<Vec<u8>, String> {
         other => return Err(format!("its compression {other:?} is not known (zstd, lz4 and none are)")),
     };
     read.map_err(|e| format!("it does not decompress ({e})"))?;
+    checked(header, Cow::Owned(content))
+}
+
+/// The content, if it has the size and the checksum of the header.
+fn checked<'a>(header: &ChunkHeader, content: Cow<'a, [u8]>) -> Result<Cow<'a, [u8]>, String> {
+    let size = header.uncompressed_size;
     if content.len() as u64 != size {
         return Err(format!("it decompresses to {} bytes or more, not to {size}", content.len()));
     }

@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use mcap::MAGIC;
 use mcap::records::Record;
@@ -10,20 +12,19 @@ use memmap2::Mmap;
 
 use crate::input;
 
+use super::bytes::Bytes;
 use super::error::{ReadError, Warning, WarningKind};
-use super::index::{Entry, Index};
+use super::held::Content;
+use super::index::{Block, Entry, Index, loose_blocks};
 use super::records::Records;
 use super::stored_file::{FileCount, StoredFile};
 
 pub(super) struct OpenFile {
     pub(super) path: PathBuf,
-    bytes: Bytes,
+    bytes: Arc<Bytes>,
     pub(super) index: Index,
-}
-
-enum Bytes {
-    Mapped(Mmap),
-    Owned(Vec<u8>),
+    /// Blocks of a file without chunks, once they were needed.
+    loose: OnceLock<Vec<Block>>,
 }
 
 impl fmt::Debug for OpenFile {
@@ -54,18 +55,42 @@ impl OpenFile {
     }
 
     fn new(path: &Path, bytes: Bytes, warnings: &mut BTreeSet<Warning>) -> Result<Self, ReadError> {
-        let mut file = Self { path: path.to_owned(), bytes, index: Index::default() };
+        let (path, bytes) = (path.to_owned(), Arc::new(bytes));
+        let mut file = Self { path, bytes, index: Index::default(), loose: OnceLock::new() };
         if !file.bytes().starts_with(MAGIC) {
-            return Err(ReadError::NotMcap { path: path.to_owned(), bytes: file.bytes().len() as u64 });
+            let bytes = file.bytes().len() as u64;
+            return Err(ReadError::NotMcap { path: file.path, bytes });
         }
-        file.index = Index::build(path, file.bytes(), warnings);
+        file.index = Index::build(&file.path, file.bytes(), warnings);
         Ok(file)
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
-        match &self.bytes {
-            Bytes::Mapped(map) => map,
-            Bytes::Owned(bytes) => bytes,
+        self.bytes.bytes()
+    }
+
+    /// A part of the file that messages share.
+    pub(super) fn part(&self, range: Range<usize>) -> Content {
+        Content::Part { file: Arc::clone(&self.bytes), range }
+    }
+
+    /// The blocks of messages, in order of start, then of offset. Those of a file without chunks are looked for in the
+    /// whole file, once.
+    pub(super) fn blocks(&self) -> &[Block] {
+        match &self.index.loose {
+            Some(loose) => self.loose.get_or_init(|| loose_blocks(self.bytes(), loose.range.clone())),
+            None => &self.index.blocks,
+        }
+    }
+
+    /// First and last log time; `None` without messages.
+    pub(super) fn bounds(&self) -> Option<(u64, u64)> {
+        match &self.index.loose {
+            Some(loose) => Some(loose.bounds),
+            None => {
+                let blocks = self.index.blocks.iter().map(|b| (b.start, b.end));
+                blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            }
         }
     }
 
@@ -75,10 +100,9 @@ impl OpenFile {
 
     /// Name, times and messages of the file.
     pub(super) fn count(&self) -> FileCount {
-        let blocks = self.index.blocks.iter().map(|b| (b.start, b.end));
         FileCount {
             name: self.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
-            bounds: blocks.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))),
+            bounds: self.bounds(),
             messages: self.index.counts.values().sum(),
         }
     }

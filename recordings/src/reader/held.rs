@@ -1,7 +1,9 @@
 //! The amount of a recording in memory.
 
-use std::sync::Arc;
+use super::bytes::Bytes;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Contents of chunks that may be in memory at once for a recording of any size, bytes.
 const LEAST: u64 = 256 << 20;
@@ -12,40 +14,68 @@ const RATIO: u64 = 64;
 /// Counts the contents in memory whose messages are still in use or to be returned. Chunks of real recordings
 /// follow each other in time and have moderate compression; only forged ones exceed the limit.
 pub(super) struct Held {
-    bytes: Arc<AtomicU64>,
+    memory: Arc<Memory>,
     most: u64,
 }
 
+/// Memory of the contents of one reader.
+#[derive(Default)]
+pub(super) struct Memory {
+    in_use: AtomicU64,
+    /// No longer in use: the next content takes it, which saves the system from clearing new memory for every chunk.
+    spare: Mutex<Vec<Vec<u8>>>,
+}
+
+/// Spare memory that is kept: so many contents, each at most so large, bytes.
+const SPARE: usize = 2;
+const LARGEST_SPARE: usize = 8 << 20;
+
 /// Content of a chunk, shared by several messages.
-pub(super) struct Content {
-    bytes: Vec<u8>,
-    held: Arc<AtomicU64>,
+pub(super) enum Content {
+    /// Decompressed.
+    Own { bytes: Vec<u8>, memory: Arc<Memory> },
+    /// A part of the file, which needs no memory of its own.
+    Part { file: Arc<Bytes>, range: Range<usize> },
 }
 
 impl Held {
     /// For a recording of this size, bytes.
     pub(super) fn new(size: u64) -> Self {
-        Self { bytes: Arc::default(), most: size.saturating_mul(RATIO).max(LEAST) }
+        Self { memory: Arc::default(), most: size.saturating_mul(RATIO).max(LEAST) }
     }
 
     pub(super) fn is_full(&self) -> bool {
-        self.bytes.load(Relaxed) >= self.most
+        self.memory.in_use.load(Relaxed) >= self.most
     }
 
     pub(super) fn content(&self, bytes: Vec<u8>) -> Content {
-        self.bytes.fetch_add(bytes.len() as u64, Relaxed);
-        Content { bytes, held: Arc::clone(&self.bytes) }
+        self.memory.in_use.fetch_add(bytes.len() as u64, Relaxed);
+        Content::Own { bytes, memory: Arc::clone(&self.memory) }
+    }
+
+    /// Memory for the next content; what is in it is of no use.
+    pub(super) fn spare(&self) -> Vec<u8> {
+        self.memory.spare.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
     }
 }
 
 impl Content {
     pub(super) fn bytes(&self) -> &[u8] {
-        &self.bytes
+        match self {
+            Self::Own { bytes, .. } => bytes,
+            Self::Part { file, range } => &file.bytes()[range.clone()],
+        }
     }
 }
 
 impl Drop for Content {
     fn drop(&mut self) {
-        self.held.fetch_sub(self.bytes.len() as u64, Relaxed);
+        if let Self::Own { bytes, memory } = self {
+            memory.in_use.fetch_sub(bytes.len() as u64, Relaxed);
+            let mut spare = memory.spare.lock().unwrap_or_else(PoisonError::into_inner);
+            if spare.len() < SPARE && bytes.capacity() <= LARGEST_SPARE {
+                spare.push(std::mem::take(bytes));
+            }
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! Positions of the parts of a file: from its summary, or by reading all of it.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
 use mcap::MAGIC;
-use mcap::records::{Channel, Footer, Record, SchemaHeader, op};
+use mcap::records::{Channel, Footer, MessageHeader, Record, SchemaHeader, op};
 
 use super::channel::ChannelInfo;
 use super::chunk;
@@ -47,7 +48,58 @@ pub(super) struct Index {
     pub(super) compressions: BTreeSet<String>,
     /// Whether the file is complete.
     pub(super) complete: bool,
-    schemas: BTreeMap<u16, (SchemaHeader, String)>,
+    /// The messages of a complete file without chunks.
+    pub(super) loose: Option<Loose>,
+    schemas: BTreeMap<u16, (SchemaHeader, Vec<u8>)>,
+}
+
+/// The part of a file with messages outside chunks.
+#[derive(Clone, Debug)]
+pub(super) struct Loose {
+    pub(super) range: Range<usize>,
+    /// First and last log time, ns since 1970.
+    pub(super) bounds: (u64, u64),
+}
+
+/// Bytes of messages outside chunks that are one block.
+const LOOSE_BLOCK: usize = 1 << 20;
+
+/// The blocks of messages outside chunks.
+pub(super) fn loose_blocks(bytes: &[u8], range: Range<usize>) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for record in Records::new(&bytes[..range.end], range.start).map_while(Result::ok) {
+        match record.message() {
+            Some((header, _)) => add_loose(&mut blocks, &record, &header),
+            None if record.opcode == op::DATA_END => break,
+            None => {}
+        }
+    }
+    blocks.sort_by_key(|b| (b.start, b.offset));
+    blocks
+}
+
+/// Adds a message outside chunks to the last block if it follows directly.
+fn add_loose(blocks: &mut Vec<Block>, record: &RawRecord<'_>, header: &MessageHeader) {
+    let (time, channel) = (header.log_time, header.channel_id);
+    match blocks.last_mut() {
+        Some(last)
+            if !last.is_chunk
+                && last.end_offset == record.offset
+                && record.end() - last.offset <= LOOSE_BLOCK =>
+        {
+            last.end_offset = record.end();
+            (last.start, last.end) = (last.start.min(time), last.end.max(time));
+            last.channels.get_or_insert_default().insert(channel);
+        }
+        _ => blocks.push(Block {
+            offset: record.offset,
+            end_offset: record.end(),
+            start: time,
+            end: time,
+            channels: Some(BTreeSet::from([channel])),
+            is_chunk: false,
+        }),
+    }
 }
 
 impl Index {
@@ -105,7 +157,11 @@ impl Index {
             }
         }
         let counted = counted.ok_or("the summary section has no statistics")?;
-        let in_blocks: bool = counted.message_count == 0 || !index.blocks.is_empty();
+        if counted.message_count > 0 && counted.chunk_count == 0 && index.blocks.is_empty() {
+            let bounds = (counted.message_start_time, counted.message_end_time);
+            index.loose = Some(Loose { range: MAGIC.len()..start, bounds });
+        }
+        let in_blocks = counted.message_count == 0 || !index.blocks.is_empty() || index.loose.is_some();
         let declared = counted.channel_message_counts.keys().all(|c| index.channels.contains_key(c));
         if !in_blocks || !declared {
             return Err("the summary section does not index all messages".into());
@@ -147,8 +203,7 @@ impl Index {
     fn declare(&mut self, record: Record<'_>) -> Result<(), String> {
         match record {
             Record::Schema { header, data } => {
-                let text = String::from_utf8_lossy(&data).into_owned();
-                self.schemas.entry(header.id).or_insert((header, text));
+                self.schemas.entry(header.id).or_insert((header, data.into_owned()));
             }
             Record::Channel(channel) => {
                 let info = self.channel_info(&channel)?;
@@ -160,10 +215,10 @@ impl Index {
     }
 
     fn channel_info(&self, channel: &Channel) -> Result<ChannelInfo, String> {
-        let (ros_type, schema_encoding, definition) = match channel.schema_id {
+        let (ros_type, schema_encoding, schema) = match channel.schema_id {
             0 => Default::default(),
             id => match self.schemas.get(&id) {
-                Some((header, text)) => (header.name.clone(), header.encoding.clone(), text.clone()),
+                Some((header, data)) => (header.name.clone(), header.encoding.clone(), data.clone()),
                 None => {
                     return Err(format!("channel {} names schema {id}, which is missing", channel.topic));
                 }
@@ -173,11 +228,13 @@ impl Index {
         Ok(ChannelInfo {
             topic: channel.topic.clone(),
             ros_type,
-            definition,
+            definition: String::from_utf8_lossy(&schema).into_owned(),
+            schema,
             schema_encoding,
             message_encoding: channel.message_encoding.clone(),
             qos: value("offered_qos_profiles"),
             type_hash: value("topic_type_hash"),
+            metadata: channel.metadata.clone(),
         })
     }
 }
@@ -226,17 +283,8 @@ impl Scan<'_> {
             }
             Record::Metadata(m) => self.index.metadata.push(Entry { offset, name: m.name }),
             Record::Message { header, .. } => {
-                let (start, end) = (header.log_time, header.log_time);
-                let channels = Some(BTreeSet::from([header.channel_id]));
                 self.count(header.channel_id);
-                self.index.blocks.push(Block {
-                    offset: raw.offset,
-                    end_offset: raw.end(),
-                    start,
-                    end,
-                    channels,
-                    is_chunk: false,
-                });
+                add_loose(&mut self.index.blocks, raw, &header);
             }
             other => self.index.declare(other)?,
         }

@@ -1,5 +1,6 @@
 //! Messages in order of log time.
 
+use super::channel::ChannelInfo;
 use super::chunk;
 use super::error::{ReadError, WarningKind};
 use super::file::OpenFile;
@@ -10,7 +11,9 @@ use super::recording::Recording;
 use super::records::Records;
 use super::selection::Selection;
 use mcap::records::{MessageHeader, op};
+use std::borrow::Cow;
 use std::cmp::Reverse;
+use std::collections::binary_heap::PeekMut;
 use std::collections::{BTreeSet, BinaryHeap};
 use std::sync::Arc;
 
@@ -22,29 +25,42 @@ pub struct Messages<'r> {
     end: u64,
     /// Blocks still to read: file and block, the next one last.
     blocks: Vec<(usize, usize)>,
-    /// Messages read and not yet returned, the earliest on top. Blocks of one file may overlap in time.
-    pending: BinaryHeap<Reverse<Pending>>,
+    /// Blocks read and not yet returned, the one with the earliest message on top. Blocks of one file may overlap in time.
+    open: BinaryHeap<Reverse<OpenBlock>>,
     held: Held,
 }
 
-struct Pending {
-    /// Log time, file, block offset, position in the block: a total order.
-    key: (u64, usize, usize, usize),
-    message: Message,
+/// The rest of a block, in order of log time; never empty.
+struct OpenBlock {
+    /// Log time of its first message, file, block offset: a total order.
+    key: (u64, usize, usize),
+    first: Message,
+    others: std::vec::IntoIter<Message>,
 }
 
-impl PartialEq for Pending {
+impl OpenBlock {
+    fn new(file: usize, offset: usize, mut messages: Vec<Message>) -> Option<Self> {
+        if !messages.is_sorted_by_key(|m| m.log_time) {
+            messages.sort_by_key(|m| m.log_time);
+        }
+        let mut others = messages.into_iter();
+        let first = others.next()?;
+        Some(Self { key: (first.log_time, file, offset), first, others })
+    }
+}
+
+impl PartialEq for OpenBlock {
     fn eq(&self, other: &Self) -> bool {
         self.key == other.key
     }
 }
-impl Eq for Pending {}
-impl PartialOrd for Pending {
+impl Eq for OpenBlock {}
+impl PartialOrd for OpenBlock {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
-impl Ord for Pending {
+impl Ord for OpenBlock {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.key.cmp(&other.key)
     }
@@ -73,8 +89,16 @@ impl Recording {
     /// # Errors
     /// If the topic does not exist.
     pub fn last_before(&self, topic: &str, time: u64) -> Result<Option<Message>, ReadError> {
+        Ok(self.some_before(topic, time, 1)?.pop())
+    }
+
+    /// The last `count` messages on `topic` whose log time is below `time` (ns since 1970), in order of log time.
+    ///
+    /// # Errors
+    /// If the topic does not exist.
+    pub fn some_before(&self, topic: &str, time: u64, count: usize) -> Result<Vec<Message>, ReadError> {
         let topic = self.channel(topic)?.topic.clone();
-        Ok(last_before(self, &topic, time))
+        Ok(some_before(self, &topic, time, count))
     }
 }
 
@@ -83,38 +107,39 @@ impl<'r> Messages<'r> {
         let mut blocks = Vec::new();
         for (f, file) in recording.files.iter().enumerate() {
             let wanted = |b: &Block| b.end >= start && b.start < end && holds(file, b, topics.as_ref());
-            blocks
-                .extend(file.index.blocks.iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
+            blocks.extend(file.blocks().iter().enumerate().filter(|(_, b)| wanted(b)).map(|(n, _)| (f, n)));
         }
-        blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].index.blocks[n].start, f, n)));
+        blocks.sort_by_key(|&(f, n)| Reverse((recording.files[f].blocks()[n].start, f, n)));
         Self {
             recording,
             topics,
             start,
             end,
             blocks,
-            pending: BinaryHeap::new(),
+            open: BinaryHeap::new(),
             held: Held::new(recording.size()),
         }
     }
 
     fn read_block(&mut self, f: usize, n: usize) {
         let file = &self.recording.files[f];
-        let block = &file.index.blocks[n];
+        let block = &file.blocks()[n];
         if self.held.is_full() {
             let detail = "too many bytes of chunks that claim the same time are in memory already".to_owned();
             return self.recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
         }
         let (topics, times) = (self.topics.as_ref(), self.start..self.end);
-        let pending = &mut self.pending;
-        let take = |position: usize, message: Message| {
-            if times.contains(&message.log_time) && topics.is_none_or(|t| t.contains(&message.channel.topic))
-            {
-                pending
-                    .push(Reverse(Pending { key: (message.log_time, f, block.offset, position), message }));
-            }
+        let wanted = |channel: u16| {
+            let info = file.index.channels.get(&channel);
+            info.filter(|info| topics.is_none_or(|t| t.contains(&info.topic)))
         };
-        decode(self.recording, file, block, &self.held, take);
+        let mut messages = Vec::new();
+        decode(self.recording, file, block, &self.held, wanted, |message| {
+            if times.contains(&message.log_time) {
+                messages.push(message);
+            }
+        });
+        self.open.extend(OpenBlock::new(f, block.offset, messages).map(Reverse));
     }
 }
 
@@ -124,35 +149,47 @@ impl Iterator for Messages<'_> {
     fn next(&mut self) -> Option<Message> {
         // A block that starts no later than the earliest read message may hold an earlier one.
         while let Some(&(f, n)) = self.blocks.last() {
-            let start = self.recording.files[f].index.blocks[n].start;
-            if self.pending.peek().is_some_and(|Reverse(p)| p.key.0 < start) {
+            let start = self.recording.files[f].blocks()[n].start;
+            if self.open.peek().is_some_and(|Reverse(b)| b.key.0 < start) {
                 break;
             }
             self.blocks.pop();
             self.read_block(f, n);
         }
-        self.pending.pop().map(|Reverse(p)| p.message)
+        let mut top = self.open.peek_mut()?;
+        match top.0.others.next() {
+            Some(next) => {
+                top.0.key.0 = next.log_time;
+                Some(std::mem::replace(&mut top.0.first, next))
+            }
+            None => Some(PeekMut::pop(top).0.first),
+        }
     }
 }
 
-/// The last message on `topic` before `time`.
-fn last_before(recording: &Recording, topic: &str, time: u64) -> Option<Message> {
+/// The last `count` messages on `topic` before `time`.
+fn some_before(recording: &Recording, topic: &str, time: u64, count: usize) -> Vec<Message> {
     let topics = BTreeSet::from([topic.to_owned()]);
-    let mut best: Option<Message> = None;
+    let mut best: Vec<Message> = Vec::new();
     let mut blocks: Vec<(&OpenFile, &Block)> =
-        recording.files.iter().flat_map(|f| f.index.blocks.iter().map(move |b| (f, b))).collect();
+        recording.files.iter().flat_map(|f| f.blocks().iter().map(move |b| (f, b))).collect();
     blocks.retain(|(f, b)| b.start < time && holds(f, b, Some(&topics)));
     blocks.sort_by_key(|(_, b)| Reverse(b.end));
     for (file, block) in blocks {
-        if best.as_ref().is_some_and(|m| m.log_time >= block.end) {
+        if best.len() >= count && best.first().is_some_and(|m| m.log_time >= block.end) {
             break;
         }
-        decode(recording, file, block, &Held::new(recording.size()), |_, message| {
-            let later = best.as_ref().is_none_or(|b| b.log_time <= message.log_time);
-            if message.channel.topic == topic && message.log_time < time && later {
-                best = Some(message);
+        let wanted = |channel: u16| file.index.channels.get(&channel).filter(|info| info.topic == topic);
+        let mut earlier = Vec::new();
+        decode(recording, file, block, &Held::new(recording.size()), wanted, |message| {
+            if message.log_time < time {
+                earlier.push(message);
             }
         });
+        // Messages of equal log time stay in the order of the file: those of an earlier block come first.
+        earlier.append(&mut best);
+        earlier.sort_by_key(|m| m.log_time);
+        best = earlier.split_off(earlier.len().saturating_sub(count));
     }
     best
 }
@@ -162,28 +199,35 @@ fn holds(file: &OpenFile, block: &Block, topics: Option<&BTreeSet<String>>) -> b
     channels.iter().any(|c| file.index.channels.get(c).is_some_and(|c| topics.contains(&c.topic)))
 }
 
-/// Passes each message of a block to `take`, with its position in the block; an unreadable one becomes a
+/// Passes each message of a block on a wanted channel to `take`, in the order of the block; an unreadable one becomes a
 /// warning.
-fn decode(
+fn decode<'f>(
     recording: &Recording,
-    file: &OpenFile,
+    file: &'f OpenFile,
     block: &Block,
     held: &Held,
-    mut take: impl FnMut(usize, Message),
+    wanted: impl Fn(u16) -> Option<&'f Arc<ChannelInfo>>,
+    mut take: impl FnMut(Message),
 ) {
     let damaged = |detail| recording.warn(file.warning(block.offset, WarningKind::DamagedChunk, detail));
     let content = if block.is_chunk {
         let record = Records::at(file.bytes(), block.offset as u64)
             .ok_or_else(|| "it is an incomplete record".to_owned());
-        match record.and_then(|r| chunk::content(&r)) {
-            Ok(content) => content,
+        match record.and_then(|r| chunk::content_in(&r, held.spare())) {
+            Ok(Cow::Owned(content)) => held.content(content),
+            Ok(Cow::Borrowed(part)) => {
+                let at = part.as_ptr().addr() - file.bytes().as_ptr().addr();
+                file.part(at..at + part.len())
+            }
             Err(detail) => return damaged(detail),
         }
     } else {
-        file.bytes()[block.offset..block.end_offset].to_vec()
+        file.part(block.offset..block.end_offset)
     };
-    let content = Arc::new(held.content(content));
+    let content = Arc::new(content);
     let mut orphans = 0u64;
+    // Most messages are on the channel of the one before.
+    let mut last = None;
     for record in Records::new(content.bytes(), 0) {
         let record = match record {
             Ok(record) if record.opcode == op::MESSAGE => record,
@@ -194,12 +238,22 @@ fn decode(
             damaged(format!("the message at byte {} of its content has an incomplete header", record.offset));
             continue;
         };
-        match file.index.channels.get(&header.channel_id) {
+        let id = header.channel_id;
+        let channel = match last {
+            Some((known, channel)) if known == id => channel,
+            _ => {
+                let channel = wanted(id);
+                last = Some((id, channel));
+                channel
+            }
+        };
+        match channel {
             Some(channel) => {
                 let (channel, payload) = (channel.clone(), Payload { chunk: content.clone(), range });
                 let MessageHeader { sequence, log_time, publish_time, .. } = header;
-                take(record.offset, Message { channel, sequence, log_time, publish_time, payload });
+                take(Message { channel, sequence, log_time, publish_time, payload });
             }
+            None if file.index.channels.contains_key(&id) => {}
             None => orphans += 1,
         }
     }

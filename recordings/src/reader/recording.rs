@@ -6,7 +6,7 @@ use super::file::OpenFile;
 use super::files;
 use super::stored_file::{FileCount, StoredFile};
 use crate::ledger::{TopicTally, merge};
-use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
+use crate::metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -85,6 +85,16 @@ impl Recording {
         by_topic.into_values().collect()
     }
 
+    /// All channels of all files; a topic may have several, of several files or publishers.
+    pub(crate) fn all_channels(&self) -> impl Iterator<Item = &Arc<ChannelInfo>> {
+        self.files.iter().flat_map(|f| f.index.channels.values())
+    }
+
+    /// The profile in the header of the first file.
+    pub(crate) fn profile(&self) -> &str {
+        self.files.first().map_or("", |f| &f.index.profile)
+    }
+
     /// The topic of this name, with or without the leading slash.
     ///
     /// # Errors
@@ -100,8 +110,7 @@ impl Recording {
 
     /// First and last log time, ns since 1970; `None` without messages.
     pub fn time_range(&self) -> Option<(u64, u64)> {
-        let times = self.files.iter().flat_map(|f| &f.index.blocks).map(|b| (b.start, b.end));
-        times.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        self.files.iter().filter_map(OpenFile::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     /// The files stored in the recording, in order.
@@ -139,9 +148,11 @@ impl Recording {
         Some(merge(accounts.into_iter().map(|(_, tallies)| tallies).collect()))
     }
 
-    /// The files without a ledger: the recorder was killed, or is still running.
+    /// The files without a ledger: the recorder was killed, or is still running. Copies have none either, but say so.
     pub fn unaccounted(&self) -> Vec<PathBuf> {
-        self.files.iter().filter(|f| self.account(f).is_none()).map(|f| f.path.clone()).collect()
+        let is_copy = |f: &&OpenFile| f.index.metadata.iter().any(|m| m.name == COPY_RECORD);
+        let files = self.files.iter().filter(|f| !is_copy(f) && self.account(f).is_none());
+        files.map(|f| f.path.clone()).collect()
     }
 
     /// The session of a file's recorder and its ledger so far.

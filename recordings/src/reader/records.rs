@@ -1,6 +1,6 @@
 //! Framing: one byte of opcode, eight of length, the body.
 
-use mcap::records::{MessageHeader, Record};
+use mcap::records::{MessageHeader, Record, op};
 use std::ops::Range;
 
 use super::lengths;
@@ -38,10 +38,19 @@ impl<'a> RawRecord<'a> {
 impl RawRecord<'_> {
     /// Header of a message record, and the position of its data in the bytes from which the record was taken.
     pub(super) fn message(&self) -> Option<(MessageHeader, Range<usize>)> {
-        match self.parse() {
-            Ok(Record::Message { header, data }) => Some((header, self.end() - data.len()..self.end())),
-            _ => None,
+        const HEADER: usize = 22;
+        if self.opcode != op::MESSAGE {
+            return None;
         }
+        let (h, _) = self.body.split_first_chunk::<HEADER>()?;
+        let eight = |at: usize| u64::from_le_bytes(std::array::from_fn(|n| h[at + n]));
+        let header = MessageHeader {
+            channel_id: u16::from_le_bytes([h[0], h[1]]),
+            sequence: u32::from_le_bytes([h[2], h[3], h[4], h[5]]),
+            log_time: eight(6),
+            publish_time: eight(14),
+        };
+        Some((header, self.offset + FRAME + HEADER..self.end()))
     }
 }
 

@@ -2,9 +2,13 @@
 
 use std::time::Duration;
 
+use crate::compression::Compression;
+
 /// Options of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WriterOptions {
+    /// Compression of the chunks.
+    pub compression: Compression,
     /// Uncompressed bytes after which a chunk is closed.
     pub chunk_size: u64,
     /// Age of the oldest message at which an open chunk is closed and written. The sum of this and of the
@@ -25,6 +29,7 @@ pub struct WriterOptions {
 impl Default for WriterOptions {
     fn default() -> Self {
         Self {
+            compression: Compression::default(),
             chunk_size: 768 << 10,
             flush_interval: Duration::from_millis(400),
             sync_interval: Duration::from_secs(1),

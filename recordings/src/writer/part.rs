@@ -10,7 +10,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use super::device_sync::DeviceSync;
-use super::{TopicSpec, WriteError};
+use super::{TopicSpec, WriteError, WriterOptions};
 use crate::reader::FileCount;
 
 type Writer = mcap::Writer<BufWriter<File>>;
@@ -38,7 +38,7 @@ pub(super) struct Closed {
 impl Part {
     /// Begins the file, which must not exist. It stays locked while it is open, so that no process recovers a file
     /// being recorded.
-    pub(super) fn create(path: PathBuf, chunk_size: u64, began: Instant) -> Result<Self, WriteError> {
+    pub(super) fn create(path: PathBuf, of: &WriterOptions, began: Instant) -> Result<Self, WriteError> {
         let io = |action: &'static str| {
             let path = path.clone();
             move |source| WriteError::Io { path, action, source }
@@ -53,7 +53,8 @@ impl Part {
         let (handle, synced) = (clone()?, clone()?);
         let sync = DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
         let mcap = options("")
-            .chunk_size(Some(chunk_size))
+            .compression(of.compression.of_chunks())
+            .chunk_size(Some(of.chunk_size))
             .create(BufWriter::with_capacity(64 << 10, file))
             .map_err(|source| WriteError::mcap(&path, "write the header", source))?;
         let channels = BTreeMap::new();

@@ -1,6 +1,7 @@
 //! Tests of recordings and imports on whole files.
 
 mod contact_search;
+mod copies;
 mod damage;
 mod imports;
 mod lammps_forces;

@@ -1,17 +1,25 @@
 //! `grainlab bag record`.
 
 use crate::commands::run::print_recorded;
+use grainlab_bag_tools::{Compression, TopicNames};
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
+use grainlab_msgs::Topic;
 use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
-use grainlab_recorder::{Recorder, ResultSlot, Settings, contract_topics};
+use grainlab_recorder::{Recorder, ResultSlot, Settings, SnapshotSettings, contract_topics};
+use grainlab_recordings::WriterOptions;
 use std::path::PathBuf;
+use std::time::Duration;
 
 const EXAMPLES: &str = "\
 Examples:
   grainlab bag record -a -o my_run
   grainlab bag record --topics stress packing
+  grainlab bag record --snapshot 30 --trigger moduli -o last_seconds     # or: kill -USR1 PID
+
+Topics of grainlab and the standard ones in the table of msgs/README.md are recorded; others are not. A snapshot has the messages
+of the last seconds and, of each latched topic, at least the last message; at most 512 MiB are kept.
 
 Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost.";
 
@@ -28,6 +36,30 @@ pub(crate) struct Args {
     /// Record every topic, which is the default
     #[arg(short, long)]
     all: bool,
+    /// Record the topics whose whole name matches this regular expression
+    #[arg(long, value_name = "REGEX", conflicts_with_all = ["all", "topics"])]
+    regex: Option<String>,
+    /// Leave out the topics whose whole name matches this regular expression
+    #[arg(long, value_name = "REGEX")]
+    exclude_regex: Option<String>,
+    /// Leave out these topics
+    #[arg(long, num_args = 1.., value_name = "TOPIC")]
+    exclude_topics: Vec<String>,
+    /// Begin the next file at this size, bytes; looked at twice a second [default: 512 MiB]
+    #[arg(short = 'b', long, value_name = "BYTES", value_parser = clap::value_parser!(u64).range(1..))]
+    max_bag_size: Option<u64>,
+    /// Begin the next file after this time, s [default: 900]
+    #[arg(short = 'd', long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
+    max_bag_duration: Option<u64>,
+    /// Compression of the chunks
+    #[arg(long, value_enum, value_name = "KIND", default_value = "zstd")]
+    compression: Compression,
+    /// Keep only the last SECONDS, in memory, and write them at every SIGUSR1
+    #[arg(long, value_name = "SECONDS")]
+    snapshot: Option<f64>,
+    /// Write the snapshot at every message on this topic, too
+    #[arg(long, value_name = "TOPIC", requires = "snapshot")]
+    trigger: Option<String>,
     /// Scene to attach: a built-in name or a file
     #[arg(long, value_name = "SCENE")]
     scene: Option<String>,
@@ -39,10 +71,12 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let settings = Settings {
         output: args.output.clone(),
-        topics: contract_topics(&args.topics)?,
+        topics: topics(args)?,
         scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
+        writer: writer(args),
+        snapshot: snapshot(args)?,
     };
     let spec = NodeSpec {
         name: NodeKind::Recorder.name(),
@@ -58,4 +92,39 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let exit = run_node(&spec, &ros, |bus, _| Ok(Box::new(Recorder::new(bus, &settings, recorded.clone())?)));
     print_recorded(&recorded)?;
     Ok(exit)
+}
+
+fn topics(args: &Args) -> Result<Vec<Topic>, Failure> {
+    let names = TopicNames::new(args.regex.as_deref(), args.exclude_regex.as_deref(), &args.exclude_topics)?;
+    contract_topics(&args.exclude_topics)?;
+    let mut topics = contract_topics(&args.topics)?;
+    topics.retain(|topic| names.take(&topic.absolute_name()));
+    match topics.is_empty() {
+        true => Err(Failure::usage(
+            "no topic is left to record: see --regex, --exclude-regex and --exclude-topics",
+        )),
+        false => Ok(topics),
+    }
+}
+
+fn writer(args: &Args) -> WriterOptions {
+    let default = WriterOptions::default();
+    WriterOptions {
+        compression: args.compression.into(),
+        split_bytes: args.max_bag_size.unwrap_or(default.split_bytes),
+        split_after: args.max_bag_duration.map_or(default.split_after, Duration::from_secs),
+        ..default
+    }
+}
+
+fn snapshot(args: &Args) -> Result<Option<SnapshotSettings>, Failure> {
+    let Some(seconds) = args.snapshot else { return Ok(None) };
+    let span = Duration::try_from_secs_f64(seconds).ok().filter(|span| !span.is_zero());
+    let span = span.ok_or_else(|| {
+        Failure::usage(format!("--snapshot {seconds} is out of range: more than 0 seconds"))
+    })?;
+    if let Some(trigger) = &args.trigger {
+        contract_topics(std::slice::from_ref(trigger))?;
+    }
+    Ok(Some(SnapshotSettings { span, trigger: args.trigger.clone() }))
 }

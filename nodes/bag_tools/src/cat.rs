@@ -1,0 +1,133 @@
+//! `grainlab bag cat`.
+
+use crate::decoders::Decoders;
+use crate::opened::{losses, open};
+use crate::selection::Topics;
+use crate::times::Interval;
+use clap::ValueEnum;
+use grainlab_any_message::Shown;
+use grainlab_console::{Failure, worse};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::{Message, Selection};
+use serde::Serialize;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag cat recordings/runs/demo-1-1 --topics moduli
+  grainlab bag cat run.mcap --regex '/(stress|strain_rate)' --count 10 --format text --max-array 6
+
+Every message is decoded by the schema in the recording. json: one line per message, with topic, type, log_time and
+publish_time (ns since 1970), sequence and data; numbers that are not finite are \"NaN\", \"Infinity\" and \"-Infinity\". Arrays are
+complete without --max-array. Exit 3 if a part could not be read or decoded.";
+
+/// Arguments of `grainlab bag cat`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    #[command(flatten)]
+    topics: Topics,
+    #[command(flatten)]
+    interval: Interval,
+    /// Print at most this many messages
+    #[arg(short = 'n', long, value_name = "N")]
+    count: Option<usize>,
+    /// How to print messages
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+    /// Print at most this many values of each array
+    #[arg(long, value_name = "N")]
+    max_array: Option<usize>,
+}
+
+/// How messages are printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// One JSON object per line
+    #[default]
+    Json,
+    /// As `ros2 topic echo` prints them
+    Text,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the recording cannot be read, a topic does not exist, or stdout fails.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let recordings = open(std::slice::from_ref(&args.path))?;
+    args.topics.check(&recordings)?;
+    let (start, end) = args.interval.of(&recordings)?;
+    let [recording] = &recordings[..] else { return Ok(Exit::Done) };
+    let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
+    let topics = Some(wanted.map(|c| c.topic.clone()).collect());
+    let messages = recording.messages(&Selection { topics, start, end }).map_err(Failure::failed)?;
+    let mut decoders = Decoders::default();
+    let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+    let mut printed = 0;
+    for message in messages {
+        if args.count.is_some_and(|most| printed >= most) {
+            break;
+        }
+        let Some(decoded) = decoders.decode(&message) else { continue };
+        let mut shown = Shown::new(&decoded);
+        if let Some(longest) = args.max_array {
+            shown = shown.shortened(longest);
+        }
+        let written = match args.format {
+            Format::Json => json(&mut out, &message, shown),
+            Format::Text => text(&mut out, &message, shown),
+        };
+        if let Some(exit) = ended(written)? {
+            return Ok(exit);
+        }
+        printed += 1;
+    }
+    if let Some(exit) = ended(out.flush())? {
+        return Ok(exit);
+    }
+    Ok(worse(losses(&recordings), decoders.losses()))
+}
+
+/// The exit if stdout is closed (`| head`), which is not an error.
+fn ended(written: io::Result<()>) -> Result<Option<Exit>, Failure> {
+    match written {
+        Ok(()) => Ok(None),
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(Some(Exit::Done)),
+        Err(e) => Err(Failure::failed(format!("stdout: {e}"))),
+    }
+}
+
+#[derive(Serialize)]
+struct Line<'a> {
+    topic: &'a str,
+    #[serde(rename = "type")]
+    ros_type: &'a str,
+    log_time: u64,
+    publish_time: u64,
+    sequence: u32,
+    data: Shown<'a>,
+}
+
+/// Writes a message as one line of JSON.
+pub(crate) fn json(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
+    let line = Line {
+        topic: &message.channel.topic,
+        ros_type: &message.channel.ros_type,
+        log_time: message.log_time,
+        publish_time: message.publish_time,
+        sequence: message.sequence,
+        data,
+    };
+    serde_json::to_writer(&mut *out, &line)?;
+    out.write_all(b"\n")
+}
+
+fn text(out: &mut impl Write, message: &Message, data: Shown<'_>) -> io::Result<()> {
+    let (seconds, ns) = (message.log_time / 1_000_000_000, message.log_time % 1_000_000_000);
+    writeln!(out, "# {} {seconds}.{ns:09}\n{}---", message.channel.topic, data.text())
+}

@@ -1,0 +1,93 @@
+//! `grainlab bag convert`.
+
+use crate::opened::{losses, open};
+use crate::output::{Form, Job};
+use crate::selection::Topics;
+use crate::tables::{TableFormat, Tables, failed};
+use crate::times::Interval;
+use clap::ValueEnum;
+use grainlab_console::{Failure, print, worse};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::{NewPath, Selection};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag convert recordings/runs/demo-1-1 --format csv -o tables
+  grainlab bag convert run.mcap --topics stress --format parquet -o tables
+  grainlab bag convert old --format mcap --compression lz4 -o new
+
+json, csv, parquet: a new folder with one file per topic: /a/b is a_b.csv. json has the lines of `grainlab bag cat`. csv and
+parquet have one row per message, with log_time and publish_time (ns since 1970; in Parquet timestamps). Fields are flattened: stress.xx. An array with at most --array-columns values in every
+message is as many columns: rate[0]; a longer one is JSON in one column. Values that are not there are empty. mcap: the recording
+written again. Exit 3 if a part could not be read or decoded.";
+
+/// Arguments of `grainlab bag convert`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// New folder; for mcap a new recording: a directory, or one file if the name ends with .mcap
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Format of the output
+    #[arg(long, value_enum)]
+    format: Format,
+    #[command(flatten)]
+    topics: Topics,
+    #[command(flatten)]
+    interval: Interval,
+    /// Longest array that is written as columns
+    #[arg(long, value_name = "N", default_value_t = 36)]
+    array_columns: usize,
+    #[command(flatten)]
+    form: Form,
+}
+
+/// Formats of the output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// JSON lines, one file per topic
+    Json,
+    /// Comma-separated values, one file per topic
+    Csv,
+    /// Apache Parquet, one file per topic
+    Parquet,
+    /// MCAP
+    Mcap,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the recording cannot be read, a topic does not exist, or the output cannot be written.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let paths = std::slice::from_ref(&args.path);
+    if args.format == Format::Mcap {
+        let (topics, interval) = (&args.topics, &args.interval);
+        return Job { operation: "convert", paths, topics, interval, latched: true }
+            .write(&args.output, &args.form);
+    }
+    let recordings = open(paths)?;
+    args.topics.check(&recordings)?;
+    let (start, end) = args.interval.of(&recordings)?;
+    let [recording] = &recordings[..] else { return Ok(Exit::Done) };
+    let wanted = recording.channels().into_iter().filter(|c| args.topics.take(c));
+    let topics = Some(wanted.map(|c| c.topic.clone()).collect());
+    let selection = Selection { topics, start, end };
+    let new = NewPath::begin(&args.output).map_err(Failure::usage)?;
+    std::fs::create_dir(new.partial()).map_err(|e| failed(&args.output, &e))?;
+    let format = match args.format {
+        Format::Parquet => TableFormat::Parquet,
+        Format::Csv => TableFormat::Csv,
+        _ => TableFormat::Json,
+    };
+    let mut tables = Tables::new(&args.output, new.partial(), format, args.array_columns);
+    let messages = tables.convert(recording, &selection)?;
+    let (files, decoders) = tables.finish()?;
+    new.finish().map_err(|e| failed(&args.output, &e))?;
+    print(&format!("{}: {messages} messages in {files} files\n", args.output.display()))?;
+    Ok(worse(losses(&recordings), decoders.losses()))
+}

@@ -1,0 +1,62 @@
+//! Messages of a recording, decoded by the schemas in it.
+
+use grainlab_any_message::{Message, Schema};
+use grainlab_console::say;
+use grainlab_node_kit::Exit;
+use grainlab_recordings::ChannelInfo;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The schemas of the channels, and what could not be decoded.
+#[derive(Default)]
+pub(crate) struct Decoders {
+    /// By the address of the channel, which stays its own while it is in here.
+    known: BTreeMap<usize, Known>,
+    /// By topic: the first error, and how many messages are left out.
+    failures: BTreeMap<String, (String, u64)>,
+}
+
+struct Known {
+    _channel: Arc<ChannelInfo>,
+    schema: Result<Schema, String>,
+}
+
+/// The schema of a channel, or why its messages cannot be decoded.
+pub(crate) fn schema_of(channel: &ChannelInfo) -> Result<Schema, String> {
+    let (schema, message) = (channel.schema_encoding.as_str(), channel.message_encoding.as_str());
+    if (schema, message) != ("ros2msg", "cdr") {
+        return Err(format!(
+            "its messages are {message:?} by a schema in {schema:?}, not CDR by a schema in ros2msg"
+        ));
+    }
+    Schema::parse(&channel.ros_type, &channel.definition).map_err(|e| e.to_string())
+}
+
+impl Decoders {
+    /// The decoded message; `None` if it cannot be decoded.
+    pub(crate) fn decode(&mut self, message: &grainlab_recordings::Message) -> Option<Message> {
+        let channel = &message.channel;
+        let known = self
+            .known
+            .entry(Arc::as_ptr(channel).addr())
+            .or_insert_with(|| Known { _channel: channel.clone(), schema: schema_of(channel) });
+        let decoded = match &known.schema {
+            Ok(schema) => schema.decode(&message.payload).map_err(|e| e.to_string()),
+            Err(problem) => Err(problem.clone()),
+        };
+        decoded.inspect_err(|problem| self.fail(&channel.topic, problem)).ok()
+    }
+
+    fn fail(&mut self, topic: &str, problem: &str) {
+        let new = || (problem.to_owned(), 0);
+        self.failures.entry(topic.to_owned()).or_insert_with(new).1 += 1;
+    }
+
+    /// Prints what was left out; exit 3 if there is anything.
+    pub(crate) fn losses(&self) -> Exit {
+        for (topic, (problem, count)) in &self.failures {
+            say!("grainlab: {topic}: {count} messages are left out: {problem}");
+        }
+        if self.failures.is_empty() { Exit::Done } else { Exit::DataLoss }
+    }
+}

@@ -1,0 +1,26 @@
+//! The tools of `grainlab bag` for any ROS 2 recording in MCAP: ours, those of `ros2 bag`, and those of other programs.
+//!
+//! - [`cat`]: messages as JSON or text
+//! - [`convert`]: one table per topic, as CSV or Parquet
+//! - [`cut`], [`merge`], [`filter`], [`compress`]: new recordings from others
+//!
+//! Each has the arguments of its command and `run`.
+
+pub mod cat;
+pub mod compress;
+mod compression;
+pub mod convert;
+pub mod cut;
+mod decoders;
+pub mod filter;
+pub mod merge;
+mod opened;
+mod output;
+mod selection;
+mod table;
+mod tables;
+mod times;
+mod topic_names;
+
+pub use compression::Compression;
+pub use topic_names::TopicNames;

@@ -1,0 +1,114 @@
+//! The recording that a command writes.
+
+use crate::compression::Compression;
+use crate::opened::{losses, open};
+use crate::selection::Topics;
+use crate::times::Interval;
+use clap::ValueEnum;
+use grainlab_console::{Failure, print, say};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
+use std::path::{Path, PathBuf};
+
+/// Where and how to write.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Output {
+    /// New recording: a directory as rosbag2 has it, or one file if the name ends with .mcap
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    form: Form,
+}
+
+/// How to write.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub(crate) struct Form {
+    /// Compression of the chunks [default: zstd]
+    #[arg(long, value_enum, value_name = "KIND")]
+    compression: Option<Compression>,
+    /// Level of the compression, 1 to 22 for zstd [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=22))]
+    level: Option<u32>,
+    /// Preset of rosbag2; the other options change it
+    #[arg(long, value_enum, value_name = "NAME")]
+    preset: Option<Preset>,
+    /// Uncompressed size of a chunk, bytes [default: 1048576]
+    #[arg(long, value_name = "BYTES", value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
+    chunk_size: Option<u64>,
+}
+
+/// The presets of rosbag2.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Preset {
+    /// No chunks, no index and no checksums
+    Fastwrite,
+    /// Zstandard at level 1, without checksums
+    ZstdFast,
+    /// Zstandard at level 19, chunks of 4 MiB
+    ZstdSmall,
+}
+
+impl Form {
+    fn options(&self, operation: &str) -> CopyOptions {
+        let mut options = match self.preset {
+            None => CopyOptions::default(),
+            Some(Preset::Fastwrite) => CopyOptions::of_preset(copy::Preset::FastWrite),
+            Some(Preset::ZstdFast) => CopyOptions::of_preset(copy::Preset::ZstdFast),
+            Some(Preset::ZstdSmall) => CopyOptions::of_preset(copy::Preset::ZstdSmall),
+        };
+        if let Some(kind) = self.compression {
+            options.compression = kind.into();
+            options.chunk_size = options.chunk_size.or(Some(1 << 20));
+        }
+        options.level = self.level.unwrap_or(options.level);
+        options.chunk_size = self.chunk_size.or(options.chunk_size);
+        options.operation = operation.to_owned();
+        options
+    }
+}
+
+/// What to copy.
+pub(crate) struct Job<'a> {
+    /// `cut`, `merge`, …
+    pub(crate) operation: &'a str,
+    pub(crate) paths: &'a [PathBuf],
+    pub(crate) topics: &'a Topics,
+    pub(crate) interval: &'a Interval,
+    /// Whether latched messages from before the start are copied.
+    pub(crate) latched: bool,
+}
+
+impl Job<'_> {
+    /// Copies, and prints what was written.
+    pub(crate) fn run(&self, output: &Output) -> Result<Exit, Failure> {
+        self.write(&output.output, &output.form)
+    }
+
+    /// The same with the parts of the arguments.
+    pub(crate) fn write(&self, output: &Path, form: &Form) -> Result<Exit, Failure> {
+        let recordings = open(self.paths)?;
+        self.topics.check(&recordings)?;
+        let (start, end) = self.interval.of(&recordings)?;
+        let select = Select { topic: &|c| self.topics.take(c), start, end, latched: self.latched };
+        let options = form.options(self.operation);
+        let copied = copy::copy(&recordings, &select, output, &options);
+        let copied = copied.map_err(|e| match e {
+            CopyError::Clash { .. } | CopyError::Exists { .. } => Failure::usage(e),
+            other => Failure::failed(other),
+        })?;
+        copied.notes.iter().for_each(|note| say!("grainlab: {note}"));
+        let latched = match copied.latched {
+            0 => String::new(),
+            n => format!(", {n} of them latched ones from before the start"),
+        };
+        print(&format!(
+            "{}: {} messages on {} topics{latched}, {:.3} MB\n",
+            copied.path.display(),
+            copied.messages,
+            copied.topics.len(),
+            copied.bytes as f64 * 1e-6
+        ))?;
+        Ok(losses(&recordings))
+    }
+}

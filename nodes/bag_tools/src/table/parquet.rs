@@ -1,0 +1,149 @@
+//! Parquet files.
+
+use super::columns::{Cell, Column, Kind};
+use grainlab_any_message::Primitive;
+use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as PhysicalType};
+use parquet::data_type::{
+    BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
+};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::Type;
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Rows and cells of a row group, whichever is reached first.
+const ROWS: usize = 1 << 16;
+const CELLS: usize = 1 << 21;
+/// Bytes of texts of a row group.
+const TEXT: usize = 64 << 20;
+
+/// A Parquet file, written in row groups, not compressed. Every column is optional.
+pub(crate) struct ParquetTable {
+    writer: SerializedFileWriter<File>,
+    kinds: Vec<Kind>,
+    /// The rows of the next row group, column by column.
+    cells: Vec<Vec<Cell>>,
+    rows: usize,
+    text: usize,
+}
+
+impl ParquetTable {
+    pub(crate) fn create(path: &Path, columns: &[Column]) -> Result<Self, ParquetError> {
+        let fields = columns.iter().map(|c| field(c).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
+        let schema = Arc::new(Type::group_type_builder("messages").with_fields(fields).build()?);
+        let properties = WriterProperties::builder().set_created_by("grainlab".into()).build();
+        let writer = SerializedFileWriter::new(File::create_new(path)?, schema, Arc::new(properties))?;
+        let kinds: Vec<Kind> = columns.iter().map(|c| c.kind).collect();
+        Ok(Self { writer, cells: vec![Vec::new(); kinds.len()], kinds, rows: 0, text: 0 })
+    }
+
+    pub(crate) fn row(&mut self, row: Vec<Cell>) -> Result<(), ParquetError> {
+        for (column, cell) in self.cells.iter_mut().zip(row) {
+            if let Cell::Text(text) = &cell {
+                self.text += text.len();
+            }
+            column.push(cell);
+        }
+        self.rows += 1;
+        if self.rows >= ROWS || self.rows * self.kinds.len() >= CELLS || self.text >= TEXT {
+            self.write_group()?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn finish(mut self) -> Result<(), ParquetError> {
+        if self.rows > 0 {
+            self.write_group()?;
+        }
+        self.writer.close().map(drop)
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        for (kind, cells) in self.kinds.iter().zip(&mut self.cells) {
+            let Some(mut column) = group.next_column()? else { break };
+            match physical(*kind) {
+                PhysicalType::BOOLEAN => put::<BoolType>(&mut column, cells, |cell| match cell {
+                    Cell::Bool(v) => Some(v),
+                    _ => None,
+                }),
+                PhysicalType::INT32 => put::<Int32Type>(&mut column, cells, |cell| match cell {
+                    Cell::Signed(v) => Some(v as i32),
+                    Cell::Unsigned(v) => Some(v as u32 as i32),
+                    _ => None,
+                }),
+                PhysicalType::INT64 => put::<Int64Type>(&mut column, cells, |cell| match cell {
+                    Cell::Signed(v) => Some(v),
+                    Cell::Unsigned(v) => Some(v as i64),
+                    _ => None,
+                }),
+                PhysicalType::FLOAT => put::<FloatType>(&mut column, cells, |cell| match cell {
+                    Cell::Single(v) => Some(v),
+                    _ => None,
+                }),
+                PhysicalType::DOUBLE => put::<DoubleType>(&mut column, cells, |cell| match cell {
+                    Cell::Double(v) => Some(v),
+                    _ => None,
+                }),
+                _ => put::<ByteArrayType>(&mut column, cells, |cell| match cell {
+                    Cell::Text(text) => Some(ByteArray::from(text.into_bytes())),
+                    _ => None,
+                }),
+            }?;
+            column.close()?;
+        }
+        group.close()?;
+        (self.rows, self.text) = (0, 0);
+        Ok(())
+    }
+}
+
+fn physical(kind: Kind) -> PhysicalType {
+    match kind {
+        Kind::Time => PhysicalType::INT64,
+        Kind::Text => PhysicalType::BYTE_ARRAY,
+        Kind::One(primitive) => match primitive {
+            Primitive::Bool => PhysicalType::BOOLEAN,
+            Primitive::F32 => PhysicalType::FLOAT,
+            Primitive::F64 => PhysicalType::DOUBLE,
+            Primitive::I64 | Primitive::U64 => PhysicalType::INT64,
+            _ => PhysicalType::INT32,
+        },
+    }
+}
+
+fn field(column: &Column) -> Result<Type, ParquetError> {
+    let integer = |bits: i8, signed: bool| Some(LogicalType::integer(bits, signed));
+    let logical = match column.kind {
+        Kind::Time => Some(LogicalType::timestamp(true, TimeUnit::NANOS)),
+        Kind::Text => Some(LogicalType::String),
+        Kind::One(primitive) => match primitive {
+            Primitive::I8 => integer(8, true),
+            Primitive::U8 => integer(8, false),
+            Primitive::I16 => integer(16, true),
+            Primitive::U16 => integer(16, false),
+            Primitive::U32 => integer(32, false),
+            Primitive::U64 => integer(64, false),
+            _ => None,
+        },
+    };
+    Type::primitive_type_builder(&column.name, physical(column.kind))
+        .with_repetition(Repetition::OPTIONAL)
+        .with_logical_type(logical)
+        .build()
+}
+
+/// Writes one column and empties it; what is missing has definition level 0.
+fn put<T: DataType>(
+    column: &mut SerializedColumnWriter<'_>,
+    cells: &mut Vec<Cell>,
+    value: impl Fn(Cell) -> Option<T::T>,
+) -> Result<(), ParquetError> {
+    let values: Vec<Option<T::T>> = cells.drain(..).map(value).collect();
+    let levels: Vec<i16> = values.iter().map(|v| i16::from(v.is_some())).collect();
+    let known: Vec<T::T> = values.into_iter().flatten().collect();
+    column.typed::<T>().write_batch(&known, Some(&levels), None).map(drop)
+}

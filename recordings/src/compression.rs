@@ -1,0 +1,23 @@
+//! Compression of chunks.
+
+/// Compression of the chunks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compression {
+    /// Not compressed.
+    None,
+    /// LZ4.
+    Lz4,
+    /// Zstandard.
+    #[default]
+    Zstd,
+}
+
+impl Compression {
+    pub(crate) fn of_chunks(self) -> Option<mcap::Compression> {
+        match self {
+            Self::None => None,
+            Self::Lz4 => Some(mcap::Compression::Lz4),
+            Self::Zstd => Some(mcap::Compression::Zstd),
+        }
+    }
+}

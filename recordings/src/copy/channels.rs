@@ -1,0 +1,80 @@
+//! Topics of several recordings as those of one.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use grainlab_any_message::Schema;
+
+use super::error::CopyError;
+use super::options::Select;
+use crate::reader::{ChannelInfo, Recording};
+
+/// The channels of a copy.
+#[derive(Default)]
+pub(super) struct Channels {
+    /// In the order of their first recording.
+    pub(super) list: Vec<Arc<ChannelInfo>>,
+    /// Places in the list of those with this topic, and the recording of each.
+    by_topic: BTreeMap<String, Vec<(usize, PathBuf)>>,
+    /// Differences that were settled.
+    pub(super) notes: Vec<String>,
+}
+
+impl Channels {
+    /// The wanted channels of all recordings.
+    pub(super) fn of(recordings: &[Recording], select: &Select<'_>) -> Result<Self, CopyError> {
+        let mut all = Self::default();
+        for recording in recordings {
+            for channel in recording.all_channels().filter(|c| (select.topic)(c)) {
+                all.add(recording, channel)?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// The place of a channel in the list.
+    pub(super) fn place(&self, channel: &ChannelInfo) -> Option<usize> {
+        let known = self.by_topic.get(&channel.topic)?;
+        known.iter().map(|(place, _)| *place).find(|place| same_messages(&self.list[*place], channel))
+    }
+
+    fn add(&mut self, recording: &Recording, channel: &Arc<ChannelInfo>) -> Result<(), CopyError> {
+        let path = recording.path();
+        if let Some(place) = self.place(channel) {
+            let kept = &self.list[place];
+            let from = &self.by_topic[&channel.topic][0].1;
+            if kept.qos != channel.qos && from != path {
+                let (topic, from, path) = (&channel.topic, from.display(), path.display());
+                self.notes.push(format!("{topic}: its QoS in {path} differs; that of {from} is kept"));
+            }
+            return Ok(());
+        }
+        let known = self.by_topic.entry(channel.topic.clone()).or_default();
+        if let Some((place, first)) = known.iter().find(|(_, from)| from != path) {
+            return Err(CopyError::Clash {
+                topic: channel.topic.clone(),
+                first: first.clone(),
+                first_type: self.list[*place].ros_type.clone(),
+                second: path.to_owned(),
+                second_type: channel.ros_type.clone(),
+            });
+        }
+        known.push((self.list.len(), path.to_owned()));
+        self.list.push(channel.clone());
+        Ok(())
+    }
+}
+
+/// Whether messages of both channels have the same bytes for the same content: schemas may differ in comments.
+fn same_messages(a: &ChannelInfo, b: &ChannelInfo) -> bool {
+    let encodings = |c: &ChannelInfo| (c.message_encoding.clone(), c.schema_encoding.clone());
+    if a.ros_type != b.ros_type || encodings(a) != encodings(b) {
+        return false;
+    }
+    if a.schema == b.schema || !a.type_hash.is_empty() && a.type_hash == b.type_hash {
+        return true;
+    }
+    let parsed = |c: &ChannelInfo| Schema::parse(&c.ros_type, &c.definition);
+    a.schema_encoding == "ros2msg" && matches!((parsed(a), parsed(b)), (Ok(a), Ok(b)) if a == b)
+}

@@ -1,0 +1,65 @@
+//! Errors of a copy. Nothing was written under the name of the output.
+
+use std::io;
+use std::path::PathBuf;
+
+use mcap::McapError;
+
+/// Why a copy was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum CopyError {
+    /// The output exists.
+    #[error("{path} exists: choose another output; nothing is overwritten")]
+    Exists {
+        /// The output.
+        path: PathBuf,
+    },
+    /// Two recordings have different messages under one topic.
+    #[error(
+        "{topic} has type {first_type} in {first} and {second_type}, with other fields, in {second}: leave one of them out with \
+         `grainlab bag filter --exclude`, then merge"
+    )]
+    Clash {
+        /// The topic.
+        topic: String,
+        /// A recording and its type of the topic.
+        first: PathBuf,
+        /// Its type.
+        first_type: String,
+        /// Another recording.
+        second: PathBuf,
+        /// Its type.
+        second_type: String,
+    },
+    /// The file system returned an error.
+    #[error("{path}: cannot {action}: {source}")]
+    Io {
+        /// The file or directory.
+        path: PathBuf,
+        /// The attempted action.
+        action: &'static str,
+        /// Its error.
+        source: io::Error,
+    },
+    /// The MCAP writer returned an error.
+    #[error("{path}: cannot {action}: {source}")]
+    Format {
+        /// The output.
+        path: PathBuf,
+        /// The attempted action.
+        action: &'static str,
+        /// Its error.
+        source: McapError,
+    },
+}
+
+impl CopyError {
+    /// The error of the file system, if it was one.
+    pub(super) fn mcap(path: &std::path::Path, action: &'static str, source: McapError) -> Self {
+        let path = path.to_owned();
+        match source {
+            McapError::Io(source) => Self::Io { path, action, source },
+            source => Self::Format { path, action, source },
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! What is copied, and how it is written.
+
+use crate::compression::Compression;
+use crate::reader::ChannelInfo;
+
+/// How a copy is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CopyOptions {
+    /// Compression of the chunks.
+    pub compression: Compression,
+    /// Level of the compression; 0 is the default of its library.
+    pub level: u32,
+    /// Uncompressed bytes after which a chunk is closed; `None` writes messages outside chunks, without an index.
+    pub chunk_size: Option<u64>,
+    /// Checksums of chunks and of the data.
+    pub checksums: bool,
+    /// How the copy is made, for its metadata: `cut`, `merge`.
+    pub operation: String,
+}
+
+/// The presets of rosbag2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// No chunks and no checksums.
+    FastWrite,
+    /// Zstandard at its fastest level, without checksums of chunks.
+    ZstdFast,
+    /// Zstandard at level 19, chunks of 4 MiB.
+    ZstdSmall,
+}
+
+impl Default for CopyOptions {
+    fn default() -> Self {
+        let operation = "copy".to_owned();
+        Self {
+            compression: Compression::Zstd,
+            level: 1,
+            chunk_size: Some(1 << 20),
+            checksums: true,
+            operation,
+        }
+    }
+}
+
+impl CopyOptions {
+    /// The options of a preset.
+    pub fn of_preset(preset: Preset) -> Self {
+        match preset {
+            Preset::FastWrite => Self {
+                compression: Compression::None,
+                level: 0,
+                chunk_size: None,
+                checksums: false,
+                ..Self::default()
+            },
+            Preset::ZstdFast => Self { checksums: false, ..Self::default() },
+            Preset::ZstdSmall => Self { level: 19, chunk_size: Some(4 << 20), ..Self::default() },
+        }
+    }
+
+    pub(super) fn writer(&self, profile: &str) -> mcap::WriteOptions {
+        mcap::WriteOptions::new()
+            .profile(profile)
+            .library(format!("grainlab {} (copied)", env!("CARGO_PKG_VERSION")))
+            .compression(self.compression.of_chunks())
+            .compression_level(self.level)
+            .compression_threads(0)
+            .use_chunks(self.chunk_size.is_some())
+            .chunk_size(self.chunk_size)
+            .calculate_chunk_crcs(self.checksums)
+            .calculate_data_section_crc(self.checksums)
+    }
+}
+
+/// The messages to copy.
+pub struct Select<'a> {
+    /// Whether a topic is wanted.
+    pub topic: &'a dyn Fn(&ChannelInfo) -> bool,
+    /// First log time, ns since 1970.
+    pub start: Option<u64>,
+    /// Log time before which to end, ns since 1970.
+    pub end: Option<u64>,
+    /// Whether latched messages from before the start are copied.
+    pub latched: bool,
+}
+
+impl Default for Select<'_> {
+    fn default() -> Self {
+        Self { topic: &|_| true, start: None, end: None, latched: true }
+    }
+}

@@ -1,0 +1,170 @@
+//! The output of a copy: a temporary file or directory that becomes the named one at the end.
+
+use std::borrow::Cow;
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, McapError};
+
+use super::error::CopyError;
+use super::options::CopyOptions;
+use crate::bag_metadata::{BagMetadata, TopicCount};
+use crate::new_path::NewPath;
+use crate::reader::{ChannelInfo, FileCount, StoredFile};
+use crate::writer::TopicSpec;
+
+/// Bytes collected before they are passed to the system.
+const BUFFER: usize = 1 << 20;
+
+pub(super) struct Output {
+    mcap: Option<mcap::Writer<BufWriter<File>>>,
+    /// The final name.
+    path: PathBuf,
+    new: NewPath,
+    /// The MCAP file, with its temporary name.
+    file: PathBuf,
+    is_directory: bool,
+    bag: BagMetadata,
+    /// Id and topic of each channel, in the order in which they were declared.
+    channels: Vec<(u16, String)>,
+    counts: Vec<u64>,
+    bounds: Option<(u64, u64)>,
+}
+
+impl Output {
+    /// Begins `path`: one file if its name ends with `.mcap`, else a directory.
+    pub(super) fn begin(path: &Path, profile: &str, options: &CopyOptions) -> Result<Self, CopyError> {
+        let io = |action| {
+            let path = path.to_owned();
+            move |source| CopyError::Io { path, action, source }
+        };
+        let new = NewPath::begin(path).map_err(|source| exists_or(path, "begin the output", source))?;
+        let is_directory = path.extension().is_none_or(|e| e != "mcap");
+        let file = if is_directory {
+            fs::create_dir(new.partial()).map_err(io("create the directory"))?;
+            let mut first = path.file_name().unwrap_or_default().to_owned();
+            first.push("_0.mcap");
+            new.partial().join(first)
+        } else {
+            new.partial().to_owned()
+        };
+        let mut output = Self {
+            mcap: None,
+            path: path.to_owned(),
+            new,
+            file,
+            is_directory,
+            bag: BagMetadata::default(),
+            channels: Vec::new(),
+            counts: Vec::new(),
+            bounds: None,
+        };
+        let opened = File::create_new(&output.file).map_err(io("create the file"))?;
+        let mcap = options.writer(profile).create(BufWriter::with_capacity(BUFFER, opened));
+        output.mcap = Some(mcap.map_err(|e| CopyError::mcap(path, "write the header", e))?);
+        Ok(output)
+    }
+
+    fn with<T>(
+        &mut self,
+        action: &'static str,
+        run: impl FnOnce(&mut mcap::Writer<BufWriter<File>>) -> Result<T, McapError>,
+    ) -> Result<T, CopyError> {
+        let outcome = match self.mcap.as_mut() {
+            Some(mcap) => run(mcap),
+            None => Err(McapError::AttemptedWriteAfterFailure),
+        };
+        outcome.map_err(|e| CopyError::mcap(&self.path, action, e))
+    }
+
+    /// Declares the next channel.
+    pub(super) fn declare(&mut self, channel: &ChannelInfo) -> Result<(), CopyError> {
+        let id = self.with("declare a topic", |mcap| {
+            let schema = match channel.ros_type.is_empty() && channel.schema.is_empty() {
+                true => 0,
+                false => mcap.add_schema(&channel.ros_type, &channel.schema_encoding, &channel.schema)?,
+            };
+            mcap.add_channel(schema, &channel.topic, &channel.message_encoding, &channel.metadata)
+        })?;
+        self.channels.push((id, channel.topic.clone()));
+        self.counts.push(0);
+        let spec = TopicSpec {
+            name: channel.topic.clone(),
+            ros_type: channel.ros_type.clone(),
+            definition: channel.definition.clone(),
+            type_hash: channel.type_hash.clone(),
+            qos: channel.qos.clone(),
+        };
+        self.bag.topics.entry(channel.topic.clone()).or_insert(TopicCount { spec, messages: 0 });
+        Ok(())
+    }
+
+    /// Writes a message of the channel at this place.
+    pub(super) fn message(
+        &mut self,
+        place: usize,
+        sequence: u32,
+        log_time: u64,
+        publish_time: u64,
+        payload: &[u8],
+    ) -> Result<(), CopyError> {
+        let header = MessageHeader { channel_id: self.channels[place].0, sequence, log_time, publish_time };
+        self.with("write a message", |mcap| mcap.write_to_known_channel(&header, payload))?;
+        self.counts[place] += 1;
+        let (first, last) = self.bounds.unwrap_or((log_time, log_time));
+        self.bounds = Some((first.min(log_time), last.max(log_time)));
+        Ok(())
+    }
+
+    pub(super) fn store(&mut self, file: &StoredFile) -> Result<(), CopyError> {
+        let attachment = Attachment {
+            log_time: file.time,
+            create_time: file.time,
+            name: file.name.clone(),
+            media_type: file.media_type.clone(),
+            data: Cow::Borrowed(&file.bytes),
+        };
+        self.with("store a file", |mcap| mcap.attach(&attachment))
+    }
+
+    pub(super) fn metadata(&mut self, metadata: &Metadata) -> Result<(), CopyError> {
+        self.with("write the metadata", |mcap| mcap.write_metadata(metadata))
+    }
+
+    /// Completes the output and gives it its name. Returns its size, bytes.
+    pub(super) fn finish(mut self) -> Result<u64, CopyError> {
+        let io = |path: &Path, action| {
+            let path = path.to_owned();
+            move |source| CopyError::Io { path, action, source }
+        };
+        self.with("write the index", |mcap| mcap.finish().map(drop))?;
+        if let Some(mcap) = self.mcap.take() {
+            let file = mcap.into_inner().into_inner();
+            file.map_err(|e| io(&self.path, "write the end of the file")(e.into_error()))?;
+        }
+        let bytes = self.file.metadata().map_err(io(&self.path, "query the size"))?.len();
+        if self.is_directory {
+            let messages = self.counts.iter().sum();
+            let name = self.file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            self.bag.files = vec![FileCount { name, bounds: self.bounds, messages }];
+            for ((_, topic), count) in self.channels.iter().zip(&self.counts) {
+                if let Some(t) = self.bag.topics.get_mut(topic) {
+                    t.messages += count;
+                }
+            }
+            self.bag.write(self.new.partial()).map_err(io(&self.path, "write metadata.yaml"))?;
+        }
+        self.new.finish().map_err(|source| exists_or(&self.path, "give the output its name", source))?;
+        Ok(bytes)
+    }
+}
+
+fn exists_or(path: &Path, action: &'static str, source: io::Error) -> CopyError {
+    let path = path.to_owned();
+    match source.kind() {
+        io::ErrorKind::AlreadyExists => CopyError::Exists { path },
+        _ => CopyError::Io { path, action, source },
+    }
+}

@@ -1,0 +1,140 @@
+//! The copy itself.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::channels::Channels;
+use super::error::CopyError;
+use super::extras::Extras;
+use super::options::{CopyOptions, Select};
+use super::output::Output;
+use crate::reader::{ChannelInfo, Message, Messages, Recording, Selection};
+
+/// A finished copy.
+#[derive(Clone, Debug, Serialize)]
+pub struct Copied {
+    /// The output.
+    pub path: PathBuf,
+    /// Size of its MCAP file, bytes.
+    pub bytes: u64,
+    /// Messages in it.
+    pub messages: u64,
+    /// Those that are latched and from before the start.
+    pub latched: u64,
+    /// Its topics.
+    pub topics: Vec<String>,
+    /// Differences between the recordings that were settled, as text.
+    pub notes: Vec<String>,
+}
+
+/// Copies the selected messages of the recordings to the new recording `to`: a directory, or a file if its name ends with
+/// `.mcap`. Parts that cannot be read become warnings of the recordings.
+///
+/// # Errors
+/// If the output exists, two recordings have different types under one topic, or writing fails. Nothing is left then.
+pub fn copy(
+    recordings: &[Recording],
+    select: &Select<'_>,
+    to: &Path,
+    options: &CopyOptions,
+) -> Result<Copied, CopyError> {
+    let channels = Channels::of(recordings, select)?;
+    let extras = Extras::of(recordings, &options.operation);
+    let mut output = Output::begin(to, recordings.first().map_or("ros2", Recording::profile), options)?;
+    for channel in &channels.list {
+        output.declare(channel)?;
+    }
+    for file in &extras.files {
+        output.store(file)?;
+    }
+    let mut places = Places { channels: &channels, last: None, known: BTreeMap::new() };
+    let mut messages = 0;
+    let mut latched = 0;
+    let topics: Vec<String> = channels.list.iter().map(|c| c.topic.clone()).collect();
+    if let Some(start) = select.start.filter(|_| select.latched) {
+        for message in before(recordings, &channels, start) {
+            let Some(place) = places.of(&message.channel) else { continue };
+            output.message(place, message.sequence, start, message.publish_time, &message.payload)?;
+            latched += 1;
+        }
+    }
+    for message in merged(recordings, &topics, select) {
+        let Some(place) = places.of(&message.channel) else { continue };
+        let (log_time, publish_time) = (message.log_time, message.publish_time);
+        output.message(place, message.sequence, log_time, publish_time, &message.payload)?;
+        messages += 1;
+    }
+    for record in &extras.metadata {
+        output.metadata(record)?;
+    }
+    let bytes = output.finish()?;
+    let mut notes = channels.notes;
+    notes.extend(extras.notes);
+    Ok(Copied { path: to.to_owned(), bytes, messages: messages + latched, latched, topics, notes })
+}
+
+/// Finds the place of a channel; most messages are on the channel of the one before.
+struct Places<'a> {
+    channels: &'a Channels,
+    last: Option<(Arc<ChannelInfo>, Option<usize>)>,
+    /// Those found before. A channel is known by its address, which stays its own while it is in here.
+    known: BTreeMap<usize, (Arc<ChannelInfo>, Option<usize>)>,
+}
+
+impl Places<'_> {
+    fn of(&mut self, channel: &Arc<ChannelInfo>) -> Option<usize> {
+        if let Some((last, place)) = &self.last
+            && Arc::ptr_eq(last, channel)
+        {
+            return *place;
+        }
+        let found = || (channel.clone(), self.channels.place(channel));
+        let entry = self.known.entry(Arc::as_ptr(channel).addr()).or_insert_with(found);
+        self.last = Some(entry.clone());
+        entry.1
+    }
+}
+
+/// The latched messages that a late reader would have at `start`, in order of log time.
+fn before(recordings: &[Recording], channels: &Channels, start: u64) -> Vec<Message> {
+    let mut found = Vec::new();
+    for channel in channels.list.iter().filter(|c| c.is_latched()) {
+        let depth = channel.latched_depth();
+        let mut of_topic: Vec<Message> = recordings
+            .iter()
+            .filter_map(|r| r.some_before(&channel.topic, start, depth).ok())
+            .flatten()
+            .filter(|m| channels.place(&m.channel).is_some_and(|p| Arc::ptr_eq(&channels.list[p], channel)))
+            .collect();
+        of_topic.sort_by_key(|m| m.log_time);
+        found.extend(of_topic.split_off(of_topic.len().saturating_sub(depth)));
+    }
+    found.sort_by_key(|m| m.log_time);
+    found
+}
+
+/// The messages of all recordings in order of log time; those of equal time in the order of the recordings.
+fn merged<'r>(
+    recordings: &'r [Recording],
+    topics: &[String],
+    select: &Select<'_>,
+) -> impl Iterator<Item = Message> + 'r {
+    let of = |recording: &'r Recording| {
+        let here = |name: &&String| recording.channel(name).is_ok();
+        let topics = Some(topics.iter().filter(here).cloned().collect());
+        let messages = recording.messages(&Selection { topics, start: select.start, end: select.end });
+        messages.ok().map(Messages::peekable)
+    };
+    let mut sources: Vec<_> = recordings.iter().filter_map(of).collect();
+    std::iter::from_fn(move || {
+        if let [only] = &mut sources[..] {
+            return only.next();
+        }
+        let times = sources.iter_mut().enumerate().filter_map(|(n, s)| Some((s.peek()?.log_time, n)));
+        let (_, earliest) = times.min()?;
+        sources[earliest].next()
+    })
+}

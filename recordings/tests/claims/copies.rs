@@ -1,0 +1,164 @@
+//! Copies have the messages of their sources, and nothing is lost or overwritten on the way.
+
+use crate::support::{START, run_in, write_run};
+use grainlab_recordings::copy::{CopyError, CopyOptions, Preset, Select, copy};
+use grainlab_recordings::{
+    COPY_RECORD, ChannelInfo, Compression, METADATA_RECORD, Recording, RunWriter, Selection, TopicSpec,
+};
+use std::path::Path;
+
+type Said = (String, u32, u64, u64, Vec<u8>);
+
+fn said(recording: &Recording) -> Vec<Said> {
+    let messages = recording.messages(&Selection::default()).unwrap();
+    messages
+        .map(|m| (m.channel.topic.clone(), m.sequence, m.log_time, m.publish_time, m.payload.to_vec()))
+        .collect()
+}
+
+fn open(path: &Path) -> Recording {
+    Recording::open(path).unwrap()
+}
+
+fn sound(path: &Path) -> Recording {
+    let check = open(path).check();
+    assert!(check.warnings.is_empty() && check.unaccounted.is_empty(), "{check:?}");
+    open(path)
+}
+
+#[test]
+fn every_compression_and_preset_keeps_every_message() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 300);
+    let source = [open(&run)];
+    let kinds = [Compression::None, Compression::Lz4, Compression::Zstd];
+    let kinds = kinds.map(|compression| CopyOptions {
+        compression,
+        chunk_size: Some(5000),
+        ..CopyOptions::default()
+    });
+    let presets = [Preset::FastWrite, Preset::ZstdFast, Preset::ZstdSmall].map(CopyOptions::of_preset);
+    for (n, options) in kinds.into_iter().chain(presets).enumerate() {
+        for name in [format!("copy{n}"), format!("copy{n}.mcap")] {
+            let to = root.path().join(name);
+            let copied = copy(&source, &Select::default(), &to, &options).unwrap();
+            let made = sound(&to);
+            assert_eq!(said(&made), said(&source[0]), "{options:?}");
+            assert_eq!(copied.messages, made.info().messages);
+            assert_eq!(made.stored_files(), source[0].stored_files());
+            assert_eq!(made.metadata(METADATA_RECORD).unwrap()["seed"], "7");
+            assert!(made.metadata(COPY_RECORD).unwrap()["sources"].contains("demo-7-1"));
+            assert!(made.ledger().is_none(), "the ledger counts the messages of the source");
+        }
+    }
+    assert!(open(&root.path().join("copy3")).info().warnings.is_empty(), "a file without chunks is complete");
+}
+
+#[test]
+fn a_cut_begins_with_the_latched_messages_of_a_late_reader() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 300);
+    let source = [open(&run)];
+    let (start, end) = (START + 150_000_000, START + 200_000_000);
+    let select = Select { start: Some(start), end: Some(end), ..Select::default() };
+    let to = root.path().join("cut");
+    let copied = copy(&source, &select, &to, &CopyOptions::default()).unwrap();
+    let made = said(&sound(&to));
+    let inside: Vec<Said> = said(&source[0]).into_iter().filter(|m| (start..end).contains(&m.2)).collect();
+    assert_eq!((copied.latched, made[1..].to_vec()), (1, inside));
+    let packing = said(&source[0]).into_iter().find(|m| m.0 == "/packing").unwrap();
+    assert_eq!((&made[0].0, made[0].2, made[0].3, &made[0].4), (&packing.0, start, packing.3, &packing.4));
+    let without = root.path().join("without");
+    let select = Select { latched: false, ..select };
+    assert_eq!(copy(&source, &select, &without, &CopyOptions::default()).unwrap().latched, 0);
+}
+
+#[test]
+fn parts_of_a_recording_merged_are_the_recording_again() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, _) = run_in(&root, 300);
+    let source = [open(&run)];
+    let is_stress = |c: &ChannelInfo| c.topic == "/stress";
+    let others = |c: &ChannelInfo| c.topic != "/stress";
+    let (a, b, both) = (root.path().join("a.mcap"), root.path().join("b"), root.path().join("both"));
+    let options = CopyOptions::default();
+    copy(&source, &Select { topic: &is_stress, ..Select::default() }, &a, &options).unwrap();
+    copy(&source, &Select { topic: &others, ..Select::default() }, &b, &options).unwrap();
+    assert_eq!(open(&a).channels().len(), 1);
+    let copied = copy(&[open(&b), open(&a)], &Select::default(), &both, &options).unwrap();
+    assert_eq!(said(&sound(&both)), said(&source[0]));
+    assert!(copied.notes.is_empty(), "equal stored files and records are one: {:?}", copied.notes);
+    assert_eq!(sound(&both).stored_files(), source[0].stored_files());
+}
+
+#[test]
+fn files_of_one_name_and_different_content_are_all_kept() {
+    let root = tempfile::tempdir().unwrap();
+    let (a, b) = (root.path().join("a"), root.path().join("b"));
+    for (path, text) in [(&a, "name = 1"), (&b, "name = 2")] {
+        let mut run = RunWriter::create(path, "r", &[], Default::default()).unwrap();
+        run.attach("scene.toml", "application/toml", text.as_bytes()).unwrap();
+        run.set_metadata("seed", text);
+        run.finish().unwrap();
+    }
+    let to = root.path().join("both");
+    let copied = copy(&[open(&a), open(&b)], &Select::default(), &to, &CopyOptions::default()).unwrap();
+    let names: Vec<String> = sound(&to).stored_files().into_iter().map(|f| f.name).collect();
+    assert_eq!(names, ["scene.toml", "scene.2.toml"]);
+    assert_eq!(copied.notes.len(), 2, "{:?}", copied.notes);
+    assert_eq!(open(&to).metadata("grainlab.2").unwrap()["seed"], "name = 2");
+}
+
+#[test]
+fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
+    let root = tempfile::tempdir().unwrap();
+    let with = |name: &str, definition: &str| {
+        let spec = TopicSpec {
+            name: "/a".into(),
+            ros_type: "p/msg/A".into(),
+            definition: definition.into(),
+            type_hash: String::new(),
+            qos: String::new(),
+        };
+        let path = root.path().join(name);
+        RunWriter::create(&path, name, &[spec], Default::default()).unwrap().finish().unwrap();
+        open(&path)
+    };
+    let recordings = [with("a", "int8 x"), with("b", "int8 x # m")];
+    let to = root.path().join("both");
+    assert_eq!(copy(&recordings, &Select::default(), &to, &CopyOptions::default()).unwrap().topics, ["/a"]);
+    let recordings = [with("c", "int8 x"), with("d", "int16 x")];
+    let to = root.path().join("never");
+    let error = copy(&recordings, &Select::default(), &to, &CopyOptions::default()).unwrap_err();
+    assert!(matches!(&error, CopyError::Clash { topic, .. } if topic == "/a"), "{error}");
+    assert!(!to.exists());
+}
+
+#[test]
+fn an_existing_output_is_never_touched() {
+    let root = tempfile::tempdir().unwrap();
+    let (run, bytes) = run_in(&root, 50);
+    let before = std::fs::read_dir(root.path()).unwrap().count();
+    for to in [run.clone(), run.join("demo-7-1_0.mcap")] {
+        let error = copy(&[open(&run)], &Select::default(), &to, &CopyOptions::default()).unwrap_err();
+        assert!(matches!(error, CopyError::Exists { .. }), "{error}");
+    }
+    assert_eq!(std::fs::read(run.join("demo-7-1_0.mcap")).unwrap(), bytes);
+    assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), before, "no temporary file is left");
+}
+
+#[test]
+fn a_damaged_recording_is_copied_as_far_as_it_is_readable_and_the_loss_is_a_warning() {
+    let root = tempfile::tempdir().unwrap();
+    let finished = write_run(&root.path().join("run"), 300);
+    let mut bytes = std::fs::read(&finished.file).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0xff;
+    let path = root.path().join("damaged.mcap");
+    std::fs::write(&path, bytes).unwrap();
+    let source = [open(&path)];
+    let to = root.path().join("copy.mcap");
+    copy(&source, &Select::default(), &to, &CopyOptions::default()).unwrap();
+    assert!(!source[0].warnings().is_empty());
+    assert_eq!(said(&sound(&to)), said(&open(&path)));
+}

@@ -1,0 +1,109 @@
+//! The tools of `grainlab bag` beside the Python readers of ROS 2, on a run of ours and on recordings of other programs.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use grainlab_recordings::Recording;
+use system_tests::lab::{Lab, golden};
+use system_tests::python;
+
+const READERS: &str = "mcap_ros2, rosbags, zstandard, lz4, yaml";
+
+/// Runs a command that has to end with exit 0; its output.
+fn run(lab: &Lab, arguments: &[&str]) -> String {
+    let ended = lab.run(arguments);
+    assert_eq!(ended.code, Some(0), "{arguments:?}\n{}{}", ended.stdout, ended.stderr);
+    ended.stdout
+}
+
+/// Asserts that `bag cat` prints what `reader` reads; returns the number of messages.
+fn compare(lab: &Lab, python: &Path, reader: &str, path: &str) -> usize {
+    let lines = lab.folder().join("cat.jsonl");
+    let to = std::fs::File::create(&lines).unwrap();
+    let cat = lab.command(&["bag", "cat", path]).stdout(Stdio::from(to)).status().unwrap();
+    assert!(cat.success(), "{path}");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/compare_cat.py");
+    let output = Command::new(python)
+        .arg(script)
+        .args([reader, path])
+        .current_dir(lab.folder())
+        .stdin(std::fs::File::open(&lines).unwrap())
+        .output()
+        .unwrap();
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{reader} {path}\n{out}{err}");
+    out.trim().parse().unwrap()
+}
+
+/// Recordings by the Python packages rosbags and mcap.
+fn foreign(lab: &Lab, python: &Path) -> PathBuf {
+    let folder = lab.folder().join("foreign");
+    std::fs::create_dir(&folder).unwrap();
+    let made = python::tool(python, "make_bags.py", &[folder.to_str().unwrap()]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    folder
+}
+
+#[test]
+fn cat_prints_every_value_of_recordings_by_other_programs() {
+    let Some(python) = python::with(READERS) else { return };
+    let lab = Lab::new();
+    let folder = foreign(&lab, &python);
+    for name in ["none", "lz4", "zstd", "unchunked"] {
+        let path = folder.join(format!("{name}.mcap"));
+        assert_eq!(compare(&lab, &python, "mcap", path.to_str().unwrap()), 240, "{name}");
+        let info = run(&lab, &["bag", "info", path.to_str().unwrap(), "--format", "json"]);
+        let info: serde_json::Value = serde_json::from_str(&info).unwrap();
+        assert_eq!(info["messages"], 240, "{name}");
+    }
+    let bag = folder.join("rosbags");
+    assert_eq!(compare(&lab, &python, "rosbags", bag.to_str().unwrap()), 240);
+    // Tables have a row for each message.
+    for format in ["csv", "json"] {
+        let out = format!("tables_{format}");
+        run(&lab, &["bag", "convert", bag.to_str().unwrap(), "--format", format, "-o", &out]);
+        let extension = if format == "csv" { "csv" } else { "jsonl" };
+        for (topic, messages) in [("imu", 200), ("joints", 20), ("camera_image", 20)] {
+            let text = std::fs::read_to_string(lab.folder().join(&out).join(format!("{topic}.{extension}")))
+                .unwrap();
+            assert_eq!(text.lines().count(), messages + usize::from(format == "csv"), "{format} {topic}");
+        }
+    }
+}
+
+#[test]
+fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
+    let lab = Lab::new();
+    let Some(python) = python::with(READERS) else { return };
+    let ours = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let ours = ours.to_str().unwrap();
+    let folder = foreign(&lab, &python);
+    let bag = folder.join("rosbags");
+    let bag = bag.to_str().unwrap();
+    for (arguments, out) in [
+        (&["cut", ours, "--start-offset", "0.1", "--duration", "0.2"][..], "cut"),
+        (&["cut", bag, "--start", "1700000000.5", "--end", "2023-11-14T22:13:21Z"], "cut_foreign.mcap"),
+        (&["filter", ours, "--regex", "/(stress|mod.*)", "--compression", "lz4"], "filtered"),
+        (&["filter", bag, "--types", "sensor_msgs/msg/Imu", "--compression", "none"], "imu"),
+        (&["merge", ours, bag, "--exclude", "rosout"], "merged"),
+        (&["compress", bag, "--preset", "zstd_small"], "small.mcap"),
+        (&["convert", ours, "--format", "mcap", "--chunk-size", "65536"], "converted"),
+    ] {
+        let arguments = [&["bag"], arguments, &["-o", out]].concat();
+        run(&lab, &arguments);
+        let path = lab.folder().join(out);
+        let check = python::tool(&python, "check_mcap.py", &[path.to_str().unwrap()]);
+        let text = String::from_utf8_lossy(&check.stdout);
+        assert!(check.status.success(), "{arguments:?}\n{text}{}", String::from_utf8_lossy(&check.stderr));
+        let messages = Recording::open(&path).unwrap().info().messages;
+        let file = if out.ends_with(".mcap") { out.to_owned() } else { format!("{out}/{out}_0.mcap") };
+        assert_eq!(compare(&lab, &python, "mcap", &file), messages as usize, "{out}");
+        assert_eq!(compare(&lab, &python, "rosbags", out), messages as usize, "{out}");
+        let again = lab.run(&arguments);
+        assert_eq!(again.code, Some(2), "{}", again.stderr);
+        assert!(again.stderr.contains("exists"), "{}", again.stderr);
+    }
+    let count = |path: &str| Recording::open(&lab.folder().join(path)).unwrap().info().messages;
+    assert_eq!((count("imu"), count("small.mcap")), (200, 240));
+    assert_eq!(count("converted"), Recording::open(Path::new(ours)).unwrap().info().messages);
+}
