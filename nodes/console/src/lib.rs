@@ -20,4 +20,4 @@ mod start;
 pub use count::count;
 pub use dataset::{Cell, Dataset};
 pub use failure::{Failure, worse};
-pub use output::{CsvText, Format, Table, exact, fixed, json, print};
+pub use output::{CsvText, Format, Table, exact, fixed, json, print, print_more};

@@ -13,9 +13,21 @@ pub(crate) enum RosName {
     Other(String),
 }
 
+/// A name from the network, safe to print: control characters are escaped.
+pub(crate) fn printable(name: &str) -> String {
+    name.chars()
+        .flat_map(|c| {
+            let escaped = c.is_control().then(|| c.escape_default().to_string());
+            escaped.unwrap_or_else(|| c.to_string()).chars().collect::<Vec<_>>()
+        })
+        .collect()
+}
+
 impl RosName {
     /// From the name of a DDS topic.
     pub(crate) fn of(dds: &str) -> Self {
+        let dds = printable(dds);
+        let dds = dds.as_str();
         let other = || Self::Other(dds.to_owned());
         let service = |rest: &str, suffix: &str| rest.strip_suffix(suffix).map(|name| format!("/{name}"));
         match dds.split_once('/') {
@@ -29,6 +41,7 @@ impl RosName {
 
 /// `grainlab_msgs::msg::dds_::Stress_` as `grainlab_msgs/msg/Stress`; for a service without `_Request` and `_Response`.
 pub(crate) fn ros_type(dds: &str) -> String {
+    let dds = printable(dds);
     let parts: Vec<&str> = dds.split("::").collect();
     match parts[..] {
         [package, kind, "dds_", name] => {
@@ -39,7 +52,7 @@ pub(crate) fn ros_type(dds: &str) -> String {
             };
             format!("{package}/{kind}/{name}")
         }
-        _ => dds.to_owned(),
+        _ => dds.clone(),
     }
 }
 
@@ -54,7 +67,7 @@ pub(crate) fn type_parts(ros: &str) -> Option<(&str, &str)> {
 
 /// A name as typed, with a slash before it.
 pub(crate) fn absolute(name: &str) -> String {
-    format!("/{}", name.trim_start_matches('/'))
+    format!("/{}", name.trim_matches('/'))
 }
 
 #[cfg(test)]
@@ -76,6 +89,8 @@ mod tests {
             "rcl_interfaces/srv/GetParameters"
         );
         assert_eq!(ros_type("Plain"), "Plain");
+        assert_eq!(RosName::of("rt/a\x1b[31m\nb"), RosName::Topic("/a\\u{1b}[31m\\nb".into()));
+        assert_eq!(absolute("stress/"), "/stress");
         assert_eq!(type_parts("std_msgs/msg/Header"), Some(("std_msgs", "Header")));
         assert_eq!(type_parts("std_msgs/Header"), None);
     }

@@ -1,6 +1,7 @@
 //! Joins a domain and collects its graph.
 
 use crate::graph::{Endpoint, Graph, Guid, NodeEntry};
+use crate::names::printable;
 use grainlab_console::Failure;
 use grainlab_node_kit::Network;
 use ros2_client::qos::{Durability, History, WhenFull};
@@ -113,7 +114,7 @@ impl Observer {
 
 fn entries(participant: &ParticipantNodes) -> Vec<NodeEntry> {
     let entry = |node: &Entities| NodeEntry {
-        name: format!("{}/{}", node.namespace.trim_end_matches('/'), node.name),
+        name: printable(&format!("{}/{}", node.namespace.trim_end_matches('/'), node.name)),
         participant: participant.gid,
         endpoints: node.readers.iter().chain(&node.writers).copied().collect(),
     };

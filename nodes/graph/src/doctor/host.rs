@@ -67,7 +67,8 @@ pub(super) fn network(network: Network) -> Vec<Finding> {
         found.push(Finding::error(
             "no_multicast",
             format!("multicast to {GROUP} does not arrive ({reason}): nodes find each other by fixed ports only, or not at all"),
-            "check the interface (ip link show; ip link set lo multicast on) and the rules of the firewall",
+            "check that the interface is up (ip link set lo up) and passes multicast (ip link set lo multicast on), and the rules of the \
+             firewall",
         ));
     }
     let blocked: Vec<u16> = sample_ports(network.domain).filter(|port| !arrives(*port)).collect();
@@ -77,7 +78,10 @@ pub(super) fn network(network: Network) -> Vec<Finding> {
         found.push(Finding::error(
             "blocked_ports",
             format!("datagrams to UDP port {} of this host do not arrive", ports.join(", ")),
-            format!("let the firewall pass UDP {from} to {to}, the ports of domain {}", network.domain),
+            format!(
+                "check that loopback is up (ip link set lo up), and let the firewall pass UDP {from} to {to}, the ports of domain {}",
+                network.domain
+            ),
         ));
     }
     if network.domain > SAFE_DOMAIN {
@@ -94,11 +98,12 @@ pub(super) fn network(network: Network) -> Vec<Finding> {
             format!("sysctl -w net.core.rmem_max={}", 4 * BUFFER),
         ));
     }
-    let others: Vec<String> = domains_in_use().into_iter().map(|d| d.to_string()).collect();
+    let others = domains_in_use().into_iter().filter(|d| *d != network.domain);
+    let others: Vec<String> = others.map(|d| d.to_string()).collect();
     if !others.is_empty() {
         found.push(Finding::note(
             "domains_in_use",
-            format!("domains with participants on this host: {}", others.join(", ")),
+            format!("other domains with participants on this host: {}", others.join(", ")),
             "set ROS_DOMAIN_ID to see another one",
         ));
     }

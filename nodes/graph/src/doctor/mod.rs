@@ -17,6 +17,10 @@ use finding::{Finding, Severity};
 use grainlab_console::Failure;
 use grainlab_node_kit::{Exit, Network};
 use serde::Serialize;
+use std::time::Duration;
+
+/// Least time of discovery: an empty graph would look healthy.
+const LEAST: Duration = Duration::from_secs(1);
 
 /// Arguments of `grainlab doctor`.
 #[derive(Debug, clap::Args)]
@@ -68,7 +72,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// What the graph of the domain shows.
 fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec<Finding>, Failure> {
-    let graph = observer.settled(args.common.patience());
+    let graph = observer.settled(args.common.patience().max(LEAST));
     let mut findings = endpoints::findings(&graph);
     findings.extend(nodes::findings(&graph));
     findings.extend(nodes::of_heartbeats(&graph, &heartbeats(&mut observer)?));

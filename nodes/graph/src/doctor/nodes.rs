@@ -107,7 +107,10 @@ pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<
         if value == Some(ParameterValue::Boolean(true)) {
             found.push(Finding::error(
                 "no_clock",
-                format!("{} has use_sim_time true, and nobody publishes /clock: its time stays 0", node.name),
+                format!(
+                    "{} has use_sim_time true, and nobody publishes /clock: its time stands still",
+                    node.name
+                ),
                 format!("start a simulator, or: grainlab param set {} use_sim_time false", node.name),
             ));
         }

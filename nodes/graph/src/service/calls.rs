@@ -20,8 +20,7 @@ pub struct Args {
     /// Name of the service
     service: String,
     /// Request, as YAML or JSON [default: an empty one]
-    #[arg(default_value = "{}")]
-    request: String,
+    request: Option<String>,
     #[command(flatten)]
     common: Common,
 }
@@ -85,7 +84,13 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
             known.join(", ")
         )));
     };
-    let call = Call { observer: &mut observer, graph: &graph, service: &service, request: &args.request };
+    let empty = match kind.as_str() {
+        "rcl_interfaces/srv/ListParameters" => "{prefixes: [], depth: 0}",
+        rcl if rcl.starts_with("rcl_interfaces/srv/") => "{names: []}",
+        _ => "{}",
+    };
+    let request = args.request.as_deref().unwrap_or(empty);
+    let call = Call { observer: &mut observer, graph: &graph, service: &service, request };
     let answer = match kind.as_str() {
         "rcl_interfaces/srv/ListParameters" => call
             .make::<rcl::ListParametersRequest, rcl::ListParametersResponse>(

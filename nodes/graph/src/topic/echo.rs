@@ -4,7 +4,7 @@ use super::definition::schema;
 use super::listen::Listener;
 use crate::view::{Common, OutputFormat, seconds};
 use grainlab_any_message::Shown;
-use grainlab_console::{Failure, print, say};
+use grainlab_console::{Failure, print_more, say};
 use grainlab_node_kit::Exit;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long, conflicts_with = "count")]
     once: bool,
     /// Print this many messages and end
-    #[arg(short = 'n', long, value_name = "N")]
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
     /// End after this time, s
     #[arg(short, long, value_name = "S", value_parser = seconds)]
@@ -54,11 +54,14 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
         match schema.decode(&sample.body) {
             Ok(message) => {
                 let shown = Shown::new(&message).shortened(longest);
-                print(&match args.common.format {
+                let read = print_more(&match args.common.format {
                     OutputFormat::Text => format!("{}---\n", shown.text()),
                     OutputFormat::Json => format!("{}\n", shown.json()),
                 })?;
                 printed += 1;
+                if !read {
+                    return Ok(false);
+                }
             }
             Err(error) => {
                 refused += 1;

@@ -3,7 +3,7 @@
 use super::listen::Listener;
 use super::stream::{Stream, Summary};
 use crate::view::{Common, OutputFormat, seconds};
-use grainlab_console::{Failure, fixed, print};
+use grainlab_console::{Failure, count, fixed, print_more};
 use grainlab_msgs::TypeInfo;
 use grainlab_node_kit::Exit;
 use std::time::{Duration, Instant};
@@ -84,7 +84,13 @@ fn bandwidth_line(s: &Summary) -> String {
 }
 
 fn delay_line(s: &Summary) -> String {
-    let Some(transport) = s.transport else { return few(s) };
+    let Some(transport) = s.transport else {
+        return if s.received == 0 {
+            few(s)
+        } else {
+            format!("{} without a time of publishing", count(s.received, "sample"))
+        };
+    };
     let micros = |m: super::stream::Moments| {
         let [mean, min, max] = [m.mean, m.min, m.max].map(|v| fixed(Some(1e6 * v), 1));
         format!("{mean} us on average, {min} to {max} us")
@@ -94,31 +100,35 @@ fn delay_line(s: &Summary) -> String {
 }
 
 fn few(s: &Summary) -> String {
-    format!("{} samples: too few to measure", s.received)
+    format!("{}: too few to measure", count(s.received, "sample"))
 }
 
 fn measure(window: &Window, line: fn(&Summary) -> String) -> Result<Exit, Failure> {
     let mut listener = Listener::open(&window.topic, false, window.common.patience())?;
     let stamped = begins_with_header(listener.topic.info.type_name);
     let each = Duration::from_secs_f64(window.duration.unwrap_or(1.0));
+    listener.wait_for_publisher(window.common.patience())?;
+    let (mut stream, mut begin) = (Stream::default(), Instant::now());
     loop {
-        let mut stream = Stream::default();
-        let begin = Instant::now();
-        listener.until(begin + each, |sample| {
+        listener.until(Instant::now() + each, |sample| {
             let stamp = stamped.then(|| header_stamp(&sample.body)).flatten();
             stream.add(&sample.info, sample.body.len(), stamp);
             Ok(true)
         })?;
         let summary = stream.summary(begin.elapsed().as_secs_f64());
-        match window.common.format {
-            OutputFormat::Text => print(&format!("{}\n", line(&summary)))?,
+        let read = match window.common.format {
+            OutputFormat::Text => print_more(&format!("{}\n", line(&summary)))?,
             OutputFormat::Json => {
                 let text = serde_json::to_string(&summary).map_err(Failure::failed)?;
-                print(&format!("{text}\n"))?;
+                print_more(&format!("{text}\n"))?
             }
-        }
-        if window.duration.is_some() {
+        };
+        if window.duration.is_some() || !read {
             return Ok(Exit::Done);
+        }
+        // A topic slower than once a second needs a longer window.
+        if summary.rate_hz.is_some() {
+            (stream, begin) = (Stream::default(), Instant::now());
         }
     }
 }

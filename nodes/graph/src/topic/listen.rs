@@ -31,6 +31,13 @@ impl Source {
         }
     }
 
+    fn writers(&self, bus: &DdsBus) -> usize {
+        match self {
+            Self::Samples(id) => bus.writers(*id),
+            Self::Packings(packings) => bus.writers(packings.id()),
+        }
+    }
+
     /// How long this process may wait at most.
     fn patience(&self, bus: &DdsBus) -> Duration {
         match self {
@@ -106,6 +113,17 @@ impl Listener {
             Source::Samples(bus.subscribe(&topic, demand).map_err(Failure::failed)?)
         };
         Ok(Self { bus, source, topic })
+    }
+
+    /// Waits until a publisher is matched: a window begins when samples can arrive.
+    pub(crate) fn wait_for_publisher(&mut self, patience: Duration) -> Result<(), Failure> {
+        let end = Instant::now() + patience;
+        while self.source.writers(&self.bus) == 0 && Instant::now() < end {
+            if self.bus.wait(end.saturating_duration_since(Instant::now())) == Wake::Shutdown {
+                return Err(Failure::new(Exit::Interrupted, "interrupted"));
+            }
+        }
+        Ok(())
     }
 
     /// The samples that arrive before `end`; an interruption is an error with exit 130.

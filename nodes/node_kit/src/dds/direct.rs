@@ -433,7 +433,7 @@ impl Discovery {
             Event::InconsistentTopic { previous_topic_data, discovered_topic_data, .. } => {
                 let [ours, theirs] = [&previous_topic_data, &discovered_topic_data].map(|t| &t.type_name);
                 let name = &previous_topic_data.name;
-                Change::Misfit(format!("{name} has two types: {ours} here, {theirs} in another process"))
+                Change::Misfit(format!("{name} has two types: {ours} and {theirs}"))
             }
             _ => Change::Other,
         })

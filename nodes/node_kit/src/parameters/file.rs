@@ -7,16 +7,26 @@ use std::path::Path;
 
 const PARAMETERS_KEY: &str = "ros__parameters";
 
-/// The parameters that the file gives to `node` (fully qualified), in the order of the file, names joined by dots.
+/// A parameter of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Given {
+    /// Its name, groups joined by dots.
+    pub(super) name: String,
+    pub(super) value: ParameterValue,
+    /// It stands under a key with wildcards, which is for several nodes: one that does not declare it leaves it out.
+    pub(super) for_several: bool,
+}
+
+/// The parameters that the file gives to `node` (fully qualified), in the order of the file.
 ///
 /// A file without a key for the node is an error: it would be ignored without a message.
-pub(super) fn read(path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+pub(super) fn read(path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
     let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
     let text = std::fs::read_to_string(path).map_err(|e| file_error(format!("cannot read: {e}")))?;
     parse(&text, path, node)
 }
 
-fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
+fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<Given>, ParameterError> {
     let file_error = |reason: String| ParameterError::File { path: path.into(), reason };
     let mut sections = Vec::new();
     collect_sections("", Yaml::parse(text).map_err(file_error)?, &mut sections).map_err(file_error)?;
@@ -25,11 +35,14 @@ fn parse(text: &str, path: &Path, node: &str) -> Result<Vec<(String, ParameterVa
         let keys = if keys.is_empty() { "none".into() } else { keys.join(", ") };
         return Err(ParameterError::NoMatchingKey { path: path.into(), node: node.into(), keys });
     }
-    let mut values = Vec::new();
-    for (_, parameters) in sections.into_iter().filter(|(key, _)| matches(key, node)) {
+    let mut given = Vec::new();
+    for (key, parameters) in sections.into_iter().filter(|(key, _)| matches(key, node)) {
+        let mut values = Vec::new();
         flatten("", parameters, &mut values).map_err(file_error)?;
+        let for_several = key.contains('*');
+        given.extend(values.into_iter().map(|(name, value)| Given { name, value, for_several }));
     }
-    Ok(values)
+    Ok(given)
 }
 
 /// Finds every `ros__parameters` and the node key above it.

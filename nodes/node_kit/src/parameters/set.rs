@@ -17,8 +17,8 @@ pub struct Parameters {
 impl Parameters {
     /// Applies files and command line to the declared parameters; files first, later ones win.
     ///
-    /// Every given parameter must be for this node and declared by it, of its type and within its range. An integer is
-    /// accepted where a double is declared.
+    /// Every given parameter must be for this node and declared by it, of its type and within its range; only what a file
+    /// gives to several nodes (`/**`) may be undeclared. An integer is accepted where a double is declared.
     pub fn resolve(
         specs: &[ParameterSpec],
         default_node: &str,
@@ -28,8 +28,12 @@ impl Parameters {
         let set = Self::defaults(specs);
         for path in &args.params_files {
             let origin = path.display().to_string();
-            for (name, value) in file::read(path, &names.fully_qualified())? {
-                set.assign(specs, names, &origin, &name, value)?;
+            for given in file::read(path, &names.fully_qualified())? {
+                if given.for_several && !specs.iter().any(|spec| spec.name == given.name) {
+                    log::debug!("{origin}: {} is for another node", given.name);
+                    continue;
+                }
+                set.assign(specs, names, &origin, &given.name, given.value)?;
             }
         }
         for assignment in &args.parameters {

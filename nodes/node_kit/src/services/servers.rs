@@ -17,10 +17,16 @@ use ros2_client::rcl_interfaces::{
 use ros2_client::{
     Message, Name, Node, Parameter, ParameterValue, QosProfile, Server, ServiceMapping, ServiceTypeName,
 };
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Requests that wait for an answer, as `rmw_qos_profile_parameters` of ROS 2.
-const DEPTH: usize = 1000;
+/// Requests that wait for an answer, and answers that are kept for a client. ROS 2 has 1000, which a client outside the run
+/// could make as many megabytes.
+const DEPTH: usize = 16;
+
+/// Maximum number of names in a request, and of bytes of a name; a request beyond is answered without values.
+const NAMES: usize = 1000;
+const NAME: usize = 255;
 
 /// The type of `~/get_type_description`.
 const TYPE_DESCRIPTION: (&str, &str) = ("type_description_interfaces", "GetTypeDescription");
@@ -36,6 +42,7 @@ pub(super) struct NodeServers {
     type_description: Server<GetTypeDescriptionRequest, GetTypeDescriptionResponse>,
     declared: Declared,
     node: Arc<Mutex<Node>>,
+    log: SparseLog,
 }
 
 /// One server in the namespace of its node.
@@ -71,6 +78,7 @@ impl NodeServers {
             type_description: server(&mut held, "get_type_description", TYPE_DESCRIPTION)?,
             declared,
             node: Arc::clone(node),
+            log: SparseLog::default(),
         })
     }
 
@@ -89,29 +97,30 @@ impl NodeServers {
     pub(super) fn answer(&self) {
         let held = || self.node.lock().unwrap_or_else(PoisonError::into_inner);
         let value = |name: &String| held().get_parameter(name).unwrap_or(ParameterValue::NotSet);
-        answer_all(&self.list, |request| ListParametersResponse {
+        let log = &self.log;
+        answer_all(&self.list, log, |request| ListParametersResponse {
             result: listed(self.declared.names(), &request),
         });
-        answer_all(&self.get, |request| GetParametersResponse {
-            values: request.names.iter().map(|name| value(name).into()).collect(),
+        answer_all(&self.get, log, |request| GetParametersResponse {
+            values: within(&request.names).iter().map(|name| value(name).into()).collect(),
         });
-        answer_all(&self.types, |request| GetParameterTypesResponse {
+        answer_all(&self.types, log, |request| GetParameterTypesResponse {
             values: request
                 .names
                 .iter()
                 .map(|name| ParameterValue::to_parameter_type_raw(&value(name)))
                 .collect(),
         });
-        answer_all(&self.describe, |request| DescribeParametersResponse {
-            values: self.declared.describe(&request.names),
+        answer_all(&self.describe, log, |request| DescribeParametersResponse {
+            values: self.declared.describe(within(&request.names)),
         });
-        answer_all(&self.set, |request| SetParametersResponse {
-            results: request.parameter.into_iter().map(|parameter| self.set(parameter)).collect(),
+        answer_all(&self.set, log, |request| SetParametersResponse {
+            results: bounded(request.parameter).into_iter().map(|parameter| self.set(parameter)).collect(),
         });
-        answer_all(&self.set_atomically, |request| SetParametersAtomicallyResponse {
-            result: self.set_together(request.parameter),
+        answer_all(&self.set_atomically, log, |request| SetParametersAtomicallyResponse {
+            result: self.set_together(bounded(request.parameter)),
         });
-        answer_all(&self.type_description, |request| described(&request));
+        answer_all(&self.type_description, log, |request| described(&request));
     }
 
     /// Sets one parameter; ros2-client publishes the change on `/parameter_events`.
@@ -119,8 +128,10 @@ impl NodeServers {
         let Parameter { name, value } = self.adapted(parameter);
         let set =
             self.node.lock().unwrap_or_else(PoisonError::into_inner).set_parameter(&name, value.clone());
-        if set.is_ok() {
-            log::info!("parameter {name} set to {value:?}");
+        if set.is_ok()
+            && let Some(number) = due(&self.log.set)
+        {
+            log::info!("parameter {name} set to {value:?} ({number} changes so far)");
         }
         set.into()
     }
@@ -168,20 +179,55 @@ fn listed(names: Vec<String>, request: &ListParametersRequest) -> ListParameters
     ListParametersResult { names, prefixes }
 }
 
+/// The names of a request, or none if it has too many or too long ones.
+fn within(names: &[String]) -> &[String] {
+    if names.len() <= NAMES && names.iter().all(|name| name.len() <= NAME) { names } else { &[] }
+}
+
+/// The same for a request to set.
+fn bounded(parameters: Vec<raw::Parameter>) -> Vec<raw::Parameter> {
+    let fits = parameters.len() <= NAMES && parameters.iter().all(|p| p.name.len() <= NAME);
+    if fits { parameters } else { Vec::new() }
+}
+
+/// Logs the 1st, 2nd, 4th, 8th, … of messages that a client can cause: a flood must fill no disk.
+#[derive(Default)]
+struct SparseLog {
+    refused: AtomicU64,
+    set: AtomicU64,
+}
+
+/// Whether this one is logged, and its number.
+fn due(counter: &AtomicU64) -> Option<u64> {
+    let number = counter.fetch_add(1, Ordering::Relaxed) + 1;
+    number.is_power_of_two().then_some(number)
+}
+
 fn answer_all<Req: Message + 'static, Resp: Message + 'static>(
     server: &Server<Req, Resp>,
+    log: &SparseLog,
     answer: impl Fn(Req) -> Resp,
 ) {
     loop {
         match server.receive_request() {
             Ok(Some((id, request))) => {
                 if let Err(error) = server.send_response(id, answer(request)) {
-                    log::warn!("a request of a service could not be answered: {error:?}");
+                    if let Some(number) = due(&log.refused) {
+                        log::warn!(
+                            "a request of a service could not be answered ({number} so far): {error:?}"
+                        );
+                    }
                 }
             }
             Ok(None) => return,
             // A request that does not decode is gone; the next call reads the one after it.
-            Err(error) => log::warn!("a request of a service was refused: {error:?}"),
+            Err(error) => {
+                if let Some(number) = due(&log.refused) {
+                    log::warn!(
+                        "a request of a service does not decode and is left out ({number} so far): {error:?}"
+                    );
+                }
+            }
         }
     }
 }
@@ -195,6 +241,14 @@ mod tests {
         let prefixes = prefixes.iter().map(|p| (*p).to_owned()).collect();
         let found = listed(names, &ListParametersRequest { prefixes, depth });
         (found.names, found.prefixes)
+    }
+
+    #[test]
+    fn a_request_with_too_many_or_too_long_names_gets_no_values() {
+        let names = |count: usize, length: usize| vec!["a".repeat(length); count];
+        assert_eq!(within(&names(NAMES, NAME)).len(), NAMES);
+        assert!(within(&names(NAMES + 1, 1)).is_empty());
+        assert!(within(&names(1, NAME + 1)).is_empty());
     }
 
     #[test]
