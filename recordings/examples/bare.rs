@@ -3,6 +3,7 @@
 //! ```sh
 //! cargo run --release -p grainlab_recordings --example bare -- make OUT.mcap 1000 2000 none   # MB, bytes of a message
 //! cargo run --release -p grainlab_recordings --example bare -- read IN.mcap
+//! cargo run --release -p grainlab_recordings --example bare -- messages IN.mcap               # by this crate, as `bag cat`
 //! cargo run --release -p grainlab_recordings --example bare -- write IN.mcap OUT.mcap none    # or lz4, zstd
 //! ```
 
@@ -12,6 +13,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::time::Instant;
 
+use grainlab_recordings::{Recording, Selection};
 use mcap::records::MessageHeader;
 use mcap::{Compression, MessageStream, WriteOptions, Writer};
 
@@ -23,6 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let messages = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["make", out, megabytes, size, kind] => make(out, megabytes.parse()?, size.parse()?, kind)?,
         ["read", path] => read(path, None)?,
+        ["messages", path] => messages(path)?,
         ["write", path, out, kind] => read(path, Some(writer(out, kind)?))?,
         _ => return Err("see the head of this example".into()),
     };
@@ -75,6 +78,18 @@ fn make(path: &str, megabytes: usize, size: usize, kind: &str) -> Result<u64, Bo
     }
     mcap.finish()?;
     Ok(total)
+}
+
+/// The messages in order of log time, every chunk checked.
+fn messages(path: &str) -> Result<u64, Box<dyn Error>> {
+    let recording = Recording::open(path.as_ref())?;
+    let (mut messages, mut sum) = (0, 0);
+    for message in recording.messages(&Selection::default())? {
+        messages += 1;
+        sum += message.payload.len();
+    }
+    println!("{:.3} MB of payload", sum as f64 * 1e-6);
+    Ok(messages)
 }
 
 /// Reads all messages, and writes them.

@@ -82,6 +82,8 @@ pub struct Player<'r> {
     rate: f64,
     patience: Duration,
     paused: bool,
+    /// Messages to send although the schedule is stopped.
+    steps: u64,
     /// Log time reached at `anchor`, ns since 1970.
     position: u64,
     /// Time of the caller; `None` before the first poll.
@@ -130,6 +132,7 @@ impl<'r> Player<'r> {
             rate: options.rate,
             patience: options.patience,
             paused: false,
+            steps: 0,
             position: start,
             anchor: None,
             slipped: Duration::ZERO,
@@ -148,7 +151,13 @@ impl<'r> Player<'r> {
             return Play::Send(message);
         }
         if self.paused {
-            return Play::Paused;
+            if self.steps == 0 {
+                return Play::Paused;
+            }
+            self.steps -= 1;
+            let Some(message) = self.messages.next() else { return Play::Done };
+            self.set_anchor(message.log_time, now);
+            return Play::Send(message);
         }
         let Some(due) = self.messages.peek().map(|m| m.log_time) else {
             return Play::Done;
@@ -186,6 +195,20 @@ impl<'r> Player<'r> {
     pub fn resume(&mut self, now: Duration) {
         self.set_anchor(self.position(now), now);
         self.paused = false;
+        self.steps = 0;
+    }
+
+    /// Stops the schedule, and sends the next message at the next poll.
+    pub fn step(&mut self, now: Duration) {
+        if !self.paused {
+            self.pause(now);
+        }
+        self.steps += 1;
+    }
+
+    /// Recorded seconds per second.
+    pub fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// Whether the schedule is stopped.

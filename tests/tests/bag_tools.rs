@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use grainlab_recordings::Recording;
-use system_tests::lab::{Lab, golden};
+use grainlab_recordings::{Recording, Selection};
+use system_tests::lab::{LIMIT, Lab, golden};
 use system_tests::python;
 
 const READERS: &str = "mcap_ros2, rosbags, zstandard, lz4, yaml";
@@ -106,4 +106,60 @@ fn copies_pass_the_acceptance_check_and_python_reads_the_same_values() {
     let count = |path: &str| Recording::open(&lab.folder().join(path)).unwrap().info().messages;
     assert_eq!((count("imu"), count("small.mcap")), (200, 240));
     assert_eq!(count("converted"), Recording::open(Path::new(ours)).unwrap().info().messages);
+}
+
+#[test]
+fn steps_are_played_one_by_one_and_a_recorder_takes_the_topics_it_is_told_to() {
+    let lab = Lab::new();
+    let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let source = source.to_str().unwrap();
+    let recorder = lab.start(&[
+        "bag",
+        "record",
+        "--regex",
+        "/(stress|packing|moduli)",
+        "--exclude-topics",
+        "packing",
+        "--compression",
+        "lz4",
+        "-o",
+        "again",
+    ]);
+    // Five steps, and the end of stdin.
+    let lines = lab.folder().join("lines");
+    std::fs::write(&lines, "\n\ns\n\n\n").unwrap();
+    let topics = ["--topics", "stress", "packing", "--wait-for-subscribers", "3"];
+    let play = lab
+        .command(&[&["bag", "play", source, "--step", "--rate", "inf"], &topics[..]].concat())
+        .stdin(std::fs::File::open(&lines).unwrap())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&play.stderr).into_owned();
+    assert!(play.status.success() && said.contains("5 messages sent"), "{said}");
+    recorder.signal(libc::SIGINT);
+    let ended = recorder.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let recording = Recording::open(&lab.folder().join("again")).unwrap();
+    let info = recording.info();
+    let names: Vec<&str> = info.topics.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!((names, info.compression), (vec!["/moduli", "/stress"], vec!["lz4".to_owned()]));
+    assert!((1..=5).contains(&info.messages), "{}", info.messages);
+}
+
+#[test]
+fn a_snapshot_is_written_when_its_trigger_comes() {
+    let lab = Lab::new();
+    let source = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let source = source.to_str().unwrap();
+    let recorder = lab.start(&["bag", "record", "--snapshot", "60", "--trigger", "moduli", "-o", "last"]);
+    run(&lab, &["bag", "play", source, "--topics", "stress", "moduli", "--rate", "10"]);
+    recorder.signal(libc::SIGINT);
+    let ended = recorder.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let of = |path: &Path, topic: &str| {
+        Recording::open(path).unwrap().messages(&Selection::topics([topic])).unwrap().count()
+    };
+    let last = lab.folder().join("last");
+    assert_eq!(of(&last, "/moduli"), of(Path::new(source), "/moduli"));
+    assert!(of(&last, "/stress") > 0);
 }

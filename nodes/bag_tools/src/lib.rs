@@ -2,6 +2,7 @@
 //!
 //! - [`cat`]: messages as JSON or text
 //! - [`convert`]: one table per topic, as CSV or Parquet
+//! - [`play`]: publishes the messages again
 //! - [`cut`], [`merge`], [`filter`], [`compress`]: new recordings from others
 //!
 //! Each has the arguments of its command and `run`.
@@ -16,6 +17,7 @@ pub mod filter;
 pub mod merge;
 mod opened;
 mod output;
+pub mod play;
 mod selection;
 mod table;
 mod tables;

@@ -43,7 +43,7 @@ struct Table {
 
 enum TableFile {
     Json(BufWriter<File>),
-    Csv(Columns, CsvTable),
+    Csv(Columns, Box<CsvTable>),
     Parquet(Columns, Box<ParquetTable>),
 }
 
@@ -147,7 +147,7 @@ impl<'a> Tables<'a> {
                 TableFormat::Csv => {
                     let columns = columns()?;
                     let file = CsvTable::create(&path("csv"), &columns.list).map_err(|e| wrong(&e))?;
-                    TableFile::Csv(columns, file)
+                    TableFile::Csv(columns, Box::new(file))
                 }
                 TableFormat::Parquet => {
                     let columns = columns()?;

@@ -158,7 +158,8 @@ impl Index {
         }
         let counted = counted.ok_or("the summary section has no statistics")?;
         if counted.message_count > 0 && counted.chunk_count == 0 && index.blocks.is_empty() {
-            let bounds = (counted.message_start_time, counted.message_end_time);
+            let (a, b) = (counted.message_start_time, counted.message_end_time);
+            let bounds = (a.min(b), a.max(b));
             index.loose = Some(Loose { range: MAGIC.len()..start, bounds });
         }
         let in_blocks = counted.message_count == 0 || !index.blocks.is_empty() || index.loose.is_some();

@@ -111,3 +111,26 @@ fn what_cannot_be_played_is_refused() {
         error(PlayOptions { topics: Some(vec!["nothing".into()]), ..Default::default() }).to_string();
     assert!(missing.contains("nothing") && missing.contains("/stress"), "{missing}");
 }
+
+#[test]
+fn a_stopped_schedule_sends_one_message_per_step_and_continues_from_there() {
+    let recording = recording();
+    let options = PlayOptions { topics: Some(vec!["stress".into()]), ..PlayOptions::default() };
+    let mut player = Player::new(&recording, &options).unwrap();
+    let now = Duration::from_secs(1000);
+    player.pause(now);
+    assert!(matches!(player.poll(now), Play::Paused));
+    for expected in 1..=3 {
+        player.step(now);
+        assert!(matches!(player.poll(now), Play::Send(m) if m.sequence == expected), "{expected}");
+        assert!(matches!(player.poll(now + 50 * MS), Play::Paused));
+    }
+    player.resume(now);
+    assert!(matches!(player.poll(now), Play::Wait(time) if time == MS), "the fourth is 1 ms after the third");
+    for _ in 4..=500 {
+        player.step(now);
+        assert!(matches!(player.poll(now), Play::Send(_)));
+    }
+    player.step(now);
+    assert!(matches!(player.poll(now), Play::Done));
+}

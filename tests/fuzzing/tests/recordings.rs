@@ -2,6 +2,7 @@
 
 use fuzzing::{Counting, Target};
 use grainlab_msgs::{msg, to_cdr, topics};
+use grainlab_recordings::copy::{CopyOptions, Preset, Select, copy};
 use grainlab_recordings::import::ImportOptions;
 use grainlab_recordings::{
     Guid, Incoming, Recording, RunWriter, Selection, TopicSpec, WriterOptions, recover,
@@ -32,7 +33,11 @@ fn seeds(folder: &Path) -> Vec<Vec<u8>> {
     let file = run.finish().unwrap().file;
     let whole = std::fs::read(file).unwrap();
     let cut = whole[..whole.len() / 2].to_vec();
-    vec![whole, cut]
+    let unchunked = folder.join("unchunked.mcap");
+    let recording = Recording::open(folder).unwrap();
+    let options = CopyOptions::of_preset(Preset::FastWrite);
+    copy(&[recording], &Select::default(), &unchunked, &options).unwrap();
+    vec![whole, cut, std::fs::read(unchunked).unwrap()]
 }
 
 /// The bound stated in `grainlab_recordings::reader`, plus the index of the file.

@@ -147,3 +147,56 @@ fn put<T: DataType>(
     let known: Vec<T::T> = values.into_iter().flatten().collect();
     column.typed::<T>().write_batch(&known, Some(&levels), None).map(drop)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+
+    #[test]
+    fn values_of_every_type_are_read_back_and_what_is_missing_is_null() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.parquet");
+        let column = |name: &str, kind| Column { name: name.into(), kind };
+        let columns = [
+            column("log_time", Kind::Time),
+            column("flag", Kind::One(Primitive::Bool)),
+            column("i8", Kind::One(Primitive::I8)),
+            column("u64", Kind::One(Primitive::U64)),
+            column("f32", Kind::One(Primitive::F32)),
+            column("f64", Kind::One(Primitive::F64)),
+            column("text", Kind::Text),
+        ];
+        let mut table = ParquetTable::create(&path, &columns).unwrap();
+        let row = vec![
+            Cell::Unsigned(1_700_000_000_000_000_001),
+            Cell::Bool(true),
+            Cell::Signed(-3),
+            Cell::Unsigned(u64::MAX),
+            Cell::Single(0.5),
+            Cell::Double(f64::INFINITY),
+            Cell::Text("[1,2]".into()),
+        ];
+        let count = CELLS / columns.len() + 2;
+        (1..count).for_each(|_| table.row(row.clone()).unwrap());
+        table.row(vec![Cell::Missing; columns.len()]).unwrap();
+        table.finish().unwrap();
+        let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+        assert!(reader.num_row_groups() > 1);
+        let rows: Vec<_> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
+        assert_eq!(rows.len(), count);
+        let values: Vec<&Field> = rows[0].get_column_iter().map(|(_, value)| value).collect();
+        assert!(format!("{:?}", values[0]).contains("1700000000000000001"), "{:?}", values[0]);
+        let expected = [
+            Field::Bool(true),
+            Field::Byte(-3),
+            Field::ULong(u64::MAX),
+            Field::Float(0.5),
+            Field::Double(f64::INFINITY),
+            Field::Str("[1,2]".into()),
+        ];
+        assert_eq!(values[1..].iter().map(|v| (*v).clone()).collect::<Vec<_>>(), expected);
+        assert!(rows[count - 1].get_column_iter().all(|(_, value)| *value == Field::Null));
+    }
+}

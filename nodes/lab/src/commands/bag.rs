@@ -3,12 +3,11 @@
 mod check;
 mod export;
 mod info;
-mod play;
 mod record;
 mod recover;
 
 use clap::Subcommand;
-use grainlab_bag_tools::{cat, compress, convert, cut, filter, merge};
+use grainlab_bag_tools::{cat, compress, convert, cut, filter, merge, play};
 use grainlab_console::Failure;
 use grainlab_node_kit::Exit;
 

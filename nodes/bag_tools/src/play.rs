@@ -1,0 +1,209 @@
+//! `grainlab bag play`.
+
+mod keys;
+mod outlet;
+mod session;
+
+use grainlab_console::Failure;
+use grainlab_console::network::tool_bus;
+use grainlab_msgs::topics;
+use grainlab_node_kit::{Bus, Exit};
+use grainlab_recordings::{PlayOptions, Player, Recording};
+use keys::Keys;
+use outlet::{Outlets, offer, pause, wait_for_readers};
+use session::Session;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab bag play recordings/runs/demo-1-1 --topics packing
+  grainlab bag play recordings/runs/demo-1-1 --rate 10 --start-offset 2.5 --clock 100
+  grainlab bag play recordings/runs/demo-1-1 --remap stress:=/copy/stress --loop
+
+Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
+publishes is left out with a message: two writers would mix their messages. Types that grainlab does not have are left out.
+
+Keys, if stdin is a terminal, or with --start-paused or --step: space pauses and continues, s or right sends the next message,
+up and down change the rate by a tenth, q ends. Not from a terminal, an empty line is a step, too.";
+
+/// Time to discover the publishers.
+const LOOK_AROUND: Duration = Duration::from_millis(700);
+/// Time limit for the last messages, and time for which this process stays afterwards: when a writer leaves,
+/// readers lose the samples that they have not taken.
+const FAREWELL: Duration = Duration::from_secs(5);
+const GRACE: Duration = Duration::from_millis(300);
+
+/// A topic and the name under which it is published.
+#[derive(Clone, Debug)]
+struct Remap {
+    from: String,
+    to: String,
+}
+
+impl FromStr for Remap {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (from, to) = text.split_once(":=").ok_or("write it as FROM:=TO")?;
+        let absolute = |name: &str| format!("/{}", name.trim_start_matches('/'));
+        let wrong = |name: &str| name.split('/').any(str::is_empty);
+        match wrong(absolute(to).trim_start_matches('/')) {
+            true => Err(format!("{to:?} is not the name of a topic")),
+            false => Ok(Self { from: absolute(from), to: absolute(to) }),
+        }
+    }
+}
+
+/// Arguments of `grainlab bag play`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+pub struct Args {
+    /// Run directory or MCAP file
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
+    /// Topics to play [default: all]
+    #[arg(long, num_args = 1.., value_name = "TOPIC")]
+    topics: Vec<String>,
+    /// Topics to leave out of those
+    #[arg(long, num_args = 1.., value_name = "TOPIC")]
+    exclude: Vec<String>,
+    /// Publish a topic under another name
+    #[arg(short = 'm', long, num_args = 1.., value_name = "FROM:=TO")]
+    remap: Vec<Remap>,
+    /// Recorded seconds per second; inf is as fast as the readers can receive
+    #[arg(short, long, value_name = "RATE", default_value_t = 1.0)]
+    rate: f64,
+    /// Start, s after the first message
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    start_offset: f64,
+    /// Duration to play, s of the recording [default: to the end]
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+    /// Begin again after the last message
+    #[arg(short, long = "loop")]
+    again: bool,
+    /// Begin stopped: space continues
+    #[arg(short = 'p', long)]
+    start_paused: bool,
+    /// Begin stopped, and send one message for each key s, or for each line of stdin
+    #[arg(long)]
+    step: bool,
+    /// Publish the time of the recording on /clock, this often per second
+    #[arg(long, value_name = "HZ", value_parser = frequency)]
+    clock: Option<f64>,
+    /// Subscribers that every topic needs before sending
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    min_subscribers: usize,
+    /// Wait at most this long for the subscribers of every topic before sending, s; 0 does not wait
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    wait_for_subscribers: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the recording cannot be read, a topic does not exist, or the bus fails.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let seconds = |flag: &str, value: f64| {
+        let message = |_| Failure::usage(format!("--{flag} {value} is out of range: seconds, 0 or more"));
+        Duration::try_from_secs_f64(value).map_err(message)
+    };
+    let mut options = PlayOptions {
+        exclude: args.exclude.clone(),
+        topics: (!args.topics.is_empty()).then(|| args.topics.clone()),
+        rate: args.rate,
+        start_offset: seconds("start-offset", args.start_offset)?,
+        duration: args.duration.map(|d| seconds("duration", d)).transpose()?,
+        ..PlayOptions::default()
+    };
+    let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
+    let recording = Recording::open(&args.path).map_err(Failure::failed)?;
+    // Errors of the options are found before anything is published.
+    let wanted: Vec<String> = Player::new(&recording, &options)
+        .map_err(play_failure)?
+        .channels()
+        .iter()
+        .map(|c| c.topic.clone())
+        .collect();
+
+    let mut bus = tool_bus("player")?;
+    pause(&mut bus, LOOK_AROUND);
+    let mut publishers = Outlets::new();
+    for name in wanted {
+        let to = args.remap.iter().find(|r| r.from == name).map_or(name.as_str(), |r| &r.to);
+        let replaced = args.clock.is_some() && to == topics::CLOCK.name;
+        let outlet = match replaced {
+            true => Err("--clock publishes it".to_owned()),
+            false => offer(&mut bus, &name, to)?,
+        };
+        match outlet {
+            Ok(publisher) => {
+                publishers.insert(name, publisher);
+            }
+            Err(reason) => {
+                grainlab_console::say!("grainlab: {name} is left out: {reason}");
+                options.exclude.push(name);
+            }
+        }
+    }
+    if publishers.is_empty() {
+        return Err(Failure::failed("nothing is left to play"));
+    }
+    if !wait_for_readers(&mut bus, &publishers, args.min_subscribers, patience) {
+        return Ok(Exit::Interrupted);
+    }
+    let keys = Keys::open(args.start_paused || args.step);
+    let clock = args.clock.map(|hz| session::ClockOutlet::advertise(&mut bus, hz)).transpose()?;
+    let mut session =
+        Session { bus: &mut bus, outlets: &mut publishers, keys, clock, sent: 0, late: Duration::ZERO };
+    let mut finished = true;
+    let mut is_paused = args.start_paused || args.step;
+    loop {
+        let mut player = Player::new(&recording, &options).map_err(play_failure)?;
+        if std::mem::take(&mut is_paused) {
+            player.pause(session.bus.now());
+        }
+        finished &= session.play(&mut player)?;
+        if !args.again || session.is_over(finished) {
+            break;
+        }
+    }
+    let (sent, late) = (session.sent, session.late);
+    drop(session);
+    let acknowledged = bus.flush(FAREWELL);
+    std::thread::sleep(GRACE);
+    let warnings = recording.warnings();
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
+    if late > Duration::from_millis(100) {
+        grainlab_console::say!(
+            "grainlab: the readers are slower than the recording: {:.1} s late in total",
+            late.as_secs_f64()
+        );
+    }
+    if !finished {
+        return Ok(Exit::Interrupted);
+    }
+    grainlab_console::say!("grainlab: {sent} messages sent");
+    if !acknowledged {
+        grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
+    }
+    Ok(if acknowledged && warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+}
+
+fn frequency(text: &str) -> Result<f64, String> {
+    let hz = text.parse::<f64>().ok().filter(|hz| (0.001..=10_000.0).contains(hz));
+    hz.ok_or_else(|| format!("{text:?} is out of range: 0.001 to 10000 per second"))
+}
+
+fn play_failure(error: grainlab_recordings::PlayError) -> Failure {
+    match &error {
+        grainlab_recordings::PlayError::Read(e)
+            if !matches!(e, grainlab_recordings::ReadError::NoSuchTopic { .. }) =>
+        {
+            Failure::failed(error)
+        }
+        _ => Failure::usage(error),
+    }
+}

@@ -1,0 +1,157 @@
+//! Sends the messages of a playback, and follows its keys.
+
+use super::keys::{Key, Keys};
+use super::outlet::Outlets;
+use grainlab_console::{Failure, say};
+use grainlab_msgs::builtin_interfaces::Time;
+use grainlab_msgs::{rosgraph_msgs, to_cdr, topics};
+use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
+use grainlab_recordings::{Message, Play, Player};
+use std::time::Duration;
+
+/// Pause before the next attempt to send a message while a reader is slow.
+const HOLD: Duration = Duration::from_millis(5);
+/// Maximum time until a key is noticed.
+const KEYS: Duration = Duration::from_millis(30);
+
+/// A playback on the bus.
+pub(super) struct Session<'a> {
+    pub(super) bus: &'a mut DdsBus,
+    pub(super) outlets: &'a mut Outlets,
+    pub(super) keys: Option<Keys>,
+    pub(super) clock: Option<ClockOutlet>,
+    /// Messages sent.
+    pub(super) sent: u64,
+    /// Total delay, because readers were slow.
+    pub(super) late: Duration,
+}
+
+/// Publishes the time of the recording.
+pub(super) struct ClockOutlet {
+    publisher: PublisherId,
+    period: Duration,
+    next: Duration,
+}
+
+impl ClockOutlet {
+    /// Advertises `/clock`, to be published `hz` times per second.
+    pub(super) fn advertise(bus: &mut DdsBus, hz: f64) -> Result<Self, Failure> {
+        let publisher = bus.advertise(&topics::CLOCK).map_err(Failure::failed)?;
+        Ok(Self { publisher, period: Duration::from_secs_f64(1.0 / hz), next: bus.now() })
+    }
+
+    /// Publishes `position` (ns since 1970) if it is due; the time until the next one.
+    fn publish(&mut self, bus: &mut DdsBus, position: u64) -> Result<Duration, Failure> {
+        let now = bus.now();
+        if now >= self.next {
+            let (sec, nanosec) = ((position / 1_000_000_000) as i32, (position % 1_000_000_000) as u32);
+            let message = rosgraph_msgs::Clock { clock: Time { sec, nanosec } };
+            match bus.publish(self.publisher, &to_cdr(&message)) {
+                // A reader that is far behind gets the next one.
+                Ok(_) | Err(BusError::Full { .. }) => {}
+                Err(error) => return Err(Failure::failed(error)),
+            }
+            self.next = (self.next + self.period).max(now);
+        }
+        Ok(self.next.saturating_sub(now))
+    }
+}
+
+/// What ends a playback early.
+enum Ended {
+    Signal,
+    Key,
+}
+
+impl Session<'_> {
+    /// Sends each message when it is due; false on a signal. Returns when every message sent in parts is complete at every
+    /// active reader.
+    pub(super) fn play(&mut self, player: &mut Player<'_>) -> Result<bool, Failure> {
+        let ended = self.run(player)?;
+        self.late += player.slipped();
+        Ok(!matches!(ended, Some(Ended::Signal)))
+    }
+
+    /// Whether no other round of a loop begins: after a signal or the key `q`.
+    pub(super) fn is_over(&self, finished: bool) -> bool {
+        !finished || self.keys.as_ref().is_some_and(Keys::is_over)
+    }
+
+    fn run(&mut self, player: &mut Player<'_>) -> Result<Option<Ended>, Failure> {
+        loop {
+            if self.follow_keys(player)? {
+                return Ok(Some(Ended::Key));
+            }
+            let mut idle = true;
+            for outlet in self.outlets.values_mut() {
+                idle &= outlet.advance(self.bus)?;
+            }
+            let now = self.bus.now();
+            let mut wait = match player.poll(now) {
+                Play::Done if idle => return Ok(None),
+                // Without keys nobody can continue it.
+                Play::Paused if idle && self.keys.is_none() => return Ok(None),
+                Play::Done => BulkPublisher::patience(),
+                Play::Paused => KEYS.min(BulkPublisher::patience()),
+                Play::Wait(time) if idle => time,
+                Play::Wait(time) => time.min(BulkPublisher::patience()),
+                Play::Send(message) => {
+                    if !self.send(&message)? {
+                        return Ok(Some(Ended::Signal));
+                    }
+                    Duration::ZERO
+                }
+            };
+            if let Some(clock) = &mut self.clock {
+                wait = wait.min(clock.publish(self.bus, player.position(now))?);
+            }
+            if self.keys.is_some() {
+                wait = wait.min(KEYS);
+            }
+            if self.bus.wait(wait) == Wake::Shutdown {
+                return Ok(Some(Ended::Signal));
+            }
+        }
+    }
+
+    /// Sends a message, waiting for slow readers; false on a signal.
+    fn send(&mut self, message: &Message) -> Result<bool, Failure> {
+        let Some(outlet) = self.outlets.get_mut(&message.channel.topic) else { return Ok(true) };
+        loop {
+            match outlet.publish(self.bus, &message.payload) {
+                Ok(()) => break,
+                Err(BusError::Full { .. }) => {}
+                Err(error) => return Err(Failure::failed(error)),
+            }
+            if self.bus.wait(HOLD) == Wake::Shutdown {
+                return Ok(false);
+            }
+        }
+        self.sent += 1;
+        Ok(true)
+    }
+
+    /// Does what the keys say; true if one ends the playback.
+    fn follow_keys(&mut self, player: &mut Player<'_>) -> Result<bool, Failure> {
+        let Some(keys) = &mut self.keys else { return Ok(false) };
+        while let Some(key) = keys.next() {
+            let now = self.bus.now();
+            match key {
+                Key::Pause if player.is_paused() => player.resume(now),
+                Key::Pause => player.pause(now),
+                Key::Step => player.step(now),
+                Key::Faster | Key::Slower => {
+                    let factor = if key == Key::Faster { 1.1 } else { 1.0 / 1.1 };
+                    player.set_rate(now, player.rate() * factor).map_err(Failure::usage)?;
+                    say!("grainlab: rate {:.3}\r", player.rate());
+                }
+                Key::End => return Ok(true),
+            }
+            // Steps are sent one by one, in the order of the keys.
+            if key == Key::Step {
+                break;
+            }
+        }
+        Ok(false)
+    }
+}
