@@ -23,15 +23,13 @@ others="$others $!"
 GRAINLAB_MEMBER=4 setsid "$grainlab" run servo_controller --ros-args -p min_readers:=2 &
 others="$others $!"
 GRAINLAB_MEMBER=5 setsid "$grainlab" run dem_simulator --ros-args -p scene:="$scene" -p seed:="$seed" \
-    -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true &
+    -p wait_for:=[stress,packing,clock] -p min_readers:=2 -p exit_when_finished:=true -p until_inverted:=[moduli] &
 simulator=$!
 
 # Each node has its own session: Ctrl-C reaches only this script, which ends the nodes in order.
 trap 'kill -TERM $simulator 2>/dev/null || true' INT TERM
 code=0
 wait "$simulator" || code=$?
-# The last packing is measured and inverted in a few seconds.
-[ "$code" -ne 0 ] || sleep "${SETTLE:-10}"
 kill -TERM $others 2>/dev/null || true
 for process in $others; do wait "$process" || true; done
 kill -TERM "$recorder" 2>/dev/null || true

@@ -4,13 +4,28 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+/// A Python with `module` of a ROS 2 installation, which no registry of Python packages has. Without one the test is skipped
+/// with a message, also if `GRAINLAB_PYTHON` names a Python.
+pub fn with_ros(module: &str) -> Option<PathBuf> {
+    let python = std::env::var_os("GRAINLAB_PYTHON").map_or_else(|| "python3".into(), PathBuf::from);
+    let found = imports(&python, module);
+    if !found {
+        say_skipped(&format!("Python has no {module}, which comes with ROS 2"));
+    }
+    found.then_some(python)
+}
+
+fn imports(python: &Path, module: &str) -> bool {
+    let imports = Command::new(python).args(["-c", &format!("import {module}")]).output();
+    imports.is_ok_and(|o| o.status.success())
+}
+
 /// A Python with `module`. Without one the test is skipped with a message; if `GRAINLAB_PYTHON` names a
 /// Python (as in the checks of the project), the module must exist.
 pub fn with(module: &str) -> Option<PathBuf> {
     let named = std::env::var_os("GRAINLAB_PYTHON").map(PathBuf::from);
     let python = named.clone().unwrap_or_else(|| "python3".into());
-    let imports = Command::new(&python).args(["-c", &format!("import {module}")]).output();
-    if imports.is_ok_and(|o| o.status.success()) {
+    if imports(&python, module) {
         return Some(python);
     }
     assert!(

@@ -159,8 +159,7 @@ fn the_same_nodes_run_by_hand_and_from_a_launch_file() {
         .args([scene.as_os_str(), "3".as_ref(), "by_hand".as_ref()])
         .current_dir(lab.folder())
         .env("GRAINLAB", grainlab())
-        .env("ROS_DOMAIN_ID", lab.domain.to_string())
-        .env("SETTLE", "3");
+        .env("ROS_DOMAIN_ID", lab.domain.to_string());
     let ended = Process::start(&mut by_hand).ended(LIMIT);
     assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
 

@@ -81,6 +81,7 @@ impl DemSimulator {
     pub(crate) fn go_on(&mut self, bus: &mut dyn Bus, now: Duration) -> Result<Next, NodeError> {
         let Some(request) = self.run.request() else {
             self.stage = Stage::Finished;
+            self.done = Some(now);
             self.next_beat = now + BEAT;
             self.publish_run_state(RunState::FINISHED, "");
             log::info!("the loading path is done at step {}", self.run.engine().steps());
@@ -198,10 +199,26 @@ impl DemSimulator {
         if !self.send_queue.is_empty() {
             return Ok(Next::Wait(HOLD));
         }
-        if self.settings.exit_when_finished {
+        if self.settings.exit_when_finished && self.may_end(bus.now()) {
             self.farewell(bus);
             return Ok(Next::Finished(Exit::Done));
         }
         Ok(Next::Wait(self.next_beat.saturating_sub(bus.now())))
+    }
+
+    /// Whether the last packing is inverted, or has been awaited for long enough.
+    fn may_end(&self, now: Duration) -> bool {
+        let (step, packings) = (self.packings.last_step, self.packings.count);
+        let missing = self.inversions.missing(step).filter(|_| packings > 0);
+        let waited = now.saturating_sub(self.done.unwrap_or(now));
+        let over = waited >= self.settings.inverted_within;
+        if let Some(topic) = missing.filter(|_| over) {
+            log::warn!(
+                "the last packing was not inverted from its {topic} within {:.0} s of the end of the loading path \
+                 (parameter inverted_within): the simulator ends",
+                waited.as_secs_f64()
+            );
+        }
+        missing.is_none() || over
     }
 }

@@ -6,10 +6,11 @@
 //! - `speculative_step`: computing while the answer is in transit
 //! - `send_queue`: messages in order, none lost if a reader is behind
 //! - `duplicate_simulators`: other simulators on the same topics; `partner`: the servo of the run
-//! - `messages`: messages of the run
+//! - `inversions`: those of the last packing, awaited before the end; `messages`: messages of the run
 
 mod duplicate_simulators;
 mod exchange;
+mod inversions;
 mod lockstep;
 mod messages;
 mod node;

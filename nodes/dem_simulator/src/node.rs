@@ -1,6 +1,7 @@
 //! The node.
 
 use crate::duplicate_simulators::DuplicateSimulators;
+use crate::inversions::Inversions;
 use crate::lockstep::Lockstep;
 use crate::messages::{self, Packings};
 use crate::partner::Partner;
@@ -69,6 +70,9 @@ pub struct DemSimulator {
     pub(crate) clock: Publisher<Clock>,
     pub(crate) strain_rate: Subscription<StrainRate>,
     pub(crate) run_states: Subscription<RunState>,
+    pub(crate) inversions: Inversions,
+    /// Time of the end of the loading path.
+    pub(crate) done: Option<Duration>,
     pub(crate) stage: Stage,
     pub(crate) duplicates: DuplicateSimulators,
     pub(crate) participant: Participant,
@@ -127,6 +131,8 @@ impl DemSimulator {
         // Another simulator repeats its state every second; a reliable reader of our own topic might fill our own
         // window.
         let run_states = Subscription::subscribe(bus, &topics::RUN_STATE, Demand::best_effort(16))?;
+        let awaited = if settings.exit_when_finished { settings.until_inverted.as_slice() } else { &[] };
+        let inversions = Inversions::new(bus, awaited)?;
         frames.publish(bus, &messages::frames())?;
         let own_stress = bus.published().first().map(|p| p.writer).unwrap_or_default();
         let now = bus.now();
@@ -136,6 +142,8 @@ impl DemSimulator {
             clock,
             strain_rate,
             run_states,
+            inversions,
+            done: None,
             stage: Stage::Starting,
             duplicates: DuplicateSimulators::new(own_stress.participant()),
             participant: own_stress.participant(),
@@ -247,6 +255,7 @@ impl Node for DemSimulator {
     fn step(&mut self, bus: &mut dyn Bus) -> Result<Next, NodeError> {
         let now = bus.now();
         self.receive_run_states(bus, now)?;
+        self.inversions.receive(bus)?;
         if let Some(reason) = self.receive_answers(bus, now)? {
             return self.fail(bus, &reason);
         }

@@ -79,6 +79,18 @@ pub fn parameters() -> Vec<ParameterSpec> {
             "end when the loading path is done; else stay, so that late readers get the last packing",
         ),
         ParameterSpec::new(
+            "until_inverted",
+            Vec::<String>::new(),
+            "with exit_when_finished: stay until the last packing is inverted from the data of these topics, as in [moduli]",
+        )
+        .within(Range::Choice(&["moduli", "wave_speeds"])),
+        ParameterSpec::new(
+            "inverted_within",
+            d.inverted_within.as_secs_f64(),
+            "longest time to wait for until_inverted after the end of the loading path, s",
+        )
+        .within(time),
+        ParameterSpec::new(
             "ahead",
             d.ahead,
             "continue with the answer predicted by the servo's law while the answer is in transit, in lockstep and up to 4000 \
@@ -110,6 +122,10 @@ pub struct Settings {
     pub min_packing_readers: Option<usize>,
     /// Whether the process ends when the loading path is done.
     pub exit_when_finished: bool,
+    /// Topics whose data of the last packing must be inverted before the process ends.
+    pub until_inverted: Vec<Topic>,
+    /// Longest wait for that.
+    pub inverted_within: Duration,
     /// Whether to continue with the answer predicted by the servo's law while the answer is in transit.
     pub ahead: bool,
     /// Number of threads; `None`: as many as are efficient.
@@ -140,6 +156,8 @@ impl Default for Settings {
             min_readers: 1,
             min_packing_readers: None,
             exit_when_finished: false,
+            until_inverted: Vec::new(),
+            inverted_within: Duration::from_secs(60),
             ahead: true,
             threads: None,
             simd: None,
@@ -151,7 +169,11 @@ impl From<&Parameters> for Settings {
     fn from(parameters: &Parameters) -> Self {
         let seconds = |name: &str| Duration::try_from_secs_f64(parameters.get(name)).unwrap_or(Duration::MAX);
         let count = |name: &str| parameters.get::<i64>(name).unsigned_abs();
-        let wait_for: Vec<String> = parameters.get("wait_for");
+        let topics_of = |name: &str, known: &[Topic]| {
+            let names: Vec<String> = parameters.get(name);
+            let named = |t: &&Topic| names.iter().any(|name| name == t.name.trim_start_matches('/'));
+            known.iter().filter(named).copied().collect()
+        };
         Self {
             mode: match parameters.get::<String>("mode").as_str() {
                 "free_run" => Mode::FreeRun { lag: count("free_run_lag") },
@@ -160,13 +182,12 @@ impl From<&Parameters> for Settings {
             look_around: seconds("look_around"),
             resend_after: seconds("resend_after"),
             resend_at_most: seconds("resend_at_most"),
-            wait_for: AWAITED
-                .into_iter()
-                .filter(|t| wait_for.iter().any(|name| name == t.name.trim_start_matches('/')))
-                .collect(),
+            wait_for: topics_of("wait_for", &AWAITED),
             min_readers: count("min_readers") as usize,
             min_packing_readers: Some(count("min_packing_readers") as usize).filter(|n| *n > 0),
             exit_when_finished: parameters.get("exit_when_finished"),
+            until_inverted: topics_of("until_inverted", &[topics::MODULI, topics::WAVE_SPEEDS]),
+            inverted_within: seconds("inverted_within"),
             ahead: parameters.get("ahead"),
             threads: NonZeroUsize::new(count("threads") as usize),
             simd: parameters.get::<String>("simd").parse().ok(),

@@ -1,7 +1,9 @@
 //! The command line.
 
-use crate::commands::{analyze, bag, calibrate, campaign, invert, launch, probe, reproduce, run, scene};
-use clap::{Parser, Subcommand};
+use crate::commands::{
+    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, reproduce, run, scene,
+};
+use clap::{CommandFactory, Parser, Subcommand};
 use grainlab_bench as bench;
 use grainlab_console::Failure;
 use grainlab_graph::{doctor, node, param, service, topic};
@@ -64,6 +66,10 @@ enum Command {
     /// Measure cost and accuracy on this machine.
     #[command(subcommand)]
     Bench(bench::Command),
+    /// Print completions of this command line for a shell.
+    Completions(completions::Args),
+    /// Write a manual page for each command.
+    Man(man::Args),
 }
 
 /// Parses, runs, reports.
@@ -87,6 +93,8 @@ pub(crate) fn main() -> ExitCode {
         Some(Command::Analyze(args)) => analyze::run(&args),
         Some(Command::Probe(args)) => probe::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
+        Some(Command::Completions(args)) => completions::run(&args, Cli::command()),
+        Some(Command::Man(args)) => man::run(&args, Cli::command()),
     };
     match outcome {
         Ok(exit) => exit.into(),
@@ -102,10 +110,72 @@ fn report(failure: &Failure) -> Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
+    use clap_complete::{Shell, generate};
 
     #[test]
     fn no_two_flags_of_a_command_have_one_name() {
         Cli::command().debug_assert();
+    }
+
+    /// Every command and sub-command, as the words that call it.
+    fn calls(command: &clap::Command, before: &str) -> Vec<String> {
+        let call = format!("{before}{}", command.get_name());
+        let below = command.get_subcommands().flat_map(|c| calls(c, &format!("{call}-")));
+        std::iter::once(call.clone()).chain(below).collect()
+    }
+
+    #[test]
+    fn the_manual_has_a_page_for_each_command_and_sub_command() {
+        let folder = tempfile::tempdir().unwrap();
+        clap_mangen::generate_to(Cli::command(), folder.path()).unwrap();
+        let mut pages: Vec<_> = calls(&Cli::command(), "").iter().map(|call| format!("{call}.1")).collect();
+        pages.sort_unstable();
+        let mut written: Vec<_> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|f| f.unwrap().file_name().into_string().unwrap())
+            .collect();
+        written.sort_unstable();
+        assert_eq!(written, pages);
+        assert!(pages.contains(&"grainlab-bag-play.1".to_owned()), "{pages:?}");
+    }
+
+    #[test]
+    fn the_completions_of_each_shell_have_every_command() {
+        for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::Elvish, Shell::PowerShell] {
+            let mut script = Vec::new();
+            generate(shell, &mut Cli::command(), "grainlab", &mut script);
+            let script = String::from_utf8(script).unwrap();
+            for command in Cli::command().get_subcommands() {
+                assert!(script.contains(command.get_name()), "{shell}: {}", command.get_name());
+            }
+        }
+    }
+
+    /// The commands as a table in Markdown.
+    fn table() -> String {
+        let line = |c: &clap::Command| {
+            // A bar would end the cell.
+            let about = c.get_about().unwrap_or_default().to_string().replace('|', "\\|");
+            format!("| `{}` | {about} |\n", c.get_name())
+        };
+        "| command | |\n|---|---|\n".to_owned()
+            + &Cli::command().get_subcommands().map(line).collect::<String>()
+    }
+
+    /// The table between two comments of the README is that of the command line. If it differs, the test writes it
+    /// and fails once.
+    #[test]
+    fn the_table_of_the_readme_has_exactly_the_commands_and_their_descriptions() {
+        const MARKS: [&str; 2] =
+            ["<!-- commands: written by a test of nodes/lab/src/cli.rs -->\n", "<!-- end -->\n"];
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
+        let page = std::fs::read_to_string(path).unwrap();
+        let (before, rest) = page.split_once(MARKS[0]).expect("the README has a mark before the table");
+        let (written, after) = rest.split_once(MARKS[1]).expect("the README has a mark after the table");
+        let table = table();
+        if written != table {
+            std::fs::write(path, format!("{before}{}{table}{}{after}", MARKS[0], MARKS[1])).unwrap();
+            panic!("the table of commands in {path} was out of date, and is written anew");
+        }
     }
 }

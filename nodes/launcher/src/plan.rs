@@ -35,7 +35,7 @@ pub enum PlanError {
     /// An argument without a default and a value.
     #[error("arg {0:?} has no default and no value was given")]
     NoValue(String),
-    /// A value of `output` or `respawn` that is not supported.
+    /// A value of `output`, `respawn` or `on_exit` that is not supported.
     #[error("executable {name}: {key}: {value:?} is not supported; use {allowed}")]
     Value { name: String, key: &'static str, value: String, allowed: &'static str },
     /// A name that cannot be a file name of a log.
@@ -84,6 +84,7 @@ struct Executable {
     name: Option<String>,
     output: Option<String>,
     respawn: Option<String>,
+    on_exit: Option<String>,
 }
 
 /// Maximum number of processes of a run. A member number is one byte: 0 means none, and 255 is the launcher.
@@ -122,12 +123,15 @@ impl NodePlan {
             .map_err(|reason| PlanError::Arguments { name: self.name.clone(), reason })
     }
 
-    /// A simulator of a launched run does not look for duplicates, unless the launch file sets it.
-    pub fn do_not_look_around(&mut self) {
+    /// Sets the parameters of a simulator whose run is supervised. It does not look for duplicates, unless the launch file
+    /// sets it. It does not end by itself: the launcher ends it after the results, and a restarted reader needs its packing.
+    pub fn supervised(&mut self) {
         if self.is(NodeKind::DemSimulator) {
-            // After `run NODE`: a later value from the launch file takes precedence.
+            // The last value of a parameter takes precedence: this one is before those of the launch file, after `run NODE`.
             let given = ["--ros-args", "-p", "look_around:=0.0"].map(str::to_owned);
             self.arguments.splice(2..2, given);
+            let stay = ["--ros-args", "-p", "exit_when_finished:=false"].map(str::to_owned);
+            self.arguments.extend(stay);
         }
     }
 }
@@ -243,6 +247,11 @@ impl Executable {
         };
         let node = named.map(str::parse).transpose();
         let node = node.map_err(|unknown| PlanError::Node { name: name.clone(), unknown })?;
+        // The end of one of these nodes ends the run in any case: the key is for the launch of ROS 2.
+        let ends_run = matches!(node, Some(NodeKind::DemSimulator | NodeKind::Recorder));
+        if let Some(on_exit) = self.on_exit.as_deref().filter(|o| *o != "shutdown" || !ends_run) {
+            return Err(refuse("on_exit", on_exit, "shutdown, for dem_simulator and recorder"));
+        }
         Ok(NodePlan { node, program, arguments, respawn, name })
     }
 }

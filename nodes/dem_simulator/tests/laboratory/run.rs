@@ -1,10 +1,11 @@
 //! A run from beginning to end.
 
-use crate::bench::{Bench, Record};
+use crate::bench::{Bench, FOREVER, Record, exit_of};
 use grainlab_dem_simulator::{Mode, Settings};
 use grainlab_emt_inversion::Models;
 use grainlab_msgs::msg::{Estimate, Fabric, Microstructure, Moduli, Packing, RunState, StrainRate, Stress};
-use grainlab_msgs::{stamp, topics};
+use grainlab_msgs::{Topic, stamp, topics};
+use grainlab_node_kit::{Actor, Exit, run_until};
 use std::time::Duration;
 
 fn clean_run() -> Record {
@@ -100,4 +101,62 @@ fn free_run_does_not_wait_for_each_answer_and_arrives_at_the_same_pressure() {
     assert!(free < in_step * 3 / 4, "{free:?} and {in_step:?} of virtual time");
     assert!((pressure - 100e3).abs() < 2e3, "{pressure}");
     assert!(in_step > Duration::from_secs(1), "the delays put the lockstep to no test");
+}
+
+/// The end of a simulator that awaits inversions from these topics for at most a minute, beside an inversion or without
+/// one: its exit, the time from the last packing to the end, and the record.
+fn end_of_simulator(until_inverted: &[Topic], with_inversion: bool) -> (Option<Exit>, Duration, Record) {
+    let bench = Bench::new(0);
+    let settings =
+        Settings { exit_when_finished: true, until_inverted: until_inverted.to_vec(), ..Settings::default() };
+    let (mut recorder, recorder_bus) = bench.recorder();
+    let (mut analyzer, analyzer_bus) = bench.analyzer();
+    let (mut inversion, inversion_bus) = bench.inversion();
+    let (mut servo, servo_bus) = bench.servo();
+    let (mut simulator, simulator_bus) = bench.simulator(&settings, None);
+    let mut actors = vec![
+        Actor::new(&mut simulator, simulator_bus),
+        Actor::new(&mut recorder, recorder_bus),
+        Actor::new(&mut servo, servo_bus),
+        Actor::new(&mut analyzer, analyzer_bus),
+    ];
+    if with_inversion {
+        actors.push(Actor::new(&mut inversion, inversion_bus));
+    }
+    let finished = || {
+        let state = bench.record.borrow().last::<RunState>(&topics::RUN_STATE);
+        state.is_some_and(|s| s.state == RunState::FINISHED)
+    };
+    run_until(&bench.hub, &mut actors, FOREVER, |actors| finished() || actors[0].ended().is_some());
+    let done = bench.hub.now();
+    run_until(&bench.hub, &mut actors, FOREVER, |actors| actors[0].ended().is_some());
+    let (exit, took) = (exit_of(&actors[0]), bench.hub.now() - done);
+    drop(actors);
+    (exit, took, bench.record.take())
+}
+
+#[test]
+fn a_simulator_that_awaits_inversions_ends_when_its_last_packing_is_inverted() {
+    let (exit, _, record) = end_of_simulator(&[topics::MODULI], true);
+    assert_eq!(exit, Some(Exit::Done));
+    assert!(record.complete(), "it ended before the inversion");
+}
+
+#[test]
+fn a_simulator_whose_last_packing_is_never_inverted_ends_after_the_time_that_is_set() {
+    for (awaited, with_inversion) in
+        [(&[topics::MODULI][..], false), (&[topics::MODULI, topics::WAVE_SPEEDS], true)]
+    {
+        let (exit, took, _) = end_of_simulator(awaited, with_inversion);
+        let limit = Settings::default().inverted_within;
+        assert_eq!(exit, Some(Exit::Done));
+        assert!(took + Duration::from_secs(1) >= limit && took <= limit + Duration::from_secs(2), "{took:?}");
+    }
+}
+
+#[test]
+fn a_simulator_that_awaits_no_inversion_ends_at_the_end_of_its_path() {
+    let (exit, took, _) = end_of_simulator(&[], false);
+    assert_eq!(exit, Some(Exit::Done));
+    assert!(took < Duration::from_secs(5), "{took:?}");
 }

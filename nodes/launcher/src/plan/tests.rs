@@ -28,6 +28,7 @@ fn the_acoustic_file_is_the_default_one_with_a_probe_that_the_run_waits_for() {
     assert!(probe.respawn && probe.arguments.contains(&"speed_noise:=0.003".to_owned()), "{probe:?}");
     let without_wait = |plan: &NodePlan| {
         let words = plan.arguments.join(" ").replace(" -p min_packing_readers:=3", "");
+        let words = words.replace("[moduli,wave_speeds] -p inverted_within:=3600.0", "[moduli]");
         (plan.name.clone(), words, plan.respawn)
     };
     let [default, others] = [default.iter().collect(), others]
@@ -68,6 +69,12 @@ fn what_is_not_supported_is_refused_and_named() {
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(env HOME)'}"), "$(var NAME)"),
         (one("executable: {cmd: 'grainlab run recorder -p x:=$(var y)'}"), "\"y\""),
         (one("executable: {cmd: grainlab run recorder, respawn: often}"), "often"),
+        (one("executable: {cmd: grainlab run recorder, on_exit: restart}"), "on_exit: \"restart\""),
+        (
+            one("executable: {cmd: grainlab run emt_inversion, on_exit: shutdown}"),
+            "for dem_simulator and recorder",
+        ),
+        (one("executable: {cmd: sleep 1, on_exit: shutdown}"), "for dem_simulator and recorder"),
         (one("executable: {cmd: grainlab run recorder}"), "0 of dem_simulator"),
         (one("executable: {cmd: grainlab run recoder}"), "executable recoder: there is no node \"recoder\""),
         (one("executable: {cmd: grainlab run recorder, name: ../../evil}"), "../../evil"),
@@ -103,7 +110,7 @@ fn a_value_that_a_node_does_not_take_is_refused_before_anything_is_started() {
 #[test]
 fn a_launched_simulator_does_not_look_for_duplicates_by_default() {
     let mut plans = nodes(DEFAULT, &[]).unwrap();
-    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    plans.iter_mut().for_each(NodePlan::supervised);
     for plan in plans {
         let (ros, plain) = grainlab_node_kit::RosArgs::parse(&plan.arguments).unwrap();
         let given = ros.parameters.iter().find(|p| p.name == "look_around").map(|p| p.yaml.as_str());
@@ -112,10 +119,28 @@ fn a_launched_simulator_does_not_look_for_duplicates_by_default() {
     }
     let told = DEFAULT.replace("wait_for:=", "look_around:=2.0 -p wait_for:=");
     let mut plans = nodes(&told, &[]).unwrap();
-    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    plans.iter_mut().for_each(NodePlan::supervised);
     let simulator = plans.iter().find(|p| p.is(DemSimulator)).unwrap();
     let (ros, _) = grainlab_node_kit::RosArgs::parse(&simulator.arguments).unwrap();
     assert_eq!(ros.parameters.iter().rfind(|p| p.name == "look_around").unwrap().yaml, "2.0");
+}
+
+#[test]
+fn the_simulator_of_a_shipped_file_ends_by_itself_and_under_our_launcher_stays_for_restarted_readers() {
+    for (file, inverted) in [(DEFAULT, "[moduli]"), (ACOUSTIC, "[moduli,wave_speeds]")] {
+        assert_eq!(file.matches("on_exit: shutdown").count(), 2, "simulator and recorder");
+        let mut plans = nodes(file, &[]).unwrap();
+        let value = |plan: &NodePlan, name: &str| {
+            let (ros, _) = grainlab_node_kit::RosArgs::parse(&plan.arguments).unwrap();
+            ros.parameters.iter().rfind(|p| p.name == name).map(|p| p.yaml.clone())
+        };
+        let simulator = plans.iter_mut().find(|p| p.is(DemSimulator)).unwrap();
+        assert_eq!(value(simulator, "exit_when_finished").as_deref(), Some("true"));
+        assert_eq!(value(simulator, "until_inverted").as_deref(), Some(inverted));
+        simulator.supervised();
+        assert_eq!(value(simulator, "exit_when_finished").as_deref(), Some("false"));
+        simulator.check_parameters().unwrap();
+    }
 }
 
 #[test]
@@ -161,6 +186,7 @@ fn a_mutated_launch_file_gives_plans_or_an_error() {
             "&a",
             "*a",
             "respawn",
+            "on_exit",
         ],
         memory: (usize::MAX, 0),
         decode: &mut |bytes| {

@@ -21,7 +21,7 @@ pub(super) fn conduct(
     scene: &SceneText,
     output: Output,
 ) -> Result<Exit, Failure> {
-    plans.iter_mut().for_each(NodePlan::do_not_look_around);
+    plans.iter_mut().for_each(NodePlan::supervised);
     let run = Run { id: RunId::fresh(), domain };
     grainlab_console::say!(
         "grainlab: scene {}, seed {}, {} grains; DDS domain {domain}, run {}; {}",
