@@ -5,7 +5,7 @@ use crate::opened::{losses, open};
 use crate::selection::Topics;
 use crate::times::Interval;
 use clap::ValueEnum;
-use grainlab_console::{Failure, print, say};
+use grainlab_console::{Failure, count, print, say};
 use grainlab_node_kit::Exit;
 use grainlab_recordings::copy::{self, CopyError, CopyOptions, Select};
 use std::path::{Path, PathBuf};
@@ -103,10 +103,10 @@ impl Job<'_> {
             n => format!(", {n} of them latched ones from before the start"),
         };
         print(&format!(
-            "{}: {} messages on {} topics{latched}, {:.3} MB\n",
+            "{}: {} on {}{latched}, {:.3} MB\n",
             copied.path.display(),
-            copied.messages,
-            copied.topics.len(),
+            count(copied.messages, "message"),
+            count(copied.topics.len() as u64, "topic"),
             copied.bytes as f64 * 1e-6
         ))?;
         Ok(losses(&recordings))

@@ -185,7 +185,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !finished {
         return Ok(Exit::Interrupted);
     }
-    grainlab_console::say!("grainlab: {sent} messages sent");
+    grainlab_console::say!("grainlab: {} sent", grainlab_console::count(sent, "message"));
     if !acknowledged {
         grainlab_console::say!("grainlab: a reader has not acknowledged the last messages");
     }
