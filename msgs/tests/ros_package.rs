@@ -26,10 +26,9 @@ fn used_packages() -> BTreeSet<String> {
 
 /// The words between the parentheses of a command of `CMakeLists.txt`, for each call.
 fn calls(text: &str, command: &str) -> Vec<Vec<String>> {
-    let inside = |call: &str| {
-        call.split(')').next().unwrap().split_whitespace().map(|w| w.trim_matches('"').to_owned())
-    };
-    text.split(&format!("{command}(")).skip(1).map(|call| inside(call).collect()).collect()
+    let open = format!("{command}(");
+    let inside = text.split(&open).skip(1).map(|call| call.split(')').next().unwrap());
+    inside.map(|words| words.split_whitespace().map(|w| w.trim_matches('"').to_owned()).collect()).collect()
 }
 
 /// The contents of the elements of this name.
