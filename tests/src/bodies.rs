@@ -20,8 +20,13 @@ pub fn distinct(run: &Path, topic: &str) -> Vec<Vec<u8>> {
 
 /// Fails the test unless both runs are equal, byte for byte, on every reproducible topic.
 pub fn assert_same(first: &Path, second: &Path) {
+    assert_same_under(first, second, "");
+}
+
+/// The same for a second run whose topics are in a ROS namespace, as in `/left`.
+pub fn assert_same_under(first: &Path, second: &Path, namespace: &str) {
     for topic in REPRODUCIBLE {
-        let (a, b) = (distinct(first, topic), distinct(second, topic));
+        let (a, b) = (distinct(first, topic), distinct(second, &format!("{namespace}{topic}")));
         assert!(!a.is_empty(), "{topic}: nothing recorded");
         assert_eq!(a.len(), b.len(), "{topic}: {} and {} distinct messages", a.len(), b.len());
         let difference = a.iter().zip(&b).position(|(x, y)| x != y);

@@ -2,6 +2,7 @@
 //!
 //! - [`lab`]: the `grainlab` binary under test, in a separate folder and DDS domain
 //! - [`process`]: one process, killed when dropped
+//! - [`hosts`]: several hosts on one switch, as network namespaces
 //! - [`bodies`]: the content of a recording, topic by topic, without repeats
 //! - [`forger`]: a process outside the run that publishes forged messages
 //! - [`lattice`]: packings that need no simulation
@@ -9,6 +10,7 @@
 
 pub mod bodies;
 pub mod forger;
+pub mod hosts;
 pub mod lab;
 pub mod lattice;
 pub mod process;

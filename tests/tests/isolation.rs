@@ -3,16 +3,14 @@
 use std::net::UdpSocket;
 use std::process::Command;
 use std::time::Duration;
+use system_tests::hosts;
 use system_tests::lab::{LIMIT, Lab, golden, grainlab};
 use system_tests::process::{Ended, Process};
-use system_tests::python;
 
 /// Runs a shell script in a separate network namespace, with the binary as `$0`, the small scene as `$1` and
 /// this test executable as `$2`; `None`, with a message, without the right to create one.
 fn in_namespace(lab: &Lab, script: &str) -> Option<Ended> {
-    let can = Command::new("unshare").args(["-n", "ip", "link"]).output().is_ok_and(|o| o.status.success());
-    if !can {
-        python::say_skipped("no right to make a network namespace here, or no `ip`");
+    if !hosts::can_isolate() {
         return None;
     }
     let mut command = Command::new("unshare");

@@ -47,7 +47,7 @@ pub use args::{ArgsError, Assignment, Remap, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
 pub use bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
 pub use bus_error::BusError;
-pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach};
+pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;
 pub use diagnostics::Report;
 pub use exit::Exit;

@@ -14,8 +14,9 @@ pub(crate) const WINDOW: u32 = 8;
 /// Largest body that a reader accepts, bytes.
 pub(crate) const LONGEST: u64 = 1 << 30;
 
-/// The writer stops waiting for a reader that sends no credit for this long.
-pub(crate) const SILENCE: Duration = Duration::from_secs(5);
+/// The writer stops waiting for a reader that sends no credit for this long: a network that fails for some seconds loses
+/// no message.
+pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 
 /// The writer stops waiting for a reader that sends credits, is ready, and makes no progress for this long.
 pub(super) const STALLED: Duration = Duration::from_secs(30);

@@ -264,6 +264,25 @@ fn the_sender_stops_waiting_for_a_silent_reader_and_the_others_receive_everythin
 }
 
 #[test]
+fn a_reader_that_is_cut_off_for_ten_seconds_receives_every_message() {
+    let mut world = World::new(0, 2, Weather::default());
+    (0..100).for_each(|_| world.tick());
+    let bodies = [body(3, 40 * STRIDE), body(4, 3 * STRIDE)];
+    world.offer(&bodies[0]);
+    world.ends[0].suspended = true;
+    let restored = world.now + Duration::from_secs(10);
+    while world.now < restored {
+        world.tick();
+    }
+    world.ends[0].suspended = false;
+    world.run_until("both have the first", 10, |w| !w.is_busy());
+    world.offer(&bodies[1]);
+    world.run_until("both have the second", 10, |w| !w.is_busy());
+    assert!(world.left.is_empty(), "{:?}", world.left);
+    assert!(world.ends.iter().all(|end| end.bodies == bodies));
+}
+
+#[test]
 fn a_reader_that_leaves_is_not_waited_for_and_causes_no_warning() {
     let mut world = World::new(0, 1, Weather::default());
     (0..100).for_each(|_| world.tick());

@@ -47,9 +47,10 @@ pub(super) type DdsTopic = rustdds::Topic;
 // ---- Participant
 
 fn builder(network: Network) -> DomainParticipantBuilder {
-    let builder = DomainParticipantBuilder::new(network.domain);
+    let builder = DomainParticipantBuilder::new(network.domain).initial_peers(network.peers.iter());
     match network.reach {
-        Reach::Localhost => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+        Reach::Localhost if network.peers.is_empty() => builder.with_only_networks([Ipv4Addr::LOCALHOST]),
+        Reach::Localhost => builder.with_multicast_only_on([Ipv4Addr::LOCALHOST]),
         Reach::Subnet => builder,
     }
 }
@@ -257,7 +258,10 @@ impl Outlet {
             .source_timestamp(Timestamp::now())
             .related_sample_identity_opt(related)
             .build();
-        match self.0.write_with_options(RawPayload(Bytes::copy_from_slice(payload)), options) {
+        // RTPS pads a sample in one datagram to whole words, and leaves fragments as they are. So both give the same bytes.
+        let mut padded = payload.to_vec();
+        padded.resize(payload.len().next_multiple_of(4), 0);
+        match self.0.write_with_options(RawPayload(Bytes::from(padded)), options) {
             Ok(identity) => Ok(i64::from(identity.sequence_number)),
             Err(WriteError::WouldBlock { .. }) => Err(WriteFailure::Full),
             Err(

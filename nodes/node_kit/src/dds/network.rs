@@ -1,5 +1,7 @@
 //! Domain and discovery range from the ROS 2 environment variables, as far as RustDDS supports them.
 
+use super::static_peers::StaticPeers;
+
 /// The range of discovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
@@ -14,8 +16,10 @@ pub enum Reach {
 pub struct Network {
     /// DDS domain, 0 to 232; participants of different domains do not discover each other.
     pub domain: u16,
-    /// The range of discovery.
+    /// The range of discovery by multicast.
     pub reach: Reach,
+    /// Hosts that are found without multicast.
+    pub peers: StaticPeers,
 }
 
 /// Greatest domain whose ports fit 16 bits with room for participants (RTPS 9.6.2.3).
@@ -35,8 +39,8 @@ pub struct NetworkError {
 
 impl Network {
     /// This host only, in the given domain.
-    pub const fn localhost(domain: u16) -> Self {
-        Self { domain, reach: Reach::Localhost }
+    pub fn localhost(domain: u16) -> Self {
+        Self { domain, reach: Reach::Localhost, peers: StaticPeers::default() }
     }
 
     /// Reads `ROS_DOMAIN_ID`, `ROS_AUTOMATIC_DISCOVERY_RANGE`, `ROS_LOCALHOST_ONLY` and `ROS_STATIC_PEERS`.
@@ -57,13 +61,6 @@ impl Network {
                 _ => return Err(refuse("ROS_DOMAIN_ID", &text, "must be a whole number from 0 to 232")),
             },
         };
-        if let Some(peers) = get("ROS_STATIC_PEERS") {
-            return Err(refuse(
-                "ROS_STATIC_PEERS",
-                &peers,
-                "RustDDS has no list of peers; unset it, and use ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET to reach other hosts",
-            ));
-        }
         let localhost_only = get("ROS_LOCALHOST_ONLY");
         let reach = match get("ROS_AUTOMATIC_DISCOVERY_RANGE") {
             // ROS_LOCALHOST_ONLY is deprecated in ROS 2, but 1 still overrides the range.
@@ -88,7 +85,15 @@ impl Network {
                 }
             },
         };
-        Ok(Self { domain, reach })
+        let peers = match get("ROS_STATIC_PEERS") {
+            // ROS_LOCALHOST_ONLY=1 is stronger in ROS 2, too.
+            Some(_) if localhost_only.as_deref() == Some("1") => StaticPeers::default(),
+            None => StaticPeers::default(),
+            Some(text) => {
+                StaticPeers::read(&text).map_err(|reason| refuse("ROS_STATIC_PEERS", &text, reason))?
+            }
+        };
+        Ok(Self { domain, reach, peers })
     }
 }
 
@@ -124,9 +129,17 @@ mod tests {
     }
 
     #[test]
+    fn static_peers_are_hosts_unless_everything_stays_on_this_one() {
+        let peers = ("ROS_STATIC_PEERS", "192.0.2.1;192.0.2.2");
+        let network = read(&[peers]).unwrap();
+        assert_eq!((network.reach, network.peers.iter().count()), (Reach::Localhost, 2));
+        assert_eq!(read(&[peers, ("ROS_LOCALHOST_ONLY", "1")]), Ok(Network::localhost(0)));
+        let error = read(&[("ROS_STATIC_PEERS", "192.0.2.1,192.0.2.2")]).unwrap_err().to_string();
+        assert!(error.contains("ROS_STATIC_PEERS") && error.contains("semicolons"), "{error}");
+    }
+
+    #[test]
     fn what_cannot_be_honoured_is_refused_with_the_reason() {
-        let error = read(&[("ROS_STATIC_PEERS", "10.0.0.2")]).unwrap_err();
-        assert!(error.to_string().contains("no list of peers"), "{error}");
         assert!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")]).is_err());
         assert!(read(&[("ROS_AUTOMATIC_DISCOVERY_RANGE", "NEAR")]).is_err());
     }

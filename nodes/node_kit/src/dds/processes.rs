@@ -9,12 +9,15 @@ use std::path::Path;
 /// Maximum number of ancestors that are checked, more than any chain of launchers and shells has.
 const GENERATIONS: usize = 32;
 
-/// The process that listens on one of these addresses, and whether it descends from `root`; `None` if it is on another
-/// host, or belongs to another user.
+/// The process that listens on these addresses of one participant, and whether it descends from `root`; `None` if it is
+/// on another host, or belongs to another user.
 pub(super) fn listening_on(addresses: &[SocketAddr], root: Option<u32>) -> Option<Process> {
-    let local = addresses.iter().filter(|a| is_local(a.ip()));
+    // Another host announces its loopback address, too, and the same port.
+    if !addresses.iter().all(|a| is_local(a.ip())) {
+        return None;
+    }
     let inodes = inodes_by_port()?;
-    let inode = local.filter_map(|a| inodes.get(&a.port())).next()?;
+    let inode = addresses.iter().find_map(|a| inodes.get(&a.port()))?;
     let pid = owner_of(*inode)?;
     let name = fs::read_to_string(format!("/proc/{pid}/comm")).unwrap_or_default().trim().to_owned();
     Some(Process { pid, name, below_root: root.is_some_and(|root| is_below(pid, root)) })
@@ -87,5 +90,6 @@ mod tests {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let elsewhere = SocketAddr::new("192.0.2.1".parse().unwrap(), socket.local_addr().unwrap().port());
         assert_eq!(listening_on(&[elsewhere], None), None);
+        assert_eq!(listening_on(&[socket.local_addr().unwrap(), elsewhere], None), None);
     }
 }

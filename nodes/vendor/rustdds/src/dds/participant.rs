@@ -125,6 +125,32 @@ impl DomainParticipantBuilder {
     self
   }
 
+  /// Restrict multicast to some local network interfaces, as
+  /// [`with_only_networks`](Self::with_only_networks) does, but leave unicast on
+  /// all.
+  ///
+  /// Participants behind other interfaces are found only if one of the two
+  /// names the other's host by [`initial_peers`](Self::initial_peers).
+  pub fn with_multicast_only_on(
+    mut self,
+    addrs: impl IntoIterator<Item = impl Into<IpAddr>>,
+  ) -> Self {
+    self.event_loop_options.multicast_networks = Some(addrs.into_iter().map(Into::into).collect());
+    self
+  }
+
+  /// Announce the participant by unicast, too, to the hosts with these
+  /// addresses (default: none).
+  ///
+  /// Announcements go to the well-known ports of the first twelve participants
+  /// of each host (RTPS 2.5 Section 9.6.1.4). A participant that receives one
+  /// answers, so that it is enough if one of two hosts names the other, and no
+  /// multicast is needed between them.
+  pub fn initial_peers(mut self, hosts: impl IntoIterator<Item = Ipv4Addr>) -> Self {
+    self.event_loop_options.initial_peers = hosts.into_iter().collect();
+    self
+  }
+
   /// Enable/disable same-host communication over loopback (default: enabled).
   ///
   /// When enabled, the participant (a) additionally announces SPDP to the
@@ -1331,6 +1357,8 @@ impl DomainParticipantInner {
     let only_networks: Option<Arc<[IpAddr]>> = only_networks.map(|v| v.into());
 
     let unicast_host = unicast_bind_address(only_networks.as_deref()).to_string();
+    let multicast_networks = event_loop_options.multicast_networks.clone();
+    let multicast_networks = multicast_networks.as_deref().or(only_networks.as_deref());
     let mut listeners = HashMap::new();
 
     match UDPListener::new_multicast_with_buf_size(
@@ -1338,7 +1366,7 @@ impl DomainParticipantInner {
       spdp_well_known_multicast_port(domain_id),
       Ipv4Addr::new(239, 255, 0, 1),
       socket_receive_buffer_size,
-      only_networks.as_deref(),
+      multicast_networks,
     ) {
       Ok(l) => {
         listeners.insert(DISCOVERY_MUL_LISTENER_TOKEN, l);
@@ -1381,7 +1409,7 @@ impl DomainParticipantInner {
       user_traffic_multicast_port(domain_id),
       Ipv4Addr::new(239, 255, 0, 1),
       socket_receive_buffer_size,
-      only_networks.as_deref(),
+      multicast_networks,
     ) {
       Ok(l) => {
         listeners.insert(USER_TRAFFIC_MUL_LISTENER_TOKEN, l);

@@ -32,3 +32,8 @@ pub const fn user_traffic_unicast_port(domain_id: u16, participant_id: u16) -> u
 /// multicast on the loopback interface is unavailable (the Linux default for
 /// `lo`). See `src/rtps/loopback_same_host_design.md`.
 pub const SPDP_LOCALHOST_PEER_COUNT: u16 = 12;
+
+/// Number of participants of each initial peer that SPDP is sent to, on the
+/// ports `spdp_well_known_unicast_port(domain, pid)`. A participant with a
+/// greater id is found if it announces itself to us.
+pub const SPDP_INITIAL_PEER_COUNT: u16 = 12;

@@ -43,7 +43,7 @@ pub struct UDPSender {
 impl UDPSender {
   #[cfg(test)]
   pub fn new(sender_port: u16) -> io::Result<Self> {
-    Self::new_with_networks(sender_port, None, 0)
+    Self::new_with_networks(sender_port, None, None, 0)
   }
 
   // Request (and verify) SO_SNDBUF on a sender socket. `size == 0` leaves the
@@ -74,6 +74,7 @@ impl UDPSender {
   pub fn new_with_networks(
     sender_port: u16,
     only_networks: Option<&[IpAddr]>,
+    multicast_networks: Option<&[IpAddr]>,
     send_buffer_size: usize,
   ) -> io::Result<Self> {
     let unicast_socket = {
@@ -98,7 +99,7 @@ impl UDPSender {
       });
 
     let mut multicast_sockets = Vec::with_capacity(1);
-    for multicast_if_ipaddr in get_local_multicast_ip_addrs_filtered(only_networks)? {
+    for multicast_if_ipaddr in get_local_multicast_ip_addrs_filtered(multicast_networks)? {
       // beef: specify output interface
       trace!("UDPSender: Multicast sender on interface {multicast_if_ipaddr:?}");
 

@@ -177,6 +177,23 @@ pub fn localhost_spdp_peer_locators(
     .collect()
 }
 
+/// Build the unicast SPDP locators of the hosts in `peers`:
+/// `host:spdp_well_known_unicast_port(domain_id, pid)` for every `pid` in
+/// `0..max_participants` (RTPS 2.5 Section 9.6.1.4).
+pub fn initial_spdp_peer_locators(
+  peers: &[Ipv4Addr],
+  domain_id: u16,
+  max_participants: u16,
+) -> Vec<Locator> {
+  let port = |pid| crate::network::constant::spdp_well_known_unicast_port(domain_id, pid);
+  peers
+    .iter()
+    .flat_map(|host| {
+      (0..max_participants).map(move |pid| Locator::from(SocketAddr::new((*host).into(), port(pid))))
+    })
+    .collect()
+}
+
 pub fn get_local_unicast_locators_filtered(
   port: u16,
   only_networks: Option<&[IpAddr]>,
@@ -344,7 +361,8 @@ mod tests {
 
   use super::{
     allowed_interface_indices_inner, build_ifindex_map_inner, get_local_multicast_ip_addrs_inner,
-    get_local_unicast_locators_inner, is_any_flagged_multicast_inner, localhost_spdp_peer_locators,
+    get_local_unicast_locators_inner, initial_spdp_peer_locators, is_any_flagged_multicast_inner,
+    localhost_spdp_peer_locators,
     path_mtu_payload_for_peer, unicast_bind_address, IfAddr, InterfaceSelector,
   };
   use crate::{
@@ -630,6 +648,17 @@ mod tests {
       unicast_bind_address(Some(&both[1..])),
       Ipv4Addr::UNSPECIFIED
     );
+  }
+
+  #[test]
+  fn initial_peers_are_announced_to_on_their_well_known_ports() {
+    let hosts = [Ipv4Addr::new(192, 0, 2, 1), Ipv4Addr::new(192, 0, 2, 9)];
+    let addresses: Vec<String> = initial_spdp_peer_locators(&hosts, 1, 2)
+      .into_iter()
+      .map(|locator| SocketAddr::from(locator).to_string())
+      .collect();
+    let expected = ["192.0.2.1:7660", "192.0.2.1:7662", "192.0.2.9:7660", "192.0.2.9:7662"];
+    assert_eq!(addresses, expected);
   }
 
   #[test]

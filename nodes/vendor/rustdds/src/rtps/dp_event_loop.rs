@@ -25,12 +25,14 @@ use crate::{
   },
   messages::submessages::submessages::AckSubmessage,
   network::{
-    constant::{spdp_well_known_multicast_port, SPDP_LOCALHOST_PEER_COUNT},
+    constant::{
+      spdp_well_known_multicast_port, SPDP_INITIAL_PEER_COUNT, SPDP_LOCALHOST_PEER_COUNT,
+    },
     udp_listener::UDPListener,
     udp_sender::UDPSender,
     util::{
-      get_local_multicast_locators, is_any_flagged_multicast, local_interface_table,
-      localhost_spdp_peer_locators, IfAddr,
+      get_local_multicast_locators, initial_spdp_peer_locators, is_any_flagged_multicast,
+      local_interface_table, localhost_spdp_peer_locators, IfAddr,
     },
   },
   polling::{
@@ -78,11 +80,14 @@ pub struct DomainInfo {
   pub participant_id: u16,
 }
 
-/// What the builder of the participant sets for the event loop alone.
+/// What the builder of the participant sets for the event loop and its sockets.
 #[derive(Clone)]
 pub(crate) struct EventLoopOptions {
   pub max_fragmented_sample_size: usize,
   pub reader_may_block: ReaderMayBlock,
+  pub initial_peers: Vec<Ipv4Addr>,
+  /// Interfaces to multicast on, if they are not those of `only_networks`.
+  pub multicast_networks: Option<Vec<IpAddr>>,
 }
 
 /// Says whether Readers of a remote participant may hold up reliable Writers.
@@ -93,6 +98,8 @@ impl Default for EventLoopOptions {
     Self {
       max_fragmented_sample_size: DEFAULT_MAX_FRAGMENTED_SAMPLE_SIZE,
       reader_may_block: Arc::new(|_| true),
+      initial_peers: Vec::new(),
+      multicast_networks: None,
     }
   }
 }
@@ -173,6 +180,9 @@ pub struct DPEventLoop {
   fragment_budget: Rc<FragmentBudget>,
 
   reader_may_block: ReaderMayBlock,
+
+  // Hosts that the SPDP writer announces to by unicast.
+  initial_peers: Vec<Ipv4Addr>,
 }
 
 impl DPEventLoop {
@@ -247,7 +257,15 @@ impl DPEventLoop {
 
     // port number 0 means OS chooses an available port number.
     let udp_sender = try_init!(
-      UDPSender::new_with_networks(0, only_networks.as_deref(), socket_send_buffer_size),
+      UDPSender::new_with_networks(
+        0,
+        only_networks.as_deref(),
+        options
+          .multicast_networks
+          .as_deref()
+          .or(only_networks.as_deref()),
+        socket_send_buffer_size,
+      ),
       "UDPSender construction fail"
     );
 
@@ -295,6 +313,7 @@ impl DPEventLoop {
       peer_hooks,
       fragment_budget: Rc::new(FragmentBudget::new(options.max_fragmented_sample_size)),
       reader_may_block: options.reader_may_block,
+      initial_peers: options.initial_peers,
     })
   }
 
@@ -1182,14 +1201,23 @@ impl DPEventLoop {
     // See `src/rtps/loopback_same_host_design.md`.
     new_writer.set_prefer_loopback_same_host(self.same_host_loopback);
     new_writer.set_reader_may_block(Arc::clone(&self.reader_may_block));
-    if self.same_host_loopback
-      && new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER
-    {
-      let mut peers = localhost_spdp_peer_locators(
+    let is_spdp_writer =
+      new_writer.guid().entity_id == EntityId::SPDP_BUILTIN_PARTICIPANT_WRITER;
+    let mut peers = Vec::new();
+    if is_spdp_writer {
+      // See the participant builder's `initial_peers`.
+      peers = initial_spdp_peer_locators(
+        &self.initial_peers,
+        self.domain_info.domain_id,
+        SPDP_INITIAL_PEER_COUNT,
+      );
+    }
+    if self.same_host_loopback && is_spdp_writer {
+      peers.extend(localhost_spdp_peer_locators(
         self.domain_info.domain_id,
         self.domain_info.participant_id,
         SPDP_LOCALHOST_PEER_COUNT,
-      );
+      ));
       // Peers do not advertise a multicast locator on a loopback interface without
       // the multicast flag, but the kernel delivers multicast there. Announcing to
       // the group reaches peers beyond the fixed ports above.
@@ -1200,8 +1228,8 @@ impl DPEventLoop {
         let port = spdp_well_known_multicast_port(self.domain_info.domain_id);
         peers.extend(get_local_multicast_locators(port));
       }
-      new_writer.set_extra_unicast_destinations(peers);
     }
+    new_writer.set_extra_unicast_destinations(peers);
 
     // The doorbell is a shared ready-queue plus the poll waker, not a
     // registration under the writer token.

@@ -362,13 +362,15 @@ impl RouteSelector for DefaultRouteSelector {
       _ => None,
     };
 
+    let unicast = select_unicast(advertised_unicast, obs);
+
     // If the remote advertises multicast but we cannot bind it to a local
-    // interface, do not silently drop it: fall back to the legacy path.
-    if mc_advertised.is_some() && multicast.is_none() {
+    // interface, do not silently drop it: fall back to the legacy path. If it is
+    // behind an interface that we do not multicast on, unicast alone reaches it.
+    let unicast_only = obs.best_interface().is_some() && unicast.is_some();
+    if mc_advertised.is_some() && multicast.is_none() && !unicast_only {
       return SendRoute::fallback();
     }
-
-    let unicast = select_unicast(advertised_unicast, obs);
 
     // Nothing we can confidently send to -> fallback (also covers the case of
     // several ambiguous unicast candidates and no multicast).
@@ -487,6 +489,23 @@ mod tests {
       &[iface([10, 0, 0, 1])],
     );
     assert!(route.fallback);
+  }
+
+  #[test]
+  fn a_peer_behind_an_interface_without_multicast_is_sent_to_by_unicast() {
+    let sel = DefaultRouteSelector::default();
+    let mut obs = ObservedRoutes::default();
+    obs.record(Some(iface([10, 0, 0, 1])), sockaddr([10, 0, 0, 5], 7410));
+    let route = sel.select(
+      &[udp([10, 0, 0, 5], 7410)],
+      &[udp([239, 255, 0, 1], 7401)],
+      &[],
+      Some(&obs),
+      &[iface([127, 0, 0, 1])],
+    );
+    assert_eq!(route.unicast, Some(udp([10, 0, 0, 5], 7410)));
+    assert_eq!(route.multicast, None);
+    assert!(!route.fallback);
   }
 
   #[test]
