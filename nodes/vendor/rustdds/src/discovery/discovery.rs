@@ -1126,6 +1126,19 @@ impl Discovery {
       self.sedp_receive_topic_data(Some(guid_prefix));
       self.sedp_receive_subscription(Some(guid_prefix));
       self.sedp_receive_publication(Some(guid_prefix));
+      // Its own announcements of them do not come again: the samples are still in
+      // our cache. What the attic gave back has to be matched anew.
+      let (readers, writers) = discovery_db_read(&self.discovery_db).endpoints_of(guid_prefix);
+      for discovered_reader_data in readers {
+        self.send_discovery_notification(DiscoveryNotificationType::ReaderUpdated {
+          discovered_reader_data,
+        });
+      }
+      for discovered_writer_data in writers {
+        self.send_discovery_notification(DiscoveryNotificationType::WriterUpdated {
+          discovered_writer_data,
+        });
+      }
       debug!("Participant rediscovery finished");
     }
   }

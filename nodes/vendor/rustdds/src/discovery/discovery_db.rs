@@ -430,6 +430,19 @@ impl DiscoveryDB {
     to_remove
   }
 
+  /// Readers and writers that are known of a remote participant.
+  pub fn endpoints_of(
+    &self,
+    guid_prefix: GuidPrefix,
+  ) -> (Vec<DiscoveredReaderData>, Vec<DiscoveredWriterData>) {
+    let readers = self.external_topic_readers.range(guid_prefix.range());
+    let writers = self.external_topic_writers.range(guid_prefix.range());
+    (
+      readers.map(|(_, data)| data.clone()).collect(),
+      writers.map(|(_, data)| data.clone()).collect(),
+    )
+  }
+
   fn has_endpoints(&self, guid_prefix: GuidPrefix) -> bool {
     self
       .external_topic_readers
