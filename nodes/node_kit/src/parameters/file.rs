@@ -107,7 +107,8 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str, node: &str) -> Result<Vec<(String, ParameterValue)>, ParameterError> {
-        parse(text, Path::new("run.yaml"), node)
+        let given = parse(text, Path::new("run.yaml"), node)?;
+        Ok(given.into_iter().map(|given| (given.name, given.value)).collect())
     }
 
     #[test]

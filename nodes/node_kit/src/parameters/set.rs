@@ -211,6 +211,17 @@ mod tests {
     }
 
     #[test]
+    fn what_a_file_gives_to_several_nodes_may_be_undeclared_and_what_it_gives_to_this_one_may_not() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("all.yaml");
+        let file = path.to_str().unwrap().to_owned();
+        std::fs::write(&path, "/**:\n  ros__parameters: {dt: 2e-7, other: 3}\n").unwrap();
+        assert_eq!(resolve(&["--params-file", &file]).unwrap().get::<f64>("dt"), 2e-7);
+        std::fs::write(&path, "dem:\n  ros__parameters: {other: 3}\n").unwrap();
+        assert!(resolve(&["--params-file", &file]).is_err());
+    }
+
+    #[test]
     fn integers_are_taken_for_doubles_and_nothing_else_is_converted() {
         let set = resolve(&["-p", "dt:=1", "-p", "mu:=[1, 2]", "-p", "scene:='12'"]).unwrap();
         assert_eq!(set.get::<f64>("dt"), 1.0);
