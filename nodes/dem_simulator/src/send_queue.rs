@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_killed_reader_does_not_delay_the_end_of_a_run() {
+    fn a_killed_reader_delays_the_end_of_a_run_by_the_time_limit_for_silent_readers_at_most() {
         let mut bench = Bench::new();
         (0..100).for_each(|_| bench.look());
         let run_state = bench.run_state;
@@ -263,7 +263,7 @@ mod tests {
         while !bench.queue.is_empty() {
             bench.deliver();
             bench.hub.advance(Duration::from_millis(5));
-            assert!(bench.hub.now() - began < Duration::from_secs(10));
+            assert!(bench.hub.now() - began < Duration::from_secs(20));
         }
         assert_eq!(bench.queue.packings().left_behind(), 1);
         // Without time left, queued messages are sent all the same.

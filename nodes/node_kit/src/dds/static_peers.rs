@@ -43,6 +43,10 @@ fn address_of(name: &str) -> Option<Ipv4Addr> {
     if let Ok(address) = name.parse() {
         return Some(address);
     }
+    // A resolver takes 192.0.2 for 192.0.0.2.
+    if name.bytes().all(|b| b.is_ascii_digit() || b == b'.') {
+        return None;
+    }
     let ipv4 = |address: SocketAddr| match address.ip() {
         IpAddr::V4(address) => Some(address),
         IpAddr::V6(_) => None,
