@@ -211,12 +211,10 @@ fn answer_all<Req: Message + 'static, Resp: Message + 'static>(
     loop {
         match server.receive_request() {
             Ok(Some((id, request))) => {
-                if let Err(error) = server.send_response(id, answer(request)) {
-                    if let Some(number) = due(&log.refused) {
-                        log::warn!(
-                            "a request of a service could not be answered ({number} so far): {error:?}"
-                        );
-                    }
+                if let Err(error) = server.send_response(id, answer(request))
+                    && let Some(number) = due(&log.refused)
+                {
+                    log::warn!("a request of a service could not be answered ({number} so far): {error:?}");
                 }
             }
             Ok(None) => return,
