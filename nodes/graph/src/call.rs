@@ -48,13 +48,16 @@ pub(crate) fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
     let client: Client<Req, Resp> =
         observer.node.create_client(mapping, &name, &kind, qos.clone(), qos).map_err(Failure::failed)?;
     let start = Instant::now();
+    let mut asked = Vec::new();
     while start.elapsed() < PATIENCE {
         let id =
             client.send_request(request.clone()).map_err(|e| Failure::failed(format!("{service}: {e:?}")))?;
+        // Any of the requests may be the one that is answered.
+        asked.push(id);
         let sent = Instant::now();
         while sent.elapsed() < AGAIN {
             match client.receive_response() {
-                Ok(Some((of, response))) if of.sequence_number == id.sequence_number => return Ok(response),
+                Ok(Some((of, response))) if asked.contains(&of) => return Ok(response),
                 Ok(_) => std::thread::sleep(LOOK),
                 Err(error) => {
                     return Err(Failure::failed(format!("{service}: the answer does not decode: {error:?}")));

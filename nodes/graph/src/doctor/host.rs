@@ -74,7 +74,7 @@ pub(super) fn network(network: Network) -> Vec<Finding> {
     let blocked: Vec<u16> = sample_ports(network.domain).filter(|port| !arrives(*port)).collect();
     if !blocked.is_empty() {
         let ports: Vec<String> = blocked.iter().map(u16::to_string).collect();
-        let (from, to) = (first_port(network.domain), first_port(network.domain) + 249);
+        let (from, to) = (first_port(network.domain), first_port(network.domain).saturating_add(249));
         found.push(Finding::error(
             "blocked_ports",
             format!("datagrams to UDP port {} of this host do not arrive", ports.join(", ")),
@@ -151,7 +151,7 @@ fn received(socket: &UdpSocket, word: &[u8]) -> bool {
 
 /// Ports of the domain that only its last possible participants would use.
 fn sample_ports(domain: u16) -> impl Iterator<Item = u16> {
-    [240, 241].into_iter().map(move |offset| first_port(domain) + offset)
+    [240, 241].into_iter().filter_map(move |offset| first_port(domain).checked_add(offset))
 }
 
 fn receive_limit() -> Option<u64> {

@@ -105,8 +105,7 @@ impl NodeServers {
             values: within(&request.names).iter().map(|name| value(name).into()).collect(),
         });
         answer_all(&self.types, log, |request| GetParameterTypesResponse {
-            values: request
-                .names
+            values: within(&request.names)
                 .iter()
                 .map(|name| ParameterValue::to_parameter_type_raw(&value(name)))
                 .collect(),
