@@ -13,7 +13,7 @@ use toml::{Table, Value};
 const MOST: usize = 100_000;
 
 /// Largest number of characters of a member's name, which is that of a folder.
-const LONGEST: usize = 200;
+const MAX_NAME_LENGTH: usize = 200;
 
 /// A campaign.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,9 +74,9 @@ impl Campaign {
         if members.len() > MOST {
             return Err(Failure::usage(format!("{} members, more than {MOST}", members.len())));
         }
-        if let Some(long) = members.iter().find(|m| m.name.len() > LONGEST) {
+        if let Some(long) = members.iter().find(|m| m.name.len() > MAX_NAME_LENGTH) {
             return Err(Failure::usage(format!(
-                "the name of member {} has {} characters, more than {LONGEST}: put its settings into a scene",
+                "the name of member {} has {} characters, more than {MAX_NAME_LENGTH}: put its settings into a scene",
                 long.name,
                 long.name.len()
             )));

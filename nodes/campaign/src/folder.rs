@@ -50,7 +50,7 @@ impl Folder {
 
     /// For this process alone, as long as the lock is held.
     pub fn lock(&self) -> Result<Lock, Failure> {
-        Lock::take(&self.root, PATIENCE)
+        Lock::take(&self.root, TIME_LIMIT)
     }
 
     /// Writes what its members are.
@@ -141,7 +141,7 @@ impl Folder {
 }
 
 /// Time for another process that works in the folder to end.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Whether there is a file of a recording.
 fn has_recording(run: &Path) -> bool {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Period of the attempts.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_PERIOD: Duration = Duration::from_millis(50);
 
 /// The lock of a directory, which ends with the process that holds it, however that ends.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ impl Lock {
         loop {
             match file.try_lock() {
                 Ok(()) => return Ok(Self { _file: file }),
-                Err(TryLockError::WouldBlock) if Instant::now() < until => std::thread::sleep(LOOK),
+                Err(TryLockError::WouldBlock) if Instant::now() < until => std::thread::sleep(POLL_PERIOD),
                 Err(TryLockError::WouldBlock) => {
                     return Err(failed(
                         &"another process is at work in this directory: wait for it, or end it",
@@ -47,7 +47,7 @@ mod tests {
     fn a_directory_has_one_holder_and_is_free_after_it() {
         let folder = tempfile::tempdir().unwrap();
         let first = Lock::take(folder.path(), Duration::ZERO).unwrap();
-        let second = Lock::take(folder.path(), 2 * LOOK).unwrap_err().to_string();
+        let second = Lock::take(folder.path(), 2 * POLL_PERIOD).unwrap_err().to_string();
         assert!(second.contains("another process"), "{second}");
         drop(first);
         Lock::take(folder.path(), Duration::ZERO).unwrap();

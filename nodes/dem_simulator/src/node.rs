@@ -35,7 +35,7 @@ pub(crate) const HOLD: Duration = Duration::from_millis(5);
 /// Time limit for the delivery of a saved state: less than the launcher waits before it kills a process.
 const SAVING: Duration = Duration::from_secs(4);
 /// Time limit for the acknowledgement of the last messages.
-const FAREWELL: Duration = Duration::from_secs(2);
+const FLUSH_LIMIT: Duration = Duration::from_secs(2);
 
 /// Errors at the start of a simulator.
 #[derive(Debug, thiserror::Error)]
@@ -245,7 +245,7 @@ impl DemSimulator {
     }
 
     pub(crate) fn farewell(&self, bus: &mut dyn Bus) {
-        if !bus.flush(FAREWELL) {
+        if !bus.flush(FLUSH_LIMIT) {
             log::warn!("a reader has not acknowledged the last messages");
         }
     }

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIME_LIMIT: Duration = Duration::from_secs(60);
 
 /// A fabric with the step of the packing, without moduli; the gate sets the duration.
 fn measured(packing: &Packing) -> Result<Measured, MeasureError> {
@@ -80,7 +80,7 @@ impl Scene {
     }
 
     fn pass(&mut self, what: &str) {
-        assert!(self.begun.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+        assert!(self.begun.elapsed() < TIME_LIMIT, "not within {TIME_LIMIT:?}: {what}");
         self.packings.advance(&mut self.bus).unwrap();
         self.bus.wait(Duration::from_millis(20));
     }

@@ -8,13 +8,13 @@ use ros2_client::{Client, Message, Name, QosProfile, ServiceMapping, ServiceType
 use std::time::{Duration, Instant};
 
 /// Period at which an answer is looked for.
-const LOOK: Duration = Duration::from_millis(2);
+const POLL_PERIOD: Duration = Duration::from_millis(2);
 
 /// Time after which a request is sent again: the server may have discovered this process's reader after its request.
-const AGAIN: Duration = Duration::from_millis(500);
+const REPEAT_PERIOD: Duration = Duration::from_millis(500);
 
 /// Time limit for an answer.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Sends a request to the service until its answer arrives.
 ///
@@ -49,21 +49,21 @@ pub(crate) fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
         observer.node.create_client(mapping, &name, &kind, qos.clone(), qos).map_err(Failure::failed)?;
     let start = Instant::now();
     let mut asked = Vec::new();
-    while start.elapsed() < PATIENCE {
+    while start.elapsed() < TIME_LIMIT {
         let id =
             client.send_request(request.clone()).map_err(|e| Failure::failed(format!("{service}: {e:?}")))?;
         // Any of the requests may be the one that is answered.
         asked.push(id);
         let sent = Instant::now();
-        while sent.elapsed() < AGAIN {
+        while sent.elapsed() < REPEAT_PERIOD {
             match client.receive_response() {
                 Ok(Some((of, response))) if asked.contains(&of) => return Ok(response),
-                Ok(_) => std::thread::sleep(LOOK),
+                Ok(_) => std::thread::sleep(POLL_PERIOD),
                 Err(error) => {
                     return Err(Failure::failed(format!("{service}: the answer does not decode: {error:?}")));
                 }
             }
         }
     }
-    Err(Failure::failed(format!("{service} did not answer within {} s", PATIENCE.as_secs())))
+    Err(Failure::failed(format!("{service} did not answer within {} s", TIME_LIMIT.as_secs())))
 }

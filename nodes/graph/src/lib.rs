@@ -2,18 +2,18 @@
 //!
 //! - `observer`: joins the domain and collects the graph; `graph`: nodes and endpoints; `names`: names on the wire
 //! - `topic`, `node`, `param`, `service`, `doctor`: the commands, one folder each
-//! - `call`: one call of a service; `heartbeats`: the reports of nodes; `view`: formats of the output
+//! - `call`: one call of a service; `reports`: what nodes report of themselves; `view`: formats of the output
 //!
 //! The commands belong to no run: what they read holds up no node, and what they set changes no result.
 
 mod call;
 pub mod doctor;
 mod graph;
-mod heartbeats;
 mod names;
 pub mod node;
 mod observer;
 pub mod param;
+mod reports;
 pub mod service;
 pub mod topic;
 mod view;

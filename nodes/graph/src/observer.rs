@@ -11,10 +11,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// Period at which discovery is looked at.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_PERIOD: Duration = Duration::from_millis(20);
 
 /// Time without a change after which the graph counts as complete, and the minimum time.
-const QUIET: Duration = Duration::from_millis(500);
+const SETTLED_AFTER: Duration = Duration::from_millis(500);
 
 /// `rmw_dds_common/msg/ParticipantEntitiesInfo`: the nodes of one participant. ros2-client's own type hides the endpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,8 +68,8 @@ impl Observer {
     pub(crate) fn settled(&mut self, patience: Duration) -> Graph {
         let start = Instant::now();
         let (mut seen, mut changed) = (self.fingerprint(), start);
-        while start.elapsed() < patience && changed.elapsed() < QUIET {
-            std::thread::sleep(LOOK);
+        while start.elapsed() < patience && changed.elapsed() < SETTLED_AFTER {
+            std::thread::sleep(POLL_PERIOD);
             let now = self.fingerprint();
             if now != seen {
                 (seen, changed) = (now, Instant::now());

@@ -13,7 +13,7 @@ use tokio::time::{sleep_until, timeout};
 const KILLED_WITHIN: Duration = Duration::from_secs(1);
 
 /// Period of the check for stopped processes.
-const LOOK: Duration = Duration::from_millis(200);
+const POLL_PERIOD: Duration = Duration::from_millis(200);
 
 /// Additional time that a complete run waits for a stopped process.
 const STOPPED_AT_MOST: Duration = Duration::from_secs(90);
@@ -101,7 +101,7 @@ impl Supervisor {
                     _ = self.terminate.recv() => hurried = true,
                     Some(ended) = self.ended.recv() => { self.note_end(&ended); }
                     Some(event) = events.recv() => self.take(event),
-                    () = sleep_until((now + LOOK).min(deadline)) => {
+                    () = sleep_until((now + POLL_PERIOD).min(deadline)) => {
                         if waits && self.look_for_stopped() {
                             deadline = (tokio::time::Instant::now() + time).min(latest);
                         }

@@ -10,7 +10,7 @@ use std::time::Duration;
 pub const VARIABLE: &str = "GRAINLAB_LAUNCHER_PIPE";
 
 /// Time for an orderly end after the launcher has ended.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// Ends this process when the launcher that started it has ended: by SIGTERM, and after some time by exit.
 pub fn watch() {
@@ -23,7 +23,7 @@ pub fn watch() {
         while matches!(std::io::stdin().read(&mut byte), Ok(1)) {}
         // SAFETY: both take or return integers and access no memory of this process.
         unsafe { libc::kill(libc::getpid(), libc::SIGTERM) };
-        std::thread::sleep(PATIENCE);
+        std::thread::sleep(TIME_LIMIT);
         std::process::exit(i32::from(grainlab_node_kit::Exit::Interrupted.code()));
     };
     // Without the thread the node runs without this protection.

@@ -28,7 +28,7 @@ const RESTART_WINDOW: Duration = Duration::from_secs(30);
 const RESTART_PAUSE: Duration = Duration::from_millis(100);
 
 /// Period of the checks of the processes.
-const LOOK: Duration = Duration::from_millis(200);
+const POLL_PERIOD: Duration = Duration::from_millis(200);
 
 /// Time for a process that was stopped to catch up before the run ends, and the time limit of the end for it.
 const CATCHES_UP_WITHIN: Duration = Duration::from_secs(6);
@@ -232,7 +232,7 @@ impl Supervisor {
                         return exit;
                     }
                 }
-                () = sleep(LOOK) => {
+                () = sleep(POLL_PERIOD) => {
                     let suspended = self.look_for_stopped();
                     if let Some(late) = deadline.as_mut()
                         && late.limit.is_over(suspended)
@@ -287,7 +287,7 @@ impl Supervisor {
                 _ = self.interrupt.recv() => return self.interrupted("SIGINT"),
                 _ = self.terminate.recv() => return self.interrupted("SIGTERM"),
                 _ = self.hangup.recv() => return self.interrupted("SIGHUP"),
-                () = sleep(LOOK) => {}
+                () = sleep(POLL_PERIOD) => {}
             }
         }
     }

@@ -24,10 +24,10 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 const BACKLOG: u32 = 256;
 
 /// Period at which the thread checks whether to end.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL_PERIOD: Duration = Duration::from_millis(100);
 
 /// Period at which it checks its DDS threads and the other processes in the domain.
-const LOOK_AROUND: Duration = Duration::from_secs(1);
+const DISCOVERY_TIME: Duration = Duration::from_secs(1);
 
 /// Time limit for its end: RustDDS may wait for threads that have ended.
 const LEAVE_WITHIN: Duration = Duration::from_secs(2);
@@ -209,11 +209,11 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
     let subscriptions = RunSubscriptions::new(bus).map_err(|e| e.to_string())?;
     send(Event::Open);
     let mut named = BTreeSet::new();
-    let mut next_look = bus.now() + LOOK_AROUND;
+    let mut next_look = bus.now() + DISCOVERY_TIME;
     while !stop.load(Ordering::Relaxed) {
         subscriptions.receive(bus, send).map_err(|e| e.to_string())?;
         if bus.now() >= next_look {
-            next_look = bus.now() + LOOK_AROUND;
+            next_look = bus.now() + DISCOVERY_TIME;
             watchdog::check().map_err(|e| e.to_string())?;
             for (topic, stranger) in strangers(bus) {
                 let name = name(&stranger);
@@ -222,7 +222,7 @@ fn watch(bus: &mut DdsBus, events: &UnboundedSender<Event>, stop: &AtomicBool) -
                 }
             }
         }
-        bus.wait(LOOK);
+        bus.wait(POLL_PERIOD);
     }
     Ok(())
 }

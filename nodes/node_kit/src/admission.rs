@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub type Participant = [u8; 12];
 
 /// Maximum number of participants counted separately; further ones are counted together, so that memory is bounded.
-const COUNTED: usize = 64;
+const MAX_COUNTED: usize = 64;
 
 /// A participant whose samples were ignored.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl Admission {
     /// Records a discovered participant and its process.
     pub(crate) fn discovered(&mut self, participant: Participant, process: Process) {
         // As many as discovery itself keeps; further ones have no name.
-        if self.processes.len() < 16 * COUNTED || self.processes.contains_key(&participant) {
+        if self.processes.len() < 16 * MAX_COUNTED || self.processes.contains_key(&participant) {
             self.processes.insert(participant, process);
         }
     }
@@ -116,7 +116,7 @@ impl Admission {
         if self.admits(&participant) {
             return (true, false);
         }
-        let full = self.strangers.len() >= COUNTED && !self.strangers.contains_key(&participant);
+        let full = self.strangers.len() >= MAX_COUNTED && !self.strangers.contains_key(&participant);
         let key = if full { [0; 12] } else { participant };
         let mut new = false;
         let process = self.processes.get(&key).map(|p| format!("pid {} ({})", p.pid, p.name));
@@ -212,7 +212,7 @@ mod tests {
             admission.takes(writer(HAND.guid_prefix()), "/moduli");
         });
         let known = admission.strangers();
-        assert_eq!(known.len(), COUNTED + 1);
+        assert_eq!(known.len(), MAX_COUNTED + 1);
         let counted: u64 = known.iter().flat_map(|s| s.ignored.values()).sum();
         assert_eq!(counted, 1002);
     }

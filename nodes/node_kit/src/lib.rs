@@ -1,4 +1,5 @@
-//! The common part of all processes. This is the only crate that uses DDS, by ros2-client; `dds/direct` has what that lacks.
+//! The common part of all processes: the bus, which is DDS by ros2-client, and the run of a node. `dds/direct` has what
+//! ros2-client lacks.
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types

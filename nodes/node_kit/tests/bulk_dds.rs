@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(120);
+const TIME_LIMIT: Duration = Duration::from_secs(120);
 
 fn open(network: Network, node: &str) -> DdsBus {
     DdsBus::open(network, Names::in_namespace(node, "/lab").unwrap()).unwrap()
@@ -80,7 +80,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_arrive_intact_at_two_rea
     let mut publisher = BulkPublisher::advertise(&mut bus, &topics::PACKING).unwrap();
     let begun = Instant::now();
     while bus.readers(publisher.id()) < 2 {
-        assert!(begun.elapsed() < PATIENCE, "two readers");
+        assert!(begun.elapsed() < TIME_LIMIT, "two readers");
         bus.wait(Duration::from_millis(20));
     }
     let mut took = Vec::new();
@@ -89,12 +89,12 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_arrive_intact_at_two_rea
         let begun = Instant::now();
         while let Err(error) = publisher.publish(&mut bus, &body) {
             assert!(matches!(error, BusError::Full { .. }), "{error}");
-            assert!(begun.elapsed() < PATIENCE, "packing {step} is not delivered");
+            assert!(begun.elapsed() < TIME_LIMIT, "packing {step} is not delivered");
             bus.wait(BulkPublisher::patience());
         }
         let sent = Instant::now();
         while !publisher.advance(&mut bus).unwrap() {
-            assert!(begun.elapsed() < PATIENCE, "packing {step} is not delivered");
+            assert!(begun.elapsed() < TIME_LIMIT, "packing {step} is not delivered");
             bus.wait(BulkPublisher::patience());
         }
         took.push(sent.elapsed());
@@ -112,7 +112,7 @@ fn thirty_of_thirty_packings_of_sixteen_thousand_grains_arrive_intact_at_two_rea
     let mut late =
         BulkSubscription::subscribe(&mut late_bus, &topics::PACKING, Demand::reliable(64)).unwrap();
     let latest = loop {
-        assert!(begun.elapsed() < PATIENCE, "the latest packing for a late reader");
+        assert!(begun.elapsed() < TIME_LIMIT, "the latest packing for a late reader");
         publisher.advance(&mut bus).unwrap();
         if let Some(sample) = late.take(&mut late_bus).unwrap() {
             break sample;
@@ -144,7 +144,7 @@ fn another_thread_ends_a_wait_and_only_one() {
     let mut wakes = Vec::new();
     let begun = Instant::now();
     while !wakes.contains(&grainlab_node_kit::Wake::Called) {
-        assert!(begun.elapsed() < PATIENCE, "the call before the wait");
+        assert!(begun.elapsed() < TIME_LIMIT, "the call before the wait");
         wakes.push(bus.wait(Duration::from_secs(3600)));
     }
     let its = Arc::clone(&calls);
@@ -153,7 +153,7 @@ fn another_thread_ends_a_wait_and_only_one() {
         caller.call();
     });
     while bus.wait(Duration::from_secs(3600)) != grainlab_node_kit::Wake::Called {
-        assert!(begun.elapsed() < PATIENCE, "the call");
+        assert!(begun.elapsed() < TIME_LIMIT, "the call");
     }
     thread.join().unwrap();
     assert_eq!(calls.load(Ordering::SeqCst), 1);

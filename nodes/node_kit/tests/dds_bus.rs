@@ -7,7 +7,7 @@ use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher
 use std::time::{Duration, Instant};
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIME_LIMIT: Duration = Duration::from_secs(20);
 
 fn claim() -> ClaimedDomain {
     ClaimedDomain::claim().expect("a free DDS domain")
@@ -21,7 +21,7 @@ fn open(network: Network, node: &str) -> DdsBus {
 fn until(bus: &mut DdsBus, what: &str, mut done: impl FnMut(&mut DdsBus) -> bool) {
     let start = Instant::now();
     while !done(bus) {
-        assert!(start.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+        assert!(start.elapsed() < TIME_LIMIT, "not within {TIME_LIMIT:?}: {what}");
         bus.wait(Duration::from_millis(20));
     }
 }
@@ -67,7 +67,7 @@ fn samples_arrive_once_in_order_with_sequence_numbers_and_the_writers_id() {
     assert_eq!(b.received()[0].taken, 300);
     assert_eq!(b.foreign_writers(&topics::STRAIN_RATE), [ours.writer]);
     assert!(a.foreign_writers(&topics::STRAIN_RATE).is_empty(), "our own writer is not foreign");
-    assert!(a.flush(PATIENCE), "all acknowledged");
+    assert!(a.flush(TIME_LIMIT), "all acknowledged");
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_clean_leave_is_seen_at_once_and_its_last_samples_are_kept() {
     for n in 1..=50 {
         publisher.publish(&mut a, &rate(n)).unwrap();
     }
-    assert!(a.flush(PATIENCE));
+    assert!(a.flush(TIME_LIMIT));
     // The node of b computes: it does not use its bus while a lingers and leaves.
     std::thread::sleep(Duration::from_millis(300));
     drop(a);
@@ -173,11 +173,11 @@ fn waiting_blocks_until_data_and_returns_on_time_without_it() {
     });
     let cpu = cpu_time();
     let start = Instant::now();
-    assert_eq!(b.wait(PATIENCE), Wake::Data);
+    assert_eq!(b.wait(TIME_LIMIT), Wake::Data);
     assert!(start.elapsed() < Duration::from_secs(5));
     // A spinning wait would use 200 ms of CPU time; a blocking one needs a few wakeups of the threads below.
     assert!(cpu_time() - cpu < Duration::from_millis(100));
-    assert_eq!(b.wait(PATIENCE), Wake::Data, "untaken data is reported again");
+    assert_eq!(b.wait(TIME_LIMIT), Wake::Data, "untaken data is reported again");
     assert!(subscription.take(&mut b).unwrap().is_some());
     writer.join().unwrap();
 }
@@ -336,5 +336,5 @@ fn a_node_that_reads_its_own_topic_does_not_wait_for_itself_when_it_leaves() {
         until(&mut a, "match", |a| a.readers(publisher) == 1);
         a.publish(publisher, &grainlab_msgs::to_cdr(&rate(1))).unwrap();
     }
-    assert!(a.flush(PATIENCE), "strain_rate, which only the other process reads, is acknowledged");
+    assert!(a.flush(TIME_LIMIT), "strain_rate, which only the other process reads, is acknowledged");
 }

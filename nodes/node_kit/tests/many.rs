@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 const NODES: usize = 24;
 
 /// Far above the time needed on an idle machine.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIME_LIMIT: Duration = Duration::from_secs(30);
 
 #[test]
 fn two_dozen_nodes_of_one_host_find_each_other() {
@@ -31,7 +31,7 @@ fn two_dozen_nodes_of_one_host_find_each_other() {
         if found.iter().all(|n| *n == NODES - 1) {
             break;
         }
-        assert!(begin.elapsed() < PATIENCE, "readers found by each: {found:?}");
+        assert!(begin.elapsed() < TIME_LIMIT, "readers found by each: {found:?}");
         std::thread::sleep(Duration::from_millis(2));
     }
     println!("{NODES} nodes opened in {:.1?}, all matched {:.1?} later", begin - opened, begin.elapsed());

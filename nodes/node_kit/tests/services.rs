@@ -17,7 +17,7 @@ use ros2_client::{
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIME_LIMIT: Duration = Duration::from_secs(20);
 
 /// Computes for long in each step, until the test ends it.
 struct Busy;
@@ -65,7 +65,7 @@ impl Asker {
             .create_client(ServiceMapping::Enhanced, &name, &service_type, qos.clone(), qos)
             .unwrap();
         let start = Instant::now();
-        while start.elapsed() < PATIENCE {
+        while start.elapsed() < TIME_LIMIT {
             let asked = client.send_request(request.clone()).unwrap();
             let sent = Instant::now();
             while sent.elapsed() < Duration::from_millis(500) {
@@ -150,7 +150,7 @@ fn parameters_are_read_described_and_set_while_the_node_computes() {
 
     let start = Instant::now();
     let mut changes = Vec::new();
-    while changes.len() < 2 && start.elapsed() < PATIENCE {
+    while changes.len() < 2 && start.elapsed() < TIME_LIMIT {
         while let Ok(Some((event, _))) = events.take() {
             assert_eq!(event.node, "/busy");
             changes.extend(event.changed_parameters.into_iter().map(|p| p.value.double_value));

@@ -12,7 +12,7 @@ use grainlab_node_kit::{
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(60);
+const TIME_LIMIT: Duration = Duration::from_secs(60);
 
 /// Gives its worker one job in its first step, publishes the result, and ends.
 struct OneJob {
@@ -69,7 +69,7 @@ fn a_node_keeps_its_heartbeat_while_its_worker_works_and_is_woken_when_it_is_don
     let begun = Instant::now();
     let mut busy = 0;
     while busy < 3 {
-        assert!(begun.elapsed() < PATIENCE, "three heartbeats");
+        assert!(begun.elapsed() < TIME_LIMIT, "three heartbeats");
         bus.wait(Duration::from_millis(50));
         while let Some((message, _)) = beats.take_valid(&mut bus).unwrap() {
             busy += Report::from_message(&message).iter().filter(|r| r.health.message == "busy").count();
@@ -78,7 +78,7 @@ fn a_node_keeps_its_heartbeat_while_its_worker_works_and_is_woken_when_it_is_don
     assert!(states.take_valid(&mut bus).unwrap().is_none(), "the job is still under way");
     open.send(()).unwrap();
     let state = loop {
-        assert!(begun.elapsed() < PATIENCE, "the result");
+        assert!(begun.elapsed() < TIME_LIMIT, "the result");
         if let Some((state, _)) = states.take_valid(&mut bus).unwrap() {
             break state;
         }

@@ -9,7 +9,7 @@ use grainlab_node_kit::{SampleInfo, WriterId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Maximum number of participants counted separately.
-const COUNTED: usize = 64;
+const MAX_COUNTED: usize = 64;
 
 /// Topics that only the simulator publishes.
 const OF_SIMULATOR: [Topic; 5] =
@@ -53,10 +53,10 @@ impl Binding {
         let verdict = self.judge(topic, info, present);
         if let Err(outside) = verdict {
             let participant = info.writer.participant();
-            if self.ignored.len() < COUNTED || self.ignored.contains_key(&participant) {
+            if self.ignored.len() < MAX_COUNTED || self.ignored.contains_key(&participant) {
                 *self.ignored.entry(participant).or_default().entry(topic.name).or_default() += 1;
             }
-            if outside == Outside::Second && self.seconds.len() < COUNTED {
+            if outside == Outside::Second && self.seconds.len() < MAX_COUNTED {
                 self.seconds.insert((topic.name, participant));
             }
         }

@@ -14,7 +14,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Period of the checks of the members.
-const LOOK: Duration = Duration::from_millis(500);
+const POLL_PERIOD: Duration = Duration::from_millis(500);
 
 /// A scheduler.
 pub(super) struct Scheduler {
@@ -134,7 +134,7 @@ pub(super) fn run(
                 );
                 return Ok(true);
             }
-            std::thread::sleep(LOOK);
+            std::thread::sleep(POLL_PERIOD);
         };
         // A scheduler that refuses the array starts none of its tasks.
         let untouched = |n: &usize| folder.state(&campaign.members[*n]) == MemberState::Waiting;

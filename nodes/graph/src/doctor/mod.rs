@@ -1,7 +1,7 @@
 //! `grainlab doctor`: finds what keeps nodes of a domain from working together.
 //!
 //! - `finding`: what is wrong, where, and what to do
-//! - `endpoints`: types and QoS; `nodes`: names, simulators, heartbeats, parameters; `host`: network and environment; `processes`:
+//! - `endpoints`: types and QoS; `nodes`: names, simulators, reports, parameters; `host`: network and environment; `processes`:
 //!   stopped ones
 
 mod endpoints;
@@ -10,8 +10,8 @@ mod host;
 mod nodes;
 mod processes;
 
-use crate::heartbeats::heartbeats;
 use crate::observer::Observer;
+use crate::reports::latest_reports;
 use crate::view::Common;
 use finding::{Finding, Severity};
 use grainlab_console::Failure;
@@ -75,7 +75,7 @@ fn of_domain(mut observer: Observer, args: &Args, view: &mut View) -> Result<Vec
     let graph = observer.settled(args.common.patience().max(LEAST));
     let mut findings = endpoints::findings(&graph);
     findings.extend(nodes::findings(&graph));
-    findings.extend(nodes::of_heartbeats(&graph, &heartbeats(&mut observer)?));
+    findings.extend(nodes::of_reports(&graph, &latest_reports(&mut observer)?));
     findings.extend(nodes::of_sim_time(&mut observer, &graph)?);
     view.nodes = graph.nodes.len();
     (view.topics, view.services) = (graph.topics().len(), graph.services().len());

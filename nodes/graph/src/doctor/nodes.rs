@@ -1,10 +1,10 @@
-//! Names, simulators, heartbeats and parameters of nodes.
+//! Names, simulators, reports and parameters of nodes.
 
 use super::finding::Finding;
 use crate::call::call;
 use crate::graph::{Endpoint, Graph};
-use crate::heartbeats::LISTEN;
 use crate::observer::Observer;
+use crate::reports::LISTEN;
 use grainlab_console::Failure;
 use grainlab_node_kit::{Report, run_of};
 use ros2_client::ParameterValue;
@@ -59,8 +59,8 @@ fn run_of_endpoint(endpoint: &Endpoint) -> Option<grainlab_node_kit::RunId> {
     <&[u8; 12]>::try_from(endpoint.participant()).ok().and_then(run_of)
 }
 
-/// Nodes that publish heartbeats and sent none, and those that report a fault.
-pub(super) fn of_heartbeats(graph: &Graph, heard: &BTreeMap<String, Report>) -> Vec<Finding> {
+/// Nodes that publish reports and sent none, and those that report a fault.
+pub(super) fn of_reports(graph: &Graph, heard: &BTreeMap<String, Report>) -> Vec<Finding> {
     let topics = graph.topics();
     let sends: BTreeSet<String> = topics
         .get("/diagnostics")
@@ -69,7 +69,7 @@ pub(super) fn of_heartbeats(graph: &Graph, heard: &BTreeMap<String, Report>) -> 
     let silent = sends.into_iter().filter(|node| !heard.contains_key(node)).map(|node| {
         Finding::error(
             "silent_node",
-            format!("{node} sent no heartbeat for {} s", LISTEN.as_secs_f64()),
+            format!("{node} sent no report for {} s", LISTEN.as_secs_f64()),
             "see whether its process is stopped (Ctrl-Z, a debugger), hangs, or was killed less than a minute ago",
         )
     });
@@ -99,7 +99,7 @@ pub(super) fn of_sim_time(observer: &mut Observer, graph: &Graph) -> Result<Vec<
         }
         let request = GetParametersRequest { names: vec!["use_sim_time".into()] };
         let kind = ("rcl_interfaces", "GetParameters");
-        // A node that does not answer was named by its heartbeat, or is none of ours.
+        // A node that does not answer was named by its report, or is none of ours.
         let Ok(answer) = call::<_, GetParametersResponse>(observer, graph, &service, kind, &request) else {
             continue;
         };

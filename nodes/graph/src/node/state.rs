@@ -1,7 +1,7 @@
 //! `grainlab node state`.
 
-use crate::heartbeats::heartbeats;
 use crate::observer::Observer;
+use crate::reports::latest_reports;
 use crate::view::Common;
 use grainlab_console::{Failure, Table};
 use grainlab_node_kit::{Exit, Level, Report};
@@ -44,7 +44,7 @@ fn row(report: &Report) -> Row {
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut observer = Observer::join()?;
     let graph = observer.settled(args.common.patience());
-    let heard = heartbeats(&mut observer)?;
+    let heard = latest_reports(&mut observer)?;
     let topics = graph.topics();
     let reporting = topics.get("/diagnostics").map(|t| t.publishers.as_slice()).unwrap_or_default();
     let mut rows: BTreeMap<String, Row> =

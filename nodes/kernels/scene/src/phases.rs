@@ -143,7 +143,8 @@ fn phase(r: &mut Reader<'_>, word: &str, inherited: &mut Inherited) -> Phase {
         },
         "relax" => PhaseKind::Relax,
         "strain" => PhaseKind::Strain { rate: six(r, &keys::STRAIN_RATE) },
-        _ => servo::read(r),
+        "servo" => servo::read(r),
+        other => unreachable!("{other} is in KINDS and is not read here"),
     };
     let gas = matches!(kind, PhaseKind::Gas { .. });
     let hard = matches!(kind, PhaseKind::Gas { method: GasMethod::EventDriven, .. });

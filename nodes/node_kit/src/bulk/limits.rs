@@ -22,15 +22,15 @@ pub(crate) const SILENCE: Duration = Duration::from_secs(15);
 pub(super) const STALLED: Duration = Duration::from_secs(30);
 
 /// How long a writer waits for the first credit of a reader in the graph.
-pub(super) const FIRST_WORD: Duration = Duration::from_secs(3);
+pub(super) const FIRST_CREDIT_LIMIT: Duration = Duration::from_secs(3);
 
 /// A part that a reader does not have this long after it was sent counts as lost.
-pub(super) const LOST: Duration = Duration::from_millis(40);
+pub(super) const LOST_AFTER: Duration = Duration::from_millis(40);
 
 /// Period of credits while parts are missing.
-pub(super) const REPEAT: Duration = Duration::from_millis(50);
+pub(super) const CREDIT_PERIOD: Duration = Duration::from_millis(50);
 /// Longest period of credits while no part is missing.
-pub(super) const REST: Duration = Duration::from_secs(1);
+pub(super) const IDLE_CREDIT_PERIOD: Duration = Duration::from_secs(1);
 
 /// Period at which a writer checks the graph and the time limits of its readers.
-pub(super) const LOOK: Duration = Duration::from_millis(20);
+pub(super) const POLL_PERIOD: Duration = Duration::from_millis(20);

@@ -1,6 +1,6 @@
 //! The sender on a bus.
 
-use super::limits::{LIMIT, LOOK, WINDOW};
+use super::limits::{LIMIT, POLL_PERIOD, WINDOW};
 use super::part_topics::beside;
 use super::sender::Sender;
 use crate::bus::{Bus, PublisherId};
@@ -102,7 +102,7 @@ impl BulkPublisher {
             self.sender.receive(now.saturating_sub(age), info.writer, info.sequence, &credit);
         }
         if now >= self.next_look {
-            self.next_look = now + LOOK;
+            self.next_look = now + POLL_PERIOD;
             self.present = bus.foreign_writers(&self.credit_topic);
             for left in self.sender.apply_time_limits(now, &self.present) {
                 self.left_behind += 1;
@@ -132,7 +132,7 @@ impl BulkPublisher {
     /// Longest wait between two calls of [`BulkPublisher::advance`] while something is in transit; a credit ends the
     /// wait.
     pub const fn patience() -> Duration {
-        LOOK
+        POLL_PERIOD
     }
 
     /// Number of active readers that lack parts of the latest message.

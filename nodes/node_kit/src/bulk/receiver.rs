@@ -1,7 +1,7 @@
 //! The receiver: assembles the parts of several writers into bodies, and reports missing parts in credits.
 
 use super::assembly::Assembly;
-use super::limits::{REPEAT, REST};
+use super::limits::{CREDIT_PERIOD, IDLE_CREDIT_PERIOD};
 use super::part::{PartError, Shape};
 use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
@@ -50,13 +50,13 @@ struct Repetition {
 impl Repetition {
     /// Due at once, then at growing intervals.
     fn new(now: Duration) -> Self {
-        Self { sent: Duration::ZERO, due: now, pause: REPEAT }
+        Self { sent: Duration::ZERO, due: now, pause: CREDIT_PERIOD }
     }
 
     fn mark_sent(&mut self, now: Duration, missing: bool) {
         self.sent = now;
         self.due = now + self.pause;
-        self.pause = if missing { REPEAT } else { (2 * self.pause).min(REST) };
+        self.pause = if missing { CREDIT_PERIOD } else { (2 * self.pause).min(IDLE_CREDIT_PERIOD) };
     }
 }
 

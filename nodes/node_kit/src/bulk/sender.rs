@@ -1,6 +1,6 @@
 //! The sender: the next part to send, and the progress of each reader.
 
-use super::limits::{FIRST_WORD, LOST, SILENCE, STALLED, WINDOW};
+use super::limits::{FIRST_CREDIT_LIMIT, LOST_AFTER, SILENCE, STALLED, WINDOW};
 use super::part::Shape;
 use crate::sample::WriterId;
 use grainlab_msgs::msg::{PackingChunk, PackingCredit};
@@ -124,7 +124,7 @@ impl Sender {
                 (reader.next, reader.held) = (next.min(shape.count), held);
             }
             if reader.ready {
-                let lost = |part: &u32| now.saturating_sub(self.when[*part as usize]) >= LOST;
+                let lost = |part: &u32| now.saturating_sub(self.when[*part as usize]) >= LOST_AFTER;
                 self.again.extend(missing(&reader, self.sent).filter(lost));
             }
         }
@@ -200,7 +200,7 @@ impl Sender {
         let lacking = self.readers.values().any(|r| r.active && r.next < shape.count);
         let unheard =
             || matched > self.readers.len() || present.iter().any(|id| !self.readers.contains_key(id));
-        lacking || (now.saturating_sub(self.offered) < FIRST_WORD && unheard())
+        lacking || (now.saturating_sub(self.offered) < FIRST_CREDIT_LIMIT && unheard())
     }
 
     /// Number of active readers with missing parts.

@@ -1,6 +1,6 @@
 //! The receiver on a bus.
 
-use super::limits::REST;
+use super::limits::IDLE_CREDIT_PERIOD;
 use super::part_topics::beside;
 use super::receiver::Receiver;
 use crate::bus::{Bus, SubscriptionId};
@@ -107,7 +107,7 @@ impl BulkSubscription {
         let waiting: usize = self.queue.iter().map(|sample| sample.body.len()).sum();
         self.receiver.set_ready(now, waiting <= ENOUGH);
         if now >= self.next_look {
-            self.next_look = now + REST;
+            self.next_look = now + IDLE_CREDIT_PERIOD;
             self.receiver.forget_absent(now, &bus.foreign_writers(&self.part_topic));
         }
         for credit in self.receiver.credits(now) {

@@ -5,7 +5,7 @@
 
 use super::flood::{flood, learn, overheard, ports};
 use super::rtps::{Datagram, ports_in_use, send, sniffer};
-use super::{PATIENCE, Role, claim};
+use super::{Role, TIME_LIMIT, claim};
 use grainlab_node_kit::pingpong::bus_ping;
 use grainlab_node_kit::{DdsBus, Names, Network};
 use std::net::{Ipv4Addr, UdpSocket};
@@ -113,5 +113,5 @@ fn mutated_and_forged_datagrams_take_no_memory_and_end_nothing() {
         std::fs::write(path, &stderr).unwrap();
     }
     assert!(stderr.lines().count() < 2000, "{} lines in its log", stderr.lines().count());
-    assert!(END < PATIENCE);
+    assert!(END < TIME_LIMIT);
 }

@@ -1,6 +1,6 @@
 //! The end of processes, as observed by their peers.
 
-use super::{PATIENCE, Role, claim};
+use super::{Role, TIME_LIMIT, claim};
 use grainlab_msgs::msg::StrainRate;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{
@@ -44,7 +44,7 @@ impl Observer {
     fn until(&mut self, what: &str, mut done: impl FnMut(&Self) -> bool) {
         let start = Instant::now();
         while !done(self) {
-            assert!(start.elapsed() < PATIENCE, "not within {PATIENCE:?}: {what}");
+            assert!(start.elapsed() < TIME_LIMIT, "not within {TIME_LIMIT:?}: {what}");
             self.look();
         }
     }
@@ -147,7 +147,7 @@ fn a_killed_reliable_reader_delays_a_writer_but_never_stops_it() {
     let reader = Role::start("our_listener", network);
     let start = Instant::now();
     while bus.readers(publisher) == 0 {
-        assert!(start.elapsed() < PATIENCE);
+        assert!(start.elapsed() < TIME_LIMIT);
         bus.wait(Duration::from_millis(20));
     }
     bus.publish(publisher, &body).unwrap();

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 const CHILD: &str = "NODE_KIT_TEST_CHILD";
 
 /// Far above the time for discovery on an idle machine (0.2 s), so that the test passes on a loaded one.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIME_LIMIT: Duration = Duration::from_secs(30);
 
 fn claim() -> ClaimedDomain {
     ClaimedDomain::claim().expect("a free DDS domain")
@@ -74,7 +74,7 @@ impl Role {
             if let Some(status) = self.child.try_wait().unwrap() {
                 break status;
             }
-            assert!(start.elapsed() < PATIENCE * 2, "{} did not end", self.name);
+            assert!(start.elapsed() < TIME_LIMIT * 2, "{} did not end", self.name);
             std::thread::sleep(Duration::from_millis(20));
         };
         let text = |pipe: Option<JoinHandle<String>>| pipe.unwrap().join().unwrap();

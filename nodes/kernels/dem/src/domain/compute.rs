@@ -45,7 +45,7 @@ impl Default for Compute {
 }
 
 impl Compute {
-    /// `threads` from 1. Several threads divide the chunks of grains among them.
+    /// `threads` from 1. Several threads divide the chunks of grains among themselves.
     pub fn new(simd: Simd, threads: usize) -> Result<Self, ComputeError> {
         if !simd.is_available() {
             return Err(ComputeError::Simd(simd));

@@ -16,7 +16,7 @@ use grainlab_core::{Mat3, SymTensor, Vec3};
 /// Steps between two updates of the time step from the stiffness of the contacts.
 const TIME_STEP_INTERVAL: u64 = 200;
 
-/// Steps that the pairs of the force kernel should stay valid.
+/// Steps for which the list of pairs of the force kernel should stay valid.
 const PRUNING_INTERVAL: f64 = 100.0;
 
 impl Engine {
@@ -230,7 +230,7 @@ impl Engine {
         2.0 * self.state.largest_radius + self.settings.skin
     }
 
-    /// Chooses the time step anew from the present contacts (or, in a gas, from the speeds).
+    /// Chooses the time step anew from the present contacts, or with a thermostat from its speed.
     pub fn update_time_step(&mut self) {
         self.gather();
         let fraction = match self.settings.time_step {
@@ -241,7 +241,8 @@ impl Engine {
             }
         };
         let bound = match self.settings.thermostat_speed {
-            // Collisions begin and end between two updates: assume the stiffest likely one, at six times the mean speed.
+            // Collisions begin and end between two updates: assume the stiffest likely one, at six times the thermostat's
+            // root mean square speed.
             Some(speed) => time_step::collision(&self.state, 6.0 * speed, self.settings.damping),
             None => time_step::stable(&self.state, &self.contacts, &self.settings)
                 .min(time_step::rayleigh(&self.state)),

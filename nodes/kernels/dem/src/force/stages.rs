@@ -1,7 +1,8 @@
 //! The stages of the force kernel: geometry, contact law, scatter.
 //!
-//! Each stage waits long for the roots, quotients and sums of the one before. So the stages of three consecutive blocks run
-//! interleaved, and the processor always has independent work.
+//! Each stage waits long for the roots, quotients and sums of the one before. So the stages of three consecutive units, of as
+//! many pairs as lanes, run interleaved: the geometry of unit u + 1, the law of u, the scatter of u - 1. They are in at most two
+//! blocks.
 
 use super::geometry::{ForceInput, Geometry};
 use super::virial::{self, Virial};
@@ -85,7 +86,6 @@ pub(super) fn run_stages<S: LawStage, L: SimdF64>(
     let prefetch = input.position.len() > PREFETCH_MIN_GRAINS;
     let units_per_block = BLOCK_SIZE / L::WIDTH;
     let end = blocks.len() * units_per_block;
-    // A unit is as many pairs as lanes. Units pass the stages one after the other; two blocks are in work at a time.
     let mut scratch = [BlockScratch::ZERO; 2];
     // Apart from the scratch, so that it costs nothing where no contact resists rolling.
     let mut rolling_moment = [[[0.0; BLOCK_SIZE]; 3]; 2];

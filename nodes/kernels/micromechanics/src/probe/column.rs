@@ -11,10 +11,10 @@ use std::cmp::Ordering;
 const NAMES: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// Steps between two evaluations of the stress.
-pub(crate) const LOOK: u32 = 20;
+pub(crate) const STEPS_PER_EVALUATION: u32 = 20;
 
 /// Least number of evaluations; their last third is compared.
-const LEAST_LOOKS: usize = 6;
+const MIN_EVALUATIONS: usize = 6;
 
 /// Least number of steps over which a strain is imposed, and largest strain of one step: far below any
 /// relevant overlap.
@@ -101,10 +101,10 @@ pub(crate) fn strained(
     let mut seen: Vec<[f64; 6]> = Vec::new();
     let mut column = ProbeColumn { steps: strain_steps, ..ProbeColumn::default() };
     loop {
-        for _ in 0..LOOK {
+        for _ in 0..STEPS_PER_EVALUATION {
             relaxation.step()?;
         }
-        column.steps += LOOK;
+        column.steps += STEPS_PER_EVALUATION;
         let snapshots = looks(&relaxation)?;
         let [one, other] = [stress(&snapshots[0]), stress(&snapshots[1])];
         let entries: [f64; 6] = std::array::from_fn(|k| -(one[k] - other[k]) / between);
@@ -118,7 +118,7 @@ pub(crate) fn strained(
             .map(|past| difference(past, &entries))
             .fold(0.0, f64::max)
             / largest;
-        if seen.len() >= LEAST_LOOKS
+        if seen.len() >= MIN_EVALUATIONS
             && column.residual <= settings.tolerance
             && column.drift <= settings.tolerance
         {

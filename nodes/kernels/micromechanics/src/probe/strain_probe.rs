@@ -11,7 +11,7 @@
 //! stress. The strained boxes of LAMMPS measure the same quantity, except for the rotation in simple shear
 //! (again of the order of the deviatoric stress).
 
-use super::column::{LOOK, ProbeColumn, RestState, strained};
+use super::column::{ProbeColumn, RestState, STEPS_PER_EVALUATION, strained};
 use super::relaxation::Relaxation;
 use super::settings::StrainProbe;
 use crate::error::ProbeError;
@@ -150,10 +150,10 @@ fn relaxed(packing: &Packing, settings: &StrainProbe, load: f64) -> Result<(Engi
         if steps >= settings.max_steps {
             return Err(ProbeError::NoRest { unbalanced, target, steps });
         }
-        for _ in 0..LOOK {
+        for _ in 0..STEPS_PER_EVALUATION {
             relaxation.step()?;
         }
-        steps += LOOK;
+        steps += STEPS_PER_EVALUATION;
         unbalanced = relaxation.engines()[0].observables()?.unbalanced;
     }
     let mut engine = relaxation.engines()[0].clone();

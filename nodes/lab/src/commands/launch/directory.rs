@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Time for a previous launcher of the run to end.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIME_LIMIT: Duration = Duration::from_secs(30);
 
 /// What a given directory holds.
 pub(super) enum Given {
@@ -29,7 +29,7 @@ pub(super) fn given(directory: &Path, scene: &SceneText, order: &Order) -> Resul
     let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", directory.display()));
     std::fs::create_dir_all(directory).map_err(failed)?;
     let directory = directory.canonicalize().map_err(failed)?;
-    let lock = Lock::take(&directory, PATIENCE)?;
+    let lock = Lock::take(&directory, TIME_LIMIT)?;
     if run_state(&directory) == RunState::Absent {
         return Ok(Given::Empty(directory, lock));
     }

@@ -10,11 +10,11 @@ use ros2_client::{MessageTypeName, Name, QosProfile};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Time for which heartbeats are listened to: a node sends one each second.
+/// Time for which reports are listened to: a node sends one each second.
 pub(crate) const LISTEN: Duration = Duration::from_millis(2500);
 
-/// The nodes whose heartbeats arrive now, with their latest health.
-pub(crate) fn heartbeats(observer: &mut Observer) -> Result<BTreeMap<String, Report>, Failure> {
+/// The nodes whose reports arrive now, with their latest health.
+pub(crate) fn latest_reports(observer: &mut Observer) -> Result<BTreeMap<String, Report>, Failure> {
     let qos = QosProfile::publisher_default()
         .reliability_reliable(WhenFull::DEFAULT)
         .history(History::KeepLast { depth: 100 });
