@@ -1,0 +1,57 @@
+"""Packings for other libraries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ._grainlab import Packing
+
+
+def upper_triangular(cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The rotation Q, shape (3, 3), and the upper triangular cell R = Q cell with positive diagonal.
+
+    freud, LAMMPS and others take cells of this form only. Rotate vectors by ``vectors @ Q.T``.
+    """
+    q, r = np.linalg.qr(cell)
+    signs = np.sign(np.diag(r))
+    return (q * signs).T, np.triu(signs[:, None] * r)
+
+
+def to_freud(packing: Packing) -> tuple[Any, np.ndarray]:
+    """``(box, points)`` for freud: the box, and the centres in it, float32, shape (n, 3), m, wrapped about 0.
+
+    The packing is rotated where its cell is not upper triangular. Needs the package ``freud-analysis``.
+    """
+    import freud
+
+    rotation, cell = upper_triangular(packing.cell)
+    box = freud.box.Box.from_matrix(cell)
+    return box, box.wrap(packing.positions @ rotation.T)
+
+
+def to_ovito(packing: Packing) -> Any:
+    """A ``DataCollection`` for OVITO: particles with radius, velocity, spin; contacts as bonds with forces.
+
+    Lengths are in metres, forces in newtons; OVITO holds radii in single precision. Needs the package ``ovito``.
+    """
+    from ovito.data import DataCollection
+
+    data = DataCollection()
+    cell = np.zeros((3, 4))
+    cell[:, :3] = packing.cell
+    data.create_cell(cell, pbc=(True, True, True))
+    particles = data.create_particles(count=len(packing))
+    particles.create_property("Position", data=packing.positions)
+    particles.create_property("Radius", data=packing.radii)
+    particles.create_property("Velocity", data=packing.velocities)
+    particles.create_property("Angular Velocity", data=packing.angular_velocities)
+    particles.create_property("Particle Identifier", data=packing.ids)
+    pairs = np.stack([packing.contact_first, packing.contact_second], axis=1)
+    bonds = particles.create_bonds(count=len(pairs))
+    bonds.create_property("Topology", data=pairs)
+    bonds.create_property("Periodic Image", data=packing.contact_images)
+    bonds.create_property("Force", data=packing.contact_normal_forces)
+    return data

@@ -1,0 +1,41 @@
+//! Exceptions, with the texts of the errors of Rust.
+
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use pyo3::{PyErr, create_exception};
+use std::fmt::Display;
+
+create_exception!(grainlab, GrainlabError, PyException, "Any error of grainlab.");
+create_exception!(
+    grainlab,
+    FileError,
+    GrainlabError,
+    "A file that cannot be read, or is not what it should be."
+);
+create_exception!(grainlab, SceneError, GrainlabError, "A scene with faults, or keys that it does not have.");
+create_exception!(
+    grainlab,
+    PhysicsError,
+    GrainlabError,
+    "Physics that cannot go on: a packing that is not jammed, an unstable run, moduli without a solution."
+);
+
+pub(crate) fn file(error: impl Display) -> PyErr {
+    FileError::new_err(error.to_string())
+}
+
+pub(crate) fn scene(error: impl Display) -> PyErr {
+    SceneError::new_err(error.to_string())
+}
+
+pub(crate) fn physics(error: impl Display) -> PyErr {
+    PhysicsError::new_err(error.to_string())
+}
+
+pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("GrainlabError", py.get_type::<GrainlabError>())?;
+    module.add("FileError", py.get_type::<FileError>())?;
+    module.add("SceneError", py.get_type::<SceneError>())?;
+    module.add("PhysicsError", py.get_type::<PhysicsError>())
+}

@@ -1,0 +1,54 @@
+//! Packings from files of other programs.
+
+use crate::error;
+use crate::packing::PyPacking;
+use grainlab_core::Mat3;
+use grainlab_recordings::import::{self, ImportOptions};
+use numpy::PyReadonlyArray2;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::path::PathBuf;
+
+/// All packings of a file or run directory.
+#[pyfunction]
+#[pyo3(signature = (path, *, cell=None, shear_modulus=None, poisson_ratio=None, density=None, friction=None, radius=None,
+    topic=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn load(
+    py: Python<'_>,
+    path: PathBuf,
+    cell: Option<PyReadonlyArray2<'_, f64>>,
+    shear_modulus: Option<f64>,
+    poisson_ratio: Option<f64>,
+    density: Option<f64>,
+    friction: Option<f64>,
+    radius: Option<f64>,
+    topic: Option<String>,
+) -> PyResult<Vec<PyPacking>> {
+    let cell = cell.map(|c| match c.as_array() {
+        c if c.dim() == (3, 3) => Ok(Mat3::from_fn(|i, j| c[(i, j)])),
+        c => Err(PyValueError::new_err(format!("cell has shape {:?}; it must be (3, 3)", c.dim()))),
+    });
+    let options = ImportOptions {
+        cell: cell.transpose()?,
+        shear_modulus,
+        poisson_ratio,
+        density,
+        friction,
+        radius,
+        topic,
+        ..ImportOptions::default()
+    };
+    let loaded = py.detach(|| import::load(&path, &options)).map_err(error::file)?;
+    for warning in &loaded.warnings {
+        warn(py, &warning.to_string())?;
+    }
+    Ok(loaded.packings.into_iter().map(PyPacking::from).collect())
+}
+
+/// A warning of Python.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = CString::new(text.replace('\0', " "))?;
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
+}

@@ -1,0 +1,82 @@
+//! From moduli to microstructure.
+
+use crate::error;
+use grainlab_core::Material;
+use grainlab_core::results::InferredQuantity;
+use grainlab_emt::{Conditions, Estimate, Measured, Moduli, Modulus, Observation, Status, StrainRatio};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Names of the models, the one with the smallest error on held-out packings first.
+#[pyfunction]
+pub(crate) fn models() -> Vec<&'static str> {
+    grainlab_emt::models().iter().map(|m| m.name()).collect()
+}
+
+/// Infers coordination and anisotropy from moduli.
+#[pyfunction]
+#[pyo3(signature = (*, pressure, g12=None, g13=None, theta=None, c11=None, c33=None, c13=None, phi=None, gamma=None,
+    error=0.01, shear_modulus=None, poisson_ratio=None, model="relaxed"))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn invert<'py>(
+    py: Python<'py>,
+    pressure: f64,
+    g12: Option<f64>,
+    g13: Option<f64>,
+    theta: Option<f64>,
+    c11: Option<f64>,
+    c33: Option<f64>,
+    c13: Option<f64>,
+    phi: Option<f64>,
+    gamma: Option<f64>,
+    error: f64,
+    shear_modulus: Option<f64>,
+    poisson_ratio: Option<f64>,
+    model: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let known = grainlab_emt::model(model).ok_or_else(|| {
+        PyValueError::new_err(format!("model is {model:?}; it must be one of: {}", models().join(", ")))
+    })?;
+    if !(error >= 0.0 && error.is_finite()) {
+        return Err(PyValueError::new_err(format!(
+            "error is {error}; it must be a relative error, 0 or more"
+        )));
+    }
+    let given = [g12, g13, theta, c11, c33, c13];
+    let moduli = Modulus::ALL.into_iter().zip(given);
+    let moduli = moduli.fold(Moduli::NONE, |all, (m, value)| value.map_or(all, |v| all.with(m, v)));
+    let calibration = known.default_calibration();
+    let mut conditions = Conditions::at(pressure);
+    conditions.solid_fraction = phi.map(Measured::exact);
+    conditions.gamma = gamma.map_or(StrainRatio::ZERO, StrainRatio::given);
+    let own = calibration.material();
+    conditions.material = (shear_modulus.is_some() || poisson_ratio.is_some()).then(|| Material {
+        shear_modulus: shear_modulus.unwrap_or(own.shear_modulus),
+        poisson_ratio: poisson_ratio.unwrap_or(own.poisson_ratio),
+        ..*own
+    });
+    let observation = Observation::new(moduli, conditions).with_relative_error(error);
+    let estimate = py.detach(|| known.infer(&observation, calibration)).map_err(error::physics)?;
+    described(py, &estimate)
+}
+
+/// By key: value, `KEY_sigma` and `KEY_interval`; the model, its status and warnings.
+fn described<'py>(py: Python<'py>, estimate: &Estimate) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("model", estimate.model)?;
+    dict.set_item("calibration", &estimate.calibration)?;
+    for quantity in InferredQuantity::ALL {
+        let name = quantity.name();
+        dict.set_item(name, estimate.structure.get(quantity))?;
+        dict.set_item(format!("{name}_sigma"), estimate.stddev(quantity))?;
+        dict.set_item(
+            format!("{name}_interval"),
+            estimate.interval(quantity).map(|[low, high]| (low, high)),
+        )?;
+    }
+    dict.set_item("inside_range", estimate.status == Status::Ok)?;
+    let warnings: Vec<String> = estimate.warnings.iter().map(ToString::to_string).collect();
+    dict.set_item("warnings", warnings)?;
+    Ok(dict)
+}

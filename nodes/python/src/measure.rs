@@ -1,0 +1,86 @@
+//! Structure and stiffness of a packing.
+
+use crate::arrays::matrix;
+use crate::error;
+use crate::packing::PyPacking;
+use crate::values;
+use grainlab_core::Vec3;
+use grainlab_core::results::QUANTITIES;
+use grainlab_micromechanics::network::{Solver, SpringNetwork, Springs, relaxed_stiffness};
+use grainlab_micromechanics::{PackingView, Settings, analyze as measure};
+use numpy::PyArray2;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+fn settings(axis: [f64; 3], solver: &str, springs: &str, tolerance: f64) -> PyResult<Settings> {
+    let unknown = |name: &str, value: &str, known: &str| {
+        PyValueError::new_err(format!("{name} is {value:?}; it must be one of: {known}"))
+    };
+    Ok(Settings {
+        axis: Vec3::from(axis),
+        solver: match solver {
+            "cg" => Solver::Iterative,
+            "direct" => Solver::Direct,
+            other => return Err(unknown("solver", other, "cg, direct")),
+        },
+        springs: match springs {
+            "both" => Springs::NormalAndTangential,
+            "normal" => Springs::Normal,
+            other => return Err(unknown("springs", other, "both, normal")),
+        },
+        tolerance,
+        ..Settings::default()
+    })
+}
+
+/// Everything that `grainlab analyze` reports of a packing, by key.
+#[pyfunction]
+#[pyo3(signature = (packing, *, axis=[0.0, 0.0, 1.0], solver="cg", springs="both", tolerance=1e-9))]
+pub(crate) fn analyze<'py>(
+    py: Python<'py>,
+    packing: &Bound<'py, PyPacking>,
+    axis: [f64; 3],
+    solver: &str,
+    springs: &str,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let settings = settings(axis, solver, springs, tolerance)?;
+    let packing = packing.get().packing();
+    let found = py.detach(|| measure(packing, &settings)).map_err(error::physics)?;
+    values::quantities(py, QUANTITIES, &found.report)
+}
+
+/// The stiffness of the contact network, Pa, shape `(6, 6)`: relaxed, or affine (Voigt).
+#[pyfunction]
+#[pyo3(signature = (packing, *, affine=false, solver="cg", springs="both", tolerance=1e-9))]
+pub(crate) fn stiffness<'py>(
+    py: Python<'py>,
+    packing: &Bound<'py, PyPacking>,
+    affine: bool,
+    solver: &str,
+    springs: &str,
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let settings = settings([0.0, 0.0, 1.0], solver, springs, tolerance)?;
+    let packing = packing.get().packing();
+    let solve = || {
+        let network = SpringNetwork::new(&PackingView::new(packing), settings.springs)?;
+        relaxed_stiffness(&network, settings.solver, settings.tolerance, settings.max_iterations)
+    };
+    let found = py.detach(solve).map_err(error::physics)?;
+    let found =
+        found.ok_or_else(|| error::physics("the packing is not jammed: its network has no stiffness"))?;
+    let c = if affine { found.affine } else { found.relaxed };
+    Ok(matrix(py, 6, |i, j| c.0[(i, j)]))
+}
+
+/// What `analyze` reports: by key, symbol, unit and meaning.
+#[pyfunction]
+pub(crate) fn quantities(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let dict = PyDict::new(py);
+    for q in QUANTITIES {
+        dict.set_item(q.key, (q.symbol, q.unit, q.meaning))?;
+    }
+    Ok(dict)
+}

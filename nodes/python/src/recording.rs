@@ -1,0 +1,182 @@
+//! Recordings: their packings and messages, read one by one.
+
+use crate::error;
+use crate::files::warn;
+use crate::packing::PyPacking;
+use crate::values;
+use grainlab_any_message::Schema;
+use grainlab_recordings::import::recording::packing;
+use grainlab_recordings::{ChannelInfo, Messages, Recording, Selection};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use self_cell::self_cell;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+self_cell!(
+    /// Messages, with the recording that they are read from.
+    struct Stream {
+        owner: Arc<Recording>,
+        #[not_covariant]
+        dependent: Messages,
+    }
+);
+
+impl Stream {
+    fn of(recording: &Arc<Recording>, topics: Option<Vec<String>>) -> PyResult<Self> {
+        let selection = Selection { topics, ..Selection::default() };
+        Self::try_new(recording.clone(), |recording| recording.messages(&selection)).map_err(error::file)
+    }
+
+    fn next(&mut self) -> Option<grainlab_recordings::Message> {
+        self.with_dependent_mut(|_, messages| messages.next())
+    }
+}
+
+/// Opens a recording: an MCAP file or a run directory.
+#[pyfunction]
+pub(crate) fn open(py: Python<'_>, path: PathBuf) -> PyResult<PyRecording> {
+    let recording = py.detach(|| Recording::open(&path)).map_err(error::file)?;
+    for warning in recording.warnings() {
+        warn(py, &warning.to_string())?;
+    }
+    Ok(PyRecording { recording: Arc::new(recording) })
+}
+
+#[pyclass(name = "Recording", module = "grainlab", frozen)]
+pub(crate) struct PyRecording {
+    recording: Arc<Recording>,
+}
+
+#[pymethods]
+impl PyRecording {
+    fn __repr__(&self) -> String {
+        let info = self.recording.info();
+        let messages: u64 = info.topics.iter().map(|t| t.messages).sum();
+        let (path, topics) = (self.recording.path().display(), info.topics.len());
+        format!("<grainlab.Recording {path}: {messages} messages on {topics} topics>")
+    }
+
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.recording.path().to_owned()
+    }
+
+    /// By topic: type, number of messages, published, lost.
+    #[getter]
+    fn topics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for topic in self.recording.info().topics {
+            let entry = PyDict::new(py);
+            entry.set_item("type", topic.ros_type)?;
+            entry.set_item("messages", topic.messages)?;
+            entry.set_item("published", topic.published)?;
+            entry.set_item("lost", topic.lost)?;
+            dict.set_item(topic.name, entry)?;
+        }
+        Ok(dict)
+    }
+
+    /// Parts that could not be read so far.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.recording.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    /// The text of the scene; `None` if the recording has none.
+    #[getter]
+    fn scene(&self) -> Option<String> {
+        let files = self.recording.stored_files();
+        let scene = files.into_iter().find(|f| f.name == "scene.toml")?;
+        Some(String::from_utf8_lossy(&scene.bytes).into_owned())
+    }
+
+    /// The packings, one by one.
+    #[pyo3(signature = (topic="packing"))]
+    fn packings(&self, topic: &str) -> PyResult<PackingIterator> {
+        Ok(PackingIterator(Mutex::new(Stream::of(&self.recording, Some(vec![topic.to_owned()]))?)))
+    }
+
+    /// The last packing.
+    #[pyo3(signature = (topic="packing"))]
+    fn last_packing(&self, py: Python<'_>, topic: &str) -> PyResult<PyPacking> {
+        let message = py.detach(|| self.recording.last_before(topic, u64::MAX)).map_err(error::file)?;
+        let message = message.ok_or_else(|| PyIndexError::new_err("the recording has no packing"))?;
+        Ok(packing(&message).map_err(error::file)?.into())
+    }
+
+    /// The messages of some topics, or of all: topic, time of arrival (ns since 1970), fields.
+    #[pyo3(signature = (*topics))]
+    fn messages(&self, topics: Vec<String>) -> PyResult<MessageIterator> {
+        let topics = (!topics.is_empty()).then_some(topics);
+        let stream = Stream::of(&self.recording, topics)?;
+        Ok(MessageIterator(Mutex::new(Decoder { stream, schemas: BTreeMap::new() })))
+    }
+}
+
+#[pyclass(module = "grainlab", frozen)]
+pub(crate) struct PackingIterator(Mutex<Stream>);
+
+#[pymethods]
+impl PackingIterator {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<PyPacking>> {
+        let next = || self.0.lock().unwrap_or_else(PoisonError::into_inner).next().map(|m| packing(&m));
+        Ok(py.detach(next).transpose().map_err(error::file)?.map(PyPacking::from))
+    }
+}
+
+struct Decoder {
+    stream: Stream,
+    schemas: BTreeMap<String, Arc<Schema>>,
+}
+
+impl Decoder {
+    /// The next message and the schema to decode it by.
+    fn next(&mut self) -> PyResult<Option<(grainlab_recordings::Message, Arc<Schema>)>> {
+        let Some(message) = self.stream.next() else { return Ok(None) };
+        let schema = match self.schemas.get(&message.channel.topic) {
+            Some(schema) => schema.clone(),
+            None => {
+                let schema = Arc::new(schema(&message.channel)?);
+                self.schemas.insert(message.channel.topic.clone(), schema.clone());
+                schema
+            }
+        };
+        Ok(Some((message, schema)))
+    }
+}
+
+fn schema(channel: &ChannelInfo) -> PyResult<Schema> {
+    let fail = |why: &dyn std::fmt::Display| error::file(format!("{}: {why}", channel.topic));
+    if (channel.schema_encoding.as_str(), channel.message_encoding.as_str()) != ("ros2msg", "cdr") {
+        let (schema, messages) = (&channel.schema_encoding, &channel.message_encoding);
+        return Err(fail(&format!(
+            "schema {schema:?} with messages {messages:?} cannot be decoded: ros2msg with cdr can"
+        )));
+    }
+    Schema::parse(&channel.ros_type, &channel.definition).map_err(|e| fail(&e))
+}
+
+#[pyclass(module = "grainlab", frozen)]
+pub(crate) struct MessageIterator(Mutex<Decoder>);
+
+#[pymethods]
+impl MessageIterator {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__<'py>(&self, py: Python<'py>) -> PyResult<Option<(String, u64, Bound<'py, PyDict>)>> {
+        let next = || self.0.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let Some((message, schema)) = py.detach(next)? else { return Ok(None) };
+        let topic = message.channel.topic.clone();
+        let fields = schema.decode(&message.payload).map_err(|e| error::file(format!("{topic}: {e}")))?;
+        Ok(Some((topic, message.log_time, values::message(py, &fields)?)))
+    }
+}

@@ -1,0 +1,76 @@
+import threading
+import time
+
+import grainlab
+import numpy as np
+import pytest
+
+
+def test_the_stiffness_is_that_of_analyze_symmetric_and_below_the_affine_one(golden):
+    c, report = grainlab.stiffness(golden), grainlab.analyze(golden)
+    assert np.allclose(c, report["stiffness_pa"], rtol=1e-12)
+    assert np.allclose(c, c.T, rtol=1e-8)
+    affine = grainlab.stiffness(golden, affine=True)
+    assert np.linalg.eigvalsh(affine - c).min() > 0
+    assert np.allclose(grainlab.stiffness(golden, solver="direct"), c, rtol=1e-9, atol=1e-6 * c.max())
+
+
+def test_every_key_of_analyze_has_symbol_unit_and_meaning(golden):
+    assert set(grainlab.analyze(golden)) == set(grainlab.quantities())
+    assert grainlab.quantities()["phi"][:2] == ("φ", "1")
+
+
+def test_the_fabric_is_that_of_the_contact_normals(golden):
+    n = golden.contact_normals
+    tensor = n.T @ n / len(n)
+    xx, yy, zz, yz, xz, xy = grainlab.analyze(golden)["fabric"]
+    assert np.allclose([tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[1, 2], tensor[0, 2], tensor[0, 1]],
+                       [xx, yy, zz, yz, xz, xy], atol=1e-12)
+
+
+def test_the_inversion_of_measured_moduli_finds_the_coordination(golden):
+    r = grainlab.analyze(golden)
+    found = grainlab.invert(g12=r["g12_pa"], g13=r["g13_pa"], theta=r["theta_pa"], pressure=r["pressure_pa"], phi=r["phi"])
+    low, high = found["z_interval"]
+    assert low < r["z"] < high and abs(found["z"] - r["z"]) < 0.1
+    assert found["model"] == "relaxed" and found["z_sigma"] > 0
+
+
+def test_wrong_input_raises(golden):
+    with pytest.raises(ValueError, match="cg, direct"):
+        grainlab.stiffness(golden, solver="magic")
+    with pytest.raises(grainlab.PhysicsError):
+        grainlab.analyze(golden, axis=(0, 0, 0))
+    with pytest.raises(grainlab.PhysicsError, match="tolerance"):
+        grainlab.stiffness(golden, tolerance=float("nan"))
+    with pytest.raises(ValueError, match="one of"):
+        grainlab.invert(pressure=1e5, g12=1e8, g13=1e8, theta=1e8, model="none")
+    with pytest.raises(grainlab.PhysicsError):
+        grainlab.invert(pressure=-1e5, g12=1e8, g13=1e8, theta=1e8)
+    with pytest.raises(grainlab.PhysicsError):
+        grainlab.invert(pressure=1e5)
+    alone = grainlab.Packing(np.eye(3), np.zeros((1, 3)), np.array([0.1]))
+    with pytest.raises(grainlab.PhysicsError):
+        grainlab.stiffness(alone)
+    assert grainlab.analyze(alone)["stiffness_pa"] is None
+
+
+def test_other_threads_run_during_a_computation(golden):
+    ticks = []
+    done = threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.0005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    began = time.perf_counter()
+    for _ in range(10):
+        grainlab.stiffness(golden)
+    ended = time.perf_counter()
+    done.set()
+    thread.join()
+    # With the lock held, a tick would fall between two computations only: at most eleven.
+    assert sum(began < t < ended for t in ticks) > 20

@@ -1,0 +1,46 @@
+//! The Python module `grainlab`, built as `pip install` builds it, and its own tests on a run of ours.
+
+use std::path::Path;
+use std::process::Command;
+
+use system_tests::lab::Lab;
+use system_tests::python;
+
+/// What builds the module, and what its tests use.
+const NEEDED: &str = "maturin, numpy, pytest, nbclient, ipykernel, freud, ovito";
+
+#[test]
+fn the_python_module_installs_and_its_tests_pass_on_a_recorded_run() {
+    let Some(python) = python::with(NEEDED) else { return };
+    let lab = Lab::new();
+    let run = lab.run(&["launch", "--scene", "demo", "--set", "grains.count=150"]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap();
+    let site = lab.folder().join("site");
+    // pip finds the program maturin beside this Python.
+    let mut path = python.parent().unwrap().as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--target"];
+    let installed = Command::new(&python)
+        .args(install)
+        .args([&site, &top.join("nodes/python")])
+        .env("PATH", &path)
+        .output()
+        .unwrap();
+    assert!(installed.status.success(), "{}", String::from_utf8_lossy(&installed.stderr));
+
+    let tested = Command::new(&python)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+        .arg(top.join("nodes/python/tests"))
+        .env("PATH", &path)
+        .env("PYTHONPATH", &site)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("GRAINLAB_RECORDING", lab.last_run())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&tested.stdout);
+    assert!(tested.status.success(), "{text}{}", String::from_utf8_lossy(&tested.stderr));
+    assert!(text.contains(" passed") && !text.contains("skipped"), "{text}");
+}
