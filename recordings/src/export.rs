@@ -1,7 +1,20 @@
 //! Writes packings as files of other programs.
 
+mod columns;
 mod csv;
+mod extended_xyz;
+mod files;
+mod lammps_data;
 mod lammps_dump;
+mod lammps_local;
+mod vtkhdf;
+mod vtp;
 
 pub use csv::{csv, sidecar};
+pub use extended_xyz::extended_xyz;
+pub use files::{ExportError, ExportFormat, Exporter, FilePart};
+pub use lammps_data::lammps_data;
 pub use lammps_dump::{DumpError, lammps_dump};
+pub use lammps_local::lammps_local;
+pub use vtkhdf::{HdfError, vtkhdf_contacts, vtkhdf_grains};
+pub use vtp::{pvd, vtp_contacts, vtp_grains};

@@ -1,7 +1,7 @@
-//! Packings from other sources: CSV with a JSON sidecar, LAMMPS dump and data files, text exports of YADE,
-//! and recordings of grainlab.
+//! Packings from other sources: CSV with a JSON sidecar, LAMMPS dump and data files, extended XYZ, VTKHDF, text exports of
+//! YADE, and recordings of grainlab.
 //!
-//! The parsers take text; [`load`] and [`each`] take a path, decompress `.gz` and select the parser by
+//! The parsers take the content of a file; [`load`] and [`each`] take a path, decompress `.gz` and select the parser by
 //! content. For every source, the result is a validated [`grainlab_core::Packing`] in its conventions:
 //! contacts `i < j` by index, normal from `i` to the image of `j`, tangential force on `i`. If a source does
 //! not list contacts, they are found from positions, with Hertz normal forces and without tangential forces.
@@ -10,6 +10,7 @@ mod assemble;
 pub mod contacts;
 pub mod csv;
 mod error;
+pub mod extended_xyz;
 mod imported;
 mod lammps_cell;
 pub mod lammps_data;
@@ -20,6 +21,7 @@ pub mod recording;
 mod setting;
 mod settings;
 mod text;
+pub mod vtkhdf;
 pub mod yade;
 
 pub use error::ImportError;

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use grainlab_core::{Packing, Vec3};
 
-/// The cell of the packing cannot be written in a LAMMPS dump.
+/// The cell of the packing cannot be written in a file of LAMMPS.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the cell's edge vectors are not (lx,0,0), (xy,ly,0), (xz,yz,lz), the only form of a LAMMPS dump; entry ({row}, {column}) is {value:e} m: export CSV instead"
+    "the cell's edge vectors are not (lx,0,0), (xy,ly,0), (xz,yz,lz), the only form of LAMMPS files; entry ({row}, {column}) is {value:e} m: export csv, vtk, vtkhdf or xyz instead"
 )]
 pub struct DumpError {
     /// Row of the offending entry, 0-based.
@@ -18,13 +18,11 @@ pub struct DumpError {
     pub value: f64,
 }
 
-/// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
-/// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
-/// part of the format.
+/// The tilt factors xy, xz, yz of the cell, m.
 ///
 /// # Errors
 /// If the cell is not in LAMMPS's restricted triclinic form.
-pub fn lammps_dump(packing: &Packing) -> Result<String, DumpError> {
+pub(super) fn restricted(packing: &Packing) -> Result<[f64; 3], DumpError> {
     let m = packing.cell.matrix();
     for (row, column) in [(1, 0), (2, 0), (2, 1)] {
         let value = m[(row, column)];
@@ -32,7 +30,18 @@ pub fn lammps_dump(packing: &Packing) -> Result<String, DumpError> {
             return Err(DumpError { row, column, value });
         }
     }
-    let (xy, xz, yz) = (m[(0, 1)], m[(0, 2)], m[(1, 2)]);
+    Ok([m[(0, 1)], m[(0, 2)], m[(1, 2)]])
+}
+
+/// One frame of a LAMMPS dump: id, type, radius, mass, unwrapped positions, velocities, angular velocities,
+/// and the number of contacts as `c_contacts`. Frames can be concatenated. Contact forces are not
+/// part of the format.
+///
+/// # Errors
+/// If the cell is not in LAMMPS's restricted triclinic form.
+pub fn lammps_dump(packing: &Packing) -> Result<String, DumpError> {
+    let [xy, xz, yz] = restricted(packing)?;
+    let m = packing.cell.matrix();
     let mut text = format!(
         "ITEM: UNITS\nsi\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
         packing.step,

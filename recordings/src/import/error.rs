@@ -32,7 +32,7 @@ pub enum ImportError {
     },
     /// The format of the file is unknown.
     #[error(
-        "line {line}, {first}, has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor a YADE export (#format ...), each also as .gz, nor a recording (.mcap or its directory)"
+        "line {line}, {first}, has an unknown format: neither CSV (p,id,x,y,z,...), nor a LAMMPS dump (ITEM: ...) or data file (LAMMPS ..., or N atoms), nor extended XYZ (N, then Properties=...), nor a YADE export (#format ...), each also as .gz, nor VTKHDF, nor a recording (.mcap or its directory)"
     )]
     UnknownFormat {
         /// Its first line that is not empty, counted from 1.
@@ -48,6 +48,9 @@ pub enum ImportError {
         /// What was expected and what was found.
         problem: String,
     },
+    /// An HDF5 file is damaged, or is not VTKHDF.
+    #[error("HDF5: {0}")]
+    Hdf(String),
     /// The file, its sidecar and the options lack these quantities.
     #[error("the file lacks {}", list(.0))]
     Missing(Vec<Setting>),

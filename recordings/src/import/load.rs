@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use super::imported::Imported;
 use super::text::{lines, shown};
-use super::{ImportError, ImportOptions, csv, lammps_data, lammps_dump, recording, yade};
+use super::{
+    ImportError, ImportOptions, csv, extended_xyz, lammps_data, lammps_dump, recording, vtkhdf, yade,
+};
 use crate::input;
 use crate::reader::{Recording, Warning};
 
@@ -25,6 +27,7 @@ enum Format {
     Csv,
     Dump,
     Data,
+    Xyz,
     Yade,
 }
 
@@ -42,7 +45,8 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Loaded, ImportError>
 }
 
 /// Passes the packings of a file or run directory to `take` one by one, in order, until it stops: those of a
-/// recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump or data file, a YADE export;
+/// recording, a CSV (with the sidecar `<stem>.json` if there is one), a LAMMPS dump or data file, extended XYZ, VTKHDF
+/// (`grains_1.vtkhdf` with `contacts_1.vtkhdf` beside it), a YADE export;
 /// `.gz` is decompressed, to 64 times its size or 16 MiB at most; texts have at most 4 GiB, and pipes and devices are
 /// refused. The content determines the format, or else the name. Returns the warnings of a
 /// recording: data was lost if there are any.
@@ -66,6 +70,9 @@ pub fn each(
         })?;
         return Ok(recording.warnings());
     }
+    if starts_with(path, vtkhdf::MAGIC) {
+        return hdf(path, options, take).map_err(inside);
+    }
     let text = text(path)?;
     match format(&extension, &stem, &text).map_err(inside)? {
         Format::Csv => {
@@ -75,9 +82,27 @@ pub fn each(
         }
         Format::Dump => lammps_dump::each(&text, options, take),
         Format::Data => lammps_data::packing(&text, options).map(|p| _ = take(p)),
+        Format::Xyz => extended_xyz::each(&text, options, take),
         Format::Yade => yade::packing(&text, options).map(|p| _ = take(p)),
     }
     .map_err(inside)?;
+    Ok(Vec::new())
+}
+
+/// The packing of a VTKHDF file, with the contacts of the file beside it.
+fn hdf(
+    path: &Path,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> Result<Vec<Warning>, ImportError> {
+    let read = |path: &Path| {
+        input::bytes(path, input::TEXT).map_err(|source| ImportError::Io { path: path.to_owned(), source })
+    };
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let contacts = path.with_file_name(name.replace("grains", "contacts"));
+    let has_contacts = contacts != path && contacts.exists();
+    let contacts = has_contacts.then(|| read(&contacts)).transpose()?;
+    let _ = take(vtkhdf::packing(read(path)?, contacts, options)?);
     Ok(Vec::new())
 }
 
@@ -111,7 +136,11 @@ fn format(extension: &str, stem: &str, text: &str) -> Result<Format, ImportError
     let row = if begins("#") { row } else { first };
     let is_row = |text: &str| text.starts_with("p,") || text.starts_with("c,");
     let atoms = |text: &str| matches!(text.split_whitespace().collect::<Vec<_>>()[..], [n, "atoms"] if n.parse::<u64>().is_ok());
-    if begins("ITEM:") {
+    let is_xyz = first.text.trim().parse::<u64>().is_ok()
+        && lines(text).nth(first.number).is_some_and(|l| extended_xyz::is_comment(l.text));
+    if is_xyz {
+        Ok(Format::Xyz)
+    } else if begins("ITEM:") {
         Ok(Format::Dump)
     } else if begins("#format") {
         Ok(Format::Yade)

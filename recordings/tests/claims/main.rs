@@ -3,6 +3,7 @@
 mod contact_search;
 mod copies;
 mod damage;
+mod exports;
 mod imports;
 mod lammps_forces;
 mod malformed;

@@ -4,8 +4,9 @@ use clap::ValueEnum;
 use grainlab_console::Failure;
 use grainlab_console::{print, say};
 use grainlab_node_kit::Exit;
-use grainlab_recordings::export::{csv, lammps_dump, sidecar};
+use grainlab_recordings::export::{ExportFormat, Exporter, FilePart};
 use grainlab_recordings::import::{self, ImportOptions, Imported};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write as _;
 use std::ops::ControlFlow;
@@ -13,13 +14,18 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
 Examples:
-  grainlab bag export recordings/runs/s2-1-1 --format lammps --out dumps
+  grainlab bag export recordings/runs/s2-1-1 --format vtk --out paraview      # open grains.pvd and contacts.pvd
   grainlab bag export run.mcap --format csv --out tables
 
-Writes every packing of the recording, in SI units. lammps: one file, packings.dump, with one frame per packing (grains
-only), which OVITO opens. csv: packing_1.csv with grains and contacts and packing_1.json with cell and material, and so on;
-`grainlab analyze` reads them back without loss. Existing files are not overwritten. Exit 3 if a part of the recording
-could not be read.";
+Writes every packing of a recording, or of a file of any format that `grainlab analyze` reads, in SI units:
+  csv          packing_1.csv with grains and contacts, packing_1.json with cell and material, ...: no loss
+  lammps       packings.dump and contacts.dump, one frame per packing
+  lammps-data  packing_1.data, ...: grains
+  xyz          packings.xyz, extended XYZ, one frame per packing: grains
+  vtk          grains_1.vtp and contacts_1.vtp, ..., and the collections grains.pvd and contacts.pvd
+  vtkhdf       grains_1.vtkhdf and contacts_1.vtkhdf, ...: no loss
+`grainlab analyze` reads csv, lammps, lammps-data, xyz and vtkhdf back. In vtk and vtkhdf, contacts are lines between centres, with their
+forces. Existing files are not overwritten. Exit 3 if a part of the recording could not be read.";
 
 /// Arguments of `grainlab bag export`.
 #[derive(Debug, clap::Args)]
@@ -44,15 +50,36 @@ pub(crate) struct Args {
 enum Format {
     /// CSV with a JSON sidecar, two files per packing
     Csv,
-    /// LAMMPS dump, one frame per packing
+    /// LAMMPS dumps of grains and contacts, one frame per packing
     Lammps,
+    /// LAMMPS data files, one per packing
+    LammpsData,
+    /// Extended XYZ, one frame per packing
+    Xyz,
+    /// VTK XML: grains and contacts of each packing, and a collection of all
+    Vtk,
+    /// VTKHDF: grains and contacts of each packing
+    Vtkhdf,
+}
+
+impl From<Format> for ExportFormat {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Csv => Self::Csv,
+            Format::Lammps => Self::LammpsDump,
+            Format::LammpsData => Self::LammpsData,
+            Format::Xyz => Self::Xyz,
+            Format::Vtk => Self::Vtk,
+            Format::Vtkhdf => Self::VtkHdf,
+        }
+    }
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     std::fs::create_dir_all(&args.out)
         .map_err(|e| Failure::failed(format!("{}: {e}", args.out.display())))?;
     let options = ImportOptions { topic: args.topic.clone(), ..ImportOptions::default() };
-    let mut writer = Writer { format: args.format, folder: &args.out, packings: 0, dump: None };
+    let mut writer = Writer::new(args.format.into(), &args.out);
     let mut failure = None;
     let warnings = import::each(&args.path, &options, &mut |imported| match writer.write(&imported) {
         Ok(()) => ControlFlow::Continue(()),
@@ -65,6 +92,7 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     if let Some(failure) = failure {
         return Err(failure);
     }
+    writer.finish()?;
     print(&format!(
         "{} written to {}\n",
         grainlab_console::count(writer.packings, "packing"),
@@ -76,50 +104,43 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
 
 /// Writes packings into a folder.
 struct Writer<'a> {
-    format: Format,
+    exporter: Exporter,
     folder: &'a Path,
     packings: u64,
-    dump: Option<File>,
+    /// The files made so far, which further parts extend.
+    made: BTreeSet<String>,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    fn new(format: ExportFormat, folder: &'a Path) -> Self {
+        Self { exporter: Exporter::new(format), folder, packings: 0, made: BTreeSet::new() }
+    }
+
     fn write(&mut self, imported: &Imported) -> Result<(), Failure> {
+        let parts = self.exporter.next(&imported.packing).map_err(Failure::failed)?;
         self.packings += 1;
-        let packing = &imported.packing;
-        match self.format {
-            Format::Csv => {
-                let name = format!("packing_{}", self.packings);
-                self.create(&format!("{name}.csv"), &csv(packing))?;
-                self.create(&format!("{name}.json"), &sidecar(packing)).map(drop)
-            }
-            Format::Lammps => {
-                let name = "packings.dump";
-                let frame = lammps_dump(packing).map_err(Failure::failed)?;
-                match &mut self.dump {
-                    None => self.dump = Some(self.create(name, &frame)?),
-                    Some(file) => file.write_all(frame.as_bytes()).map_err(|e| self.error(name, &e))?,
-                }
-                Ok(())
-            }
-        }
+        parts.iter().try_for_each(|part| self.append(part))
     }
 
-    fn create(&self, name: &str, content: &str) -> Result<File, Failure> {
-        let written = File::create_new(self.folder.join(name)).and_then(|mut file| {
-            file.write_all(content.as_bytes())?;
-            Ok(file)
-        });
-        written.map_err(|e| self.error(name, &e))
+    fn finish(&mut self) -> Result<(), Failure> {
+        self.exporter.finish().iter().try_for_each(|part| self.append(part))
     }
 
-    fn error(&self, name: &str, error: &std::io::Error) -> Failure {
-        Failure::failed(format!("{}: {error}", self.folder.join(name).display()))
+    fn append(&mut self, part: &FilePart) -> Result<(), Failure> {
+        let path = self.folder.join(&part.name);
+        let failed = |e: std::io::Error| Failure::failed(format!("{}: {e}", path.display()));
+        let file = match self.made.insert(part.name.clone()) {
+            true => File::create_new(&path),
+            false => File::options().append(true).open(&path),
+        };
+        file.and_then(|mut file| file.write_all(&part.content)).map_err(failed)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainlab_recordings::export::lammps_dump;
     use grainlab_recordings::import::load;
 
     const SIDECAR: &str = r#"{"G": 29e9, "nu": 0.2, "density": 2500, "mu_prep": 0.3, "box_L": [1, 1, 1]}"#;

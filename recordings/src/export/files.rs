@@ -1,0 +1,106 @@
+//! The files of one packing, or of a run, by format.
+
+use super::lammps_dump::DumpError;
+use super::vtkhdf::HdfError;
+use super::{
+    csv, extended_xyz, lammps_data, lammps_dump, lammps_local, pvd, sidecar, vtkhdf_contacts, vtkhdf_grains,
+    vtp_contacts, vtp_grains,
+};
+use grainlab_core::Packing;
+
+/// A format of other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// CSV with a JSON sidecar, two files per packing: no loss.
+    Csv,
+    /// LAMMPS dumps of grains and of contacts, one frame per packing.
+    LammpsDump,
+    /// LAMMPS data files, one per packing: grains.
+    LammpsData,
+    /// Extended XYZ, one frame per packing: grains.
+    Xyz,
+    /// VTK XML: grains and contacts of each packing, and a collection of all.
+    Vtk,
+    /// VTKHDF: grains and contacts of each packing: no loss.
+    VtkHdf,
+}
+
+/// A packing cannot be written in a format.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// LAMMPS does not know such a cell.
+    #[error(transparent)]
+    Cell(#[from] DumpError),
+    /// HDF5 cannot hold it.
+    #[error(transparent)]
+    Hdf(#[from] HdfError),
+}
+
+/// A part of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilePart {
+    /// Name of the file.
+    pub name: String,
+    /// What follows in it.
+    pub content: Vec<u8>,
+}
+
+/// Writes the packings of a run one after the other.
+#[derive(Debug)]
+pub struct Exporter {
+    format: ExportFormat,
+    /// Time, s, and files of each packing so far.
+    states: Vec<(f64, Vec<String>)>,
+}
+
+impl Exporter {
+    /// Nothing is written yet.
+    pub fn new(format: ExportFormat) -> Self {
+        Self { format, states: Vec::new() }
+    }
+
+    /// What the next packing adds. Parts of the same name are parts of one file.
+    ///
+    /// # Errors
+    /// If the format cannot hold the packing.
+    pub fn next(&mut self, packing: &Packing) -> Result<Vec<FilePart>, ExportError> {
+        let n = self.states.len() + 1;
+        let part = |name: String, content: Vec<u8>| FilePart { name, content };
+        let text = |name: String, content: String| part(name, content.into_bytes());
+        let parts = match self.format {
+            ExportFormat::Csv => vec![
+                text(format!("packing_{n}.csv"), csv(packing)),
+                text(format!("packing_{n}.json"), sidecar(packing)),
+            ],
+            ExportFormat::LammpsDump => vec![
+                text("packings.dump".into(), lammps_dump(packing)?),
+                text("contacts.dump".into(), lammps_local(packing)),
+            ],
+            ExportFormat::LammpsData => vec![text(format!("packing_{n}.data"), lammps_data(packing)?)],
+            ExportFormat::Xyz => vec![text("packings.xyz".into(), extended_xyz(packing))],
+            ExportFormat::Vtk => vec![
+                text(format!("grains_{n}.vtp"), vtp_grains(packing)),
+                text(format!("contacts_{n}.vtp"), vtp_contacts(packing)),
+            ],
+            ExportFormat::VtkHdf => vec![
+                part(format!("grains_{n}.vtkhdf"), vtkhdf_grains(packing)?),
+                part(format!("contacts_{n}.vtkhdf"), vtkhdf_contacts(packing)?),
+            ],
+        };
+        self.states.push((packing.time, parts.iter().map(|p| p.name.clone()).collect()));
+        Ok(parts)
+    }
+
+    /// What follows the last packing.
+    pub fn finish(&self) -> Vec<FilePart> {
+        if self.format != ExportFormat::Vtk {
+            return Vec::new();
+        }
+        let of_part = |k: usize| -> Vec<(f64, Vec<String>)> {
+            self.states.iter().map(|(time, files)| (*time, vec![files[k].clone()])).collect()
+        };
+        let collection =
+            |name: &str, k| FilePart { name: name.to_owned(), content: pvd(&of_part(k)).into_bytes() };
+        vec![collection("grains.pvd", 0), collection("contacts.pvd", 1)]
+    }
+}

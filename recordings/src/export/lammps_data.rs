@@ -1,0 +1,45 @@
+//! Writes LAMMPS data files of `atom_style sphere`.
+
+use super::lammps_dump::{DumpError, restricted};
+use grainlab_core::Packing;
+use std::fmt::Write as _;
+
+/// A data file: id, type, diameter, density, position folded into the cell with its image flags, velocity, angular velocity; SI
+/// units. Contact forces are not part of the format. Ids are one more than those of the packing, because LAMMPS counts from 1.
+///
+/// # Errors
+/// If the cell is not in LAMMPS's restricted triclinic form.
+pub fn lammps_data(packing: &Packing) -> Result<String, DumpError> {
+    let [xy, xz, yz] = restricted(packing)?;
+    let m = packing.cell.matrix();
+    let mut text = format!(
+        "LAMMPS data file of grainlab, step {}, units = si\n\n{} atoms\n1 atom types\n\n",
+        packing.step,
+        packing.grains()
+    );
+    // Writing to a String cannot fail.
+    for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let _ = writeln!(text, "0 {:e} {axis}lo {axis}hi", m[(k, k)]);
+    }
+    if [xy, xz, yz] != [0.0; 3] {
+        let _ = writeln!(text, "{xy:e} {xz:e} {yz:e} xy xz yz");
+    }
+    text.push_str("\nAtoms # sphere\n\n");
+    for (k, x) in packing.positions.iter().enumerate() {
+        let image = packing.cell.fractional(x).map(f64::floor);
+        let x = x - m * image;
+        let (id, diameter, density) =
+            (u64::from(packing.ids[k]) + 1, 2.0 * packing.radii[k], packing.material.density);
+        let _ = writeln!(
+            text,
+            "{id} 1 {diameter:e} {density:e} {:e} {:e} {:e} {} {} {}",
+            x.x, x.y, x.z, image.x, image.y, image.z
+        );
+    }
+    text.push_str("\nVelocities\n\n");
+    for k in 0..packing.grains() {
+        let (id, v, w) = (u64::from(packing.ids[k]) + 1, &packing.velocities[k], &packing.spins[k]);
+        let _ = writeln!(text, "{id} {:e} {:e} {:e} {:e} {:e} {:e}", v.x, v.y, v.z, w.x, w.y, w.z);
+    }
+    Ok(text)
+}

@@ -1,0 +1,163 @@
+//! Extended XYZ, as OVITO, ASE and `grainlab bag export` write it.
+//!
+//! Each frame is the number of grains, a comment with `Lattice="..."` and `Properties=...`, and a line per grain. Columns that are
+//! read: `pos:R:3`, `radius:R:1`, and where they are `id:I:1`, `velo:R:3`, `angular_velocity:R:3`; SI units. Of the comment also
+//! `shear_modulus`, `poisson_ratio`, `density`, `friction`, `Time` and `step`. Contacts are found from positions.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+
+use grainlab_core::{Mat3, Vec3};
+
+use super::assemble::{self, GrainTable, State};
+use super::error::ImportError;
+use super::imported::Imported;
+use super::settings::{ImportOptions, Known};
+use super::text::{Line, lines};
+
+/// Whether a comment is that of extended XYZ.
+pub(super) fn is_comment(line: &str) -> bool {
+    line.contains("Properties=") || line.contains("Lattice=")
+}
+
+/// Passes the packings of all frames to `take` one by one, until it stops.
+///
+/// # Errors
+/// If a frame is invalid, or a quantity is missing.
+pub fn each(
+    text: &str,
+    options: &ImportOptions,
+    take: &mut dyn FnMut(Imported) -> ControlFlow<()>,
+) -> Result<(), ImportError> {
+    let mut text = lines(text);
+    let mut any = false;
+    while let Some(first) = text.find(|l| !l.text.trim().is_empty()) {
+        let number = first.text.trim();
+        let count: usize =
+            number.parse().map_err(|_| first.error(format!("{number:?} is not a number of grains")))?;
+        let comment = text.next().ok_or_else(|| first.error("the file ends after the number of grains"))?;
+        let frame = Frame::of(&comment)?;
+        let mut grains = GrainTable::default();
+        for read in 0..count {
+            let missing = || first.error(format!("the frame has {read} of {count} grains"));
+            frame.grain(&text.next().ok_or_else(missing)?, read, options, &mut grains)?;
+        }
+        any = true;
+        let settings = frame.known.complete(options)?;
+        let source = format!("extended XYZ, step {}", frame.state.step);
+        if take(assemble::packing(grains, &settings, None, frame.state, source, Vec::new())?).is_break() {
+            break;
+        }
+    }
+    if any { Ok(()) } else { Err(ImportError::Empty) }
+}
+
+/// The comment of a frame.
+struct Frame {
+    known: Known,
+    state: State,
+    /// First field and number of fields of each column.
+    columns: BTreeMap<String, (usize, usize)>,
+    fields: usize,
+}
+
+impl Frame {
+    fn of(line: &Line<'_>) -> Result<Self, ImportError> {
+        let entries = entries(line.text);
+        let number = |key: &str| entries.get(key).map(|value| line.number(key, value)).transpose();
+        let cell = match entries.get("Lattice") {
+            None => None,
+            Some(text) => {
+                let numbers = text.split_whitespace().map(|word| line.number("Lattice", word));
+                let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+                if numbers.len() != 9 {
+                    return Err(line.error(format!("Lattice has {} numbers; it must have 9", numbers.len())));
+                }
+                // The edge vectors one after the other.
+                Some(Mat3::from_column_slice(&numbers))
+            }
+        };
+        let properties = entries.get("Properties").ok_or_else(|| line.error("Properties= is missing"))?;
+        let (mut columns, mut fields) = (BTreeMap::new(), 0);
+        let parts: Vec<&str> = properties.split(':').collect();
+        for column in parts.chunks(3) {
+            let [name, _, width] = column else {
+                return Err(line.error("Properties must be a list of name:type:width"));
+            };
+            let width = width.parse().ok().filter(|w| (1..=1000).contains(w));
+            let width: usize = width.ok_or_else(|| line.error(format!("the width of {name} is invalid")))?;
+            columns.insert((*name).to_owned(), (fields, width));
+            fields += width;
+        }
+        let whole = |key: &str| entries.get(key).and_then(|value| value.parse().ok());
+        Ok(Self {
+            known: Known {
+                cell,
+                shear_modulus: number("shear_modulus")?,
+                poisson_ratio: number("poisson_ratio")?,
+                density: number("density")?,
+                law: None,
+                friction: number("friction")?,
+            },
+            state: State { time: number("Time")?.unwrap_or(0.0), ..State::at(whole("step").unwrap_or(0)) },
+            columns,
+            fields,
+        })
+    }
+
+    fn grain(
+        &self,
+        line: &Line<'_>,
+        index: usize,
+        options: &ImportOptions,
+        grains: &mut GrainTable,
+    ) -> Result<(), ImportError> {
+        let fields: Vec<&str> = line.text.split_whitespace().collect();
+        if fields.len() != self.fields {
+            let (found, expected) = (fields.len(), self.fields);
+            return Err(line.error(format!("{found} fields; Properties announces {expected}")));
+        }
+        let column = |name: &str, width: usize| {
+            self.columns
+                .get(name)
+                .filter(|(_, w)| *w == width)
+                .map(|(first, _)| &fields[*first..first + width])
+        };
+        let vector = |name: &str| match column(name, 3) {
+            Some(&[x, y, z]) => line.vector(name, [x, y, z]).map(Some),
+            _ => Ok(None),
+        };
+        let position = vector("pos")?.ok_or_else(|| line.error("Properties has no column pos:R:3"))?;
+        let radius = match (column("radius", 1), options.radius) {
+            (_, Some(given)) => given,
+            (Some(&[radius]), None) => line.number("radius", radius)?,
+            _ => return Err(ImportError::Missing(vec![super::Setting::Radius])),
+        };
+        let id = match column("id", 1) {
+            Some(&[id]) => line.id("id", id)?,
+            _ => index as u32,
+        };
+        if let Some((first, _)) = self.columns.get("pos") {
+            grains.printed([fields[*first], fields[first + 1], fields[first + 2]]);
+        }
+        let velocity = vector("velo")?.unwrap_or_else(Vec3::zeros);
+        let spin = vector("angular_velocity")?.unwrap_or_else(Vec3::zeros);
+        grains.push(line, id, radius, [position, velocity, spin])
+    }
+}
+
+/// `key=value` and `key="value with spaces"`.
+fn entries(text: &str) -> BTreeMap<&str, &str> {
+    let mut found = BTreeMap::new();
+    let mut rest = text.trim();
+    while let Some((key, after)) = rest.split_once('=') {
+        let key = key.rsplit(char::is_whitespace).next().unwrap_or(key);
+        let (value, left) = match after.strip_prefix('"') {
+            Some(quoted) => quoted.split_once('"').unwrap_or((quoted, "")),
+            None => after.split_once(char::is_whitespace).unwrap_or((after, "")),
+        };
+        found.insert(key, value);
+        rest = left.trim_start();
+    }
+    found
+}

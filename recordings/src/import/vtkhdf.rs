@@ -1,0 +1,172 @@
+//! VTKHDF files of grains, as `grainlab bag export --format vtkhdf` and others write them: HDF5 with the layout of `vtkPolyData`.
+//!
+//! Read of `PointData`: `radius` (or `Radius`), and where they are `id`, `velocity`, `angular_velocity` and `position_unwrapped`; else
+//! `Points`. Of `FieldData`: `cell`, `deformation`, `shear_modulus`, `poisson_ratio`, `density`, `friction`, `TimeValue`, `step`,
+//! `time_step`. Contacts are those of the file of contacts beside it, or else found from positions.
+
+use super::Setting;
+use super::assemble::{self, GrainTable, ListedContact, ListedForce, State};
+use super::error::ImportError;
+use super::imported::Imported;
+use super::settings::{ImportOptions, Known};
+use super::text::Line;
+use grainlab_core::contact::ContactLaw;
+use grainlab_core::{Mat3, Vec3};
+use hdf5_pure::{AttrValue, File, H5Element};
+
+/// The first bytes of every HDF5 file.
+pub(super) const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
+
+/// The packing of a file of grains, with the file of its contacts if there is one.
+///
+/// # Errors
+/// If a file is not VTKHDF, is damaged, or lacks a quantity.
+pub fn packing(
+    grains: Vec<u8>,
+    contacts: Option<Vec<u8>>,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
+    let file = Data::open(grains)?;
+    let field = |name: &str| file.scalar(&format!("FieldData/{name}"));
+    let matrix = |name: &str| -> Result<Option<Mat3>, ImportError> {
+        let numbers = file.numbers::<f64>(&format!("FieldData/{name}"))?;
+        Ok(numbers.filter(|n| n.len() == 9).map(|n| Mat3::from_row_slice(&n)))
+    };
+    let known = Known {
+        cell: matrix("cell")?,
+        shear_modulus: field("shear_modulus")?,
+        poisson_ratio: field("poisson_ratio")?,
+        density: field("density")?,
+        law: file.law()?,
+        friction: field("friction")?,
+    };
+    let settings = known.complete(options)?;
+    let state = State {
+        step: field("step")?.filter(|s| *s >= 0.0).map_or(0, |s| s as u64),
+        time: field("TimeValue")?.unwrap_or(0.0),
+        deformation: matrix("deformation")?.unwrap_or_else(Mat3::identity),
+        time_step: field("time_step")?.unwrap_or(0.0),
+    };
+    let table = file.grains(options)?;
+    let listed = contacts.map(|bytes| Data::open(bytes)?.contacts()).transpose()?;
+    assemble::packing(table, &settings, listed.as_deref(), state, "VTKHDF".into(), Vec::new())
+}
+
+/// An opened file.
+struct Data(File);
+
+fn damaged(problem: impl std::fmt::Display) -> ImportError {
+    ImportError::Hdf(problem.to_string())
+}
+
+impl Data {
+    fn open(bytes: Vec<u8>) -> Result<Self, ImportError> {
+        let file = File::from_bytes(bytes).map_err(damaged)?;
+        let kind = file.group("VTKHDF").and_then(|group| group.attrs()).map_err(damaged)?;
+        match kind.get("Type") {
+            Some(AttrValue::AsciiString(kind) | AttrValue::String(kind)) if kind == "PolyData" => {
+                Ok(Self(file))
+            }
+            other => Err(damaged(format!("the attribute Type of /VTKHDF is {other:?}; PolyData is read"))),
+        }
+    }
+
+    /// The numbers of a dataset under `/VTKHDF`; `None` if it does not exist.
+    fn numbers<T: H5Element>(&self, name: &str) -> Result<Option<Vec<T>>, ImportError> {
+        match self.0.dataset(&format!("VTKHDF/{name}")) {
+            Ok(set) => set.read::<T>().map(Some).map_err(|e| damaged(format!("{name}: {e}"))),
+            Err(_) => Ok(None),
+        }
+    }
+
+    fn scalar(&self, name: &str) -> Result<Option<f64>, ImportError> {
+        Ok(self.numbers::<f64>(name)?.and_then(|n| n.first().copied()))
+    }
+
+    fn vectors(&self, name: &str, count: usize) -> Result<Option<Vec<Vec3>>, ImportError> {
+        let Some(numbers) = self.numbers::<f64>(name)? else { return Ok(None) };
+        if numbers.len() != 3 * count {
+            return Err(damaged(format!("{name} has {} numbers for {count} rows of three", numbers.len())));
+        }
+        Ok(Some(numbers.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect()))
+    }
+
+    fn column<T: H5Element>(&self, name: &str, count: usize) -> Result<Option<Vec<T>>, ImportError> {
+        let found = self.numbers::<T>(name)?;
+        match found {
+            Some(values) if values.len() != count => {
+                Err(damaged(format!("{name} has {} numbers for {count} rows", values.len())))
+            }
+            found => Ok(found),
+        }
+    }
+
+    fn law(&self) -> Result<Option<ContactLaw>, ImportError> {
+        let Ok(attributes) = self.0.group("grainlab").and_then(|group| group.attrs()) else {
+            return Ok(None);
+        };
+        let Some(AttrValue::AsciiString(name) | AttrValue::String(name)) = attributes.get("contact_law")
+        else {
+            return Ok(None);
+        };
+        let parameters = match attributes.get("contact_law_parameters") {
+            Some(AttrValue::F64Array(parameters)) => parameters.clone(),
+            Some(AttrValue::F64(parameter)) => vec![*parameter],
+            _ => Vec::new(),
+        };
+        ContactLaw::new(name, &parameters).map(Some).map_err(damaged)
+    }
+
+    fn grains(&self, options: &ImportOptions) -> Result<GrainTable, ImportError> {
+        let radii = match self.numbers::<f64>("PointData/radius")? {
+            None => self.numbers::<f64>("PointData/Radius")?,
+            found => found,
+        };
+        let points =
+            self.numbers::<f64>("Points")?.ok_or_else(|| damaged("there is no dataset /VTKHDF/Points"))?;
+        let count = points.len() / 3;
+        let radii = match (options.radius, radii) {
+            (Some(radius), _) => vec![radius; count],
+            (None, Some(radii)) if radii.len() == count => radii,
+            (None, Some(radii)) => return Err(damaged(format!("{} radii for {count} points", radii.len()))),
+            (None, None) => return Err(ImportError::Missing(vec![Setting::Radius])),
+        };
+        let positions = match self.vectors("PointData/position_unwrapped", count)? {
+            Some(held) => held,
+            None => self.vectors("Points", count)?.unwrap_or_default(),
+        };
+        let zeros = || vec![Vec3::zeros(); count];
+        let velocities = self.vectors("PointData/velocity", count)?.unwrap_or_else(zeros);
+        let spins = self.vectors("PointData/angular_velocity", count)?.unwrap_or_else(zeros);
+        let ids = self.column::<u32>("PointData/id", count)?.unwrap_or_else(|| (0..count as u32).collect());
+        let mut table = GrainTable::default();
+        for k in 0..count {
+            // Rows take the place of lines in messages.
+            let row = Line { number: k + 1, text: "" };
+            table.push(&row, ids[k], radii[k], [positions[k], velocities[k], spins[k]])?;
+        }
+        Ok(table)
+    }
+
+    fn contacts(&self) -> Result<Vec<ListedContact>, ImportError> {
+        let need = |name: &str| damaged(format!("the file of contacts has no dataset CellData/{name}"));
+        let pairs = self.numbers::<u32>("CellData/pair")?.ok_or_else(|| need("pair"))?;
+        let count = pairs.len() / 2;
+        let of =
+            |name: &str| self.column::<f64>(&format!("CellData/{name}"), count)?.ok_or_else(|| need(name));
+        let three = |name: &str| self.vectors(&format!("CellData/{name}"), count);
+        let (overlaps, forces) = (of("overlap")?, of("normal_force")?);
+        let normals = three("normal")?.ok_or_else(|| need("normal"))?;
+        let tangential = three("tangential_force")?.ok_or_else(|| need("tangential_force"))?;
+        let rolling = three("rolling_force")?;
+        let contact = |k: usize| ListedContact {
+            line: k + 1,
+            ids: (pairs[2 * k], pairs[2 * k + 1]),
+            normal: Some(-normals[k]),
+            overlap: Some(overlaps[k]),
+            force: ListedForce::Split { normal: forces[k], tangential: tangential[k] },
+            rolling: rolling.as_ref().map_or_else(Vec3::zeros, |r| r[k]),
+        };
+        Ok((0..count).map(contact).collect())
+    }
+}

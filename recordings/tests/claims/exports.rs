@@ -1,0 +1,176 @@
+//! What is exported is read back.
+
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_recordings::export::{ExportFormat, Exporter};
+use grainlab_recordings::import::{ImportOptions, load, vtkhdf};
+use std::path::{Path, PathBuf};
+
+use crate::reference_packing::reference;
+
+fn golden() -> Packing {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/golden/packings/anisotropic_2000.csv.gz");
+    load(&path, &ImportOptions::default()).unwrap().packings.remove(0).packing
+}
+
+/// Writes `packings` in `format`; the folder and the names of the files.
+fn export(packings: &[Packing], format: ExportFormat) -> (tempfile::TempDir, Vec<PathBuf>) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut exporter = Exporter::new(format);
+    let mut files: Vec<PathBuf> = Vec::new();
+    let mut parts: Vec<_> = packings.iter().flat_map(|p| exporter.next(p).unwrap()).collect();
+    parts.extend(exporter.finish());
+    for part in parts {
+        let path = folder.path().join(&part.name);
+        let mut content = std::fs::read(&path).unwrap_or_default();
+        content.extend(part.content);
+        std::fs::write(&path, content).unwrap();
+        if !files.contains(&path) {
+            files.push(path);
+        }
+    }
+    (folder, files)
+}
+
+#[test]
+fn vtkhdf_holds_a_packing_without_loss() {
+    let packing = golden();
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::VtkHdf);
+    let back = load(&files[0], &ImportOptions::default()).unwrap().packings.remove(0);
+    assert_eq!(back.packing, packing);
+    assert!(back.notes.is_empty(), "{:?}", back.notes);
+}
+
+#[test]
+fn vtkhdf_without_contacts_beside_it_has_those_of_the_positions() {
+    let packing = golden();
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::VtkHdf);
+    std::fs::remove_file(&files[1]).unwrap();
+    let back = load(&files[0], &ImportOptions::default()).unwrap().packings.remove(0);
+    assert_eq!(back.packing.positions, packing.positions);
+    assert_eq!(back.packing.contacts.len(), packing.contacts.len());
+    assert!(back.notes[0].contains("found from positions"));
+}
+
+#[test]
+fn every_cut_of_a_vtkhdf_file_is_an_error_or_the_packing_and_no_panic() {
+    let packing = golden();
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::VtkHdf);
+    let bytes = std::fs::read(&files[0]).unwrap();
+    for cut in (0..bytes.len()).step_by(bytes.len() / 97) {
+        assert!(vtkhdf::packing(bytes[..cut].to_vec(), None, &ImportOptions::default()).is_err(), "{cut}");
+    }
+    for at in (0..bytes.len().min(20_000)).step_by(7) {
+        let mut changed = bytes.clone();
+        changed[at] ^= 0xff;
+        let _ = vtkhdf::packing(changed, None, &ImportOptions::default());
+    }
+}
+
+#[test]
+fn frames_of_extended_xyz_have_the_grains_bit_for_bit() {
+    let first = golden();
+    let second = Packing { step: 7, time: 0.25, ..first.clone() };
+    let (_folder, files) = export(&[first.clone(), second], ExportFormat::Xyz);
+    assert_eq!(files.len(), 1);
+    let back = load(&files[0], &ImportOptions::default()).unwrap().packings;
+    assert_eq!(back.len(), 2);
+    for (found, step) in back.iter().zip([first.step, 7]) {
+        let p = &found.packing;
+        assert_eq!(
+            (p.positions.clone(), p.radii.clone(), p.step),
+            (first.positions.clone(), first.radii.clone(), step)
+        );
+        assert_eq!((p.cell, p.material, p.friction), (first.cell, first.material, first.friction));
+        assert_eq!(p.contacts.len(), first.contacts.len());
+    }
+}
+
+#[test]
+fn a_frame_of_extended_xyz_with_a_fault_names_its_line() {
+    let header = "Lattice=\"1 0 0 0 1 0 0 0 1\" Properties=pos:R:3:radius:R:1";
+    let read = |text: String| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.xyz");
+        std::fs::write(&path, text).unwrap();
+        let options = ImportOptions {
+            shear_modulus: Some(1e9),
+            poisson_ratio: Some(0.2),
+            density: Some(1e3),
+            friction: Some(0.0),
+            ..ImportOptions::default()
+        };
+        load(&path, &options).map(|loaded| loaded.packings.len()).map_err(|e| e.to_string())
+    };
+    assert_eq!(read(format!("1\n{header}\n0 0 0 0.1\n")), Ok(1));
+    for (text, words) in [
+        (format!("2\n{header}\n0 0 0 0.1\n"), "1 of 2"),
+        (format!("1\n{header}\n0 0 0\n"), "line 3"),
+        (format!("1\n{header}\n0 0 x 0.1\n"), "line 3"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("pos", "position")), "pos:R:3"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("1 0 0 0 1", "1 0 0 0")), "Lattice has 8"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("R:3:", "R:9999999:")), "width of pos"),
+        (format!("1\n{}\n0 0 0 0.1\n", header.replace("radius", "size")), "radius"),
+    ] {
+        let error = read(text.clone()).unwrap_err();
+        assert!(error.contains(words), "{text}: {error}");
+    }
+}
+
+#[test]
+fn lammps_data_has_the_grains_folded_into_the_cell() {
+    let mut packing = reference().packing;
+    // Two cells away.
+    let shift = packing.cell.matrix().column(0) * 2.0;
+    packing.positions[0] += shift;
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::LammpsData);
+    let options = ImportOptions {
+        shear_modulus: Some(packing.material.shear_modulus),
+        poisson_ratio: Some(packing.material.poisson_ratio),
+        friction: Some(packing.friction),
+        ..ImportOptions::default()
+    };
+    let back = load(&files[0], &options).unwrap().packings.remove(0).packing;
+    assert_eq!(back.radii, packing.radii);
+    assert_eq!(back.contacts.len(), reference().packing.contacts.len());
+    assert!(back.cell.fractional(&back.positions[0]).iter().all(|f| (0.0..1.0).contains(f)));
+}
+
+#[test]
+fn dumps_of_grains_and_contacts_give_the_forces_back() {
+    let packing = reference().packing;
+    let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::LammpsDump);
+    let m = &packing.material;
+    let options = ImportOptions {
+        shear_modulus: Some(m.shear_modulus),
+        poisson_ratio: Some(m.poisson_ratio),
+        density: Some(m.density),
+        friction: Some(packing.friction),
+        contact_forces: Some(std::fs::read_to_string(&files[1]).unwrap()),
+        ..ImportOptions::default()
+    };
+    let back = load(&files[0], &options).unwrap().packings.remove(0).packing;
+    let mean = packing.contacts.iter().map(|c| c.normal_force).sum::<f64>() / packing.contacts.len() as f64;
+    assert_eq!(back.contacts.len(), packing.contacts.len());
+    for (a, b) in back.contacts.iter().zip(&packing.contacts) {
+        assert_eq!((a.i, a.j, a.image), (b.i, b.j, b.image));
+        assert!((a.normal_force - b.normal_force).abs() < 1e-12 * mean);
+        assert!((a.tangential_force - b.tangential_force).norm() < 1e-12 * mean);
+    }
+}
+
+#[test]
+fn a_sheared_cell_is_refused_by_lammps_formats_only() {
+    let mut packing = golden();
+    let edge = packing.cell.matrix()[(0, 0)];
+    let sheared = Mat3::new(edge, 0.0, 0.0, 0.1 * edge, edge, 0.0, 0.0, 0.0, edge);
+    packing.cell = Cell::new(sheared).unwrap();
+    packing.contacts.clear();
+    packing.positions = packing.positions.iter().map(|x| x * 1e-3 + Vec3::repeat(1e-9)).collect();
+    for format in [ExportFormat::LammpsDump, ExportFormat::LammpsData] {
+        let error = Exporter::new(format).next(&packing).unwrap_err().to_string();
+        assert!(error.contains("vtkhdf"), "{error}");
+    }
+    for format in [ExportFormat::Csv, ExportFormat::Xyz, ExportFormat::Vtk, ExportFormat::VtkHdf] {
+        assert!(Exporter::new(format).next(&packing).is_ok());
+    }
+}
