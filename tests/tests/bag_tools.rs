@@ -220,7 +220,7 @@ fn topics_of_any_type_are_recorded_and_played_back_with_every_value() {
     let mut read: BTreeMap<String, Vec<Value>> = BTreeMap::new();
     for line in run(&lab, &["bag", "cat", "known"]).lines() {
         let line: Value = serde_json::from_str(line).unwrap();
-        read.entry(line["topic"].as_str().unwrap().to_owned()).or_default().push(line["message"].clone());
+        read.entry(line["topic"].as_str().unwrap().to_owned()).or_default().push(line["data"].clone());
     }
     for (name, all) in &read {
         assert_eq!(all, &sent[name], "{name}");
