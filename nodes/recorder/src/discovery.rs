@@ -18,6 +18,9 @@ const MOST: u32 = 10_000;
 /// has just been discovered are known.
 const LOOK: Duration = Duration::from_millis(100);
 
+/// Time after which named topics that nobody publishes are reported: a name may be misspelt.
+const PATIENCE: Duration = Duration::from_secs(3);
+
 /// What is recorded besides the topics of the contract.
 #[derive(Clone, Debug)]
 pub struct OtherTopics {
@@ -47,6 +50,7 @@ pub(crate) struct Found {
 pub(crate) struct Finder {
     settings: OtherTopics,
     next_look: Duration,
+    has_waited: bool,
     /// Time at which each topic that is not recorded yet was seen first.
     seen: BTreeMap<String, Duration>,
     /// Topics whose types nothing more is said about: found, or said to have more than one type, or another one than that of
@@ -56,7 +60,13 @@ pub(crate) struct Finder {
 
 impl Finder {
     pub(crate) fn new(settings: OtherTopics) -> Self {
-        Self { settings, next_look: Duration::ZERO, seen: BTreeMap::new(), settled: BTreeSet::new() }
+        Self {
+            settings,
+            next_look: Duration::ZERO,
+            has_waited: false,
+            seen: BTreeMap::new(),
+            settled: BTreeSet::new(),
+        }
     }
 
     /// The topics that appeared, without those in `known`.
@@ -66,6 +76,11 @@ impl Finder {
             return Vec::new();
         }
         self.next_look = now + LOOK;
+        if now >= PATIENCE && !std::mem::replace(&mut self.has_waited, true) {
+            for name in self.missing(known) {
+                log::warn!("/{name}: no process publishes it yet; it is recorded as soon as one does");
+            }
+        }
         let mut by_topic: BTreeMap<String, Vec<Offer>> = BTreeMap::new();
         for offer in bus.offers() {
             by_topic.entry(offer.topic.clone()).or_default().push(offer);
@@ -93,13 +108,15 @@ impl Finder {
 
     /// Says of which named topics nothing was published.
     pub(crate) fn report_missing(&self, known: &BTreeSet<String>) {
-        let absent = |name: &&String| !known.contains(&format!("/{name}"));
-        for name in self.settings.wanted.names().iter().filter(absent) {
-            // Of the contract, under the name that it has with namespace and remaps.
-            if Topic::by_name(name).is_none() {
-                log::warn!("/{name} is not recorded: no process published it");
-            }
+        for name in self.missing(known) {
+            log::warn!("/{name} is not recorded: no process published it");
         }
+    }
+
+    /// The named topics that were not found. Those of the contract may have another name, with namespace and remaps.
+    fn missing(&self, known: &BTreeSet<String>) -> Vec<&String> {
+        let absent = |name: &&String| !known.contains(&format!("/{name}")) && Topic::by_name(name).is_none();
+        self.settings.wanted.names().iter().filter(absent).collect()
     }
 
     fn found(&self, name: &str, offers: &[Offer]) -> Option<Found> {
