@@ -1,5 +1,7 @@
 use super::*;
-use grainlab_node_kit::{Hub, MemoryBus, Names};
+use crate::{Recorder, ResultSlot, Settings};
+use grainlab_node_kit::{Exit, Faults, Hub, MemoryBus, Names, Node};
+use grainlab_recordings::WriterOptions;
 
 const BEST_EFFORT: Qos = Qos { reliable: false, depth: 5, transient_local: false };
 
@@ -72,4 +74,44 @@ fn a_topic_of_two_types_is_refused_until_one_is_left() {
     assert!(found(&mut finder, &mut own, &BTreeSet::new()).is_empty());
     drop(two);
     assert_eq!(found(&mut finder, &mut own, &BTreeSet::new()).len(), 1);
+}
+
+#[test]
+fn losses_of_a_topic_of_any_type_are_counted_from_its_first_message() {
+    let hub = Hub::new(5);
+    let (mut other, mut own) = (bus(&hub, "other"), bus(&hub, "own"));
+    let topic = Topic::outside_contract("/chatter", "demo_msgs/msg/Any", BEST_EFFORT).unwrap();
+    let id = other.advertise(&topic).unwrap();
+    let body = [0, 1, 0, 0, 7, 0, 0, 0];
+    other.publish(id, &body).unwrap(); // Before the recording.
+    let folder = tempfile::tempdir().unwrap();
+    let settings = Settings {
+        output: Some(folder.path().join("any")),
+        topics: Vec::new(),
+        others: Some(settings()),
+        scene: None,
+        whole_run: false,
+        writer: WriterOptions::default(),
+        snapshot: None,
+        append: false,
+    };
+    let result = ResultSlot::default();
+    let mut recorder = Recorder::new(&mut own, &settings, result.clone()).unwrap();
+    for _ in 0..5 {
+        recorder.step(&mut own).unwrap();
+        own.wait(LOOK);
+    }
+    for lossy in [false, true, false] {
+        hub.set_faults("/chatter", Faults { drop: if lossy { 1.0 } else { 0.0 }, ..Faults::default() });
+        for _ in 0..10 {
+            other.publish(id, &body).unwrap();
+        }
+        own.wait(LOOK);
+        recorder.step(&mut own).unwrap();
+    }
+    assert_eq!(recorder.on_shutdown(&mut own).unwrap(), Exit::DataLoss);
+    let finished = result.borrow_mut().take().unwrap();
+    let tallies = finished.ledger.tallies();
+    let tally = tallies.iter().find(|t| t.name == "/chatter").unwrap();
+    assert_eq!((tally.published, tally.recorded, tally.lost), (30, 20, 10));
 }
