@@ -51,13 +51,16 @@ impl Qos {
     /// The profile as rosbag2 writes it into a channel's `offered_qos_profiles` and, as a string, into
     /// metadata.yaml: a list with one map, with numbers instead of words, which every distribution reads. No
     /// newline at the end.
+    ///
+    /// A depth of 0 is an unknown history, as of a writer that discovery found.
     pub fn offered_qos_profiles(&self) -> String {
+        let history = if self.depth == 0 { 3 } else { 1 };
         let reliability = if self.reliable { 1 } else { 2 };
         let durability = if self.transient_local { 1 } else { 2 };
         // Seconds and nanoseconds of the infinite duration of ROS 2: 2^63 - 1 ns.
         let infinite = "\n    sec: 9223372036\n    nsec: 854775807";
         format!(
-            "- history: 1\n  depth: {depth}\n  reliability: {reliability}\n  durability: {durability}\n  \
+            "- history: {history}\n  depth: {depth}\n  reliability: {reliability}\n  durability: {durability}\n  \
              deadline:{infinite}\n  lifespan:{infinite}\n  liveliness: 1\n  liveliness_lease_duration:{infinite}\n  \
              avoid_ros_namespace_conventions: false",
             depth = self.depth
@@ -66,6 +69,22 @@ impl Qos {
 }
 
 impl Topic {
+    /// A topic outside the contract with the full name `name`, of any type `package/kind/Name`; `None` if the type is not
+    /// written so. Its texts are kept to the end of the process, as those of the contract are.
+    pub fn outside_contract(name: &str, type_name: &str, qos: Qos) -> Option<Self> {
+        let constant = |text: &str| -> &'static str { String::from(text).leak() };
+        let [package, _, short] = type_name.split('/').collect::<Vec<_>>()[..] else { return None };
+        let info = TypeInfo::by_name(type_name).copied().unwrap_or_else(|| TypeInfo {
+            package: constant(package),
+            name: constant(short),
+            type_name: constant(type_name),
+            hash: "",
+            fields: &[],
+            definition: "",
+        });
+        Some(Self { name: constant(name), info, qos, writer: "", reproducible: false, summary: "" })
+    }
+
     /// Its name in a recording without namespace: `/stress`.
     pub fn absolute_name(&self) -> String {
         format!("/{}", self.name.trim_start_matches('/'))

@@ -6,6 +6,7 @@
 //! - `reader`: reads recordings by topic and time; truncation and damage are reported
 //! - [`recover()`]: completes the files of a recorder that was killed
 //! - [`copy`]: recordings made from others: cut, merged, filtered, compressed
+//! - `definitions`: schemas of message types; `qos`: profiles of rosbag2
 //! - `player`: the schedule of a playback, without a clock or a socket
 //! - [`import`]: packings from CSV, LAMMPS dump and data files, YADE exports, and recordings
 //! - [`export`]: packings to CSV and LAMMPS dump files
@@ -17,6 +18,7 @@
 mod bag_metadata;
 mod compression;
 pub mod copy;
+mod definitions;
 pub mod export;
 pub mod import;
 pub mod input;
@@ -24,16 +26,19 @@ mod ledger;
 mod metadata_keys;
 mod new_path;
 mod player;
+mod qos;
 mod reader;
 mod recover;
 pub mod runs;
 mod writer;
 
 pub use compression::Compression;
+pub use definitions::{DefinitionError, Definitions};
 pub use ledger::{Guid, GuidError, Ledger, TopicTally, WriterTally, merge};
 pub use metadata_keys::{COPY_RECORD, LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 pub use new_path::NewPath;
 pub use player::{Play, PlayError, PlayOptions, Player};
+pub use qos::{QosError, QosOverrides, adapted, offered_profiles, profiles};
 pub use reader::{
     ChannelInfo, Check, Info, Message, Messages, Payload, ReadError, Recording, Selection, StoredFile,
     TopicInfo, Warning, WarningKind,

@@ -24,6 +24,7 @@ use crate::ledger::{Guid, Ledger};
 use crate::metadata_keys::{LEDGER_KEY, METADATA_RECORD, SESSION_KEY};
 use crate::reader::Recording;
 
+mod counted;
 mod device_sync;
 mod error;
 mod free_space;
@@ -271,6 +272,10 @@ impl RunWriter {
         self.unchecked += sample.payload.len() as u64;
         if self.unchecked >= CHECK_EVERY {
             self.require_space()?;
+        }
+        // The file grew by a chunk just now, or not at all.
+        if self.part.as_ref().is_some_and(|part| part.bytes() >= self.options.split_bytes) {
+            self.split_if_due(now)?;
         }
         self.tick(now)?;
         Ok(Outcome::Recorded { log_time })

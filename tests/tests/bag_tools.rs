@@ -1,10 +1,13 @@
 //! The tools of `grainlab bag` beside the Python readers of ROS 2, on a run of ours and on recordings of other programs.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use grainlab_recordings::{Recording, Selection};
+use serde_json::Value;
 use system_tests::lab::{LIMIT, Lab, golden};
+use system_tests::process::Process;
 use system_tests::python;
 
 const READERS: &str = "mcap_ros2, rosbags, zstandard, lz4, yaml";
@@ -162,4 +165,121 @@ fn a_snapshot_is_written_when_its_trigger_comes() {
     let last = lab.folder().join("last");
     assert_eq!(of(&last, "/moduli"), of(Path::new(source), "/moduli"));
     assert!(of(&last, "/stress") > 0);
+}
+
+/// Topics of types that grainlab does not have, on CycloneDDS.
+fn peer(lab: &Lab, python: &Path, what: &str) -> Process {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/foreign_peer.py");
+    let mut command = Command::new(python);
+    command.arg(script).arg(what).env("ROS_DOMAIN_ID", lab.domain.to_string()).env_remove("CYCLONEDDS_URI");
+    Process::start(&mut command)
+}
+
+/// What the other program printed: messages by topic.
+fn messages(peer: Process) -> BTreeMap<String, Vec<Value>> {
+    let ended = peer.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    serde_json::from_str(&ended.stdout).unwrap()
+}
+
+#[test]
+fn topics_of_any_type_are_recorded_and_played_back_with_every_value() {
+    let Some(python) = python::with(&format!("cyclonedds, {READERS}")) else { return };
+    let lab = Lab::new();
+    for (file, text) in [
+        ("std_msgs/msg/String.msg", "string data\n"),
+        ("demo_msgs/msg/One.msg", "uint8 value\n"),
+        ("demo_msgs/msg/Pair.msg", "std_msgs/Header header\nOne[] ones\nfloat64[3] xyz\nbool ok\n"),
+    ] {
+        let path = lab.folder().join("messages").join(file);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    let recorder = lab.start(&["bag", "record", "-a", "--msg-path", "messages", "-o", "any"]);
+    let sent = messages(peer(&lab, &python, "publish"));
+    recorder.signal(libc::SIGINT);
+    let ended = recorder.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let warned = ended.stderr.lines().filter(|l| l.contains("without a schema")).collect::<Vec<_>>();
+    assert!(
+        matches!(warned[..], [one] if one.contains("/mystery") && one.contains("--msg-path")),
+        "{warned:?}"
+    );
+
+    // Those with a schema, decoded by three readers.
+    let topics: Vec<&str> = sent.keys().map(String::as_str).collect();
+    assert_eq!(topics, ["/chatter", "/late", "/mystery", "/scan/pairs"]);
+    let known = ["--topics", "chatter", "late", "scan/pairs"];
+    run(&lab, &[&["bag", "filter", "any", "-o", "known"], &known[..]].concat());
+    let total: usize = sent.iter().filter(|(name, _)| *name != "/mystery").map(|(_, all)| all.len()).sum();
+    for (reader, path) in [("mcap", "known/known_0.mcap"), ("rosbags", "known")] {
+        assert_eq!(compare(&lab, &python, reader, path), total, "{reader}");
+    }
+    let check = python::tool(&python, "check_mcap.py", &[lab.folder().join("known").to_str().unwrap()]);
+    assert!(check.status.success(), "{}", String::from_utf8_lossy(&check.stdout));
+    let mut read: BTreeMap<String, Vec<Value>> = BTreeMap::new();
+    for line in run(&lab, &["bag", "cat", "known"]).lines() {
+        let line: Value = serde_json::from_str(line).unwrap();
+        read.entry(line["topic"].as_str().unwrap().to_owned()).or_default().push(line["data"].clone());
+    }
+    for (name, all) in &read {
+        assert_eq!(all, &sent[name], "{name}");
+    }
+
+    // The QoS of the publishers, in the file and for rosbag2.
+    let recording = Recording::open(&lab.folder().join("any")).unwrap();
+    let metadata = std::fs::read_to_string(lab.folder().join("any/metadata.yaml")).unwrap();
+    for (topic, kind, reliability, durability) in [
+        ("/chatter", "std_msgs/msg/String", 1, 2),
+        ("/scan/pairs", "demo_msgs/msg/Pair", 2, 2),
+        ("/mystery", "demo_msgs/msg/Mystery", 1, 1),
+    ] {
+        let channel = recording.channel(topic).unwrap();
+        let expected = format!("reliability: {reliability}\n  durability: {durability}\n");
+        assert!(channel.qos.contains(&expected), "{topic}: {}", channel.qos);
+        assert_eq!(channel.ros_type, kind);
+        assert!(metadata.contains(&Value::from(channel.qos.as_str()).to_string()), "{topic}");
+    }
+    let mystery = recording.channel("/mystery").unwrap();
+    assert!(mystery.schema.is_empty() && mystery.schema_encoding.is_empty(), "{mystery:?}");
+
+    // Played back, with the schema and without.
+    let listener = peer(&lab, &python, "listen");
+    let play = [&["bag", "play", "any", "--topics"], &topics[..]].concat();
+    run(&lab, &play);
+    assert_eq!(messages(listener), sent);
+}
+
+#[test]
+fn a_recording_of_another_program_is_played_and_recorded_again_byte_for_byte() {
+    let Some(python) = python::with(READERS) else { return };
+    let lab = Lab::new();
+    let source = foreign(&lab, &python).join("none.mcap");
+    std::fs::write(lab.folder().join("qos.yaml"), "/imu: {reliability: best_effort, depth: 300}\n").unwrap();
+    let topics = ["--topics", "imu", "joints", "camera/image"];
+    let recorder = lab.start(&[&["bag", "record", "-o", "again"], &topics[..]].concat());
+    let overrides = ["--qos-profile-overrides-path", "qos.yaml"];
+    run(&lab, &[&["bag", "play", source.to_str().unwrap()], &overrides[..]].concat());
+    recorder.signal(libc::SIGINT);
+    let ended = recorder.ended(LIMIT);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let (before, after) =
+        (Recording::open(&source).unwrap(), Recording::open(&lab.folder().join("again")).unwrap());
+    for (topic, count, reliability) in [("/imu", 200, 2), ("/joints", 20, 1), ("/camera/image", 20, 1)] {
+        let bodies = |recording: &Recording| -> Vec<Vec<u8>> {
+            recording.messages(&Selection::topics([topic])).unwrap().map(|m| m.payload.to_vec()).collect()
+        };
+        let (sent, received) = (bodies(&before), bodies(&after));
+        assert_eq!((sent.len(), received.len()), (count, count), "{topic}");
+        let orders = |all: &[Vec<u8>]| [0, 1].map(|order| all.iter().filter(|body| body[1] == order).count());
+        assert_eq!(orders(&sent), orders(&received), "{topic}");
+        assert!(topic != "/imu" || !orders(&sent).contains(&0), "both byte orders are played");
+        for (sent, received) in sent.iter().zip(&received) {
+            // RTPS fills up the last word.
+            assert!(received.starts_with(sent) && received.len() < sent.len() + 4, "{topic}");
+        }
+        let (old, new) = (before.channel(topic).unwrap(), after.channel(topic).unwrap());
+        assert_eq!(old.ros_type, new.ros_type);
+        assert!(new.qos.contains(&format!("reliability: {reliability}\n")), "{topic}: {}", new.qos);
+    }
 }

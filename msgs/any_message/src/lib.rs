@@ -19,6 +19,8 @@
 mod cursor;
 mod decode;
 mod lines;
+mod literals;
+mod names;
 mod schema;
 mod shown;
 mod types;

@@ -1,5 +1,7 @@
 //! One line of a message file.
 
+use crate::names::{check_constant, check_field};
+
 /// A field or a constant, before its type is looked up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Declaration<'a> {
@@ -33,21 +35,19 @@ pub(crate) fn declaration(line: &str) -> Result<Option<Declaration<'_>>, String>
     if line.is_empty() {
         return Ok(None);
     }
-    let (type_text, rest) = line.split_once(char::is_whitespace).ok_or("a field needs a type and a name")?;
+    let (type_text, rest) = line
+        .split_once(char::is_whitespace)
+        .ok_or_else(|| format!("{line:?} is not a field: write a type and a name, as in float64 x"))?;
     let rest = rest.trim_start();
-    let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+    let end = rest.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(rest.len());
     let (name, rest) = rest.split_at(end);
-    if name.is_empty() {
-        return Err("a name has letters, digits and underscores".to_owned());
-    }
-    let spaced = rest.starts_with(char::is_whitespace);
     let rest = rest.trim();
     let (constant, default) = match rest.strip_prefix('=') {
         Some(value) => (Some(value.trim()), None),
         None if rest.is_empty() => (None, None),
-        None if spaced => (None, Some(rest)),
-        None => return Err(format!("{rest:?} after the name {name} is not understood")),
+        None => (None, Some(rest)),
     };
+    if constant.is_some() { check_constant(name) } else { check_field(name) }?;
     Ok(Some(Declaration { type_text, name, constant, default }))
 }
 
@@ -72,13 +72,19 @@ fn without_comment(line: &str) -> &str {
 /// The parts of `string<=10[<=3]` and the like.
 pub(crate) fn type_text(text: &str) -> Result<TypeText<'_>, String> {
     let number = |digits: &str| {
-        digits.trim().parse::<u32>().map_err(|_| format!("{digits:?} in {text} is not a length"))
+        let length =
+            digits.parse::<u32>().ok().filter(|n| *n > 0 && digits.bytes().all(|b| b.is_ascii_digit()));
+        length.ok_or_else(|| format!("{digits:?} in {text} is not a length: write a whole number, 1 or more"))
     };
     let (inner, array) = match text.split_once('[') {
         None => (text, None),
         Some((inner, rest)) => {
-            let inside = rest.strip_suffix(']').ok_or_else(|| format!("{text} has no closing bracket"))?;
-            let array = match (inside.trim(), inside.trim().strip_prefix("<=")) {
+            let inside = rest.strip_suffix(']').ok_or_else(|| {
+                format!(
+                    "{text} does not end with the bracket of an array: write [], [3] or [<=3], without spaces"
+                )
+            })?;
+            let array = match (inside, inside.strip_prefix("<=")) {
                 ("", _) => ArrayText::Any(None),
                 (_, Some(bound)) => ArrayText::Any(Some(number(bound)?)),
                 (fixed, None) => ArrayText::Fixed(number(fixed)?),
@@ -91,7 +97,7 @@ pub(crate) fn type_text(text: &str) -> Result<TypeText<'_>, String> {
         Some((base, bound)) => (base, Some(number(bound)?)),
     };
     if bound.is_some() && !matches!(base, "string" | "wstring") {
-        return Err(format!("{text}: only strings and arrays have a bound"));
+        return Err(format!("{text}: only strings and arrays have a bound, as in string<=10 or uint8[<=10]"));
     }
     Ok(TypeText { base, bound, array })
 }
@@ -113,6 +119,7 @@ mod tests {
         assert_eq!(parts("string s \"a # b = c\"  # d"), ("string", "s", None, Some("\"a # b = c\"")));
         assert_eq!(parts("string S='it\\'s # 1' # c"), ("string", "S", Some("'it\\'s # 1'"), None));
         assert_eq!(parts("string S=it's # c"), ("string", "S", Some("it's"), None));
+        assert_eq!(parts("string s \"a=b\""), ("string", "s", None, Some("\"a=b\"")));
         assert_eq!(parts("int32[] a [1, 2]"), ("int32[]", "a", None, Some("[1, 2]")));
         assert!(declaration("float64").is_err() && declaration("float64 a-b").is_err());
     }
@@ -123,7 +130,17 @@ mod tests {
         assert_eq!(of("string<=10[<=3]"), Ok(("string", Some(10), Some(ArrayText::Any(Some(3))))));
         assert_eq!(of("a_msgs/B[6]"), Ok(("a_msgs/B", None, Some(ArrayText::Fixed(6)))));
         assert_eq!(of("byte[]"), Ok(("byte", None, Some(ArrayText::Any(None)))));
-        for wrong in ["int8[", "int8[-1]", "int8[99999999999]", "int8<=3", "string<=x", "int8[]x"] {
+        for wrong in [
+            "int8[",
+            "int8[-1]",
+            "int8[0]",
+            "int8[+1]",
+            "int8[99999999999]",
+            "int8<=3",
+            "string<=x",
+            "int8[]x",
+            "int8[1,2",
+        ] {
             assert!(type_text(wrong).is_err(), "{wrong}");
         }
     }

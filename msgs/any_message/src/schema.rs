@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::lines::{ArrayText, TypeText, declaration, type_text};
+use crate::literals;
+use crate::names::check_type;
 use crate::types::{Constant, Element, Field, FieldType, Length, MessageType, Primitive};
 
 /// Maximum number of levels of nested messages.
@@ -112,6 +114,11 @@ fn sections(text: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
+/// Whether a type needs no message file of its own name. `time` and `duration` are those of ROS 1.
+fn is_built_in(base: &str) -> bool {
+    Primitive::by_name(base).is_some() || ["string", "wstring", "time", "duration"].contains(&base)
+}
+
 struct Resolver<'a> {
     texts: BTreeMap<String, &'a str>,
     known: BTreeMap<String, Arc<MessageType>>,
@@ -147,8 +154,22 @@ impl Resolver<'_> {
             }
             let Some(line) = declaration(line).map_err(wrong)? else { continue };
             let parts = type_text(line.type_text).map_err(wrong)?;
+            if !is_built_in(parts.base) {
+                check_type(parts.base).map_err(wrong)?;
+            }
             let element = self.element(name, &parts)?;
+            let is_taken = made.fields.iter().map(|f| &f.name).chain(made.constants.iter().map(|c| &c.name));
+            if is_taken.into_iter().any(|taken| taken == line.name) {
+                return Err(wrong(format!("the name {} is there already: choose another one", line.name)));
+            }
             if let Some(value) = line.constant {
+                if parts.array.is_some() {
+                    return Err(wrong(format!(
+                        "the constant {} is an array: constants are single values",
+                        line.name
+                    )));
+                }
+                literals::check(value, &element).map_err(wrong)?;
                 let (name, value) = (line.name.to_owned(), value.to_owned());
                 made.constants.push(Constant { name, kind: element, value });
                 continue;
@@ -163,6 +184,7 @@ impl Resolver<'_> {
             }
             let kind = FieldType { element, length };
             made.least = made.least.saturating_add(kind.least());
+            line.default.map_or(Ok(()), |text| literals::check_default(text, &kind)).map_err(wrong)?;
             let default = line.default.map(str::to_owned);
             made.fields.push(Field { name: line.name.to_owned(), kind, default });
         }
@@ -236,6 +258,21 @@ mod tests {
             SchemaError::NotMessage("p/A".into())
         );
         assert!(of("int8 a\n\nint8[ b").to_string().contains("line 3"));
+        for (line, problem) in [
+            ("uint8 a b c", "\"b c\" after the name"),
+            ("uint8 1a", "\"1a\" is not the name of a field"),
+            ("uint8[1,2 x", "uint8[1,2 does not end with the bracket"),
+            ("uint8 a_", "\"a_\" is not the name of a field"),
+            ("uint8 Max=3", "\"Max\" is not the name of a constant"),
+            ("uint8 MAX=300", "an integer from 0 to 255"),
+            ("uint8[2] PAIR=[1, 2]", "constants are single values"),
+            ("int8 v", "the name v is there already"),
+            ("uint9 a", "\"uint9\" is not a type"),
+            ("uint8", "\"uint8\" is not a field"),
+        ] {
+            let error = of(&format!("int8 v\n{line} # comment")).to_string();
+            assert!(error.contains("p/A, line 2") && error.contains(problem), "{line}: {error}");
+        }
         let chain: String = (1..70).map(|n| format!("{bar}\nMSG: p/T{n}\nT{} t\n", n + 1)).collect();
         assert!(matches!(of(&format!("T1 t\n{chain}")), SchemaError::Depth(_)));
     }

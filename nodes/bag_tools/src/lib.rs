@@ -22,7 +22,5 @@ mod selection;
 mod table;
 mod tables;
 mod times;
-mod topic_names;
 
 pub use compression::Compression;
-pub use topic_names::TopicNames;

@@ -8,7 +8,7 @@ use grainlab_console::Failure;
 use grainlab_console::network::tool_bus;
 use grainlab_msgs::topics;
 use grainlab_node_kit::{Bus, Exit};
-use grainlab_recordings::{PlayOptions, Player, Recording};
+use grainlab_recordings::{PlayOptions, Player, QosOverrides, Recording};
 use keys::Keys;
 use outlet::{Outlets, offer, pause, wait_for_readers};
 use session::Session;
@@ -21,9 +21,11 @@ Examples:
   grainlab bag play recordings/runs/demo-1-1 --topics packing
   grainlab bag play recordings/runs/demo-1-1 --rate 10 --start-offset 2.5 --clock 100
   grainlab bag play recordings/runs/demo-1-1 --remap stress:=/copy/stress --loop
+  grainlab bag play robot.mcap --qos-profile-overrides-path qos.yaml
 
 Playback that starts in the middle begins with the last earlier message of every latched topic. A topic that a live node
-publishes is left out with a message: two writers would mix their messages. Types that grainlab does not have are left out.
+publishes is left out with a message: two writers would mix their messages. Any type is played, byte for byte, with the QoS
+that its publishers offered when it was recorded (reliable, volatile, depth 10 if they differed).
 
 Keys, if stdin is a terminal, or with --start-paused or --step: space pauses and continues, s or right sends the next message,
 up and down change the rate by a tenth, q ends. Not from a terminal, an empty line is a step, too.";
@@ -93,6 +95,9 @@ pub struct Args {
     /// Publish the time of the recording on /clock, this often per second
     #[arg(long, value_name = "HZ", value_parser = frequency)]
     clock: Option<f64>,
+    /// QoS of topics instead of the recorded one, as a YAML file of rosbag2
+    #[arg(long, value_name = "FILE")]
+    qos_profile_overrides_path: Option<PathBuf>,
     /// Subscribers that every topic needs before sending
     #[arg(long, value_name = "N", default_value_t = 1)]
     min_subscribers: usize,
@@ -121,22 +126,20 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let patience = seconds("wait-for-subscribers", args.wait_for_subscribers)?;
     let recording = Recording::open(&args.path).map_err(Failure::failed)?;
     // Errors of the options are found before anything is published.
-    let wanted: Vec<String> = Player::new(&recording, &options)
-        .map_err(play_failure)?
-        .channels()
-        .iter()
-        .map(|c| c.topic.clone())
-        .collect();
+    let overrides = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
+    let overrides = overrides.map_err(Failure::usage)?.unwrap_or_default();
+    let wanted = Player::new(&recording, &options).map_err(play_failure)?.channels().to_vec();
 
     let mut bus = tool_bus("player")?;
     pause(&mut bus, LOOK_AROUND);
     let mut publishers = Outlets::new();
-    for name in wanted {
+    for channel in wanted {
+        let name = channel.topic.clone();
         let to = args.remap.iter().find(|r| r.from == name).map_or(name.as_str(), |r| &r.to);
         let replaced = args.clock.is_some() && to == topics::CLOCK.name;
         let outlet = match replaced {
             true => Err("--clock publishes it".to_owned()),
-            false => offer(&mut bus, &name, to)?,
+            false => offer(&mut bus, &channel, to, &overrides)?,
         };
         match outlet {
             Ok(publisher) => {

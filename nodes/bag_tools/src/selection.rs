@@ -1,9 +1,13 @@
 //! Topics on the command line.
 
-use crate::topic_names::whole;
 use grainlab_console::Failure;
 use grainlab_recordings::{ChannelInfo, Recording};
 use regex::Regex;
+
+/// An expression that matches whole names only: the longest match may be another alternative than the first one.
+fn whole(text: &str) -> Result<Regex, regex::Error> {
+    Regex::new(&format!("^(?:{text})$"))
+}
 
 /// Topics, by name, regular expression or type.
 #[derive(Clone, Debug, Default, clap::Args)]

@@ -56,15 +56,6 @@ pub(crate) fn ros_type(dds: &str) -> String {
     }
 }
 
-/// Package and name of `package/msg/Name`.
-pub(crate) fn type_parts(ros: &str) -> Option<(&str, &str)> {
-    let mut parts = ros.split('/');
-    match (parts.next(), parts.next(), parts.next(), parts.next()) {
-        (Some(package), Some("msg"), Some(name), None) => Some((package, name)),
-        _ => None,
-    }
-}
-
 /// A name as typed, with a slash before it.
 pub(crate) fn absolute(name: &str) -> String {
     format!("/{}", name.trim_matches('/'))
@@ -91,7 +82,5 @@ mod tests {
         assert_eq!(ros_type("Plain"), "Plain");
         assert_eq!(RosName::of("rt/a\x1b[31m\nb"), RosName::Topic("/a\\u{1b}[31m\\nb".into()));
         assert_eq!(absolute("stress/"), "/stress");
-        assert_eq!(type_parts("std_msgs/msg/Header"), Some(("std_msgs", "Header")));
-        assert_eq!(type_parts("std_msgs/Header"), None);
     }
 }

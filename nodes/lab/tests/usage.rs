@@ -79,7 +79,8 @@ fn wrong_usage_ends_with_exit_code_2_and_names_what_is_wrong() {
             &["invert", "--g12=-1e8", "--g13", "1e8", "--theta", "1e8", "--pressure", "5e4"],
             "must be positive",
         ),
-        (&["bag", "record", "--topics", "stres"], "stres"),
+        (&["bag", "record", "--msg-path", "nowhere"], "nowhere"),
+        (&["bag", "record", "--qos-profile-overrides-path", "nowhere.yaml"], "nowhere.yaml"),
         (&["bag", "record", "--topics", "packing_chunk"], "record packing"),
         (&["analyze", "x.csv", "--cell", "1,2"], "3 or 9"),
     ] {

@@ -4,6 +4,7 @@ use crate::admission::Stranger;
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
+use crate::offer::Offer;
 use crate::sample::{Sample, SampleId, WriterId};
 use grainlab_msgs::Topic;
 use std::fmt;
@@ -130,6 +131,10 @@ pub trait Bus {
 
     /// Writers on the resolved topic whose samples are not taken, sorted, as known at the last [`Bus::wait`].
     fn strange_writers(&self, topic: &Topic) -> Vec<WriterId>;
+
+    /// What the writers of other processes offer on topics of ROS, of those that [`Bus::identity`] counts, in the order of
+    /// topics, as known at the last [`Bus::wait`].
+    fn offers(&self) -> Vec<Offer>;
 
     /// Counts one message of `topic` that `publisher`, a writer of another topic, sent in parts: [`Bus::published`]
     /// lists it as if that writer were one of `topic`.

@@ -18,7 +18,7 @@ pub enum BusError {
     },
     /// The body does not begin with the encapsulation header.
     #[error(
-        "{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 (CDR, little endian)"
+        "{topic}: cannot publish a body that begins {found:02x?}: it must begin 00 01 or 00 00 (CDR of either byte order)"
     )]
     Encapsulation {
         /// Resolved topic name.

@@ -3,6 +3,7 @@
 //!
 //! - `bus`: the [`Bus`] of a node: serialized samples in and out, and a single wait; `sample`, `demand`, `bus_error`:
 //!   its types
+//! - `offer`: the topics, types and QoS that other processes publish
 //! - `typed`: typed publishers and subscriptions; `bulk`: messages too large for one sample; `worker`: long
 //!   computations
 //! - `dds`: the bus over DDS; `memory`: the bus in memory, with virtual time and faults, for tests
@@ -31,6 +32,7 @@ mod logging;
 mod memory;
 mod names;
 mod node;
+mod offer;
 mod packing_node;
 mod parameters;
 mod peers;
@@ -60,6 +62,7 @@ pub use logging::Logger;
 pub use memory::{Actor, Dice, Faults, Hub, MemoryBus, run_until};
 pub use names::{NameError, Names};
 pub use node::{Next, Node, NodeError};
+pub use offer::Offer;
 pub use packing_node::{Declined, Measure, PackingNode, Tally, Words, step_or_none};
 pub use parameters::{
     FromParameter, ParameterError, ParameterSpec, ParameterValue, Parameters, Range, parse_value,

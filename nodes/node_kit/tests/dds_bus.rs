@@ -1,7 +1,7 @@
 //! The bus over DDS: two participants in one process, on loopback, in a separate domain.
 
 use grainlab_msgs::msg::{RunState, StrainRate};
-use grainlab_msgs::{Topic, topics};
+use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
 use std::time::{Duration, Instant};
@@ -217,7 +217,7 @@ fn bodies_that_are_not_messages_are_refused_on_both_sides() {
     let network = claimed.network();
     let (mut a, mut b) = (open(network, "a"), open(network, "b"));
     let id = a.advertise(&topics::STRAIN_RATE).unwrap();
-    for bad in [&[][..], &[0, 1], &[0, 0, 0, 0, 1], b"text"] {
+    for bad in [&[][..], &[0, 1], &[0, 3, 0, 0, 1], b"text"] {
         assert!(matches!(a.publish(id, bad), Err(BusError::Encapsulation { .. })), "{bad:?}");
     }
     let subscription =
@@ -233,6 +233,43 @@ fn bodies_that_are_not_messages_are_refused_on_both_sides() {
     });
     assert_eq!(good, Some((5, 2)));
     assert_eq!((b.received()[0].taken, b.received()[0].refused), (2, 1));
+}
+
+#[test]
+fn bodies_of_both_byte_orders_arrive_as_they_were_sent_on_a_topic_of_any_type() {
+    let claimed = claim();
+    let network = claimed.network();
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let qos = Qos { reliable: true, depth: 50, transient_local: true };
+    let topic =
+        Topic::outside_contract("/arm/_action/feedback", "demo_msgs/action/Move_Feedback", qos).unwrap();
+    let id = a.advertise(&topic).unwrap();
+    let offer = |b: &DdsBus| b.offers().into_iter().find(|o| o.topic == topic.name);
+    until(&mut b, "the offer", |b| offer(b).is_some());
+    let offered = offer(&b).unwrap();
+    assert_eq!(offered.type_name, topic.info.type_name);
+    assert!(offered.qos.reliable && offered.qos.transient_local, "{offered:?}");
+    let subscription = b.subscribe(&topic, Demand::reliable(50)).unwrap();
+    until(&mut a, "match", |a| a.readers(id) == 1);
+    // One of several datagrams, too.
+    let bodies: Vec<Vec<u8>> = [8, 8, 200_000, 200_000]
+        .iter()
+        .enumerate()
+        .map(|(n, length)| [vec![0, n as u8 % 2, 0, 0], vec![n as u8 + 1; *length]].concat())
+        .collect();
+    for body in &bodies {
+        a.publish(id, body).unwrap();
+    }
+    let mut received = Vec::new();
+    until(&mut b, "all of them", |b| {
+        while let Some(sample) = b.take(subscription).unwrap() {
+            received.push(sample.body);
+        }
+        received.len() == bodies.len()
+    });
+    assert!(received == bodies);
+    drop(a);
+    until(&mut b, "the end of the offer", |b| offer(b).is_none());
 }
 
 #[test]

@@ -3,18 +3,23 @@
 //! - [`Settings`], [`parameters`]: what is recorded, and where to
 //! - `binding`: the messages of a run by hand; [`repeats`]: repetitions of recorded messages
 //! - [`strangers`]: processes on the bus that are not part of the run, and the writers of the results
+//! - [`OtherTopics`], [`Wanted`]: topics of other programs, found on the bus
 //! - [`Recorder`]: the node; [`ResultSlot`]: the finished recording
 //! - [`SnapshotSettings`]: the last seconds in memory, written when asked to
 //! - [`tallies`]: losses, and the table of counts
 
 mod binding;
+mod discovery;
 mod node;
 pub mod repeats;
 mod settings;
 mod snapshot;
 pub mod strangers;
 pub mod tallies;
+mod wanted;
 
+pub use discovery::OtherTopics;
 pub use node::{Recorder, ResultSlot};
 pub use settings::{Settings, contract_topics, parameters};
 pub use snapshot::SnapshotSettings;
+pub use wanted::Wanted;

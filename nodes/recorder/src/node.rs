@@ -2,6 +2,7 @@
 
 use crate::Settings;
 use crate::binding::{Binding, Outside};
+use crate::discovery::{Finder, Found};
 use crate::repeats::{Novelty, Repeats};
 use crate::snapshot::{Kept, Snapshot};
 use crate::strangers::{self, Authors, StrangerView};
@@ -60,6 +61,14 @@ enum Source {
 }
 
 impl Source {
+    fn open(bus: &mut dyn Bus, topic: &Topic, demand: Demand) -> Result<Self, BusError> {
+        Ok(if topic.info == topics::PACKING.info {
+            Self::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
+        } else {
+            Self::Samples(bus.subscribe(topic, demand)?)
+        })
+    }
+
     fn take(&mut self, bus: &mut dyn Bus) -> Result<Option<Sample>, BusError> {
         match self {
             Self::Samples(subscription) => bus.take(*subscription),
@@ -75,6 +84,7 @@ struct Channel {
     reports: bool,
     /// A result: written at once.
     precious: bool,
+    of_contract: bool,
 }
 
 /// The recorder.
@@ -101,6 +111,8 @@ pub struct Recorder {
     stalled: bool,
     /// Messages that are written only when asked to.
     snapshot: Option<Snapshot>,
+    /// Finds topics outside the contract.
+    finder: Option<Finder>,
 }
 
 /// The processes that published, and those that sent their last report, which counts all messages of the process.
@@ -137,11 +149,8 @@ impl Recorder {
         let mut specs = Vec::new();
         for topic in &settings.topics {
             let demand = Demand::reliable(backlog(topic));
-            let source = if topic.info == topics::PACKING.info {
-                Source::Bulk(Box::new(BulkSubscription::subscribe(bus, topic, demand)?))
-            } else {
-                Source::Samples(bus.subscribe(topic, demand)?)
-            };
+            let asked = settings.others.as_ref().map_or(*topic, |others| others.requested(topic));
+            let source = Source::open(bus, &asked, demand)?;
             let name = match &source {
                 Source::Bulk(bulk) => bulk.topic().to_owned(),
                 Source::Samples(_) => {
@@ -151,7 +160,7 @@ impl Recorder {
             specs.push(TopicSpec::of_contract(topic, &name));
             let reports = topic.name == topics::DIAGNOSTICS.name;
             let precious = topic.qos.transient_local && topic.reproducible;
-            channels.push(Channel { topic: *topic, source, name, reports, precious });
+            channels.push(Channel { topic: *topic, source, name, reports, precious, of_contract: true });
         }
         let directory = settings.directory().map_err(|e| failed(&e))?;
         let name =
@@ -196,8 +205,24 @@ impl Recorder {
             authors,
             stepped: None,
             stalled: false,
+            finder: settings.others.clone().map(Finder::new),
             snapshot: settings.snapshot.clone().map(Snapshot::new).transpose().map_err(|e| failed(&e))?,
         })
+    }
+
+    /// Subscribes to the topics outside the contract that appeared, and declares them.
+    fn find(&mut self, bus: &mut dyn Bus) -> Result<(), NodeError> {
+        let (Some(finder), Some(writer)) = (&mut self.finder, &mut self.writer) else { return Ok(()) };
+        for Found { topic, spec } in finder.look(bus, &self.names) {
+            let demand = Demand { reliable: topic.qos.reliable, depth: topic.qos.depth };
+            let source = Source::open(bus, &topic, demand)?;
+            writer.add_topic(&spec).map_err(|e| lost(&e))?;
+            writer.ledger_mut().count_from_first(&spec.name);
+            self.names.insert(spec.name.clone());
+            let (name, of_contract) = (spec.name, false);
+            self.channels.push(Channel { topic, source, name, reports: false, precious: false, of_contract });
+        }
+        Ok(())
     }
 
     /// Records all samples that arrived; true if there were any.
@@ -215,7 +240,10 @@ impl Recorder {
                     writer.ledger_mut().leave_out(&channel.name, Guid(info.writer.0), info.sequence);
                     continue;
                 }
-                self.company.note_writer(sample.info.writer);
+                // Other programs send no reports.
+                if channel.of_contract {
+                    self.company.note_writer(sample.info.writer);
+                }
                 if channel.reports && enter_reports(writer, &self.names, &sample) {
                     self.company.left.insert(sample.info.writer.participant());
                 }
@@ -388,6 +416,7 @@ impl Node for Recorder {
                 (now - last).as_secs_f64()
             );
         }
+        self.find(bus)?;
         self.take_all(bus)?;
         Ok(Next::Wait(TICK))
     }
@@ -416,6 +445,9 @@ impl Node for Recorder {
             writer.set_metadata("run", &WriterId::of_participant(run).to_string()[..24]);
         }
         let finished = writer.finish().map_err(|e| lost(&e))?;
+        if let Some(finder) = &self.finder {
+            finder.report_missing(&self.names);
+        }
         let (before, after) = losses(&finished.ledger.tallies());
         *self.result.borrow_mut() = Some(finished);
         if before > 0 && !self.whole_run {

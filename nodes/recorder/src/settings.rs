@@ -1,5 +1,6 @@
 //! Settings of the recorder.
 
+use crate::discovery::OtherTopics;
 use crate::snapshot::SnapshotSettings;
 use grainlab_console::Failure;
 use grainlab_console::scenes::{self, SceneText};
@@ -18,6 +19,8 @@ pub struct Settings {
     pub output: Option<PathBuf>,
     /// Rows of the topic table.
     pub topics: Vec<Topic>,
+    /// Topics outside the contract are recorded, too.
+    pub others: Option<OtherTopics>,
     /// The scene of the run, attached to the recording.
     pub scene: Option<SceneText>,
     /// One run is recorded, from its first message: messages missing at its start count as lost, and
@@ -66,6 +69,7 @@ impl Settings {
             scene: text("scene")
                 .map(|s| scenes::load(&s, &parameters.get::<Vec<String>>("set"), seed))
                 .transpose()?,
+            others: None,
             whole_run: true,
             writer: WriterOptions::default(),
             snapshot: None,

@@ -16,8 +16,9 @@ pub enum CopyError {
     },
     /// Two recordings have different messages under one topic.
     #[error(
-        "{topic} has type {first_type} in {first} and {second_type}, with other fields, in {second}: leave one of them out with \
-         `grainlab bag filter --exclude`, then merge"
+        "{topic} is {first_type} in {first} and {second_type}, with other fields, in {second}: readers such as rosbags take one \
+         definition for a type and would misread the other messages. Leave the topic out with --exclude, or merge the recordings \
+         that agree"
     )]
     Clash {
         /// The topic.

@@ -94,6 +94,7 @@ impl Output {
             name: channel.topic.clone(),
             ros_type: channel.ros_type.clone(),
             definition: channel.definition.clone(),
+            schema_encoding: channel.schema_encoding.clone(),
             type_hash: channel.type_hash.clone(),
             qos: channel.qos.clone(),
         };

@@ -16,7 +16,7 @@ pub struct WriterOptions {
     pub flush_interval: Duration,
     /// Time between two syncs to the device.
     pub sync_interval: Duration,
-    /// Bytes of a file after which the next one is begun.
+    /// Bytes of a file after which the next one is begun: a file exceeds it by at most one chunk, and its index.
     pub split_bytes: u64,
     /// Age of a file at which the next one is begun: its index grows in memory by some 6 MB per hour.
     pub split_after: Duration,

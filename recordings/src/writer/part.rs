@@ -4,23 +4,26 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
+use super::counted::Counted;
 use super::device_sync::DeviceSync;
 use super::{TopicSpec, WriteError, WriterOptions};
 use crate::reader::FileCount;
 
-type Writer = mcap::Writer<BufWriter<File>>;
+type Writer = mcap::Writer<Counted<BufWriter<File>>>;
 
 pub(super) struct Part {
     path: PathBuf,
     mcap: Writer,
     pub(super) sync: DeviceSync,
-    /// Another handle of the file, to read its size.
-    handle: File,
+    /// Bytes written so far.
+    written: Arc<AtomicU64>,
     channels: BTreeMap<String, u16>,
     messages: u64,
     /// First and last log time.
@@ -49,16 +52,17 @@ impl Part {
         };
         // A file system without locks cannot report another recorder.
         let _ = file.try_lock();
-        let clone = || file.try_clone().map_err(io("duplicate the handle"));
-        let (handle, synced) = (clone()?, clone()?);
+        let synced = file.try_clone().map_err(io("duplicate the handle"))?;
         let sync = DeviceSync::start(synced).map_err(io("start the thread that syncs data to the device"))?;
+        let counted = Counted::new(BufWriter::with_capacity(64 << 10, file));
+        let written = counted.count();
         let mcap = options("")
             .compression(of.compression.of_chunks())
             .chunk_size(Some(of.chunk_size))
-            .create(BufWriter::with_capacity(64 << 10, file))
+            .create(counted)
             .map_err(|source| WriteError::mcap(&path, "write the header", source))?;
         let channels = BTreeMap::new();
-        Ok(Self { path, mcap, sync, handle, channels, messages: 0, bounds: None, began })
+        Ok(Self { path, mcap, sync, written, channels, messages: 0, bounds: None, began })
     }
 
     pub(super) fn began(&self) -> Instant {
@@ -69,13 +73,14 @@ impl Part {
         self.bounds.is_some()
     }
 
-    /// Current size of the file, bytes; 0 if unknown.
+    /// Size of the file with all chunks that are complete, bytes.
     pub(super) fn bytes(&self) -> u64 {
-        self.handle.metadata().map_or(0, |m| m.len())
+        self.written.load(Ordering::Relaxed)
     }
 
     pub(super) fn declare(&mut self, topic: &TopicSpec) -> Result<(), McapError> {
-        let schema = self.mcap.add_schema(&topic.ros_type, "ros2msg", topic.definition.as_bytes())?;
+        let schema =
+            self.mcap.add_schema(&topic.ros_type, &topic.schema_encoding, topic.definition.as_bytes())?;
         let metadata = BTreeMap::from([
             ("offered_qos_profiles".to_owned(), topic.qos.clone()),
             ("topic_type_hash".to_owned(), topic.type_hash.clone()),
@@ -128,6 +133,7 @@ impl Part {
         self.mcap.finish().map_err(format("write the index"))?;
         let handle = self
             .mcap
+            .into_inner()
             .into_inner()
             .into_inner()
             .map_err(|e| io("write the end of the file")(e.into_error()))?;

@@ -1,6 +1,9 @@
 //! The declaration of a topic in a recording.
 
-use grainlab_msgs::{Topic, TypeInfo};
+use grainlab_msgs::{Qos, Topic, TypeInfo};
+
+/// Encoding of schemas that are message files.
+const ROS2MSG: &str = "ros2msg";
 
 /// The declaration of a channel of the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,8 +12,10 @@ pub struct TopicSpec {
     pub name: String,
     /// ROS type, `grainlab_msgs/msg/Stress`.
     pub ros_type: String,
-    /// Schema: the `.msg` text followed by those it depends on, as `ros2msg`.
+    /// Schema: the `.msg` text followed by those it depends on.
     pub definition: String,
+    /// Encoding of the schema: `ros2msg`, or empty if it is unknown.
+    pub schema_encoding: String,
     /// `RIHS01_<64 hexadecimal digits>`, or empty if unknown.
     pub type_hash: String,
     /// QoS offered, as the YAML list of rosbag2 with integers, or empty if unknown.
@@ -31,8 +36,24 @@ impl TopicSpec {
             name: full_name.to_owned(),
             ros_type: info.type_name.to_owned(),
             definition: info.definition.to_owned(),
+            schema_encoding: ROS2MSG.to_owned(),
             type_hash: info.hash.to_owned(),
             qos: String::new(),
+        }
+    }
+
+    /// A channel of a topic outside the contract, with what its writers offer. Without a definition the schema is empty: a
+    /// reader then needs one from elsewhere.
+    pub fn of_found(topic: &Topic, definition: Option<String>, type_hash: &str, offered: &[Qos]) -> Self {
+        let encoding = if definition.is_some() { ROS2MSG } else { "" };
+        let profiles: Vec<String> = offered.iter().map(Qos::offered_qos_profiles).collect();
+        Self {
+            name: topic.name.to_owned(),
+            ros_type: topic.info.type_name.to_owned(),
+            definition: definition.unwrap_or_default(),
+            schema_encoding: encoding.to_owned(),
+            type_hash: type_hash.to_owned(),
+            qos: profiles.join("\n"),
         }
     }
 }

@@ -117,6 +117,7 @@ fn a_topic_with_other_fields_is_an_error_and_one_with_other_comments_is_not() {
             name: "/a".into(),
             ros_type: "p/msg/A".into(),
             definition: definition.into(),
+            schema_encoding: "ros2msg".into(),
             type_hash: String::new(),
             qos: String::new(),
         };

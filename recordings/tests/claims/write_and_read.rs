@@ -208,3 +208,31 @@ fn metadata_yaml_agrees_with_the_file() {
         assert_eq!(metadata["type_description_hash"].as_str(), Some(channel.type_hash.as_str()));
     }
 }
+
+#[test]
+fn a_file_exceeds_its_size_by_one_chunk_at_most_however_fast_messages_come() {
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("fast");
+    let (chunk_size, split_bytes) = (8_u64 << 10, 100_u64 << 10);
+    let compression = grainlab_recordings::Compression::None;
+    let options = WriterOptions { chunk_size, split_bytes, compression, ..options() };
+    let mut run = RunWriter::create(&path, "fast", &contract(), options).unwrap();
+    let schemas = std::fs::metadata(run.file()).unwrap().len();
+    let payload = stress(1);
+    let count = 4_000;
+    for n in 1..=count {
+        run.write("/stress", &sample(SIMULATOR, n, START + n as u64, &payload)).unwrap();
+    }
+    let finished = run.finish().unwrap();
+    assert!(finished.files.len() > 5, "{:?}", finished.files);
+    // Behind the data are the open chunk of a message, the ledger, and the index with the schemas again.
+    let rest = 2 * schemas + (32 << 10);
+    for file in &finished.files {
+        let size = std::fs::metadata(file).unwrap().len();
+        assert!(size <= split_bytes + chunk_size + rest, "{}: {size}", file.display());
+    }
+    assert_eq!(
+        Recording::open(&path).unwrap().messages(&Selection::default()).unwrap().count(),
+        count as usize
+    );
+}

@@ -1,8 +1,9 @@
 //! The publishers of a playback.
 
-use grainlab_console::Failure;
-use grainlab_msgs::{Topic, topics};
+use grainlab_console::{Failure, say};
+use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{BulkPublisher, Bus, BusError, DdsBus, PublisherId, Wake};
+use grainlab_recordings::{ChannelInfo, QosOverrides, offered_profiles};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -42,14 +43,26 @@ impl Outlet {
 
 pub(super) type Outlets = BTreeMap<String, Outlet>;
 
-/// Advertises the recorded topic `name` as `to`; the inner error is the reason if it is not
-/// possible.
-pub(super) fn offer(bus: &mut DdsBus, name: &str, to: &str) -> Result<Result<Outlet, String>, Failure> {
-    let Some(row) = Topic::by_name(name) else {
-        return Ok(Err("its type is not one of the laboratory".to_owned()));
+/// Advertises a recorded topic as `to`; the inner error is the reason if it is not possible.
+pub(super) fn offer(
+    bus: &mut DdsBus,
+    channel: &ChannelInfo,
+    to: &str,
+    overrides: &QosOverrides,
+) -> Result<Result<Outlet, String>, Failure> {
+    if channel.message_encoding != "cdr" {
+        return Ok(Err(format!("its messages are {:?}, not CDR", channel.message_encoding)));
+    }
+    let (recorded, differ) = offered_profiles(&channel.qos);
+    // Topics of the laboratory have their own, whatever a program between wrote into the recording.
+    let row = Topic::by_name(&channel.topic).filter(|row| row.info.type_name == channel.ros_type);
+    let qos = overrides.apply(&channel.topic, row.map_or(recorded, |row| row.qos));
+    let Some(topic) = Topic::outside_contract(to, &channel.ros_type, qos) else {
+        return Ok(Err(format!("its type {:?} is not written as package/msg/Type", channel.ros_type)));
     };
-    // The names of topics are static; these are few.
-    let topic = Topic { name: Box::leak(to.to_owned().into_boxed_str()), ..*row };
+    if row.is_none() && differ {
+        say!("grainlab: {}: its publishers had different QoS; it is offered {}", channel.topic, words(qos));
+    }
     let writers = bus.foreign_writers(&topic);
     if let Some(writer) = writers.first() {
         return Ok(Err(format!("a live node publishes it (writer {writer})")));
@@ -59,7 +72,17 @@ pub(super) fn offer(bus: &mut DdsBus, name: &str, to: &str) -> Result<Result<Out
     } else {
         bus.advertise(&topic).map(Outlet::Plain)
     };
-    Ok(Ok(outlet.map_err(Failure::failed)?))
+    match outlet {
+        Err(BusError::Name(error)) => Ok(Err(error.to_string())),
+        outlet => Ok(Ok(outlet.map_err(Failure::failed)?)),
+    }
+}
+
+/// A QoS in the words of ROS 2.
+fn words(qos: Qos) -> String {
+    let reliability = if qos.reliable { "reliable" } else { "best effort" };
+    let durability = if qos.transient_local { "transient local" } else { "volatile" };
+    format!("{reliability}, {durability}, depth {}", qos.depth)
 }
 
 /// Follows the graph for `time`.
@@ -91,7 +114,7 @@ pub(super) fn wait_for_readers(
             let lonely = publishers.keys().zip(&known).filter(|(_, n)| **n < needed);
             let lonely: Vec<&str> = lonely.map(|(name, _)| name.as_str()).collect();
             if !lonely.is_empty() && !patience.is_zero() {
-                grainlab_console::say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
+                say!("grainlab: fewer than {needed} subscribers of {}", lonely.join(", "));
             }
             return true;
         }

@@ -1,11 +1,11 @@
 //! `grainlab topic echo`.
 
-use super::definition::schema;
 use super::listen::Listener;
 use crate::view::{Common, OutputFormat, seconds};
-use grainlab_any_message::Shown;
+use grainlab_any_message::{Schema, Shown};
 use grainlab_console::{Failure, print_more, say};
 use grainlab_node_kit::Exit;
+use grainlab_recordings::Definitions;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -45,7 +45,9 @@ pub struct Args {
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     let mut listener = Listener::open(&args.topic, true, args.common.patience())?;
-    let schema = schema(listener.topic.info.type_name, &args.msg_path)?;
+    let type_name = listener.topic.info.type_name;
+    let text = Definitions::with_folders(&args.msg_path).text(type_name, "").map_err(Failure::failed)?;
+    let schema = Schema::parse(type_name, &text).map_err(Failure::failed)?;
     let longest = if args.full_length { usize::MAX } else { args.truncate_length };
     let wanted = if args.once { Some(1) } else { args.count };
     let end = Instant::now() + args.duration.map_or(DAY, Duration::from_secs_f64);

@@ -1,11 +1,11 @@
 //! Subscribes to a topic of any type.
 
 use crate::graph::{is_reliable, is_transient_local};
-use crate::names::{absolute, type_parts};
+use crate::names::absolute;
 use crate::observer::Observer;
 use grainlab_console::Failure;
 use grainlab_console::network::tool_bus;
-use grainlab_msgs::{Qos, Topic, TypeInfo, topics};
+use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::{
     BulkSubscription, Bus, BusError, DdsBus, Demand, Exit, Sample, SubscriptionId, Wake,
 };
@@ -84,25 +84,14 @@ impl Listener {
                 return Err(Failure::failed(format!("{name} has more than one type: {list}")));
             }
         };
-        let Some((package, short)) = type_parts(type_name) else {
-            return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
-        };
         let offers = |policy: fn(&ros2_client::QosProfile) -> bool| {
             !entry.publishers.is_empty() && entry.publishers.iter().all(|p| policy(&p.qos))
         };
         let reliable = whole && offers(is_reliable);
         let qos = Qos { reliable, depth: DEPTH, transient_local: reliable && offers(is_transient_local) };
-        // The names of a topic are constants of the program everywhere else; one tool has one topic.
-        let constant = |text: &str| -> &'static str { String::from(text).leak() };
-        let info = TypeInfo::by_name(type_name).copied().unwrap_or(TypeInfo {
-            package: constant(package),
-            name: constant(short),
-            type_name: constant(type_name),
-            hash: "",
-            fields: &[],
-            definition: "",
-        });
-        let topic = Topic { name: constant(&name), info, qos, writer: "", reproducible: false, summary: "" };
+        let Some(topic) = Topic::outside_contract(&name, type_name, qos) else {
+            return Err(Failure::failed(format!("{name} has the type {type_name}, which is no ROS message")));
+        };
         let mut bus = tool_bus("grainlab_topic")?;
         let demand = if reliable { Demand::reliable(DEPTH) } else { Demand::best_effort(DEPTH) };
         let source = if whole && topic.info == topics::PACKING.info {

@@ -1,6 +1,5 @@
 //! `grainlab topic`.
 
-mod definition;
 mod echo;
 mod hz;
 mod info;

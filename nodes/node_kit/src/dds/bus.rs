@@ -15,6 +15,7 @@ use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
+use crate::offer::Offer;
 use crate::parameters::Parameters;
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
 use crate::services::{Declared, ServiceThread, SimTime};
@@ -22,7 +23,7 @@ use crate::signals::Signals;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
 use mio::{Events, Interest, Poll, Token, Waker};
-use ros2_client::{Context, Gid, MessageTypeName, NodeName, QosProfile};
+use ros2_client::{Context, Gid, NodeName};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -177,11 +178,7 @@ impl DdsBus {
         if let Some(known) = self.topics.get(resolved) {
             return Ok(known.clone());
         }
-        let message_type = MessageTypeName::new(topic.info.package, topic.info.name);
-        let created = self
-            .context
-            .create_topic(wire_name(resolved), message_type, &QosProfile::default())
-            .map_err(|e| create_error(resolved, &e))?;
+        let created = direct::topic(&self.context, wire_name(resolved), topic.info.type_name)?;
         self.topics.insert(resolved.into(), created.clone());
         Ok(created)
     }
@@ -393,6 +390,10 @@ impl Bus for DdsBus {
             .resolve(topic.name)
             .map(|name| self.graph.writers_of(&wire_name(&name), |guid| !self.gate.admits(guid)))
             .unwrap_or_default()
+    }
+
+    fn offers(&self) -> Vec<Offer> {
+        self.graph.offers(|guid| self.gate.admits(guid))
     }
 
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {

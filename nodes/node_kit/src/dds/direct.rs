@@ -18,8 +18,9 @@ use super::gate::Gate;
 use super::network::{Network, Reach};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
+use crate::offer::{Offer, wire_type};
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use grainlab_msgs::Topic;
+use grainlab_msgs::{Qos, Topic};
 use ros2_client::{Context, Gid, Node};
 use rustdds::bytes::Bytes;
 use rustdds::dds::{ReadError, WriteError};
@@ -31,7 +32,7 @@ use rustdds::policy::{Deadline, Durability, History, Lifespan, Liveliness, Relia
 use rustdds::{
     DomainParticipantBuilder, DomainParticipantStatusEvent as Event, DomainParticipantStatusListener,
     Duration, GUID, GuidPrefix, QosPolicies, QosPolicyBuilder, RTPSEntity, RepresentationIdentifier,
-    SampleIdentity, SequenceNumber, StatusEvented, Timestamp, WriteOptionsBuilder,
+    SampleIdentity, SequenceNumber, StatusEvented, Timestamp, TopicKind, WriteOptionsBuilder,
 };
 use std::convert::Infallible;
 use std::io;
@@ -41,8 +42,19 @@ use std::sync::Arc;
 /// The module path under which RustDDS logs.
 pub(crate) const LOG_TARGET: &str = "rustdds";
 
-/// A topic of DDS, as ros2-client makes it.
+/// A topic of DDS.
 pub(super) type DdsTopic = rustdds::Topic;
+
+/// The topic of DDS with this name for messages of this type: ros2-client makes those of kind `msg` alone.
+pub(super) fn topic(context: &Context, name: String, type_name: &str) -> Result<DdsTopic, BusError> {
+    let created = context.domain_participant().create_topic(
+        name.clone(),
+        wire_type(type_name),
+        &QosPolicies::builder().build(),
+        TopicKind::NoKey,
+    );
+    created.map_err(|e| create_error(&name, &e))
+}
 
 // ---- Participant
 
@@ -96,14 +108,19 @@ pub(super) fn context(
 
 /// Bytes of the encapsulation header: representation identifier and options.
 pub(super) const HEADER: usize = 4;
-/// Plain CDR, little endian: the only representation we write.
+/// Plain CDR, little endian: the representation of all that we serialize.
 pub(super) const CDR_LE: [u8; 2] = [0, 1];
+/// Plain CDR, big endian: messages of other programs, played from a recording.
+pub(super) const CDR_BE: [u8; 2] = [0, 0];
 
 /// A received sample: header and payload.
 struct RawBody(Vec<u8>);
 
-/// A sample to send: the payload behind the header.
-struct RawPayload(Bytes);
+/// A sample to send: the payload behind the header, and its byte order.
+struct RawPayload {
+    bytes: Bytes,
+    big_endian: bool,
+}
 
 /// The adapter between RustDDS and bytes.
 struct RawAdapter;
@@ -137,7 +154,7 @@ static ENCODINGS: [RepresentationIdentifier; 4] = [
     RepresentationIdentifier::PL_CDR_LE,
     RepresentationIdentifier::PL_CDR_BE,
 ];
-const IDENTIFIERS: [[u8; 2]; 4] = [CDR_LE, [0, 0], [0, 3], [0, 2]];
+const IDENTIFIERS: [[u8; 2]; 4] = [CDR_LE, CDR_BE, [0, 3], [0, 2]];
 
 impl DeserializerAdapter<RawBody> for RawAdapter {
     type Error = Infallible;
@@ -164,8 +181,12 @@ impl SerializerAdapter<RawPayload> for RawAdapter {
         RepresentationIdentifier::CDR_LE
     }
 
+    fn encoding_of(value: &RawPayload) -> RepresentationIdentifier {
+        if value.big_endian { RepresentationIdentifier::CDR_BE } else { RepresentationIdentifier::CDR_LE }
+    }
+
     fn to_bytes(value: &RawPayload) -> Result<Bytes, Infallible> {
-        Ok(value.0.clone())
+        Ok(value.bytes.clone())
     }
 }
 
@@ -202,6 +223,20 @@ fn offered(topic: &Topic) -> QosPolicies {
 fn requested(topic: &Topic, demand: Demand) -> QosPolicies {
     // RustDDS keeps 64 samples by default: too few for a recorder, too many for packings of megabytes.
     policies(demand.reliable, demand.reliable && topic.qos.transient_local, demand.depth, demand.depth)
+}
+
+/// What another process offers. A policy that is not announced has the default of DDS; the depth is announced by few
+/// implementations, and 0 if unknown.
+fn offered_by(qos: &QosPolicies) -> Qos {
+    let depth = match qos.history() {
+        Some(History::KeepLast { depth }) => u32::try_from(depth).unwrap_or(0),
+        Some(History::KeepAll) | None => 0,
+    };
+    Qos {
+        reliable: !matches!(qos.reliability(), Some(Reliability::BestEffort)),
+        transient_local: !matches!(qos.durability(), Some(Durability::Volatile) | None),
+        depth,
+    }
 }
 
 fn policies(reliable: bool, transient_local: bool, depth: u32, max_samples: u32) -> QosPolicies {
@@ -248,8 +283,9 @@ impl Outlet {
         self.0.guid().into()
     }
 
-    /// Writes a payload, the body behind its encapsulation header, and returns its sequence number.
-    pub(super) fn write(&self, payload: &[u8], about: Option<SampleId>) -> Result<i64, WriteFailure> {
+    /// Writes a body, in CDR with its encapsulation header, and returns its sequence number.
+    pub(super) fn write(&self, body: &[u8], about: Option<SampleId>) -> Result<i64, WriteFailure> {
+        let (header, payload) = body.split_at(HEADER.min(body.len()));
         let related = about.map(|sample| SampleIdentity {
             writer_guid: GUID::from_bytes(sample.writer.0),
             sequence_number: SequenceNumber::from(sample.sequence),
@@ -261,7 +297,8 @@ impl Outlet {
         // RTPS pads a sample in one datagram to whole words, and leaves fragments as they are. So both give the same bytes.
         let mut padded = payload.to_vec();
         padded.resize(payload.len().next_multiple_of(4), 0);
-        match self.0.write_with_options(RawPayload(Bytes::from(padded)), options) {
+        let big_endian = header.starts_with(&CDR_BE);
+        match self.0.write_with_options(RawPayload { bytes: Bytes::from(padded), big_endian }, options) {
             Ok(identity) => Ok(i64::from(identity.sequence_number)),
             Err(WriteError::WouldBlock { .. }) => Err(WriteFailure::Full),
             Err(
@@ -371,8 +408,8 @@ fn nanos(time: Timestamp) -> u64 {
 
 /// A change that discovery reports.
 pub(super) enum Change {
-    /// A writer of another process, with its DDS topic.
-    Writer { writer: Gid, topic: String },
+    /// A writer of another process, with its DDS topic and what it offers there if that is a topic of ROS.
+    Writer { writer: Gid, topic: String, offer: Option<Offer> },
     /// An endpoint of this process was matched.
     Matched { local: Gid, remote: Gid },
     /// An endpoint is gone.
@@ -408,7 +445,10 @@ impl Discovery {
             };
         Some(match self.0.try_recv_status()? {
             Event::WriterDetected { writer } => {
-                Change::Writer { writer: writer.guid.into(), topic: writer.topic_name }
+                let id = WriterId(writer.guid.to_bytes());
+                let qos = offered_by(&writer.qos);
+                let offer = Offer::of_wire(id, &writer.topic_name, &writer.type_name, qos, &writer.user_data);
+                Change::Writer { writer: writer.guid.into(), topic: writer.topic_name, offer }
             }
             Event::RemoteReaderMatched { local_writer, remote_reader } => {
                 Change::Matched { local: local_writer.into(), remote: remote_reader.into() }
@@ -445,25 +485,4 @@ impl Discovery {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_body_comes_back_with_the_header_it_travelled_with() {
-        for (encoding, header) in [
-            (RepresentationIdentifier::CDR_LE, [0, 1, 0, 0]),
-            (RepresentationIdentifier::CDR_BE, [0, 0, 0, 0]),
-        ] {
-            let Ok(body) = KeepBytes.decode_bytes(&[7, 8], encoding);
-            assert_eq!(body.0[..4], header);
-            assert_eq!(body.0[4..], [7, 8]);
-        }
-    }
-
-    #[test]
-    fn rtps_ticks_become_nanoseconds_to_half_a_tick() {
-        for (ticks, expected) in [(0, 0), (1 << 32, 1_000_000_000), ((5 << 32) | (1 << 31), 5_500_000_000)] {
-            assert_eq!(nanos(Timestamp::from_ticks(ticks)), expected);
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,7 @@
 //! The endpoints of other processes and their matches, as discovery reports them.
 
 use super::direct::Change;
+use crate::offer::Offer;
 use crate::sample::WriterId;
 use ros2_client::Gid;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Default)]
 pub(super) struct Graph {
     own: [u8; 12],
-    /// Remote writers by DDS topic name.
-    writers: BTreeMap<Gid, String>,
+    /// Remote writers: their DDS topic, and what they offer there.
+    writers: BTreeMap<Gid, (String, Option<Offer>)>,
     /// Local endpoint to matched remote endpoints.
     matches: BTreeMap<Gid, BTreeSet<Gid>>,
 }
@@ -27,8 +28,8 @@ impl Graph {
     /// Processes one change; true if it changed the graph.
     pub(super) fn apply(&mut self, change: Change) -> bool {
         match change {
-            Change::Writer { writer, topic } => {
-                !self.is_ours(&writer) && self.writers.insert(writer, topic).is_none()
+            Change::Writer { writer, topic, offer } => {
+                !self.is_ours(&writer) && self.writers.insert(writer, (topic, offer)).is_none()
             }
             Change::Matched { local, remote } => self.matched(local, remote),
             Change::Lost(gid) => self.lost(|g| *g == gid),
@@ -68,8 +69,16 @@ impl Graph {
     pub(super) fn writers_of(&self, dds_topic: &str, counts: impl Fn(&Gid) -> bool) -> Vec<WriterId> {
         self.writers
             .iter()
-            .filter(|(guid, topic)| *topic == dds_topic && counts(guid))
+            .filter(|(guid, (topic, _))| topic == dds_topic && counts(guid))
             .map(|(g, _)| WriterId(g.to_bytes16()))
             .collect()
+    }
+
+    /// What remote writers offer, in the order of topics, of those that count.
+    pub(super) fn offers(&self, counts: impl Fn(&Gid) -> bool) -> Vec<Offer> {
+        let counted = self.writers.iter().filter(|(guid, _)| counts(guid));
+        let mut offers: Vec<Offer> = counted.filter_map(|(_, (_, offer))| offer.clone()).collect();
+        offers.sort_by(|a, b| (&a.topic, a.writer).cmp(&(&b.topic, b.writer)));
+        offers
     }
 }

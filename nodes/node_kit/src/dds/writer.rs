@@ -1,6 +1,6 @@
 //! One DDS writer of this process.
 
-use super::direct::{CDR_LE, HEADER, Outlet, WriteFailure};
+use super::direct::{CDR_BE, CDR_LE, HEADER, Outlet, WriteFailure};
 use crate::bus::Published;
 use crate::bus_error::BusError;
 use crate::sample::{SampleId, WriterId};
@@ -33,11 +33,11 @@ impl Writer {
 
     /// Publishes a body with its encapsulation header and returns the sequence number.
     pub(super) fn write(&mut self, body: &[u8], about: Option<SampleId>) -> Result<i64, BusError> {
-        if body.len() < HEADER || body[..2] != CDR_LE {
+        if body.len() < HEADER || ![CDR_LE, CDR_BE].contains(&[body[0], body[1]]) {
             let found = body[..body.len().min(HEADER)].to_vec();
             return Err(BusError::Encapsulation { topic: self.topic.clone(), found });
         }
-        match self.outlet.write(&body[HEADER..], about) {
+        match self.outlet.write(body, about) {
             Ok(sequence) => {
                 self.count += 1;
                 Ok(sequence)

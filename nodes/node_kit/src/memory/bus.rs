@@ -7,6 +7,7 @@ use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
 use crate::names::Names;
+use crate::offer::Offer;
 use crate::sample::{Sample, SampleId, WriterId};
 use grainlab_msgs::Topic;
 use std::cell::RefCell;
@@ -74,7 +75,7 @@ impl Bus for MemoryBus {
 
     fn advertise(&mut self, topic: &Topic) -> Result<PublisherId, BusError> {
         let resolved = self.names.resolve(topic.name)?;
-        self.writers.push(self.state.borrow_mut().add_writer(self.participant, resolved, topic.qos));
+        self.writers.push(self.state.borrow_mut().add_writer(self.participant, resolved, topic));
         Ok(PublisherId(self.writers.len() - 1))
     }
 
@@ -94,7 +95,7 @@ impl Bus for MemoryBus {
     ) -> Result<i64, BusError> {
         let writer = *self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
         let mut state = self.state.borrow_mut();
-        if !body.starts_with(&[0, 1]) || body.len() < 4 {
+        if !(body.starts_with(&[0, 1]) || body.starts_with(&[0, 0])) || body.len() < 4 {
             let found = body[..body.len().min(4)].to_vec();
             return Err(BusError::Encapsulation { topic: state.writers[writer].topic.clone(), found });
         }
@@ -175,6 +176,21 @@ impl Bus for MemoryBus {
         let mut ids: Vec<WriterId> = on_topic.filter(strange).collect();
         ids.sort();
         ids
+    }
+
+    fn offers(&self) -> Vec<Offer> {
+        let state = self.state.borrow();
+        let others = state.writers.iter().filter(|w| w.alive && self.counts(w.id));
+        let offer = |w: &Writer| Offer {
+            writer: w.id,
+            topic: w.topic.clone(),
+            type_name: w.type_name.to_owned(),
+            qos: w.qos,
+            type_hash: String::new(),
+        };
+        let mut offers: Vec<Offer> = others.map(offer).collect();
+        offers.sort_by(|a, b| (&a.topic, a.writer).cmp(&(&b.topic, b.writer)));
+        offers
     }
 
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {

@@ -4,7 +4,7 @@ use super::faults::{Dice, Faults};
 use crate::admission::Participant;
 use crate::demand::Demand;
 use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
-use grainlab_msgs::Qos;
+use grainlab_msgs::{Qos, Topic};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
@@ -27,6 +27,7 @@ pub(super) struct State {
 pub(super) struct Writer {
     pub(super) id: WriterId,
     pub(super) topic: String,
+    pub(super) type_name: &'static str,
     pub(super) qos: Qos,
     pub(super) count: u64,
     latched: VecDeque<Sample>,
@@ -90,9 +91,18 @@ impl State {
         (EPOCH_NANOS + self.now.as_nanos() as u64).saturating_add_signed(self.wall_offset)
     }
 
-    pub(super) fn add_writer(&mut self, participant: Participant, topic: String, qos: Qos) -> usize {
+    pub(super) fn add_writer(&mut self, participant: Participant, topic: String, of: &Topic) -> usize {
         let id = writer_id(participant, self.writers.len());
-        self.writers.push(Writer { id, topic, qos, count: 0, latched: VecDeque::new(), alive: true });
+        let (qos, type_name) = (of.qos, of.info.type_name);
+        self.writers.push(Writer {
+            id,
+            topic,
+            type_name,
+            qos,
+            count: 0,
+            latched: VecDeque::new(),
+            alive: true,
+        });
         self.writers.len() - 1
     }
 

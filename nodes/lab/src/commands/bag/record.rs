@@ -1,14 +1,16 @@
 //! `grainlab bag record`.
 
 use crate::commands::run::print_recorded;
-use grainlab_bag_tools::{Compression, TopicNames};
+use grainlab_bag_tools::Compression;
 use grainlab_console::Failure;
 use grainlab_launcher::NodeKind;
 use grainlab_msgs::Topic;
 use grainlab_node_kit::NodeSpec;
 use grainlab_node_kit::{Exit, RosArgs, Scope, run_node};
-use grainlab_recorder::{Recorder, ResultSlot, Settings, SnapshotSettings, contract_topics};
-use grainlab_recordings::WriterOptions;
+use grainlab_recorder::{
+    OtherTopics, Recorder, ResultSlot, Settings, SnapshotSettings, Wanted, contract_topics,
+};
+use grainlab_recordings::{Definitions, QosOverrides, WriterOptions};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -16,10 +18,17 @@ const EXAMPLES: &str = "\
 Examples:
   grainlab bag record -a -o my_run
   grainlab bag record --topics stress packing
+  grainlab bag record --regex '/camera/.*' --msg-path my_ws/install/share
   grainlab bag record --snapshot 30 --trigger moduli -o last_seconds     # or: kill -USR1 PID
 
-Topics of grainlab and the standard ones in the table of msgs/README.md are recorded; others are not. A snapshot has the messages
-of the last seconds and, of each latched topic, at least the last message; at most 512 MiB are kept.
+Topics of any type are recorded, also those that appear later. Definitions of types come from grainlab, which has its own and
+those in msgs/std, then from the folders of --msg-path. A topic whose definition is not found is recorded with an empty
+schema. Readers are reliable (transient local) if all publishers of the topic are, or as --qos-profile-overrides-path says:
+
+  /scan: {reliability: best_effort, durability: volatile, history: keep_last, depth: 500}
+
+A snapshot has the messages of the last seconds and, of each latched topic, at least the last message; at most 512 MiB are
+kept.
 
 Ends with SIGINT (Ctrl-C) or SIGTERM; the file is then complete. Exit 3 if any message was lost.";
 
@@ -30,10 +39,10 @@ pub(crate) struct Args {
     /// Directory to make and record into [default: the next one under recordings/runs]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Topics to record
+    /// Topics to record, whatever their type
     #[arg(long, num_args = 1.., value_name = "TOPIC", conflicts_with = "all")]
     topics: Vec<String>,
-    /// Record every topic, which is the default
+    /// Record every topic that is not hidden, which is the default
     #[arg(short, long)]
     all: bool,
     /// Record the topics whose whole name matches this regular expression
@@ -45,7 +54,16 @@ pub(crate) struct Args {
     /// Leave out these topics
     #[arg(long, num_args = 1.., value_name = "TOPIC")]
     exclude_topics: Vec<String>,
-    /// Begin the next file at this size, bytes; looked at twice a second [default: 512 MiB]
+    /// Record hidden topics, too: those with a part that begins with an underscore, and /parameter_events
+    #[arg(long)]
+    include_hidden_topics: bool,
+    /// Folder with message files, package/msg/Type.msg; may be repeated
+    #[arg(long, value_name = "DIR")]
+    msg_path: Vec<PathBuf>,
+    /// QoS of readers instead of the adapted one, as a YAML file of rosbag2
+    #[arg(long, value_name = "FILE")]
+    qos_profile_overrides_path: Option<PathBuf>,
+    /// Begin the next file at this size, bytes; it is exceeded by one chunk (768 KiB) at most [default: 512 MiB]
     #[arg(short = 'b', long, value_name = "BYTES", value_parser = clap::value_parser!(u64).range(1..))]
     max_bag_size: Option<u64>,
     /// Begin the next file after this time, s [default: 900]
@@ -69,9 +87,11 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
+    let (topics, others) = topics(args)?;
     let settings = Settings {
         output: args.output.clone(),
-        topics: topics(args)?,
+        topics,
+        others: Some(others),
         scene: args.scene.as_deref().map(|s| grainlab_console::scenes::load(s, &[], None)).transpose()?,
         whole_run: false,
         append: false,
@@ -94,17 +114,24 @@ pub(super) fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-fn topics(args: &Args) -> Result<Vec<Topic>, Failure> {
-    let names = TopicNames::new(args.regex.as_deref(), args.exclude_regex.as_deref(), &args.exclude_topics)?;
-    contract_topics(&args.exclude_topics)?;
-    let mut topics = contract_topics(&args.topics)?;
-    topics.retain(|topic| names.take(&topic.absolute_name()));
-    match topics.is_empty() {
-        true => Err(Failure::usage(
-            "no topic is left to record: see --regex, --exclude-regex and --exclude-topics",
-        )),
-        false => Ok(topics),
+/// Topics of the contract, and which others.
+fn topics(args: &Args) -> Result<(Vec<Topic>, OtherTopics), Failure> {
+    let (regex, exclude_regex) = (args.regex.as_deref(), args.exclude_regex.as_deref());
+    let hidden = args.include_hidden_topics;
+    let wanted = Wanted::new(&args.topics, regex, exclude_regex, &args.exclude_topics, hidden);
+    let wanted = wanted.map_err(Failure::usage)?;
+    if let Some(part) = args.topics.iter().find(|name| Topic::by_name(name).is_some_and(Topic::is_transport))
+    {
+        contract_topics(std::slice::from_ref(part))?;
     }
+    if let Some(folder) = args.msg_path.iter().find(|folder| !folder.is_dir()) {
+        return Err(Failure::usage(format!("--msg-path {}: there is no such folder", folder.display())));
+    }
+    let mut topics = contract_topics(&[])?;
+    topics.retain(|topic| wanted.takes(&topic.absolute_name()));
+    let qos = args.qos_profile_overrides_path.as_deref().map(QosOverrides::read).transpose();
+    let qos = qos.map_err(Failure::usage)?.unwrap_or_default();
+    Ok((topics, OtherTopics { wanted, definitions: Definitions::with_folders(&args.msg_path), qos }))
 }
 
 fn writer(args: &Args) -> WriterOptions {
@@ -123,8 +150,5 @@ fn snapshot(args: &Args) -> Result<Option<SnapshotSettings>, Failure> {
     let span = span.ok_or_else(|| {
         Failure::usage(format!("--snapshot {seconds} is out of range: more than 0 seconds"))
     })?;
-    if let Some(trigger) = &args.trigger {
-        contract_topics(std::slice::from_ref(trigger))?;
-    }
     Ok(Some(SnapshotSettings { span, trigger: args.trigger.clone() }))
 }

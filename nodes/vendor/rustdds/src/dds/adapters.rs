@@ -206,6 +206,12 @@ pub mod no_key {
     // what encoding do we produce?
     fn output_encoding() -> RepresentationIdentifier;
 
+    /// The encoding of this value, for adapters whose values are already
+    /// serialized, each in an encoding of its own.
+    fn encoding_of(_value: &D) -> RepresentationIdentifier {
+      Self::output_encoding()
+    }
+
     fn to_bytes(value: &D) -> Result<Bytes, Self::Error>;
   }
 }

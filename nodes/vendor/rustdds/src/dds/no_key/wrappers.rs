@@ -52,6 +52,10 @@ where
     SA::output_encoding()
   }
 
+  fn encoding_of(value: &NoKeyWrapper<D>) -> RepresentationIdentifier {
+    SA::encoding_of(&value.d)
+  }
+
   fn to_bytes(value: &NoKeyWrapper<D>) -> Result<Bytes, SA::Error> {
     SA::to_bytes(&value.d)
   }

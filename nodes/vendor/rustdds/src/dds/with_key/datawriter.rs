@@ -373,7 +373,7 @@ where
     };
 
     let ddsdata = DDSData::new(SerializedPayload::new_from_bytes(
-      SA::output_encoding(),
+      SA::encoding_of(&data),
       send_buffer,
     ));
 
@@ -1038,7 +1038,7 @@ where
     };
 
     let dds_data = DDSData::new(SerializedPayload::new_from_bytes(
-      SA::output_encoding(),
+      SA::encoding_of(&data),
       send_buffer,
     ));
 

@@ -1,0 +1,91 @@
+//! Names in message files, as rosidl has them.
+
+/// An error unless `name` is that of a field or a package: small letters, digits and single underscores, a letter first, no
+/// underscore last.
+pub(crate) fn check_field(name: &str) -> Result<(), String> {
+    let first = name.starts_with(|c: char| c.is_ascii_lowercase());
+    let plain = name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_');
+    if first && plain && !name.contains("__") && !name.ends_with('_') {
+        return Ok(());
+    }
+    Err(format!(
+        "{name:?} is not the name of a field: write small letters, digits and single underscores, a letter first and no \
+         underscore last, as in mean_speed"
+    ))
+}
+
+/// An error unless `name` is that of a constant: capital letters, digits and single underscores, a letter first, no underscore
+/// last.
+pub(crate) fn check_constant(name: &str) -> Result<(), String> {
+    let first = name.starts_with(|c: char| c.is_ascii_uppercase());
+    let plain = name.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_');
+    if first && plain && !name.contains("__") && !name.ends_with('_') {
+        return Ok(());
+    }
+    Err(format!(
+        "{name:?} is not the name of a constant: write capital letters, digits and single underscores, a letter first and no \
+         underscore last, as in MAX_SPEED"
+    ))
+}
+
+/// An error unless `name` is that of a message type or of `package/Type`.
+pub(crate) fn check_type(name: &str) -> Result<(), String> {
+    let mut parts = name.split('/').rev();
+    let last = parts.next().unwrap_or_default();
+    let plain = last.bytes().all(|b| b.is_ascii_alphanumeric());
+    let packages = parts.filter(|part| *part != "msg");
+    if last.starts_with(|c: char| c.is_ascii_uppercase())
+        && plain
+        && name.split('/').count() <= 3
+        && packages.into_iter().all(|package| check_field(package).is_ok())
+    {
+        return Ok(());
+    }
+    Err(format!(
+        "{name:?} is not a type: write a built-in one, such as float64 or string, or that of a message, such as \
+         geometry_msgs/Point"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_that_rosidl_takes() {
+        for (name, field, constant) in [
+            ("a", true, false),
+            ("mean_speed_2", true, false),
+            ("A", false, true),
+            ("MAX_SPEED_2", false, true),
+            ("1a", false, false),
+            ("_a", false, false),
+            ("a_", false, false),
+            ("A_", false, false),
+            ("a__b", false, false),
+            ("A__B", false, false),
+            ("meanSpeed", false, false),
+            ("é", false, false),
+            ("", false, false),
+        ] {
+            assert_eq!(
+                (check_field(name).is_ok(), check_constant(name).is_ok()),
+                (field, constant),
+                "{name}"
+            );
+        }
+        for (name, expected) in [
+            ("Point", true),
+            ("geometry_msgs/Point", true),
+            ("geometry_msgs/msg/Point", true),
+            ("point", false),
+            ("uint9", false),
+            ("Po_int", false),
+            ("Geometry/Point", false),
+            ("a/b/c/Point", false),
+            ("", false),
+        ] {
+            assert_eq!(check_type(name).is_ok(), expected, "{name}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! What a writer of another process offers, and the names of topics and types in DDS.
+
+use crate::sample::WriterId;
+use grainlab_msgs::Qos;
+
+/// A writer of another process on a topic of ROS.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    /// The writer.
+    pub writer: WriterId,
+    /// Full name of the topic: `/lab/stress`.
+    pub topic: String,
+    /// Type of the messages: `grainlab_msgs/msg/Stress`.
+    pub type_name: String,
+    /// Its QoS; a depth of 0 is unknown.
+    pub qos: Qos,
+    /// Hash of the type, `RIHS01_…`, or empty if it is not announced.
+    pub type_hash: String,
+}
+
+impl Offer {
+    /// From the names in DDS and the user data of the writer; `None` unless they are those of a topic of ROS.
+    pub(crate) fn of_wire(
+        writer: WriterId,
+        topic: &str,
+        type_name: &str,
+        qos: Qos,
+        user_data: &[u8],
+    ) -> Option<Self> {
+        // Names from the network become names of files and lines of logs.
+        let plain =
+            |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+        let name = topic.strip_prefix("rt")?;
+        let parts: Vec<&str> = type_name.split("::").collect();
+        let [package, kind, "dds_", last] = parts[..] else { return None };
+        let last = last.strip_suffix('_').unwrap_or(last);
+        let is_ros =
+            name.strip_prefix('/')?.split('/').all(plain) && [package, kind, last].into_iter().all(plain);
+        is_ros.then(|| Self {
+            writer,
+            topic: name.to_owned(),
+            type_name: format!("{package}/{kind}/{last}"),
+            qos,
+            type_hash: type_hash(user_data),
+        })
+    }
+}
+
+/// The hash in `typehash=RIHS01_…;`, as rmw writes it into the user data.
+fn type_hash(user_data: &[u8]) -> String {
+    let text = String::from_utf8_lossy(user_data);
+    let found = text.split(';').find_map(|entry| entry.strip_prefix("typehash="));
+    let is_hash = |hash: &&str| {
+        hash.strip_prefix("RIHS01_")
+            .is_some_and(|d| d.len() == 64 && d.bytes().all(|b| b.is_ascii_hexdigit()))
+    };
+    found.filter(is_hash).unwrap_or_default().to_owned()
+}
+
+/// `grainlab_msgs/msg/Stress` as DDS has it: `grainlab_msgs::msg::dds_::Stress_`.
+pub(crate) fn wire_type(type_name: &str) -> String {
+    match type_name.rsplit_once('/') {
+        Some((package, name)) => format!("{}::dds_::{name}_", package.replace('/', "::")),
+        None => type_name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_on_the_wire_are_those_of_ros_or_no_offer() {
+        let qos = Qos { reliable: true, depth: 0, transient_local: false };
+        let of = |topic: &str, kind: &str, data: &[u8]| {
+            let offer = Offer::of_wire(WriterId([1; 16]), topic, kind, qos, data)?;
+            Some((offer.topic, offer.type_name, offer.type_hash))
+        };
+        let hash = format!("RIHS01_{}", "0f".repeat(32));
+        let data = format!("enclave=/;typehash={hash};");
+        let name = "/lab/_action/feedback".to_owned();
+        assert_eq!(
+            of("rt/lab/_action/feedback", "p::action::dds_::F_FeedbackMessage_", data.as_bytes()),
+            Some((name, "p/action/F_FeedbackMessage".to_owned(), hash))
+        );
+        let string = "std_msgs::msg::dds_::String_";
+        assert_eq!(of("rt/a", string, b"typehash=RIHS01_0;").unwrap().2, "");
+        assert_eq!(wire_type("std_msgs/msg/String"), string);
+        for (topic, kind) in [
+            ("ros_discovery_info", string),
+            ("rq/a/getRequest", string),
+            ("rt/a\x1b[31m", string),
+            ("rt/a//b", string),
+            ("rt/a", "Plain"),
+            ("rt/a", "..::msg::dds_::String_"),
+        ] {
+            assert_eq!(of(topic, kind, b""), None, "{topic} {kind}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Definitions of message types: of this project, of ROS 2, and of folders with message files.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use grainlab_any_message::{Schema, SchemaError};
+use grainlab_msgs::TypeInfo;
+
+use crate::input;
+
+/// Between the definitions of a schema text.
+const SEPARATOR: &str = "================================================================================";
+
+/// The types that this program knows, then those in folders that contain `package/msg/Type.msg`.
+#[derive(Clone, Debug, Default)]
+pub struct Definitions {
+    folders: Vec<PathBuf>,
+}
+
+/// Why there is no schema of a type.
+#[derive(Debug, thiserror::Error)]
+pub enum DefinitionError {
+    /// No folder has it.
+    #[error(
+        "the definition of {type_name} is not known to this program: give a folder that contains {type_name}.msg with --msg-path"
+    )]
+    Unknown {
+        /// The type.
+        type_name: String,
+    },
+    /// A message file cannot be read.
+    #[error("{path}: cannot read the definition of a message: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Its error.
+        source: io::Error,
+    },
+    /// A definition is not valid.
+    #[error("{type_name} from --msg-path: {source}")]
+    Invalid {
+        /// The type.
+        type_name: String,
+        /// What is wrong.
+        source: SchemaError,
+    },
+}
+
+impl Definitions {
+    /// With these folders, the first of which takes precedence.
+    pub fn with_folders(folders: &[PathBuf]) -> Self {
+        Self { folders: folders.to_owned() }
+    }
+
+    /// The schema text of `package/msg/Type` with all types that it uses, as rosbag2 writes it (`ros2msg`).
+    ///
+    /// `hash` is that of the writer, or empty: a type of this program with another hash is another version, and not taken.
+    ///
+    /// # Errors
+    /// If no definition is found, or one is not valid.
+    pub fn text(&self, type_name: &str, hash: &str) -> Result<String, DefinitionError> {
+        let same = |info: &&TypeInfo| hash.is_empty() || hash == info.hash;
+        if let Some(info) = TypeInfo::by_name(type_name).filter(same) {
+            return Ok(info.definition.to_owned());
+        }
+        let Some(root) = self.read(type_name)? else {
+            return Err(DefinitionError::Unknown { type_name: type_name.to_owned() });
+        };
+        let text = self.with_dependencies(root, type_name)?;
+        let type_name = type_name.to_owned();
+        match Schema::parse(&type_name, &text) {
+            Ok(_) => Ok(text),
+            Err(source) => Err(DefinitionError::Invalid { type_name, source }),
+        }
+    }
+
+    /// The text of the type's own file.
+    fn read(&self, type_name: &str) -> Result<Option<String>, DefinitionError> {
+        // A type name from the network is not a path: it has three parts of letters, digits and underscores.
+        let plain =
+            |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if type_name.split('/').count() != 3 || !type_name.split('/').all(plain) {
+            return Ok(None);
+        }
+        let file = |folder: &PathBuf| folder.join(format!("{type_name}.msg"));
+        let Some(path) = self.folders.iter().map(file).find(|path: &PathBuf| Path::exists(path)) else {
+            return Ok(None);
+        };
+        match input::text(&path, input::SETTINGS) {
+            Ok(text) => Ok(Some(text)),
+            Err(source) => Err(DefinitionError::Io { path, source }),
+        }
+    }
+
+    /// The text with the definitions of all types that it uses.
+    fn with_dependencies(&self, root: String, type_name: &str) -> Result<String, DefinitionError> {
+        let mut text = root.clone();
+        let mut done = BTreeSet::from([type_name.to_owned()]);
+        let mut open = used(&root, type_name);
+        while let Some(next) = open.pop() {
+            if !done.insert(next.clone()) {
+                continue;
+            }
+            let known = TypeInfo::by_name(&next).and_then(|info| info.definition.split(SEPARATOR).next());
+            // The parser names a type that is missing.
+            let Some(found) = known.map(|t| Ok(t.to_owned())).or_else(|| self.read(&next).transpose()) else {
+                continue;
+            };
+            let found = found?;
+            open.extend(used(&found, &next));
+            text += &format!("\n{SEPARATOR}\nMSG: {}\n{found}", next.replace("/msg/", "/"));
+        }
+        Ok(text)
+    }
+}
+
+/// Full names of the types of the fields of a definition.
+fn used(text: &str, type_name: &str) -> Vec<String> {
+    let package = type_name.split('/').next().unwrap_or_default();
+    let field_type = |line: &str| {
+        let word = line.split('#').next()?.split_whitespace().next()?;
+        let base = word.split(['[', '<']).next()?;
+        let full = match base.split('/').collect::<Vec<_>>()[..] {
+            [name] if name.starts_with(char::is_uppercase) => format!("{package}/msg/{name}"),
+            ["Header"] => "std_msgs/msg/Header".to_owned(),
+            [other, name] | [other, "msg", name] => format!("{other}/msg/{name}"),
+            _ => return None,
+        };
+        Some(full)
+    };
+    text.lines().filter_map(field_type).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[(&str, &str)]) -> (tempfile::TempDir, Definitions) {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        let definitions = Definitions::with_folders(&[folder.path().to_owned()]);
+        (folder, definitions)
+    }
+
+    #[test]
+    fn a_type_in_a_folder_may_use_others_there_and_those_of_ros() {
+        let (_folder, definitions) = folder(&[
+            ("demo_msgs/msg/Pair.msg", "std_msgs/Header header\nOne[] ones # two\n"),
+            ("demo_msgs/msg/One.msg", "uint8 value\n"),
+        ]);
+        let text = definitions.text("demo_msgs/msg/Pair", "").unwrap();
+        let schema = Schema::parse("demo_msgs/msg/Pair", &text).unwrap();
+        let mut body = vec![0, 1, 0, 0];
+        body.extend([5, 0, 0, 0, 6, 0, 0, 0, 2, 0, 0, 0, b'a', 0, 0, 0, 2, 0, 0, 0, 7, 8]);
+        let message = schema.decode(&body).unwrap();
+        let expected =
+            r#"{"header":{"stamp":{"sec":5,"nanosec":6},"frame_id":"a"},"ones":[{"value":7},{"value":8}]}"#;
+        assert_eq!(grainlab_any_message::Shown::new(&message).json(), expected);
+        let error = definitions.text("demo_msgs/msg/Other", "").unwrap_err().to_string();
+        assert!(error.contains("demo_msgs/msg/Other.msg") && error.contains("--msg-path"), "{error}");
+        assert!(definitions.text("../../etc/passwd", "").is_err());
+    }
+
+    #[test]
+    fn our_own_type_comes_first_unless_the_writer_has_another_version() {
+        let (_folder, definitions) = folder(&[("rosgraph_msgs/msg/Clock.msg", "uint8 other\n")]);
+        let ours = TypeInfo::by_name("rosgraph_msgs/msg/Clock").unwrap();
+        assert_eq!(definitions.text(ours.type_name, "").unwrap(), ours.definition);
+        assert_eq!(definitions.text(ours.type_name, ours.hash).unwrap(), ours.definition);
+        assert_eq!(definitions.text(ours.type_name, "RIHS01_00").unwrap(), "uint8 other\n");
+    }
+
+    #[test]
+    fn a_message_file_that_is_not_valid_is_named_with_its_line() {
+        let (_folder, definitions) = folder(&[("a_msgs/msg/B.msg", "uint8 a\nuint8 1a\n")]);
+        let error = definitions.text("a_msgs/msg/B", "").unwrap_err().to_string();
+        assert!(error.contains("a_msgs/msg/B") && error.contains("line 2"), "{error}");
+    }
+}

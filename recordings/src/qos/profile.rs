@@ -1,0 +1,134 @@
+//! One profile of rosbag2.
+
+use grainlab_msgs::Qos;
+use serde_json::Value;
+
+/// Samples kept with the history `keep_all`: what a reader may hold in memory is bounded.
+const KEEP_ALL: u32 = 10_000;
+
+/// Seconds from which a duration counts as infinite: those of DDS are 2³¹ − 1, those of ROS 2 more.
+const INFINITE: u64 = i32::MAX as u64;
+
+/// The policies that a profile names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Policies {
+    reliable: Option<bool>,
+    transient_local: Option<bool>,
+    depth: Option<u32>,
+}
+
+/// A policy: its values as numbers of rmw and as words, and the meaning of each; `None` leaves it to the default.
+type Values<T> = &'static [(u64, &'static str, Option<T>)];
+
+const RELIABILITY: Values<bool> = &[
+    (0, "system_default", None),
+    (1, "reliable", Some(true)),
+    (2, "best_effort", Some(false)),
+    (3, "unknown", None),
+];
+const DURABILITY: Values<bool> = &[
+    (0, "system_default", None),
+    (1, "transient_local", Some(true)),
+    (2, "volatile", Some(false)),
+    (3, "unknown", None),
+];
+const HISTORY: Values<bool> = &[
+    (0, "system_default", None),
+    (1, "keep_last", Some(false)),
+    (2, "keep_all", Some(true)),
+    (3, "unknown", None),
+];
+const LIVELINESS: Values<()> = &[(0, "system_default", None), (1, "automatic", None)];
+
+/// The policies that a profile may have.
+const KEYS: [&str; 9] = [
+    "history",
+    "depth",
+    "reliability",
+    "durability",
+    "deadline",
+    "lifespan",
+    "liveliness",
+    "liveliness_lease_duration",
+    "avoid_ros_namespace_conventions",
+];
+
+impl Policies {
+    /// Those of a profile that somebody wrote.
+    pub(super) fn strict(profile: &Value) -> Result<Self, String> {
+        let Value::Object(profile) = profile else {
+            return Err("it is not a map of policies, such as reliability: best_effort".to_owned());
+        };
+        if let Some(key) = profile.keys().find(|key| !KEYS.contains(&key.as_str())) {
+            return Err(format!("there is no policy {key}; there are: {}", KEYS.join(", ")));
+        }
+        for key in ["deadline", "lifespan", "liveliness_lease_duration"] {
+            if profile.get(key).is_some_and(|value| !is_unlimited(value)) {
+                return Err(format!("a limited {key} is not supported: leave it out"));
+            }
+        }
+        if let Some(value) = profile.get("liveliness") {
+            one_of("liveliness", value, LIVELINESS)?;
+        }
+        if profile.get("avoid_ros_namespace_conventions").is_some_and(|value| *value != Value::Bool(false)) {
+            return Err("avoid_ros_namespace_conventions: true is not supported: leave it out".to_owned());
+        }
+        let policy = |key: &str, values| match profile.get(key) {
+            Some(value) => one_of(key, value, values),
+            None => Ok(None),
+        };
+        let depth = match profile.get("depth") {
+            None => None,
+            Some(value) => {
+                let depth = value.as_u64().and_then(|n| u32::try_from(n).ok()).filter(|n| *n > 0);
+                Some(depth.ok_or_else(|| format!("depth: {value} is not a number of messages, 1 or more"))?)
+            }
+        };
+        Ok(Self {
+            reliable: policy("reliability", RELIABILITY)?,
+            transient_local: policy("durability", DURABILITY)?,
+            depth: if policy("history", HISTORY)? == Some(true) { Some(KEEP_ALL) } else { depth },
+        })
+    }
+
+    /// Those of a recorded profile that can be read.
+    pub(super) fn lenient(profile: &Value) -> Self {
+        let policy = |key: &str, values| profile.get(key).and_then(|v| one_of(key, v, values).ok()).flatten();
+        let depth = profile.get("depth").and_then(Value::as_u64).and_then(|n| u32::try_from(n).ok());
+        Self {
+            reliable: policy("reliability", RELIABILITY),
+            transient_local: policy("durability", DURABILITY),
+            depth: if policy("history", HISTORY) == Some(true) { Some(KEEP_ALL) } else { depth },
+        }
+    }
+
+    /// `qos` with these policies.
+    pub(super) fn over(&self, qos: Qos) -> Qos {
+        Qos {
+            reliable: self.reliable.unwrap_or(qos.reliable),
+            transient_local: self.transient_local.unwrap_or(qos.transient_local),
+            depth: self.depth.unwrap_or(qos.depth),
+        }
+    }
+}
+
+/// The meaning of a value, written as a number or as a word.
+fn one_of<T: Copy>(key: &str, value: &Value, values: Values<T>) -> Result<Option<T>, String> {
+    let found = values
+        .iter()
+        .find(|(number, word, _)| value.as_u64() == Some(*number) || value.as_str() == Some(word));
+    found.map(|(_, _, meaning)| *meaning).ok_or_else(|| {
+        let words: Vec<&str> =
+            values.iter().map(|(_, word, _)| *word).filter(|word| *word != "unknown").collect();
+        format!("{key}: {value} is not one of {}", words.join(", "))
+    })
+}
+
+/// Whether a duration `{sec, nsec}` is zero, which is the default, or infinite.
+fn is_unlimited(duration: &Value) -> bool {
+    let part = |key: &str| duration.get(key).and_then(Value::as_u64);
+    match (part("sec"), part("nsec")) {
+        (Some(sec), nsec) => sec >= INFINITE || sec == 0 && nsec.unwrap_or(0) == 0,
+        _ => false,
+    }
+}
