@@ -137,7 +137,14 @@ fn lammps_data_has_the_grains_folded_into_the_cell() {
 
 #[test]
 fn dumps_of_grains_and_contacts_give_the_forces_back() {
-    let packing = reference().packing;
+    let mut packing = reference().packing;
+    // A dump has forces, and the reader takes normals from positions; those of the file, and what is perpendicular to them,
+    // are rounded.
+    let normals: Vec<Vec3> = packing.contacts.iter().map(|c| packing.branch(c).normalize()).collect();
+    for (c, normal) in packing.contacts.iter_mut().zip(normals) {
+        c.normal = normal;
+        c.tangential_force -= normal * normal.dot(&c.tangential_force);
+    }
     let (_folder, files) = export(std::slice::from_ref(&packing), ExportFormat::LammpsDump);
     let m = &packing.material;
     let options = ImportOptions {
@@ -153,7 +160,8 @@ fn dumps_of_grains_and_contacts_give_the_forces_back() {
     assert_eq!(back.contacts.len(), packing.contacts.len());
     for (a, b) in back.contacts.iter().zip(&packing.contacts) {
         assert_eq!((a.i, a.j, a.image), (b.i, b.j, b.image));
-        assert!((a.normal_force - b.normal_force).abs() < 1e-12 * mean);
+        let wrong = (a.normal_force - b.normal_force).abs() / mean;
+        assert!(wrong < 1e-12, "{wrong:e} {:e} {:e}", a.normal_force, b.normal_force);
         assert!((a.tangential_force - b.tangential_force).norm() < 1e-12 * mean);
     }
 }

@@ -11,7 +11,7 @@ pub(crate) const FORMATS: &str = "\
 A file that cannot be read is reported and the others are measured; the exit code is the worst of all files. Ctrl-C prints
 the finished results and ends with 130. Formats are recognised by content: a recording, CSV (p,id,x,y,z,radius,mass,vx,vy,vz,wx,wy,wz and
 c,i,j,nx,ny,nz,delta,fn,ftx,fty,ftz; NAME.json beside NAME.csv has cell and material), LAMMPS dump or data file
-(atom_style sphere), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
+(atom_style sphere), extended XYZ (pos, radius), VTKHDF (grains_1.vtkhdf, with the contacts of contacts_1.vtkhdf beside it), YADE export.text or textExt (x_y_z_r, x_y_z_r_matId, id_x_y_z_r_matId, x_y_z_r_attrs; the cell from a
 comment: textExt(..., comment='cell ' + str(O.cell.hSize)), or from --cell). If a file lists no contacts, they are found
 from positions, with Hertz normal forces and without tangential ones. The contact forces of a LAMMPS dump need these lines,
 all of them with friction (fx fy fz of granular pair styles is only the normal force):
