@@ -89,6 +89,3 @@ assert np.array_equal(frame.cell[:, :3], cell)
 pipeline = import_file(folder / "lammps/packings.dump")
 frame = pipeline.compute(0)
 rounded("OVITO, LAMMPS dump, positions", frame.particles.positions[...], positions)
-
-pipeline = import_file(folder / "vtk/contacts_1.vtp")
-print("OVITO, VTK:", type(pipeline.compute(0)).__name__)

@@ -1,4 +1,4 @@
-//! Writes VTK XML files, which ParaView, PyVista and OVITO open: grains as points, contacts as lines, and a collection of the
+//! Writes VTK XML files, which ParaView and PyVista open: grains as points, contacts as lines, and a collection of the
 //! states of a run.
 
 use super::columns::{self, Column, Values};
