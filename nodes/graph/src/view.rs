@@ -21,7 +21,7 @@ pub(crate) struct Common {
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: OutputFormat,
     /// Time limit of discovery, s
-    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) spin_time: f64,
 }
 

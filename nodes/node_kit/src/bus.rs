@@ -51,6 +51,29 @@ impl fmt::Debug for Caller {
     }
 }
 
+/// Publishes from another thread; see [`Bus::sender`].
+#[derive(Clone)]
+pub struct Sender(pub(crate) Arc<Publish>);
+
+/// Publishes a body and returns its sequence number.
+type Publish = dyn Fn(&[u8]) -> Result<i64, BusError> + Send + Sync;
+
+impl Sender {
+    /// The same as [`Bus::publish`].
+    ///
+    /// # Errors
+    /// Those of [`Bus::publish`].
+    pub fn publish(&self, body: &[u8]) -> Result<i64, BusError> {
+        (self.0)(body)
+    }
+}
+
+impl fmt::Debug for Sender {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Sender")
+    }
+}
+
 /// The statistics of one of our writers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Published {
@@ -116,6 +139,10 @@ pub trait Bus {
     /// A handle for another thread to end [`Bus::wait`]. `None` on a bus with virtual time, where results must not
     /// depend on the speed of a thread.
     fn caller(&self) -> Option<Caller>;
+
+    /// A handle for another thread to publish with this publisher, which must not outlast the bus. `None` on a bus with
+    /// virtual time.
+    fn sender(&self, publisher: PublisherId) -> Option<Sender>;
 
     /// Readers matched with this publisher, of those that [`Bus::identity`] counts, as known at the last [`Bus::wait`].
     /// A crashed peer counts until its lease ends, up to a minute: see [`crate::Peers`].

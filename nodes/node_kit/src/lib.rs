@@ -15,7 +15,8 @@
 //! - `args`, `names`, `parameters`: the ROS 2 command line, names and remaps, parameters; `services`: the standard
 //!   services of a node
 //! - [`pingpong`]: the exchange of the lockstep alone, for measurements
-//! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: stderr and `/rosout`
+//! - `exit`: exit codes; `signals`: SIGINT and SIGTERM; `logging`: log lines on stderr; `rosout`: the same on `/rosout`;
+//!   `wall_clock`: their stamps
 
 mod admission;
 mod args;
@@ -37,18 +38,20 @@ mod packing_node;
 mod parameters;
 mod peers;
 pub mod pingpong;
+mod rosout;
 mod run;
 mod sample;
 mod services;
 mod signals;
 mod typed;
+mod wall_clock;
 pub mod watchdog;
 mod worker;
 
 pub use admission::{Participant, Process, Stranger};
 pub use args::{ArgsError, Assignment, Remap, RosArgs};
 pub use bulk::{BULK_LIMIT, BulkPublisher, BulkSubscription};
-pub use bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+pub use bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
 pub use bus_error::BusError;
 pub use dds::{ClaimedDomain, DdsBus, MAX_DOMAIN, Network, NetworkError, Reach, StaticPeers};
 pub use demand::Demand;

@@ -3,12 +3,13 @@
 use crate::args::RosArgs;
 use crate::dds::LOG_TARGET;
 use crate::diagnostics::wall_stamp;
+use crate::wall_clock::wall_nanos;
 use grainlab_msgs::rcl_interfaces::Log;
 use log::{Level, LevelFilter, Metadata, Record};
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::io::{IsTerminal, Write};
-use std::sync::{Mutex, Once, PoisonError};
-use std::time::SystemTime;
+use std::sync::{Condvar, Mutex, Once, PoisonError};
 
 /// Maximum number of lines queued for `/rosout`; a full queue drops the oldest.
 const BACKLOG: usize = 1000;
@@ -26,7 +27,13 @@ static LOGGER: Logger = Logger {
         colour: false,
         queue: VecDeque::new(),
     }),
+    changed: Condvar::new(),
 };
+
+thread_local! {
+    /// Whether this thread publishes the lines: those about publishing would follow each other without end.
+    static PUBLISHES: Cell<bool> = const { Cell::new(false) };
+}
 
 /// The settings that can change after the logger is installed.
 struct Settings {
@@ -42,6 +49,8 @@ struct Settings {
 /// The logger of this process.
 pub struct Logger {
     settings: Mutex<Settings>,
+    /// A line was queued, or the queue was closed.
+    changed: Condvar,
 }
 
 impl Logger {
@@ -74,16 +83,25 @@ impl Logger {
         self.settings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes the queued lines for `/rosout`.
+    /// Takes the queued lines for `/rosout`, in the order of their stamps.
     pub fn drain(&self) -> Vec<Log> {
         self.lock().queue.drain(..).collect()
     }
 
-    /// Ends the queue for `/rosout`: the final counts were reported.
+    /// The same, after waiting for a line; `None` after [`Self::close`] if none is left. The lines of this thread are not
+    /// queued from now on.
+    pub(crate) fn wait_for_lines(&self) -> Option<Vec<Log>> {
+        PUBLISHES.set(true);
+        let empty = |settings: &mut Settings| settings.rosout && settings.queue.is_empty();
+        let waited = self.changed.wait_while(self.lock(), empty);
+        let lines: Vec<Log> = waited.unwrap_or_else(PoisonError::into_inner).queue.drain(..).collect();
+        (!lines.is_empty()).then_some(lines)
+    }
+
+    /// Queues no more lines for `/rosout`: the final counts are to be reported.
     pub fn close(&self) {
-        let mut settings = self.lock();
-        settings.rosout = false;
-        settings.queue.clear();
+        self.lock().rosout = false;
+        self.changed.notify_all();
     }
 }
 
@@ -130,12 +148,11 @@ impl log::Log for Logger {
         if !self.enabled(record.metadata()) {
             return;
         }
-        let nanos =
-            SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64);
-        let stamp = wall_stamp(nanos);
         let text = record.args().to_string();
         let (name, number, colour) = severity(record.level());
         let mut settings = self.lock();
+        // Stamped under the lock, so that the lines of all threads are queued in the order of their stamps.
+        let stamp = wall_stamp(wall_nanos());
         if settings.stderr {
             let line = format!("[{name}] [{}.{:09}] [{}]: {text}", stamp.sec, stamp.nanosec, settings.name);
             let (colour, reset) =
@@ -143,7 +160,7 @@ impl log::Log for Logger {
             // One write, so that lines of several processes on one terminal do not mix. A closed stderr is ignored.
             let _ = std::io::stderr().write_all(format!("{colour}{line}{reset}\n").as_bytes());
         }
-        if settings.rosout {
+        if settings.rosout && !PUBLISHES.get() {
             if settings.queue.len() >= BACKLOG {
                 settings.queue.pop_front();
             }
@@ -157,6 +174,7 @@ impl log::Log for Logger {
                 line: record.line().unwrap_or_default(),
             };
             settings.queue.push_back(entry);
+            self.changed.notify_all();
         }
     }
 

@@ -12,13 +12,13 @@ use crate::names::Names;
 use crate::node::{Next, Node, NodeError};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::peers::PeerWatch;
+use crate::rosout::{Rosout, tolerate_full};
 use crate::sample::WriterId;
 use crate::services::{Declared, USE_SIM_TIME};
 use crate::signals::Signals;
 use crate::typed::Publisher;
 use crate::watchdog;
 use grainlab_msgs::diagnostic_msgs::DiagnosticArray;
-use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::topics;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Duration;
@@ -122,7 +122,7 @@ pub fn drive(
     node: &mut dyn Node,
     bus: &mut dyn Bus,
     node_name: &str,
-    logger: Option<&Logger>,
+    logger: Option<&'static Logger>,
     stop: &dyn Fn() -> bool,
 ) -> Result<Exit, DriveError> {
     let mut housekeeping = Housekeeping::new(bus, node_name, logger)?;
@@ -166,20 +166,19 @@ pub enum DriveError {
 }
 
 /// Heartbeats, log lines, peers and watchdog of one process.
-struct Housekeeping<'a> {
+struct Housekeeping {
     node_name: String,
     pid: u32,
     diagnostics: Publisher<DiagnosticArray>,
     diagnostics_writer: Option<WriterId>,
-    rosout: Publisher<Log>,
-    logger: Option<&'a Logger>,
+    rosout: Rosout,
     watch: PeerWatch,
     next_beat: Duration,
     next_look: Duration,
 }
 
-impl<'a> Housekeeping<'a> {
-    fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'a Logger>) -> Result<Self, BusError> {
+impl Housekeeping {
+    fn new(bus: &mut dyn Bus, node_name: &str, logger: Option<&'static Logger>) -> Result<Self, BusError> {
         let diagnostics = Publisher::advertise(bus, &topics::DIAGNOSTICS)?;
         let diagnostics_writer = bus.published().last().map(|p| p.writer);
         Ok(Self {
@@ -187,8 +186,7 @@ impl<'a> Housekeeping<'a> {
             pid: std::process::id(),
             diagnostics,
             diagnostics_writer,
-            rosout: Publisher::advertise(bus, &topics::ROSOUT)?,
-            logger,
+            rosout: Rosout::start(bus, logger)?,
             watch: PeerWatch::subscribe(bus)?,
             next_beat: bus.now() + HEARTBEAT,
             next_look: bus.now() + LOOK,
@@ -202,7 +200,7 @@ impl<'a> Housekeeping<'a> {
         if heard {
             node.on_peers(self.watch.peers());
         }
-        self.publish_logs(bus)?;
+        self.rosout.tend(bus)?;
         let now = bus.now();
         if now >= self.next_beat {
             self.report(node, bus, None)?;
@@ -224,31 +222,13 @@ impl<'a> Housekeeping<'a> {
     fn report(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Option<Exit>) -> Result<(), BusError> {
         let report = Report::of(bus, &self.node_name, self.pid, node.health(), exit, self.diagnostics_writer);
         let message = report.to_message(bus.node_nanos());
-        self.tolerate_full(self.diagnostics.publish(bus, &message))
-    }
-
-    fn publish_logs(&self, bus: &mut dyn Bus) -> Result<(), BusError> {
-        for line in self.logger.map(Logger::drain).unwrap_or_default() {
-            self.tolerate_full(self.rosout.publish(bus, &line))?;
-        }
-        Ok(())
-    }
-
-    /// A crashed reader must not end the node: the bus counts what it could not send.
-    fn tolerate_full(&self, published: Result<i64, BusError>) -> Result<(), BusError> {
-        match published {
-            Ok(_) | Err(BusError::Full { .. }) => Ok(()),
-            Err(error) => Err(error),
-        }
+        tolerate_full(self.diagnostics.publish(bus, &message))
     }
 
     /// Publishes the last log lines, then the last report: nothing is published after it, so its counts are final.
-    fn leave(&self, node: &dyn Node, bus: &mut dyn Bus, exit: Exit) -> Result<(), BusError> {
+    fn leave(&mut self, node: &dyn Node, bus: &mut dyn Bus, exit: Exit) -> Result<(), BusError> {
         log::info!("leaving: {exit}");
-        self.publish_logs(bus)?;
-        if let Some(logger) = self.logger {
-            logger.close();
-        }
+        self.rosout.close(bus)?;
         self.report(node, bus, Some(exit))?;
         bus.flush(LAST_WORDS);
         Ok(())

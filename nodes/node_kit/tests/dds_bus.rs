@@ -1,6 +1,7 @@
 //! The bus over DDS: two participants in one process, on loopback, in a separate domain.
 
 use grainlab_msgs::msg::{RunState, StrainRate};
+use grainlab_msgs::rcl_interfaces::Log;
 use grainlab_msgs::{Qos, Topic, topics};
 use grainlab_node_kit::ClaimedDomain;
 use grainlab_node_kit::{Bus, BusError, DdsBus, Demand, Names, Network, Publisher, Subscription, Wake};
@@ -374,4 +375,22 @@ fn a_node_that_reads_its_own_topic_does_not_wait_for_itself_when_it_leaves() {
         a.publish(publisher, &grainlab_msgs::to_cdr(&rate(1))).unwrap();
     }
     assert!(a.flush(TIME_LIMIT), "strain_rate, which only the other process reads, is acknowledged");
+}
+
+#[test]
+fn a_process_takes_its_own_samples_after_those_that_arrived_before() {
+    let claimed = claim();
+    let network = claimed.network();
+    let (mut a, mut b) = (open(network, "a"), open(network, "b"));
+    let rosout = Subscription::<Log>::subscribe(&mut a, &topics::ROSOUT, Demand::reliable(10)).unwrap();
+    let [ours, theirs] =
+        [&mut a, &mut b].map(|bus| Publisher::<Log>::advertise(bus, &topics::ROSOUT).unwrap());
+    until(&mut b, "b sees a reader", |b| b.readers(theirs.id()) == 1);
+    let line = |msg: &str| Log { msg: msg.into(), ..Log::default() };
+    theirs.publish(&mut b, &line("theirs")).unwrap();
+    assert!(b.flush(TIME_LIMIT), "it arrived, and was not taken");
+    ours.publish(&mut a, &line("ours")).unwrap();
+    let taken: Vec<String> =
+        std::iter::from_fn(|| rosout.take(&mut a).unwrap()).map(|(l, _)| l.msg).collect();
+    assert_eq!(taken, ["theirs", "ours"]);
 }

@@ -40,13 +40,15 @@ impl Node for Busy {
 /// Asks the node until it answers: a server may be matched in one direction before the other.
 struct Asker {
     node: ros2_client::Node,
+    context: ros2_client::Context,
 }
 
 impl Asker {
     fn new(network: Network) -> Self {
         let context = network.context().unwrap();
         let options = NodeOptions::new().enable_rosout(false);
-        Self { node: context.new_node(NodeName::new("/", "asker").unwrap(), options).unwrap() }
+        let node = context.new_node(NodeName::new("/", "asker").unwrap(), options).unwrap();
+        Self { node, context }
     }
 
     fn call<Req: Message + Clone + 'static, Resp: Message + 'static>(
@@ -91,10 +93,18 @@ impl Asker {
         response.values.remove(0).into()
     }
 
+    /// The durability that the writers of `/parameter_events` offer.
+    fn durability_of_events(&self) -> Vec<Option<Durability>> {
+        let writers = self.context.domain_participant().discovered_writers();
+        let data = writers.into_iter().map(|writer| writer.publication_topic_data);
+        let of_events = data.filter(|data| data.topic_name == "rt/parameter_events");
+        of_events.map(|data| data.qos().durability()).collect()
+    }
+
     fn events(&mut self) -> Subscription<ParameterEvent> {
         let qos = QosProfile::publisher_default()
             .reliability_reliable(WhenFull::DEFAULT)
-            .durability(Durability::TransientLocal)
+            .durability(Durability::Volatile)
             .history(History::KeepLast { depth: 10 });
         let name = Name::parse("/parameter_events").unwrap();
         let message_type = MessageTypeName::new("rcl_interfaces", "ParameterEvent");
@@ -134,6 +144,9 @@ fn parameters_are_read_described_and_set_while_the_node_computes() {
     assert_eq!(described.values[0].description, "time between repetitions, s");
 
     let events = asker.events();
+    // Asked and answered often enough that its other endpoints are discovered.
+    let offered = asker.durability_of_events();
+    assert!(!offered.is_empty() && offered.iter().all(|d| *d == Some(Durability::Volatile)), "{offered:?}");
     assert!(asker.set("wait", ParameterValue::Double(0.5)).successful);
     assert_eq!(asker.get("wait"), ParameterValue::Double(0.5));
     // An integer is taken for a double, as `ros2 param set` sends it.

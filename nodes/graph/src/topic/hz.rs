@@ -20,7 +20,7 @@ struct Window {
     /// Name of the topic
     topic: String,
     /// Measure for this time and print one result, s [default: a line each second until Ctrl-C]
-    #[arg(short, long, value_name = "S", value_parser = seconds)]
+    #[arg(short, long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     duration: Option<f64>,
     #[command(flatten)]
     common: Common,

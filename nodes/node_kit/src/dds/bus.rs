@@ -10,16 +10,17 @@ use super::lock::lock;
 use super::network::Network;
 use super::writer::Writer;
 use crate::admission::{Participant, Stranger};
-use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::{Identity, Scope};
 use crate::names::Names;
 use crate::offer::Offer;
 use crate::parameters::Parameters;
-use crate::sample::{Sample, SampleId, SampleInfo, WriterId};
+use crate::sample::{Sample, SampleId, WriterId};
 use crate::services::{Declared, ServiceThread, SimTime};
 use crate::signals::Signals;
+use crate::wall_clock;
 use crate::watchdog::OpenParticipant;
 use grainlab_msgs::Topic;
 use mio::{Events, Interest, Poll, Token, Waker};
@@ -27,7 +28,7 @@ use ros2_client::{Context, Gid, NodeName};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 const SIGNALS: Token = Token(0);
 const STATUS: Token = Token(1);
@@ -62,7 +63,7 @@ pub struct DdsBus {
     declared: Declared,
     sim_time: SimTime,
     background_reader: BackgroundReader,
-    writers: Vec<Writer>,
+    writers: Vec<Arc<Writer>>,
     subscribers: Vec<Subscriber>,
     readers: Vec<Reader>,
     inboxes: Inboxes,
@@ -206,17 +207,6 @@ impl DdsBus {
         Ok(index)
     }
 
-    /// Passes published samples to our own subscriptions: a participant without multicast does not discover itself,
-    /// and DDS would not deliver its own samples.
-    fn echo(&self, topic: &str, id: SampleId, about: Option<SampleId>, body: &[u8]) {
-        for reader in self.readers.iter().filter(|r| r.topic == topic) {
-            let now = self.wall_nanos();
-            let SampleId { writer, sequence } = id;
-            let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
-            lock(&reader.inbox).deliver(Sample { body: body.to_vec(), info });
-        }
-    }
-
     /// Processes the events of discovery; true if something changed.
     fn follow_graph(&mut self) -> bool {
         let mut changed = false;
@@ -278,6 +268,13 @@ impl DdsBus {
     }
 }
 
+/// Ends the node's wait from another thread.
+fn wake(waker: &Waker) {
+    if let Err(error) = waker.wake() {
+        log::error!("cannot wake the node: {error}");
+    }
+}
+
 /// The name of a ROS topic in DDS.
 fn wire_name(resolved: &str) -> String {
     format!("rt{resolved}")
@@ -293,7 +290,7 @@ impl Bus for DdsBus {
         let dds_topic = self.dds_topic(&resolved, topic)?;
         let outlet = Outlet::new(&mut lock(&self.node), &dds_topic, topic)?;
         self.unannounced = true;
-        self.writers.push(Writer::new(outlet, resolved, direct::window(topic)));
+        self.writers.push(Arc::new(Writer::new(outlet, resolved, direct::window(topic))));
         Ok(PublisherId(self.writers.len() - 1))
     }
 
@@ -311,10 +308,11 @@ impl Bus for DdsBus {
         body: &[u8],
         about: Option<SampleId>,
     ) -> Result<i64, BusError> {
-        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("publish"))?;
+        let writer = self.writers.get(publisher.0).ok_or(BusError::Handle("publish"))?;
         let sequence = writer.write(body, about)?;
-        let (topic, writer) = (writer.topic.clone(), writer.id());
-        self.echo(&topic, SampleId { writer, sequence }, about, body);
+        for reader in self.readers.iter().filter(|r| r.topic == writer.topic) {
+            lock(&reader.inbox).deliver_own(SampleId { writer: writer.id(), sequence }, about, body);
+        }
         Ok(sequence)
     }
 
@@ -361,9 +359,22 @@ impl Bus for DdsBus {
         let (called, waker) = (Arc::clone(&self.called), Arc::clone(&self.waker));
         Some(Caller(Arc::new(move || {
             called.store(true, Ordering::Release);
-            if let Err(error) = waker.wake() {
-                log::error!("cannot wake the node: {error}");
+            wake(&waker);
+        })))
+    }
+
+    fn sender(&self, publisher: PublisherId) -> Option<Sender> {
+        let writer = Arc::clone(self.writers.get(publisher.0)?);
+        let (inboxes, waker) = (Arc::clone(&self.inboxes), Arc::clone(&self.waker));
+        Some(Sender(Arc::new(move |body| {
+            let sequence = writer.write(body, None)?;
+            for mut inbox in
+                lock(&inboxes).iter().map(|inbox| lock(inbox)).filter(|i| i.topic() == writer.topic)
+            {
+                inbox.deliver_own(SampleId { writer: writer.id(), sequence }, None, body);
+                wake(&waker);
             }
+            Ok(sequence)
         })))
     }
 
@@ -398,13 +409,13 @@ impl Bus for DdsBus {
 
     fn count_published(&mut self, publisher: PublisherId, topic: &Topic) -> Result<(), BusError> {
         let resolved = self.names.resolve(topic.name)?;
-        let writer = self.writers.get_mut(publisher.0).ok_or(BusError::Handle("count_published"))?;
-        *writer.wholes.entry(resolved).or_default() += 1;
+        let writer = self.writers.get(publisher.0).ok_or(BusError::Handle("count_published"))?;
+        writer.count_whole(resolved);
         Ok(())
     }
 
     fn published(&self) -> Vec<Published> {
-        self.writers.iter().flat_map(Writer::published).collect()
+        self.writers.iter().flat_map(|w| w.published()).collect()
     }
 
     fn received(&self) -> Vec<Received> {
@@ -438,7 +449,7 @@ impl Bus for DdsBus {
         let deadline = Instant::now() + timeout;
         // DDS may match a reader of our own, too, which acknowledges only if multicast reaches it.
         let own = |r: &Reader, topic: &str| r.topic == topic && lock(&r.inbox).demand().reliable;
-        let external = |w: &&Writer| !self.readers.iter().any(|r| own(r, &w.topic));
+        let external = |w: &&Arc<Writer>| !self.readers.iter().any(|r| own(r, &w.topic));
         self.writers.iter().filter(external).all(|writer| {
             let left = deadline.saturating_duration_since(Instant::now());
             writer.outlet.wait_for_acknowledgments(left)
@@ -454,6 +465,6 @@ impl Bus for DdsBus {
     }
 
     fn wall_nanos(&self) -> u64 {
-        SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos() as u64)
+        wall_clock::wall_nanos()
     }
 }

@@ -3,7 +3,8 @@
 use super::direct::{Inlet, TakeFailure};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
-use crate::sample::Sample;
+use crate::sample::{Sample, SampleId, SampleInfo};
+use crate::wall_clock::wall_nanos;
 use ros2_client::Gid;
 use std::collections::VecDeque;
 
@@ -24,11 +25,23 @@ impl Inbox {
         Self { reader, topic, demand, queues: Vec::new(), own, refused: 0 }
     }
 
-    /// Adds a sample that did not come through DDS.
-    pub(super) fn deliver(&mut self, sample: Sample) {
+    /// Adds a sample that this process published: a participant without multicast does not discover itself, and DDS would
+    /// not deliver its own samples.
+    pub(super) fn deliver_own(&mut self, id: SampleId, about: Option<SampleId>, body: &[u8]) {
+        // What others published before comes before it. The node's next take returns the error of a failing reader.
+        let _ = self.collect();
+        let SampleId { writer, sequence } = id;
+        let now = wall_nanos();
+        let info = SampleInfo { writer, sequence, source_time: Some(now), received: now, about };
+        let sample = Sample { body: body.to_vec(), info };
         for queue in &mut self.queues {
             push_bounded(queue, sample.clone(), self.demand.depth);
         }
+    }
+
+    /// Resolved name.
+    pub(super) fn topic(&self) -> &str {
+        &self.topic
     }
 
     pub(super) fn gid(&self) -> Gid {

@@ -2,7 +2,7 @@
 
 use super::state::{Reader, State, Writer};
 use crate::admission::{Admission, Participant, Stranger};
-use crate::bus::{Bus, Caller, Published, PublisherId, Received, SubscriptionId, Wake};
+use crate::bus::{Bus, Caller, Published, PublisherId, Received, Sender, SubscriptionId, Wake};
 use crate::bus_error::BusError;
 use crate::demand::Demand;
 use crate::identity::Identity;
@@ -136,6 +136,10 @@ impl Bus for MemoryBus {
     }
 
     fn caller(&self) -> Option<Caller> {
+        None
+    }
+
+    fn sender(&self, _publisher: PublisherId) -> Option<Sender> {
         None
     }
 

@@ -35,9 +35,9 @@ pub mod parameter_events {
 
   lazy_static! {
     pub static ref QOS: QosPolicies = QosPolicyBuilder::new()
-      .durability(Durability::TransientLocal)
+      .durability(Durability::Volatile)
       .reliable(Duration::ZERO)
-      .history(History::KeepLast { depth: 1 })
+      .history(History::KeepLast { depth: 1000 })
       .build();
   }
 
