@@ -10,6 +10,7 @@ use ros2_client::rcl_interfaces::{
     DescribeParametersRequest, DescribeParametersResponse, GetParametersRequest, GetParametersResponse,
     SetParametersRequest, SetParametersResponse,
 };
+use ros2_client::ros2::policy;
 use ros2_client::{
     Client, Message, MessageTypeName, Name, NodeName, NodeOptions, Parameter, ParameterValue, QosProfile,
     ServiceMapping, ServiceTypeName, Subscription,
@@ -94,7 +95,7 @@ impl Asker {
     }
 
     /// The durability that the writers of `/parameter_events` offer.
-    fn durability_of_events(&self) -> Vec<Option<Durability>> {
+    fn durability_of_events(&self) -> Vec<Option<policy::Durability>> {
         let writers = self.context.domain_participant().discovered_writers();
         let data = writers.into_iter().map(|writer| writer.publication_topic_data);
         let of_events = data.filter(|data| data.topic_name == "rt/parameter_events");
@@ -146,7 +147,10 @@ fn parameters_are_read_described_and_set_while_the_node_computes() {
     let events = asker.events();
     // Asked and answered often enough that its other endpoints are discovered.
     let offered = asker.durability_of_events();
-    assert!(!offered.is_empty() && offered.iter().all(|d| *d == Some(Durability::Volatile)), "{offered:?}");
+    assert!(
+        !offered.is_empty() && offered.iter().all(|d| *d == Some(policy::Durability::Volatile)),
+        "{offered:?}"
+    );
     assert!(asker.set("wait", ParameterValue::Double(0.5)).successful);
     assert_eq!(asker.get("wait"), ParameterValue::Double(0.5));
     // An integer is taken for a double, as `ros2 param set` sends it.
