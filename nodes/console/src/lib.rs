@@ -4,13 +4,14 @@
 //! - [`Format`], [`Table`], [`print()`], [`say!`]: its output
 //! - [`count()`]: counts with their noun
 //! - [`Dataset`]: typed columns, as CSV and Parquet
-//! - [`plot`]: plots as SVG
+//! - [`plot`]: plots as SVG; [`html`]: elements of HTML pages
 //! - [`scenes`]: built-in scenes, and those in files
 //! - [`network`]: buses of tools, free domains
 
 mod count;
 mod dataset;
 mod failure;
+pub mod html;
 pub mod network;
 mod output;
 pub mod plot;

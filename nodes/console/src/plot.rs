@@ -1,17 +1,26 @@
 //! Plots as SVG: series of points over two axes, linear or logarithmic, with error bars, labels and a legend, in light or
 //! dark. Points can have tooltips.
 //!
-//! - [`Figure`]: the contents; [`Theme`]: the colours
+//! - [`Figure`]: the contents; [`Theme`]: the colours; [`page_style`]: those of all plots of a page
+//! - [`Strip`]: one of several plots over a common axis; [`Rose`]: a quantity by direction; [`Bars`]: values by name
 //! - `axis`: positions of values, and the tick marks of an axis
 //! - `labels`: texts beside points, if there is room
-//! - `draw`: the elements
+//! - `draw`: the elements; `style`: their colours
 
 mod axis;
+mod bars;
 mod draw;
 mod figure;
 mod labels;
+mod rose;
+mod strip;
+mod style;
 
+pub use bars::{Bar, Bars};
 pub use figure::{Axis, Entry, Figure, Line, Marker, Point, Scale, Series, Theme};
+pub use rose::Rose;
+pub use strip::{Band, Strip};
+pub use style::page_style;
 
 use axis::Range;
 use draw::{Drawing, Key};
@@ -19,12 +28,27 @@ use draw::{Drawing, Key};
 impl Figure {
     /// The plot as SVG.
     pub fn svg(&self, theme: Theme) -> String {
-        let points = || self.series.iter().flat_map(|s| &s.points);
-        let x = Range::of(points().flat_map(Point::across), self.x.scale, draw::HORIZONTAL);
-        let y = Range::of(points().flat_map(Point::up), self.y.scale, draw::VERTICAL);
-        let drawable = |p: &&Point| x.has(p.x) && y.has(p.y);
         let mut drawing = Drawing::begin(theme, &self.title, &self.subtitle);
+        let [x, y] = self.ranges(drawing.frame());
         drawing.axes((&x, &self.x.name), (&y, &self.y.name));
+        self.draw(&mut drawing, [&x, &y]);
+        drawing.legend(&self.legend);
+        drawing.end()
+    }
+
+    /// The axes within a frame.
+    fn ranges(&self, [left, top, right, bottom]: labels::Area) -> [Range; 2] {
+        let points = || self.series.iter().flat_map(|s| &s.points);
+        [
+            Range::of(points().flat_map(Point::across), self.x.scale, [left, right]),
+            Range::of(points().flat_map(Point::up), self.y.scale, [bottom, top]),
+        ]
+    }
+
+    /// Draws the series and their labels.
+    fn draw(&self, drawing: &mut Drawing, [x, y]: [&Range; 2]) {
+        let frame = drawing.frame();
+        let drawable = |p: &&Point| x.has(p.x) && y.has(p.y);
         let mut labelled = Vec::new();
         let mut taken = Vec::new();
         for series in &self.series {
@@ -36,7 +60,7 @@ impl Figure {
             }
             for (point, at) in drawn.iter().zip(&places) {
                 if let Some(error) = point.error {
-                    let end = |value: f64| if y.has(value) { y.at(value) } else { draw::VERTICAL[0] };
+                    let end = |value: f64| if y.has(value) { y.at(value) } else { frame[3] };
                     drawing.error_bar(series.colour, at[0], [end(point.y - error), end(point.y + error)]);
                 }
                 if let Some(marker) = series.marker {
@@ -53,11 +77,9 @@ impl Figure {
                 }
             }
         }
-        for (place, label, colour) in labels::place(&labelled, taken, draw::FRAME) {
+        for (place, label, colour) in labels::place(&labelled, taken, frame) {
             drawing.label(place, label, colour);
         }
-        drawing.legend(&self.legend);
-        drawing.end()
     }
 }
 

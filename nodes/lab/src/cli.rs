@@ -1,7 +1,7 @@
 //! The command line.
 
 use crate::commands::{
-    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, reproduce, run, scene,
+    analyze, bag, calibrate, campaign, completions, invert, launch, man, probe, report, reproduce, run, scene, view,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use grainlab_bench as bench;
@@ -31,6 +31,10 @@ enum Command {
     Launch(launch::Args),
     /// Run many scenes: each a recorded run in a folder of its own, on this machine or a cluster.
     Campaign(campaign::Args),
+    /// Report runs: a page with results, plots and packings; for many runs one row a run.
+    Report(report::Args),
+    /// Show packings in three dimensions: a page for a browser, or a PNG.
+    View(view::Args),
     /// Reproduce the tables and figures of the paper: sixteen states, one page.
     Reproduce(reproduce::Args),
     /// List, show, check and create scenes: what a run simulates.
@@ -79,6 +83,8 @@ pub(crate) fn main() -> ExitCode {
         None => launch::run(&launch::Args::default()),
         Some(Command::Launch(args)) => launch::run(&args),
         Some(Command::Campaign(args)) => campaign::run(&args),
+        Some(Command::Report(args)) => report::run(&args),
+        Some(Command::View(args)) => view::run(&args),
         Some(Command::Reproduce(args)) => reproduce::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Run(args)) => run::run(&args),

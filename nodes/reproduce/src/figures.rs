@@ -1,7 +1,7 @@
 //! Figures 1 to 4, ours as filled symbols with error bars, the paper's as outlines.
 
 use crate::Reproduction;
-use crate::html::figure;
+use grainlab_console::html::figure;
 use grainlab_console::plot::{Axis, Entry, Figure, Line, Marker, Point, Series, Theme};
 use grainlab_emt::Modulus;
 use grainlab_paper::inversion::{Judged, Row};

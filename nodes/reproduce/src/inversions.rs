@@ -1,7 +1,7 @@
 //! The inversion: every model judged, and the rows of Table III.
 
 use crate::Reproduction;
-use crate::html::{Cell, code, escaped, table};
+use grainlab_console::html::{Cell, code, escaped, table};
 use crate::tables::{mean, places};
 use grainlab_core::results::InferredQuantity;
 use grainlab_emt::Calibration;

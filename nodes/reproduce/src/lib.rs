@@ -2,12 +2,11 @@
 //!
 //! - [`Reproduction`]: the packings, compared and judged, and where they come from
 //! - [`campaign_text`]: the campaign that prepares them
-//! - `page`: the HTML page; `tables`, `figures`, `inversions`: its parts; `html`: its elements
+//! - `page`: the HTML page; `tables`, `figures`, `inversions`: its parts
 //! - `data`: the same as JSON and CSV; `text`: a summary for a terminal
 
 mod data;
 mod figures;
-mod html;
 mod inversions;
 mod page;
 mod plan;

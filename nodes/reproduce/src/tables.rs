@@ -1,7 +1,7 @@
 //! Tables I, II and III, and the moduli, ours beside the paper's.
 
 use crate::Reproduction;
-use crate::html::{Cell, code, escaped, table};
+use grainlab_console::html::{Cell, code, escaped, table};
 use grainlab_emt::Modulus;
 use grainlab_paper::{Comparison, Mean, PAPER, PRESSURE, PRESSURES, Quantity, SAMPLES};
 

@@ -12,10 +12,12 @@ use serde::ser::{SerializeMap, Serializer};
 /// Wave speeds, and the moduli that follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcousticReport {
-    pub(crate) reading: WaveSpeedsReading,
+    /// The speeds.
+    pub reading: WaveSpeedsReading,
     /// Density of all grains, kg/m³.
     pub(crate) bulk_density: f64,
-    pub(crate) medium: WaveModuli,
+    /// The medium with these speeds.
+    pub medium: WaveModuli,
 }
 
 /// Every quantity of an [`AcousticReport`]. Moduli that the speeds do not determine are null.

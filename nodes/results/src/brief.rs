@@ -49,7 +49,7 @@ pub fn text(s: &Summary, directory: &Path, program: &str) -> String {
 }
 
 /// What an exit code other than 0 means for the lines below it.
-fn ended(code: u8, reason: Option<&str>) -> Option<String> {
+pub fn ended(code: u8, reason: Option<&str>) -> Option<String> {
     let exit = Exit::ALL.into_iter().find(|e| e.code() == code)?;
     let why = match exit {
         Exit::Done => return None,
@@ -65,7 +65,7 @@ fn ended(code: u8, reason: Option<&str>) -> Option<String> {
 }
 
 /// A path for a shell.
-fn quoted(path: &str) -> String {
+pub fn quoted(path: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
     if path.chars().all(is_plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', "'\\''")) }
 }
@@ -157,7 +157,7 @@ fn eps(r: &PackingReport) -> Option<f64> {
 }
 
 /// G12, G13 and Theta, MPa.
-fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
+pub fn moduli(r: &PackingReport) -> [Option<f64>; 3] {
     let Some(stiffness) = r.stiffness() else { return [None; 3] };
     let t = stiffness.tensor.transverse_isotropy_about(&r.fabric.reference_axis);
     [t.g12, t.g13, stiffness.tensor.bulk_voigt()].map(|m| Some(m / 1e6))

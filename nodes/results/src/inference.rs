@@ -18,7 +18,7 @@ pub struct Inference {
     /// Name of the model.
     pub model: String,
     /// Name of the calibration.
-    pub(crate) calibration: String,
+    pub calibration: String,
     /// Inferred values.
     #[serde(flatten)]
     pub values: Quantities<Option<f64>>,
@@ -27,7 +27,7 @@ pub struct Inference {
     /// Their part due to the model.
     pub(crate) sigma_model: Quantities<Option<f64>>,
     /// Credible intervals.
-    pub(crate) interval: Interval,
+    pub interval: Interval,
     /// Misfit by the errors of data and model; null without degrees of freedom.
     pub(crate) chi_square: Option<f64>,
     /// Number of data minus number of unknowns; null without a solution.
@@ -47,13 +47,13 @@ pub struct Inference {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quantities<T> {
     /// Coordination number.
-    pub(crate) k: T,
+    pub k: T,
     /// Coordination number of the equivalent isotropic packing, in the sense of the calibration.
     pub(crate) k_hat: T,
     /// Coordination number without rattlers.
-    pub(crate) z: T,
+    pub z: T,
     /// Contact anisotropy.
-    pub(crate) eps: T,
+    pub eps: T,
     /// Contact anisotropy weighted by contact stiffness.
     pub(crate) eps_stiffness: T,
 }
@@ -74,24 +74,25 @@ impl<T: Copy> Quantities<T> {
 
 /// Central intervals, low and high.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Interval {
+pub struct Interval {
     /// Probability inside each.
-    pub(crate) level: Option<f64>,
+    pub level: Option<f64>,
+    /// Low and high of each quantity.
     #[serde(flatten)]
-    pub(crate) bounds: Quantities<Option<[f64; 2]>>,
+    pub bounds: Quantities<Option<[f64; 2]>>,
 }
 
 /// Origin of results.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Origin {
+pub struct Origin {
     /// Topic of the data.
-    pub(crate) source: Option<String>,
+    pub source: Option<String>,
     /// Node that inferred.
-    pub(crate) by: Option<String>,
+    pub by: Option<String>,
 }
 
 /// Results by their origin, in its order.
-pub(crate) fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
+pub fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)> {
     let mut groups = BTreeMap::<Origin, Vec<&Inference>>::new();
     for r in results {
         groups.entry(Origin { source: r.source.clone(), by: r.by.clone() }).or_default().push(r);
@@ -101,7 +102,7 @@ pub(crate) fn by_origin(results: &[Inference]) -> Vec<(Origin, Vec<&Inference>)>
 
 impl Inference {
     /// The recommended one among the results of all models from the same data.
-    pub(crate) fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
+    pub fn recommended<'a>(results: &[&'a Self]) -> Option<&'a Self> {
         let status = |r: &Self| match r.status {
             "ok" => Some(Status::Ok),
             "extrapolated" => Some(Status::Extrapolated),

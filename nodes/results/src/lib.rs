@@ -25,7 +25,7 @@ mod summary;
 pub mod summary_text;
 
 pub use acoustic::{ACOUSTIC, AcousticReport};
-pub use inference::{Inference, Quantities};
+pub use inference::{Inference, Interval, Origin, Quantities, by_origin};
 pub use measured_packing::{MeasuredPacking, ORIGIN};
 pub use printer::{Printed, Printer};
 pub use probe::{ProbeView, ScanView};

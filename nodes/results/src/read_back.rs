@@ -23,7 +23,7 @@ pub struct InvertedPacking {
     #[serde(flatten)]
     pub packing: MeasuredPacking,
     /// Null where no wave speeds were published.
-    pub(crate) acoustic: Option<AcousticReport>,
+    pub acoustic: Option<AcousticReport>,
     /// What each model infers from the data of each topic.
     pub results: Vec<Inference>,
 }

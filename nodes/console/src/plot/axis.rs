@@ -51,6 +51,11 @@ impl Range {
         Self { low, high, scale, from, to }
     }
 
+    /// The values at its ends.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     /// Whether a value is on the axis.
     pub(super) fn has(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)

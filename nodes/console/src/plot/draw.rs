@@ -3,6 +3,8 @@
 use super::axis::Range;
 use super::figure::{Entry, Line, Marker, Series, Theme};
 use super::labels::Area;
+use super::style::style;
+use crate::html::escaped;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
@@ -10,21 +12,7 @@ use std::fmt::Write;
 const PICTURE: [f64; 2] = [860.0, 560.0];
 
 /// Left, top, right and bottom of the axes.
-pub(super) const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
-
-/// Ends of the horizontal axis.
-pub(super) const HORIZONTAL: [f64; 2] = [FRAME[0], FRAME[2]];
-
-/// Ends of the vertical axis.
-pub(super) const VERTICAL: [f64; 2] = [FRAME[3], FRAME[1]];
-
-/// Distinct under colour blindness (Okabe and Ito, and two more), dark enough on white.
-const ON_WHITE: [&str; Series::COLOURS] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
-
-/// The same, light enough on dark.
-const ON_DARK: [&str; Series::COLOURS] =
-    ["#4aa3df", "#ff8a3d", "#2fc79b", "#e3a1c6", "#f2b632", "#8fd0f5", "#f0f0f0", "#c9a64a", "#b08fe0"];
+const FRAME: Area = [70.0, 60.0, 640.0, 490.0];
 
 /// Distance between two lines of the legend.
 const LEGEND_LINE: f64 = 20.0;
@@ -41,32 +29,49 @@ pub(super) struct Key {
 }
 
 /// A plot under construction.
-pub(super) struct Drawing(String);
+pub(super) struct Drawing {
+    text: String,
+    frame: Area,
+}
 
 impl Drawing {
     /// With a title and a subtitle.
     pub(super) fn begin(theme: Theme, title: &str, subtitle: &str) -> Self {
-        let [width, height] = PICTURE;
-        let mut drawing = Self(format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n\
-             <style>{}</style>\n\
-             <rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n",
-            style(theme)
-        ));
+        let sheet = format!("<style>{}</style>\n", style(theme));
+        let mut drawing = Self::blank(PICTURE, FRAME, "", &sheet);
         drawing.text([FRAME[0], 28.0], "start", "class=\"ink\" font-size=\"15\"", title);
         drawing.text([FRAME[0], 46.0], "start", "class=\"faint\"", subtitle);
         drawing
     }
 
+    /// Without titles, with axes at `frame`; `attributes` and the text `first` are those of the SVG.
+    pub(super) fn blank([width, height]: [f64; 2], frame: Area, attributes: &str, first: &str) -> Self {
+        let text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
+             font-size=\"12\"{attributes}>\n{first}<rect width=\"{width}\" height=\"{height}\" class=\"paper\"/>\n"
+        );
+        Self { text, frame }
+    }
+
     /// The complete SVG.
     pub(super) fn end(mut self) -> String {
-        self.0 += "</svg>\n";
-        self.0
+        self.text += "</svg>\n";
+        self.text
+    }
+
+    /// Left, top, right and bottom of the axes.
+    pub(super) fn frame(&self) -> Area {
+        self.frame
+    }
+
+    /// Adds an element.
+    pub(super) fn add(&mut self, element: std::fmt::Arguments<'_>) {
+        let _ = writeln!(self.text, "{element}");
     }
 
     /// Both axes with their names and a grid.
     pub(super) fn axes(&mut self, (x, along): (&Range, &str), (y, up): (&Range, &str)) {
-        let [left, top, right, bottom] = FRAME;
+        let [left, top, right, bottom] = self.frame;
         for (value, text) in x.marks() {
             let at = x.at(value);
             self.segment([at, top, at, bottom], "grid");
@@ -79,10 +84,14 @@ impl Drawing {
         }
         self.segment([left, bottom, right, bottom], "axis");
         self.segment([left, top, left, bottom], "axis");
-        self.text([0.5 * (left + right), bottom + 42.0], "middle", "class=\"ink\"", along);
-        let middle = 0.5 * (top + bottom);
-        let turned = format!("class=\"ink\" transform=\"rotate(-90 20 {middle:.1})\"");
-        self.text([20.0, middle], "middle", &turned, up);
+        if !along.is_empty() {
+            self.text([0.5 * (left + right), bottom + 42.0], "middle", "class=\"ink\"", along);
+        }
+        if !up.is_empty() {
+            let middle = 0.5 * (top + bottom);
+            let turned = format!("class=\"ink\" transform=\"rotate(-90 20 {middle:.1})\"");
+            self.text([20.0, middle], "middle", &turned, up);
+        }
     }
 
     /// The line of a series through these positions.
@@ -102,7 +111,7 @@ impl Drawing {
         };
         let class = class(series.colour);
         let _ = writeln!(
-            self.0,
+            self.text,
             "<path d=\"{path}\" class=\"{class}\" fill=\"none\" stroke=\"currentColor\"{opacity}/>"
         );
     }
@@ -111,7 +120,7 @@ impl Drawing {
     pub(super) fn error_bar(&mut self, colour: Option<usize>, x: f64, [low, high]: [f64; 2]) {
         let (left, right, class) = (x - 3.0, x + 3.0, class(colour));
         let _ = writeln!(
-            self.0,
+            self.text,
             "<path d=\"M {left:.1} {low:.1} H {right:.1} M {x:.1} {low:.1} V {high:.1} M {left:.1} {high:.1} H {right:.1}\" \
              class=\"{class}\" fill=\"none\" stroke=\"currentColor\"/>"
         );
@@ -134,7 +143,7 @@ impl Drawing {
                 ("polygon", format!("points=\"{}\"", all.join(" ")))
             }
         };
-        let _ = writeln!(self.0, "<{element} {shape} class=\"{class}\">{title}</{element}>");
+        let _ = writeln!(self.text, "<{element} {shape} class=\"{class}\">{title}</{element}>");
     }
 
     /// A small text with its lower left corner.
@@ -152,7 +161,7 @@ impl Drawing {
                 Entry::Colour(colour, text) => {
                     let class = class(Some(*colour));
                     let _ = writeln!(
-                        self.0,
+                        self.text,
                         "<path d=\"M {:.1} {:.1} h 14\" class=\"{class}\" stroke=\"currentColor\" stroke-width=\"3\"/>",
                         x - 7.0,
                         y - 4.0
@@ -171,17 +180,17 @@ impl Drawing {
         }
     }
 
-    fn segment(&mut self, [x1, y1, x2, y2]: [f64; 4], class: &str) {
+    pub(super) fn segment(&mut self, [x1, y1, x2, y2]: [f64; 4], class: &str) {
         let _ = writeln!(
-            self.0,
+            self.text,
             "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" class=\"{class}\"/>"
         );
     }
 
-    fn text(&mut self, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
+    pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
         let content = escaped(content);
         let _ = writeln!(
-            self.0,
+            self.text,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{content}</text>"
         );
     }
@@ -212,32 +221,7 @@ fn corners(marker: Marker) -> Option<Vec<[f64; 2]>> {
     })
 }
 
-fn class(colour: Option<usize>) -> String {
+/// The class of a colour.
+pub(super) fn class(colour: Option<usize>) -> String {
     colour.map_or_else(|| "grey".to_owned(), |n| format!("c{}", n % Series::COLOURS))
-}
-
-/// The style sheet of a theme.
-fn style(theme: Theme) -> String {
-    let sheet = |paper: &str, ink: &str, faint: &str, grid: &str, colours: &[&str]| {
-        let mut css = format!(
-            ".paper{{fill:{paper}}}.ink{{fill:{ink}}}.faint{{fill:{faint}}}.axis{{stroke:{ink}}}.grid{{stroke:{grid}}}\
-             .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
-             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{fill:#e00000;stroke:{paper}}}"
-        );
-        for (n, colour) in colours.iter().enumerate() {
-            let _ = write!(css, ".c{n}{{color:{colour}}}");
-        }
-        css
-    };
-    let light = || sheet("#ffffff", "#000000", "#555555", "#e4e4e4", &ON_WHITE);
-    let dark = || sheet("#1b1b1f", "#e6e6e6", "#a8a8a8", "#38383e", &ON_DARK);
-    match theme {
-        Theme::Light => light(),
-        Theme::Dark => dark(),
-        Theme::System => format!("{}@media (prefers-color-scheme: dark){{{}}}", light(), dark()),
-    }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -10,6 +10,8 @@ pub(crate) mod launch;
 pub(crate) mod man;
 pub(crate) mod packings;
 pub(crate) mod probe;
+pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod scene;
+pub(crate) mod view;

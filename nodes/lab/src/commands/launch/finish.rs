@@ -98,7 +98,22 @@ pub(super) fn finish(
         // With a full disk the exit stays that of the data loss.
         exit = if exit == Exit::DataLoss { exit } else { worse(exit, failure.exit) };
     }
+    if recording.is_ok() {
+        report(output, directory);
+    }
     Ok(exit)
+}
+
+/// Writes the page of the run. Without it the run is complete, too: a failure is a warning.
+fn report(output: Output, directory: &Path) {
+    match grainlab_report::write_report(directory) {
+        Ok(path) if output.format == Format::Table => {
+            // A closed pipe or a full disk behind stdout was reported with the results.
+            let _ = print(&format!("Report    {}\n", from_here(&path).display()));
+        }
+        Ok(_) => {}
+        Err(error) => grainlab_console::say!("grainlab: no report: {error}"),
+    }
 }
 
 /// The path from the present folder, if it is below it.

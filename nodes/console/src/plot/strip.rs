@@ -1,0 +1,110 @@
+//! One of several plots over a common axis: small, with the legend beside its title, and bands for the stages of that axis.
+
+use super::draw::{Drawing, class};
+use super::figure::{Entry, Figure};
+use super::labels::Area;
+use crate::html::escaped;
+
+/// Width and height.
+const PICTURE: [f64; 2] = [560.0, 236.0];
+
+/// Left, top, right and bottom of the axes.
+const FRAME: Area = [58.0, 34.0, 546.0, 192.0];
+
+/// Mean width of a letter.
+const LETTER: f64 = 6.4;
+
+/// A stage of the horizontal axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Begin and end, in the unit of the axis.
+    pub range: [f64; 2],
+    /// Its number or short name, left out if there is no room.
+    pub label: String,
+    /// Text of its tooltip.
+    pub tooltip: String,
+}
+
+/// A plot among others of a page. Its colours are those of [`page_style`](super::page_style).
+#[derive(Clone, Debug, Default)]
+pub struct Strip {
+    /// Title, axes, series and legend; the subtitle is for readers who do not see the plot.
+    pub figure: Figure,
+    /// Drawn behind the series.
+    pub bands: Vec<Band>,
+}
+
+impl Strip {
+    /// The plot as SVG. The attributes `data-frame` (left, top, right, bottom) and `data-x` (values at left and right) are for
+    /// scripts that read positions.
+    pub fn svg(&self) -> String {
+        let Figure { title, subtitle, x, y, legend, .. } = &self.figure;
+        let [left, top, right, bottom] = FRAME;
+        let [across, up] = self.figure.ranges(FRAME);
+        let [low, high] = across.ends();
+        let attributes = format!(
+            " class=\"plot\" role=\"img\" aria-label=\"{}\" data-frame=\"{left} {top} {right} {bottom}\" data-x=\"{low} {high}\"",
+            escaped(&[title.as_str(), subtitle].join(". "))
+        );
+        let mut drawing = Drawing::blank(PICTURE, FRAME, &attributes, "");
+        for (n, band) in self.bands.iter().enumerate() {
+            let [from, to] = band.range.map(|v| across.at(v.clamp(low, high)));
+            let fill = if n % 2 == 0 { "band" } else { "paper" };
+            drawing.add(format_args!(
+                "<rect x=\"{from:.1}\" y=\"{top}\" width=\"{:.1}\" height=\"{:.1}\" class=\"{fill}\"><title>{}</title></rect>",
+                to - from,
+                bottom - top,
+                escaped(&band.tooltip)
+            ));
+            if to - from > LETTER * band.label.chars().count() as f64 {
+                let at = [0.5 * (from + to), top + 11.0];
+                drawing.text(at, "middle", "class=\"faint\" font-size=\"9\"", &band.label);
+            }
+        }
+        drawing.axes((&across, ""), (&up, &y.name));
+        drawing.text([right, bottom + 34.0], "end", "class=\"faint\" font-size=\"11\"", &x.name);
+        drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
+        self.figure.draw(&mut drawing, [&across, &up]);
+        row(&mut drawing, legend);
+        drawing.end()
+    }
+}
+
+/// A legend of colours in one row that ends at the right.
+fn row(drawing: &mut Drawing, entries: &[Entry]) {
+    let mut right = FRAME[2];
+    for entry in entries.iter().rev() {
+        let (colour, text) = match entry {
+            Entry::Colour(colour, text) => (Some(*colour), text),
+            Entry::Shape(_, colour, _, text) => (*colour, text),
+            Entry::Note(_) | Entry::Gap => continue,
+        };
+        drawing.text([right, 20.0], "end", "class=\"ink\" font-size=\"11\"", text);
+        right -= LETTER * text.chars().count() as f64 + 5.0;
+        drawing.add(format_args!(
+            "<path d=\"M {:.1} 16 h 12\" class=\"{}\" stroke=\"currentColor\" stroke-width=\"2.5\" fill=\"none\"/>",
+            right - 12.0,
+            class(colour)
+        ));
+        right -= 22.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::{Axis, Line, Point, Series};
+
+    #[test]
+    fn a_band_beyond_the_values_ends_at_the_frame_and_a_narrow_one_has_no_label() {
+        let points = (0..5).map(|n| Point::at(f64::from(n), f64::from(n * n))).collect();
+        let series = vec![Series { line: Some(Line::Straight), points, ..Series::default() }];
+        let figure = Figure { title: "a & b".into(), x: Axis::linear("time, ms"), series, ..Figure::default() };
+        let band = |range, label: &str| Band { range, label: label.into(), tooltip: String::new() };
+        let svg = Strip { figure, bands: vec![band([-9.0, 3.98], "first"), band([3.98, 4.0], "second")] }.svg();
+        assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg}");
+        assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg}");
+        let left = svg.split("<rect x=\"").nth(1).unwrap();
+        assert!(left.starts_with("58.0\""), "the band begins at the frame: {left}");
+    }
+}

@@ -1,0 +1,58 @@
+//! Colours of plots, as one style sheet.
+
+use super::figure::{Series, Theme};
+use std::fmt::Write;
+
+/// Distinct under colour blindness (Okabe and Ito, and two more), dark enough on white.
+const ON_WHITE: [&str; Series::COLOURS] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d1f", "#6a3d9a"];
+
+/// The same, light enough on dark.
+const ON_DARK: [&str; Series::COLOURS] =
+    ["#4aa3df", "#ff8a3d", "#2fc79b", "#e3a1c6", "#f2b632", "#8fd0f5", "#f0f0f0", "#c9a64a", "#b08fe0"];
+
+/// The style sheet of one SVG.
+pub(super) fn style(theme: Theme) -> String {
+    let sheet = |paper: &str, ink: &str, faint: &str, grid: &str, colours: &[&str]| {
+        let mut css = format!(
+            ".paper{{fill:{paper}}}.ink{{fill:{ink}}}.faint{{fill:{faint}}}.axis{{stroke:{ink}}}.grid{{stroke:{grid}}}\
+             .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
+             .hollow{{fill:{paper};stroke:currentColor;stroke-width:1.4}}.grey{{color:{faint}}}.star{{fill:#e00000;stroke:{paper}}}"
+        );
+        for (n, colour) in colours.iter().enumerate() {
+            let _ = write!(css, ".c{n}{{color:{colour}}}");
+        }
+        css
+    };
+    let light = || sheet("#ffffff", "#000000", "#555555", "#e4e4e4", &ON_WHITE);
+    let dark = || sheet("#1b1b1f", "#e6e6e6", "#a8a8a8", "#38383e", &ON_DARK);
+    match theme {
+        Theme::Light => light(),
+        Theme::Dark => dark(),
+        Theme::System => format!("{}@media (prefers-color-scheme: dark){{{}}}", light(), dark()),
+    }
+}
+
+/// The style sheet of all plots of a page, which have the class `plot`: that of the reader's system, or the one that the
+/// attribute `data-theme` of the root element names (`light`, `dark`).
+pub fn page_style() -> String {
+    let variables = |paper: &str, ink: &str, faint: &str, grid: &str, band: &str, colours: &[&str]| {
+        let mut css = format!("--paper:{paper};--ink:{ink};--faint:{faint};--grid:{grid};--band:{band}");
+        for (n, colour) in colours.iter().enumerate() {
+            let _ = write!(css, ";--c{n}:{colour}");
+        }
+        css
+    };
+    let light = variables("#ffffff", "#1d1d22", "#5c5c66", "#e7e7ec", "#f4f4f7", &ON_WHITE);
+    let dark = variables("#1b1b1f", "#e8e8ec", "#a9a9b4", "#34343c", "#232329", &ON_DARK);
+    let mut css = format!(
+        ":root{{{light}}}\n@media (prefers-color-scheme:dark){{:root:not([data-theme=light]){{{dark}}}}}\n:root[data-theme=dark]{{{dark}}}\n\
+         .plot .paper{{fill:none}}.plot .ink{{fill:var(--ink)}}.plot .faint{{fill:var(--faint)}}.plot .axis{{stroke:var(--faint)}}\
+         .plot .grid{{stroke:var(--grid)}}.plot .band{{fill:var(--band)}}.plot .full{{fill:currentColor;stroke:currentColor;stroke-width:1.4}}\
+         .plot .hollow{{fill:var(--paper);stroke:currentColor;stroke-width:1.4}}.plot .grey{{color:var(--faint)}}"
+    );
+    for n in 0..Series::COLOURS {
+        let _ = write!(css, ".plot .c{n}{{color:var(--c{n})}}");
+    }
+    css + "\n"
+}

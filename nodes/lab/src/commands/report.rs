@@ -1,0 +1,99 @@
+//! `grainlab report`: pages of recorded runs.
+
+use grainlab_console::{Failure, count, print};
+use grainlab_node_kit::Exit;
+use grainlab_report::{FILE, Run, overview, write_page};
+use std::path::{Path, PathBuf};
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab report recordings/runs/demo-1-1                 the page of a run: report.html in its folder
+  grainlab report recordings/runs/demo-1-1 -o demo.html
+  grainlab report recordings/runs/*                        a page for each, and runs.html with one row a run
+  grainlab report recordings/campaigns/friction/members/*";
+
+/// Page of many runs, beside the present folder's other files.
+const OVERVIEW: &str = "runs.html";
+
+/// Runs to report.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Run directories, or recordings
+    #[arg(required = true, value_name = "RUN")]
+    runs: Vec<PathBuf>,
+    /// File of the page [default: report.html in the folder of the run; of many runs, runs.html here]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    if let [run] = args.runs.as_slice() {
+        exists(run)?;
+        let path = args.output.clone().unwrap_or_else(|| beside(run));
+        write(&Run::read(run), &path)?;
+        print(&format!("{}\n", path.display()))?;
+        return Ok(Exit::Done);
+    }
+    args.runs.iter().try_for_each(|run| exists(run))?;
+    let output = args.output.clone().unwrap_or_else(|| OVERVIEW.into());
+    let mut all = Vec::with_capacity(args.runs.len());
+    for directory in &args.runs {
+        let (run, path) = (Run::read(directory), beside(directory));
+        write(&run, &path)?;
+        all.push((run.without_series(), link(&output, &path)));
+    }
+    write_page(&output, &overview(&all)).map_err(Failure::failed)?;
+    print(&format!("{}: {}, each with {FILE}\n", output.display(), count(all.len(), "run")))?;
+    Ok(Exit::Done)
+}
+
+fn exists(run: &Path) -> Result<(), Failure> {
+    let found = run.metadata().map(|_| ());
+    found.map_err(|e| Failure::failed(format!("{}: {e}", run.display())))
+}
+
+fn write(run: &Run, path: &Path) -> Result<(), Failure> {
+    let page = run.html().map_err(Failure::failed)?;
+    write_page(path, &page).map_err(Failure::failed)
+}
+
+/// The page of a run beside its recording.
+fn beside(run: &Path) -> PathBuf {
+    if run.is_dir() { run.join(FILE) } else { run.with_file_name(FILE) }
+}
+
+/// The path of a page from the folder of another, for a link.
+fn link(from: &Path, to: &Path) -> String {
+    let absolute = |p: &Path| std::path::absolute(p).unwrap_or_else(|_| p.to_owned());
+    let (from, to) = (absolute(from), absolute(to));
+    let folder: Vec<_> = from.parent().into_iter().flat_map(Path::components).collect();
+    let target: Vec<_> = to.components().collect();
+    let common = folder.iter().zip(&target).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n("..".to_owned(), folder.len() - common);
+    let down = target[common..].iter().map(|c| percent(&c.as_os_str().to_string_lossy()));
+    up.chain(down).collect::<Vec<_>>().join("/")
+}
+
+/// A part of a path in a link: other characters than letters, digits and `-._~` as percent codes.
+fn percent(part: &str) -> String {
+    let code = |byte: u8| match byte {
+        b if b.is_ascii_alphanumeric() || b"-._~".contains(&b) => char::from(b).to_string(),
+        b => format!("%{b:02X}"),
+    };
+    part.bytes().map(code).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_leads_from_one_page_to_the_other() {
+        let of = |from: &str, to: &str| link(Path::new(from), Path::new(to));
+        assert_eq!(of("/a/runs.html", "/a/runs/x 1/report.html"), "runs/x%201/report.html");
+        assert_eq!(of("/a/b/runs.html", "/a/c/report.html"), "../c/report.html");
+        assert_eq!(of("runs.html", "report.html"), "report.html");
+    }
+}

@@ -1,0 +1,171 @@
+//! `grainlab view`: packings in three dimensions, as a page or as a picture.
+
+use super::packings::import;
+use grainlab_console::{Failure, count, print};
+use grainlab_node_kit::Exit;
+use grainlab_recordings::import::{Imported, each};
+use grainlab_report::write_page;
+use grainlab_viewer::{Film, MOST_GRAINS, Picture, Quantity, Size, View, page};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const EXAMPLES: &str = "\
+Examples:
+  grainlab view recordings/runs/demo-1-1 --open          in a browser
+  grainlab view packing.data -o packing.html
+  grainlab view recordings/runs/s2-1-1 --png s2.png --color force --size 1600x1200";
+
+/// What to show.
+#[derive(Debug, clap::Args)]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", import::FORMATS), allow_negative_numbers = true)]
+pub(crate) struct Args {
+    /// Recording (directory or .mcap), CSV with its JSON sidecar, LAMMPS dump or data file, YADE text export; text also as .gz
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// File of the page [default: NAME.view.html beside the file, or view.html in the directory of a run]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Show the page in a browser
+    #[arg(long, conflicts_with = "png")]
+    open: bool,
+    /// Draw one state into this PNG file instead, without a browser
+    #[arg(long, value_name = "FILE", conflicts_with = "output")]
+    png: Option<PathBuf>,
+    /// Size of the PNG, pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x900", requires = "png")]
+    size: String,
+    /// State of the PNG, counted from 1 in order of time; negative from the end
+    #[arg(long, value_name = "N", default_value_t = -1, requires = "png")]
+    state: i64,
+    /// What the colours of the PNG show
+    #[arg(long, value_enum, default_value_t, requires = "png")]
+    color: Colour,
+    #[command(flatten)]
+    import: import::Args,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+enum Colour {
+    /// Contacts of each grain that are not with rattlers
+    #[default]
+    Coordination,
+    /// Mean normal force of the contacts of each grain
+    Force,
+    /// Whether each grain carries force
+    Rattlers,
+}
+
+impl From<Colour> for Quantity {
+    fn from(colour: Colour) -> Self {
+        match colour {
+            Colour::Coordination => Self::Coordination,
+            Colour::Force => Self::Force,
+            Colour::Rattlers => Self::Rattlers,
+        }
+    }
+}
+
+/// Runs the command.
+pub(crate) fn run(args: &Args) -> Result<Exit, Failure> {
+    match &args.png {
+        Some(png) => picture(args, png),
+        None => html(args),
+    }
+}
+
+/// Passes on the packings of the file; the exit is that of its warnings.
+fn packings(args: &Args, mut take: impl FnMut(Imported) -> ControlFlow<()>) -> Result<Exit, Failure> {
+    let options = args.import.options()?;
+    let mut too_large = None;
+    let warnings = each(&args.file, &options, &mut |imported| {
+        if imported.packing.grains() > MOST_GRAINS {
+            too_large = Some(imported.packing.grains());
+            return ControlFlow::Break(());
+        }
+        take(imported)
+    })
+    .map_err(|e| Failure::failed(e.to_string()))?;
+    if let Some(grains) = too_large {
+        let path = args.file.display();
+        return Err(Failure::failed(format!("{path}: {grains} grains; a picture has at most {MOST_GRAINS}")));
+    }
+    warnings.iter().for_each(|w| grainlab_console::say!("grainlab: {w}"));
+    Ok(if warnings.is_empty() { Exit::Done } else { Exit::DataLoss })
+}
+
+fn view(imported: &Imported) -> View {
+    let packing = &imported.packing;
+    View::new(packing, format!("{}, {}, phi {:.4}", imported.source, count(packing.grains(), "grain"), packing.solid_fraction()))
+}
+
+fn html(args: &Args) -> Result<Exit, Failure> {
+    let mut film = Film::default();
+    let exit = packings(args, |imported| {
+        film.push(view(&imported));
+        ControlFlow::Continue(())
+    })?;
+    let states = film.states();
+    let last = states.last().ok_or_else(|| Failure::failed(format!("{}: no packing", args.file.display())))?;
+    let name = name(&args.file);
+    let shown = match film.count() - states.len() {
+        0 => count(states.len(), "state"),
+        left_out => format!("{} of {}; {left_out} left out for the size of the page", states.len(), count(film.count(), "state")),
+    };
+    let about = format!("{}, {shown}. Positions are exact to 1/65536 of the cell.", count(last.grains(), "grain"));
+    let text = page(&name, &about, &name, &states).map_err(Failure::failed)?;
+    let path = args.output.clone().unwrap_or_else(|| beside(&args.file));
+    write_page(&path, &text).map_err(Failure::failed)?;
+    print(&format!("{}\n", path.display()))?;
+    if args.open {
+        let quiet = Stdio::null;
+        let opened = Command::new("xdg-open").arg(&path).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
+        opened.map_err(|e| Failure::failed(format!("xdg-open: {e}; open {} in a browser", path.display())))?;
+    }
+    Ok(exit)
+}
+
+fn picture(args: &Args, png: &Path) -> Result<Exit, Failure> {
+    let size: Size = args.size.parse().map_err(|e| Failure::usage(format!("--size: {e}")))?;
+    if args.state == 0 {
+        return Err(Failure::usage("--state 0: states are counted from 1, or from -1 at the end"));
+    }
+    // Of those at the end, only as many as are needed are kept.
+    let mut kept = std::collections::VecDeque::new();
+    let mut count = 0;
+    let exit = packings(args, |imported| {
+        count += 1;
+        if args.state > 0 && count == args.state {
+            kept.push_back(view(&imported));
+            return ControlFlow::Break(());
+        }
+        if args.state < 0 {
+            kept.push_back(view(&imported));
+            if kept.len() as u64 > args.state.unsigned_abs() {
+                kept.pop_front();
+            }
+        }
+        ControlFlow::Continue(())
+    })?;
+    let is_there = args.state > 0 || kept.len() as u64 == args.state.unsigned_abs();
+    let view = kept.pop_front().filter(|_| is_there).ok_or_else(|| {
+        Failure::failed(format!("{}: no state {}: there are {count}", args.file.display(), args.state))
+    })?;
+    let bytes = Picture::with_legend(&view, args.color.into(), size).png().map_err(Failure::failed)?;
+    std::fs::write(png, bytes).map_err(|e| Failure::failed(format!("{}: {e}", png.display())))?;
+    print(&format!("{}\n", png.display()))?;
+    Ok(exit)
+}
+
+/// Name of a packing, from that of its file.
+fn name(file: &Path) -> String {
+    let resolved = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+    let name = resolved.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = name.strip_suffix(".gz").unwrap_or(&name);
+    stem.rsplit_once('.').map_or(stem, |(stem, _)| stem).to_owned()
+}
+
+/// The page beside a file, or in the directory of a run.
+fn beside(file: &Path) -> PathBuf {
+    if file.is_dir() { file.join("view.html") } else { file.with_file_name(format!("{}.view.html", name(file))) }
+}

@@ -1,0 +1,124 @@
+// Theme, saved plots and data, values under the pointer, sorted tables.
+"use strict";
+(() => {
+  const root = document.documentElement;
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches);
+  document.getElementById("theme").addEventListener("click", () => {
+    root.dataset.theme = isDark() ? "light" : "dark";
+    document.dispatchEvent(new Event("themechange"));
+  });
+
+  const save = (name, type, text) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  };
+  // A saved plot is that on paper: the light colours are resolved, because the style of the page does not go with it.
+  const standalone = (svg) => {
+    const before = root.dataset.theme;
+    root.dataset.theme = "light";
+    const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
+    from.forEach((element, n) => {
+      const style = getComputedStyle(element);
+      for (const key of ["fill", "stroke", "stroke-width", "stroke-dasharray", "fill-opacity", "stroke-opacity"]) {
+        if (element !== svg) to[n].setAttribute(key, style.getPropertyValue(key));
+      }
+      to[n].removeAttribute("class");
+    });
+    copy.querySelectorAll("[data-cursor]").forEach((e) => e.remove());
+    if (before) root.dataset.theme = before; else delete root.dataset.theme;
+    const box = svg.viewBox.baseVal;
+    copy.setAttribute("width", box.width);
+    copy.setAttribute("height", box.height);
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + new XMLSerializer().serializeToString(copy);
+  };
+  document.addEventListener("click", (e) => {
+    const kind = e.target.dataset && e.target.dataset.save;
+    if (!kind) return;
+    const drawing = e.target.closest(".drawing"), name = `${drawing.id}.${kind}`;
+    if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
+    else save(name, "image/svg+xml", standalone(drawing.querySelector("svg")));
+  });
+
+  // Values of every plot against time at the time under the pointer.
+  const NS = "http://www.w3.org/2000/svg";
+  const plots = [...document.querySelectorAll("#time .drawing")].map((drawing) => {
+    const svg = drawing.querySelector("svg"), numbers = (key) => svg.dataset[key].split(" ").map(Number);
+    const [left, top, right, bottom] = numbers("frame"), [low, high] = numbers("x");
+    let series = null;
+    const read = () => {
+      if (series) return series;
+      series = new Map();
+      for (const line of drawing.querySelector("script").textContent.trim().split("\n").slice(1)) {
+        const [name, time, value] = line.split(",");
+        if (!series.has(name)) series.set(name, []);
+        series.get(name).push([1e3 * time, Number(value)]);
+      }
+      return series;
+    };
+    const line = document.createElementNS(NS, "line"), readout = document.createElement("div");
+    line.setAttribute("class", "cursor");
+    line.setAttribute("data-cursor", "");
+    line.setAttribute("y1", top);
+    line.setAttribute("y2", bottom);
+    line.style.display = readout.style.display = "none";
+    readout.className = "readout";
+    readout.setAttribute("aria-hidden", "true");
+    svg.append(line);
+    drawing.append(readout);
+    const show = (time, withText) => {
+      const x = left + ((time - low) / (high - low)) * (right - left);
+      const inside = x >= left && x <= right;
+      line.style.display = inside ? "" : "none";
+      readout.style.display = inside && withText ? "" : "none";
+      if (!inside) return;
+      line.setAttribute("x1", x);
+      line.setAttribute("x2", x);
+      if (!withText) return;
+      const rows = [`${time.toPrecision(5)} ms`];
+      for (const [name, points] of read()) {
+        let [from, to] = [0, points.length - 1];
+        while (to - from > 1) { const half = (from + to) >> 1; if (points[half][0] <= time) from = half; else to = half; }
+        const near = Math.abs(points[from][0] - time) < Math.abs(points[to][0] - time) ? from : to;
+        rows.push(`${read().size > 1 ? name + "  " : ""}${points[near][1].toPrecision(5)}`);
+      }
+      readout.textContent = rows.join("\n");
+      const share = svg.clientWidth / svg.viewBox.baseVal.width, at = x * share;
+      readout.style.top = `${top * share + 4}px`;
+      readout.style.left = at > svg.clientWidth / 2 ? "auto" : `${at + 8}px`;
+      readout.style.right = at > svg.clientWidth / 2 ? `${svg.clientWidth - at + 8}px` : "auto";
+    };
+    const hide = () => { line.style.display = readout.style.display = "none"; };
+    const timeAt = (e) => {
+      const box = svg.getBoundingClientRect();
+      return low + ((((e.clientX - box.left) / box.width) * svg.viewBox.baseVal.width - left) / (right - left)) * (high - low);
+    };
+    return { svg, show, hide, timeAt };
+  });
+  plots.forEach((plot) => {
+    plot.svg.addEventListener("pointermove", (e) => plots.forEach((p) => p.show(plot.timeAt(e), p === plot)));
+    plot.svg.addEventListener("pointerleave", () => plots.forEach((p) => p.hide()));
+  });
+
+  document.addEventListener("click", (e) => {
+    if (!e.target.dataset || e.target.dataset.sort === undefined) return;
+    const header = e.target.closest("th"), table = header.closest("table"), column = header.cellIndex;
+    const down = header.getAttribute("aria-sort") === "ascending";
+    table.querySelectorAll("thead th").forEach((th) => th.removeAttribute("aria-sort"));
+    header.setAttribute("aria-sort", down ? "descending" : "ascending");
+    const key = (row) => {
+      const cell = row.cells[column], text = cell.dataset.value !== undefined ? cell.dataset.value : cell.textContent;
+      return text.trim() === "" ? null : isNaN(text) ? text : Number(text);
+    };
+    const order = (a, b) => {
+      const [x, y] = [key(a), key(b)];
+      if (x === null || y === null) return (x === null) - (y === null);
+      const less = typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y), "en", { numeric: true });
+      return down ? -less : less;
+    };
+    const body = table.tBodies[0];
+    [...body.rows].sort(order).forEach((row) => body.append(row));
+  });
+})();

@@ -1,0 +1,179 @@
+//! The run against time: small plots over one axis, with the phases behind.
+
+use crate::decimated::Decimated;
+use crate::figure::{PageFigure, number};
+use crate::run::Run;
+use crate::timeline::{COMPONENTS, Structure};
+use grainlab_console::count;
+use grainlab_console::html::{escaped, paragraph};
+use grainlab_console::plot::{Axis, Band, Entry, Figure, Line, Marker, Point, Scale, Series, Strip};
+use std::fmt::Write;
+
+/// Seconds to milliseconds.
+const MS: f64 = 1e3;
+
+/// One curve or set of points.
+struct Curve {
+    name: String,
+    colour: usize,
+    /// Time, s, and value.
+    points: Vec<(f64, f64)>,
+    /// Points instead of a line.
+    marked: bool,
+}
+
+impl Curve {
+    fn line(name: &str, colour: usize, series: &Decimated, unit: f64) -> Self {
+        let points = series.points().into_iter().map(|(t, v)| (t, v * unit)).collect();
+        Self { name: name.to_owned(), colour, points, marked: false }
+    }
+
+    fn points(name: &str, colour: usize, all: &[Structure], value: fn(&Structure) -> f64) -> Self {
+        let points = all.iter().map(|s| (s.time, value(s))).collect();
+        Self { name: name.to_owned(), colour, points, marked: true }
+    }
+}
+
+/// A plot before it is drawn.
+struct Plot {
+    id: &'static str,
+    title: &'static str,
+    scale: Scale,
+    caption: &'static str,
+    curves: Vec<Curve>,
+}
+
+impl Run {
+    /// All plots against time.
+    pub(crate) fn against_time(&self) -> String {
+        if self.timeline.pressure.count() == 0 {
+            return paragraph("The recording has no stress against time.");
+        }
+        let plots: String = self.plots().iter().filter(|p| p.curves.iter().any(|c| !c.points.is_empty())).map(|p| self.drawn(p)).collect();
+        let phases: String = self
+            .bands()
+            .iter()
+            .map(|b| format!("<li><b>{}</b> {}</li>", escaped(&b.label), escaped(b.tooltip.split_once(": ").map_or("", |t| t.1))))
+            .collect();
+        format!(
+            "<p>Simulated time; the bands are the phases of the scene. Each line has the extremes of {} in at most 500 bins.</p>\n\
+             <ol class=\"phases\">{phases}</ol>\n<div class=\"grid\">\n{plots}</div>\n",
+            count(self.timeline.pressure.count(), "exchange")
+        )
+    }
+
+    fn plots(&self) -> Vec<Plot> {
+        let t = &self.timeline;
+        let components = |series: &[Decimated; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
+            which.map(|n| Curve::line(&format!("{symbol} {}", COMPONENTS[n]), n, &series[n], unit)).collect()
+        };
+        let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];
+        if !t.fabrics.is_empty() {
+            coordination.push(Curve::points("z", 1, &t.fabrics, |s| s.z));
+        }
+        vec![
+            Plot {
+                id: "stress",
+                title: "Stress, kPa",
+                scale: Scale::Linear,
+                caption: "Components, positive in compression.",
+                curves: components(&t.stress, "σ", 1e-3, 0..6),
+            },
+            Plot {
+                id: "pressure",
+                title: "Pressure and deviator, kPa",
+                scale: Scale::Linear,
+                caption: "p is the mean stress, q = √(3/2 s : s) that of the deviator s.",
+                curves: vec![Curve::line("p", 0, &t.pressure, 1e-3), Curve::line("q", 1, &t.deviator, 1e-3)],
+            },
+            Plot {
+                id: "strain",
+                title: "Strain, %",
+                scale: Scale::Linear,
+                caption: "Logarithmic, positive in extension, since the reference state.",
+                curves: components(&t.strain, "ε", 100.0, 0..6),
+            },
+            Plot {
+                id: "solid-fraction",
+                title: "Solid fraction φ",
+                scale: Scale::Linear,
+                caption: "",
+                curves: vec![Curve::line("φ", 0, &t.solid_fraction, 1.0)],
+            },
+            Plot {
+                id: "coordination",
+                title: "Coordination number",
+                scale: Scale::Linear,
+                caption: "k of all grains; z without rattlers, at the measured packings.",
+                curves: coordination,
+            },
+            Plot {
+                id: "unbalanced-force",
+                title: "Unbalanced force",
+                scale: Scale::Log,
+                caption: "Mean net force of a grain over the mean contact force.",
+                curves: vec![Curve::line("", 0, &t.unbalanced, 1.0)],
+            },
+            Plot {
+                id: "fabric",
+                title: "Fabric: anisotropy",
+                scale: Scale::Linear,
+                caption: "ε of the contacts, and weighted by their stiffness, at the measured packings.",
+                curves: match t.fabrics.as_slice() {
+                    [] | [_] => Vec::new(),
+                    all => vec![Curve::points("ε", 0, all, |s| s.eps), Curve::points("ε by stiffness", 1, all, |s| s.eps_stiffness)],
+                },
+            },
+        ]
+    }
+
+    /// The phases as bands, ms.
+    fn bands(&self) -> Vec<Band> {
+        let phases = &self.timeline.phases;
+        let ends = phases.iter().skip(1).map(|(_, t)| *t).chain([self.timeline.end]);
+        let band = |((phase, from), to): (&(u32, f64), f64)| Band {
+            range: [from * MS, to * MS],
+            label: format!("{}", phase + 1),
+            tooltip: format!("{}: {}", phase + 1, self.phase_name(*phase)),
+        };
+        phases.iter().zip(ends).map(band).collect()
+    }
+
+    fn drawn(&self, plot: &Plot) -> String {
+        let drawable = |v: f64| plot.scale == Scale::Linear || v > 0.0;
+        let series = |c: &Curve| Series {
+            colour: Some(c.colour),
+            marker: c.marked.then_some(Marker::Circle),
+            line: Some(if c.marked { Line::Faint } else { Line::Straight }),
+            points: c.points.iter().filter(|p| drawable(p.1)).map(|(t, v)| Point::at(t * MS, *v)).collect(),
+            ..Series::default()
+        };
+        // The axis is that of the run, whatever the values of this plot.
+        let ends = [self.timeline.begin(), self.timeline.end];
+        let middle = plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
+        let span = Series { points: ends.map(|t| Point::at(t * MS, middle)).into(), ..Series::default() };
+        let named = plot.curves.iter().filter(|c| !c.name.is_empty());
+        let figure = Figure {
+            title: plot.title.to_owned(),
+            subtitle: said(&plot.curves),
+            x: Axis::linear("time, ms"),
+            y: Axis { name: String::new(), scale: plot.scale },
+            series: std::iter::once(span).chain(plot.curves.iter().map(series)).collect(),
+            legend: named.map(|c| Entry::Colour(c.colour, c.name.clone())).collect(),
+        };
+        let mut csv = String::from("series,time_s,value\n");
+        for curve in &plot.curves {
+            let name = if curve.name.is_empty() { plot.id } else { &curve.name };
+            for (time, value) in &curve.points {
+                let _ = writeln!(csv, "{name},{},{}", number(*time), number(*value));
+            }
+        }
+        PageFigure { id: plot.id, svg: Strip { figure, bands: self.bands() }.svg(), caption: plot.caption, csv }.html()
+    }
+}
+
+/// The last values, for readers who do not see the plot.
+fn said(curves: &[Curve]) -> String {
+    let last = |c: &Curve| Some(format!("{} {}", c.name, number(c.points.last()?.1)).trim().to_owned());
+    format!("Last values: {}", curves.iter().filter_map(last).collect::<Vec<_>>().join(", "))
+}

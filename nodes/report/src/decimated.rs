@@ -1,0 +1,146 @@
+//! A long series with few points, made while the series is read.
+
+/// Most bins. One is about a pixel of a plot.
+const BINS: usize = 500;
+
+/// A point of a series: time and value.
+type At = (f64, f64);
+
+/// A series as the extremes of bins of equal width in time, of which there are at most 500, with at most four points each:
+/// first, least, greatest and last. The width doubles when the series becomes too long for them.
+#[derive(Clone, Debug, Default)]
+pub struct Decimated {
+    /// Time of the left end of the first bin.
+    start: f64,
+    /// Width of a bin; 0 until a second time is known.
+    width: f64,
+    bins: Vec<Option<Bin>>,
+    count: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Bin {
+    first: At,
+    least: At,
+    greatest: At,
+    last: At,
+}
+
+impl Bin {
+    fn of(at: At) -> Self {
+        Self { first: at, least: at, greatest: at, last: at }
+    }
+
+    fn and(self, later: Self) -> Self {
+        let least = if later.least.1 < self.least.1 { later.least } else { self.least };
+        let greatest = if later.greatest.1 > self.greatest.1 { later.greatest } else { self.greatest };
+        Self { first: self.first, least, greatest, last: later.last }
+    }
+}
+
+impl Decimated {
+    /// Adds a value. Times do not decrease; values that are not finite, and earlier times, are left out.
+    pub fn push(&mut self, time: f64, value: f64) {
+        let newest = self.bins.iter().rev().find_map(|b| b.as_ref()).map(|b| b.last.0);
+        if !time.is_finite() || !value.is_finite() || newest.is_some_and(|t| time < t) {
+            return;
+        }
+        self.count += 1;
+        let one = Bin::of((time, value));
+        if self.bins.is_empty() {
+            self.start = time;
+            self.bins.push(Some(one));
+            return;
+        }
+        if self.width == 0.0 && time > self.start {
+            self.width = time - self.start;
+        }
+        while self.place(time) >= BINS {
+            self.halve();
+        }
+        let place = self.place(time);
+        if self.bins.len() <= place {
+            self.bins.resize(place + 1, None);
+        }
+        self.bins[place] = Some(self.bins[place].map_or(one, |known| known.and(one)));
+    }
+
+    fn place(&self, time: f64) -> usize {
+        if self.width > 0.0 { ((time - self.start) / self.width) as usize } else { 0 }
+    }
+
+    /// Joins pairs of bins.
+    fn halve(&mut self) {
+        let join = |pair: &[Option<Bin>]| match *pair {
+            [Some(a), Some(b)] => Some(a.and(b)),
+            [a, b] => a.or(b),
+            [a] => a,
+            _ => None,
+        };
+        self.bins = self.bins.chunks(2).map(join).collect();
+        self.width *= 2.0;
+    }
+
+    /// Number of values that were added.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The points in order of time.
+    pub fn points(&self) -> Vec<At> {
+        let mut points = Vec::with_capacity(4 * self.bins.len());
+        for bin in self.bins.iter().flatten() {
+            let (early, late) = if bin.least.0 <= bin.greatest.0 { (bin.least, bin.greatest) } else { (bin.greatest, bin.least) };
+            for at in [bin.first, early, late, bin.last] {
+                if points.last() != Some(&at) {
+                    points.push(at);
+                }
+            }
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(values: impl Iterator<Item = At>) -> Decimated {
+        let mut series = Decimated::default();
+        values.for_each(|(t, v)| series.push(t, v));
+        series
+    }
+
+    #[test]
+    fn a_long_series_keeps_its_ends_and_its_extremes_at_their_times() {
+        let value = |n: u32| match n {
+            70_001 => 9.0,
+            31_337 => -9.0,
+            n => f64::from(n).sin(),
+        };
+        let points = of((0..100_000).map(|n| (1e-6 * f64::from(n), value(n)))).points();
+        assert!((500..=2000).contains(&points.len()), "{}", points.len());
+        assert_eq!((points[0], points[points.len() - 1]), ((0.0, 0.0), (1e-6 * 99_999.0, value(99_999))));
+        assert!(points.contains(&(1e-6 * 70_001.0, 9.0)) && points.contains(&(1e-6 * 31_337.0, -9.0)));
+        assert!(points.windows(2).all(|pair| pair[0].0 <= pair[1].0), "in order of time");
+    }
+
+    #[test]
+    fn a_short_series_is_kept_whole() {
+        let all: Vec<At> = (0..40).map(|n| (f64::from(n), f64::from(n * n))).collect();
+        assert_eq!(of(all.iter().copied()).points(), all);
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_and_times_that_go_back_are_left_out() {
+        let series = of([(0.0, 1.0), (f64::NAN, 2.0), (1.0, f64::INFINITY), (2.0, 3.0), (1.5, 4.0), (2.0, 5.0)].into_iter());
+        assert_eq!(series.points(), [(0.0, 1.0), (2.0, 3.0), (2.0, 5.0)]);
+        assert_eq!(series.count(), 3);
+    }
+
+    #[test]
+    fn a_pause_of_any_length_fits() {
+        let points = of([(0.0, 1.0), (1e-9, 2.0), (1e9, 3.0), (2e9, 4.0)].into_iter()).points();
+        assert_eq!((points[0], points[points.len() - 1]), ((0.0, 1.0), (2e9, 4.0)));
+    }
+}

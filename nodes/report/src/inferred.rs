@@ -1,0 +1,146 @@
+//! What was inferred from moduli and wave speeds, beside what was counted.
+
+use crate::figure::{PageFigure, number};
+use crate::run::{Run, recommended};
+use grainlab_console::fixed;
+use grainlab_console::html::{Cell, paragraph, table};
+use grainlab_console::plot::{Bar, Bars};
+use grainlab_core::results::PackingReport;
+use grainlab_results::Inference;
+use grainlab_results::brief::moduli;
+use grainlab_results::read_back::InvertedPacking;
+use std::fmt::Write;
+
+/// A quantity that is counted and inferred.
+pub(crate) struct Counted {
+    /// Its symbol.
+    pub(crate) symbol: &'static str,
+    pub(crate) meaning: &'static str,
+    /// Decimal places.
+    pub(crate) digits: usize,
+    pub(crate) counted: fn(&PackingReport) -> f64,
+    pub(crate) inferred: fn(&Inference) -> Option<f64>,
+    pub(crate) sigma: fn(&Inference) -> Option<f64>,
+    interval: fn(&Inference) -> Option<[f64; 2]>,
+}
+
+/// k, z and ε.
+pub(crate) const COUNTED: [Counted; 3] = [
+    Counted {
+        symbol: "k",
+        meaning: "coordination number",
+        digits: 3,
+        counted: |r| r.contacts.coordination,
+        inferred: |e| e.values.k,
+        sigma: |e| e.sigma.k,
+        interval: |e| e.interval.bounds.k,
+    },
+    Counted {
+        symbol: "z",
+        meaning: "coordination without rattlers",
+        digits: 3,
+        counted: |r| r.contacts.mechanical_coordination,
+        inferred: |e| e.values.z,
+        sigma: |e| e.sigma.z,
+        interval: |e| e.interval.bounds.z,
+    },
+    Counted {
+        symbol: "ε",
+        meaning: "contact anisotropy",
+        digits: 4,
+        counted: |r| r.fabric.contact_anisotropy,
+        inferred: |e| e.values.eps,
+        sigma: |e| e.sigma.eps,
+        interval: |e| e.interval.bounds.eps,
+    },
+];
+
+/// Name of a result: its model, and its data unless these are moduli.
+fn name(e: &Inference) -> String {
+    let data = e.source.as_deref().filter(|s| *s != "moduli").map(|s| format!(", {}", s.replace('_', " ")));
+    let by = e.by.as_deref().filter(|b| *b != "/emt_inversion" && *b != "emt_inversion").map(|b| format!(", {b}"));
+    format!("{}{}{}", e.model, data.unwrap_or_default(), by.unwrap_or_default())
+}
+
+impl Counted {
+    fn figure(&self, state: &InvertedPacking) -> Option<String> {
+        let counted = (self.counted)(&state.packing.report);
+        let digits = self.digits;
+        let mut csv = String::from("model,status,inferred,low,high,counted\n");
+        let mut bars = Vec::new();
+        for e in &state.results {
+            let Some(value) = (self.inferred)(e) else { continue };
+            let by_sigma = || (self.sigma)(e).map(|s| [value - 1.96 * s, value + 1.96 * s]);
+            let interval = (self.interval)(e).or_else(by_sigma);
+            let [low, high] = interval.map_or([String::new(), String::new()], |i| i.map(number));
+            let _ = writeln!(csv, "{},{},{},{low},{high},{}", name(e).replace(',', ""), e.status, number(value), number(counted));
+            let colour = if e.status == "ok" { 0 } else { 1 };
+            let error = format!("{value:.digits$} ({:+.digits$})", value - counted);
+            bars.push(Bar { name: name(e), colour, value, interval, text: error });
+        }
+        let reference = Some((counted, format!("counted {counted:.digits$}")));
+        let title = format!("{}: {}", self.symbol, self.meaning);
+        let id = match self.symbol {
+            "k" => "inferred-k",
+            "z" => "inferred-z",
+            _ => "inferred-eps",
+        };
+        (!bars.is_empty()).then(|| {
+            let svg = Bars { title, from_zero: false, bars, reference }.svg();
+            PageFigure { id, svg, caption: "", csv }.html()
+        })
+    }
+}
+
+impl Run {
+    /// Inferred against counted, of the last state, and all states as a table.
+    pub(crate) fn inferred(&self) -> String {
+        let Some(state) = self.last() else { return paragraph("No packing was measured.") };
+        let figures: String = COUNTED.iter().filter_map(|c| c.figure(state)).collect();
+        let level = state.results.iter().find_map(|e| e.interval.level).unwrap_or(0.95);
+        let about = if figures.is_empty() {
+            paragraph("Nothing was inferred.")
+        } else {
+            paragraph(&format!(
+                "Inferred from moduli, pressure and solid fraction, and from wave speeds if there are some; the contacts were not seen. \
+                 Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
+                 count. Orange: a model outside of its range.",
+                100.0 * level
+            ))
+        };
+        let warnings: String = state
+            .results
+            .iter()
+            .flat_map(|e| e.warnings.iter().map(move |w| format!("<li>{}: {}</li>", name(e), grainlab_console::html::escaped(w))))
+            .collect();
+        let warnings = if warnings.is_empty() { warnings } else { format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n") };
+        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}")
+    }
+
+    /// The measured states, one a row.
+    pub(crate) fn states_table(&self) -> String {
+        let header = [
+            "phase", "p, kPa", "φ", "k", "z", "ε", "G12, MPa", "G13, MPa", "Θ, MPa", "inferred k", "z", "ε", "by",
+        ];
+        let row = |s: &InvertedPacking| {
+            let r = &s.packing.report;
+            let phase = s.packing.position.filter(|p| p.phase > 0).map_or_else(String::new, |p| self.phase_name(p.phase as u32 - 1));
+            let best = recommended(s);
+            let mut cells = vec![
+                Cell::text(phase),
+                Cell::number(format!("{:.2}", r.pressure() / 1e3)),
+                Cell::number(format!("{:.4}", r.solid_fraction)),
+            ];
+            cells.extend(COUNTED.map(|c| Cell::number(format!("{:.*}", c.digits, (c.counted)(r)))));
+            cells.extend(moduli(r).map(|m| Cell::number(fixed(m, 2))));
+            cells.extend(COUNTED.map(|c| {
+                let sigma = best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.*}", c.digits));
+                Cell::number(fixed(best.and_then(|b| (c.inferred)(b)), c.digits) + &sigma)
+            }));
+            cells.push(Cell::text(best.map_or_else(String::new, |b| format!("{} ({})", b.model, b.status))));
+            cells
+        };
+        let rows: Vec<Vec<Cell>> = self.states.iter().map(row).collect();
+        table("Packings at the ends of phases: counted, measured, and inferred with standard deviations.", &header, &rows)
+    }
+}

@@ -1,0 +1,30 @@
+//! Reports of runs: one HTML page for a run, with plots and its packings in three dimensions, and one for many runs.
+//!
+//! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `decimated`: against time, in one pass over the
+//!   recording; `summary_file`: how the run ended
+//! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `health`: its sections; `figure`: a plot
+//!   that can be saved
+//! - [`overview`]: the page of many runs; [`Outliers`]: values far from those of runs alike
+//! - [`write_report`]: the file
+
+mod against_time;
+mod decimated;
+mod figure;
+mod health;
+mod inferred;
+mod many;
+mod moduli;
+mod outliers;
+mod page;
+mod run;
+mod structure;
+mod summary_file;
+mod timeline;
+mod waves;
+mod write;
+
+pub use decimated::Decimated;
+pub use many::overview;
+pub use outliers::Outliers;
+pub use run::Run;
+pub use write::{FILE, ReportError, write_page, write_report};

@@ -1,0 +1,72 @@
+//! Moduli of the last packing: relaxed, and by closed forms of its contact network.
+
+use crate::figure::{PageFigure, number};
+use crate::run::Run;
+use grainlab_console::html::{Cell, paragraph, table};
+use grainlab_console::plot::{Bar, Bars};
+use grainlab_core::Stiffness;
+use std::fmt::Write;
+
+/// Pa to MPa.
+const MPA: f64 = 1e-6;
+
+/// A stiffness as a reader knows it: name, colour, and its moduli in the order of [`NAMES`], MPa.
+type Kind = (&'static str, usize, [f64; 6]);
+
+const NAMES: [&str; 6] = ["G12", "G13", "Θ", "C11", "C33", "C13"];
+
+impl Run {
+    /// Relaxed and affine moduli.
+    pub(crate) fn moduli(&self) -> String {
+        let Some(report) = self.last().map(|s| &s.packing.report) else {
+            return paragraph("No packing was measured.");
+        };
+        let Some(stiffness) = report.stiffness() else {
+            let why = report.elasticity.not_jammed().map(ToString::to_string).unwrap_or_default();
+            return paragraph(&format!("No stiffness: {why}."));
+        };
+        let axis = &report.fabric.reference_axis;
+        let all = |c: &Stiffness| {
+            let t = c.transverse_isotropy_about(axis);
+            [t.g12, t.g13, c.bulk_voigt(), t.c11, t.c33, t.c13].map(|v| v * MPA)
+        };
+        let kinds: [Kind; 3] = [
+            ("relaxed", 0, all(&stiffness.tensor)),
+            ("mean rotation", 2, all(&stiffness.bounds.uniform_rotation)),
+            ("affine", 1, all(&stiffness.bounds.affine)),
+        ];
+        let bars = (0..NAMES.len()).flat_map(|n| {
+            kinds.iter().map(move |(kind, colour, values)| Bar {
+                name: NAMES[n].to_owned(),
+                colour: *colour,
+                value: values[n],
+                interval: None,
+                text: format!("{:.1} {kind}", values[n]),
+            })
+        });
+        let svg = Bars { title: "Moduli, MPa".into(), from_zero: true, bars: bars.collect(), reference: None }.svg();
+        let mut csv = String::from("modulus,relaxed_mpa,mean_rotation_mpa,affine_mpa\n");
+        let row = |n: usize| {
+            let [relaxed, rotation, affine] = kinds.map(|k| k.2[n]);
+            let _ = writeln!(csv, "{},{},{},{}", NAMES[n], number(relaxed), number(rotation), number(affine));
+            let share = format!("{:.3}", relaxed / affine);
+            let mut cells = vec![Cell::text(NAMES[n])];
+            cells.extend([relaxed, rotation, affine].map(|v| Cell::number(format!("{v:.2}"))));
+            cells.push(Cell::number(share));
+            cells
+        };
+        let rows: Vec<Vec<Cell>> = (0..NAMES.len()).map(row).collect();
+        let caption = format!(
+            "MPa, about the axis ({:.2}, {:.2}, {:.2}), by the {}",
+            axis.x,
+            axis.y,
+            axis.z,
+            stiffness.method.name().replace('_', " ")
+        );
+        let caption = grainlab_console::html::escaped(&caption);
+        let header = ["modulus", "relaxed", "mean rotation", "affine", "relaxed / affine"];
+        let about = "G12 is the shear modulus across the axis, G13 along it, Θ the bulk modulus under isotropic strain.";
+        let figure = PageFigure { id: "moduli", svg, caption: about, csv }.html();
+        format!("<div class=\"grid\">\n{figure}{}</div>\n", table(&caption, &header, &rows))
+    }
+}

@@ -1,0 +1,79 @@
+//! Values far from those of runs alike.
+
+/// Robust z-score from which a value is an outlier (Iglewicz and Hoaglin, 1993).
+const LIMIT: f64 = 3.5;
+
+/// Standard deviations of a normal distribution to its median absolute deviation.
+const TO_SIGMA: f64 = 1.4826;
+
+/// Fewest values of which some can be outliers.
+const FEWEST: usize = 5;
+
+/// Least deviation that counts, relative to the median: rounding is none.
+const ROUNDING: f64 = 1e-9;
+
+/// The distribution of a quantity over runs alike, by its median and its median absolute deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outliers {
+    median: f64,
+    deviation: f64,
+}
+
+impl Outliers {
+    /// Of these values; `None` of fewer than five finite ones.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let finite: Vec<f64> = values.into_iter().filter(|v| v.is_finite()).collect();
+        if finite.len() < FEWEST {
+            return None;
+        }
+        let median = median(finite.clone());
+        let deviation = median_of_deviations(&finite, median);
+        Some(Self { median, deviation })
+    }
+
+    /// The robust z-score of a value: its distance from the median over 1.4826 median absolute deviations. Infinite if all
+    /// others are equal.
+    pub fn score(&self, value: f64) -> f64 {
+        let off = value - self.median;
+        if off.abs() <= ROUNDING * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
+    }
+
+    /// Whether a value is an outlier: its score is beyond 3.5.
+    pub fn has(&self, value: f64) -> bool {
+        self.score(value).abs() > LIMIT
+    }
+}
+
+fn median_of_deviations(values: &[f64], median: f64) -> f64 {
+    self::median(values.iter().map(|v| (v - median).abs()).collect())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let half = values.len() / 2;
+    if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_far_from_the_others_is_an_outlier_and_does_not_hide_itself() {
+        let all = [5.0, 5.1, 4.9, 5.05, 4.95, 9.0];
+        let o = Outliers::of(all).unwrap();
+        assert_eq!(all.map(|v| o.has(v)), [false, false, false, false, false, true]);
+    }
+
+    #[test]
+    fn equal_values_have_no_outliers_and_a_single_other_one_is_one() {
+        let o = Outliers::of([2.0, 2.0, 2.0, 2.0, 2.0, 2.1]).unwrap();
+        assert!(!o.has(2.0) && o.has(2.1));
+    }
+
+    #[test]
+    fn of_a_few_values_none_is_an_outlier() {
+        assert_eq!(Outliers::of([1.0, 1.0, 1.0, 50.0]), None);
+        assert_eq!(Outliers::of([1.0, f64::NAN, 1.0, 1.0, 50.0]), None);
+    }
+}

@@ -1,0 +1,153 @@
+//! The page of one run: one file, without references to others.
+
+use crate::inferred::COUNTED;
+use crate::run::{Run, recommended};
+use grainlab_console::html::{escaped, section};
+use grainlab_console::plot::page_style;
+use grainlab_results::brief::{ended, moduli};
+use grainlab_results::read_back::InvertedPacking;
+use grainlab_viewer::PictureError;
+
+pub(crate) const STYLE: &str = include_str!("../assets/report.css");
+pub(crate) const SCRIPT: &str = include_str!("../assets/report.js");
+
+
+/// A page with a heading, a navigation and sections (id, title, content). `scripts` are added to that of the page.
+pub(crate) fn whole(title: &str, heading: &str, sections: &[(&str, &str, String)], scripts: &[&str]) -> String {
+    let links: String =
+        sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{}</a>", escaped(title))).collect();
+    let content: String = sections.iter().map(|(id, title, content)| section(id, title, content)).collect();
+    let scripts: String = scripts.iter().chain(&[SCRIPT]).map(|s| format!("<script>{s}</script>\n")).collect();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
+         <style id=\"style\">\n{}{STYLE}{}</style>\n</head>\n<body>\n\
+         <header class=\"top\"><nav aria-label=\"Sections\">{links}</nav>\
+         <button type=\"button\" id=\"theme\" aria-label=\"Light or dark\">Light / dark</button></header>\n\
+         <main>\n{heading}{content}</main>\n{scripts}</body>\n</html>\n",
+        escaped(title),
+        page_style(),
+        grainlab_viewer::HEAD,
+    )
+}
+
+impl Run {
+    /// The page.
+    ///
+    /// # Errors
+    /// If the picture of the packing cannot be written.
+    pub fn html(&self) -> Result<String, PictureError> {
+        let views = self.timeline.film.states();
+        let mut sections: Vec<(&str, &str, String)> = Vec::new();
+        if !views.is_empty() {
+            let left_out = self.timeline.film.count() - views.len();
+            let note = match left_out {
+                0 => String::new(),
+                n => format!("<p>{n} of {} recorded states are left out, for the size of the page.</p>\n", self.timeline.film.count()),
+            };
+            sections.push(("packing", "The packing", grainlab_viewer::figure(&self.name(), &views)? + &note));
+        }
+        sections.push(("time", "Against time", self.against_time()));
+        sections.push(("structure", "Contacts and forces", self.structure()));
+        sections.push(("moduli", "Moduli", self.moduli()));
+        sections.push(("inference", "Inferred and counted", self.inferred()));
+        sections.extend(self.waves().map(|waves| ("waves", "Waves", waves)));
+        sections.push(("health", "Health of the run", self.health()));
+        sections.push(("repeat", "Repeat it", self.repeat()));
+        let title = format!("{}: run {}", self.scene_name(), self.name());
+        let scripts: &[&str] = if views.is_empty() { &[] } else { &grainlab_viewer::SCRIPTS };
+        Ok(whole(&title, &self.heading(), &sections, scripts))
+    }
+
+    /// What was run, how it ended, and the key results.
+    fn heading(&self) -> String {
+        let mut text = format!("<p class=\"eyebrow\">grainlab · {}</p>\n<h1>{}</h1>\n", escaped(&self.name()), escaped(&self.headline()));
+        let description = self.scene.as_ref().map(|s| s.description.as_str()).filter(|d| !d.is_empty());
+        text += &description.map_or_else(String::new, |d| format!("<p class=\"lead\">{}</p>\n", escaped(d)));
+        text += &self.verdict();
+        if !self.missing.is_empty() {
+            let items: String = self.missing.iter().map(|m| format!("<li>{}</li>", escaped(m))).collect();
+            text += &format!("<div class=\"missing\"><b>Missing or not readable</b><ul>{items}</ul></div>\n");
+        }
+        if let Some(state) = self.last() {
+            text += &cards(state);
+            text += &self.states_table();
+        }
+        text
+    }
+
+    fn headline(&self) -> String {
+        let scene = self.scene_name();
+        match (self.last(), &self.timeline.last) {
+            (Some(s), _) => {
+                let r = &s.packing.report;
+                format!("{scene}: {} grains at {:.2} kPa", r.contacts.grains, r.pressure() / 1e3)
+            }
+            (None, Some(packing)) => format!("{scene}: {} grains, not measured", packing.grains()),
+            (None, None) => format!("{scene}: no packing"),
+        }
+    }
+
+    /// How the run ended, in one line.
+    fn verdict(&self) -> String {
+        let s = &self.summary;
+        let (class, mut words) = match s.exit {
+            None => ("bad", "The end of the run is not known".to_owned()),
+            Some(0) if s.warnings.is_empty() => ("good", "Complete".to_owned()),
+            Some(0) => ("warn", format!("Complete, with {}", grainlab_console::count(s.warnings.len(), "warning"))),
+            Some(code) => {
+                let why = ended(code, s.warnings.first().map(String::as_str));
+                ("bad", format!("Ended {}", why.unwrap_or_else(|| format!("with exit code {code}"))))
+            }
+        };
+        if let Some(t) = s.wall_seconds {
+            words += &format!(" · {t:.1} s");
+        }
+        if let Some(seed) = self.seed() {
+            words += &format!(" · seed {seed}");
+        }
+        if !s.topics.is_empty() {
+            let (recorded, lost) = (s.total(|t| t.recorded), s.total(|t| t.lost));
+            words += &format!(" · {recorded} messages recorded, {lost} lost");
+        }
+        format!("<p class=\"verdict {class}\">{}</p>\n", escaped(&words))
+    }
+}
+
+/// The key results of a state.
+fn cards(state: &InvertedPacking) -> String {
+    let r = &state.packing.report;
+    let best = recommended(state);
+    let mut text = String::from("<div class=\"cards\">\n");
+    for c in &COUNTED {
+        let (counted, digits) = ((c.counted)(r), c.digits);
+        let inferred = best.and_then(|b| (c.inferred)(b)).map_or_else(
+            || "not inferred".to_owned(),
+            |v| {
+                let sigma = best.and_then(|b| (c.sigma)(b)).map_or_else(String::new, |s| format!(" ± {s:.digits$}"));
+                format!("inferred {v:.digits$}{sigma} <span class=\"error\">{:+.digits$}</span>", v - counted)
+            },
+        );
+        text += &card(c.symbol, &format!("{counted:.digits$}"), c.meaning, &inferred);
+    }
+    let names = [("G12", "shear across the axis"), ("G13", "shear along the axis"), ("Θ", "bulk modulus")];
+    for ((name, meaning), value) in names.into_iter().zip(moduli(r)) {
+        let value = value.map_or_else(|| "–".to_owned(), |v| format!("{v:.2}"));
+        text += &card(name, &format!("{value} <small>MPa</small>"), meaning, "");
+    }
+    let unbalanced = r.unbalanced_force_ratio.map_or_else(|| "–".to_owned(), |u| format!("{u:.1e}"));
+    let ratio = r.stress_ratio().map_or_else(String::new, |q| format!("q/p {q:.1e}"));
+    text += &card("p", &format!("{:.2} <small>kPa</small>", r.pressure() / 1e3), "pressure", &ratio);
+    text += &card("φ", &format!("{:.4}", r.solid_fraction), "solid fraction", &format!("unbalanced force {unbalanced}"));
+    text + "</div>\n"
+}
+
+/// A quantity; `value` and `below` are markup.
+fn card(symbol: &str, value: &str, meaning: &str, below: &str) -> String {
+    let below = if below.is_empty() { String::new() } else { format!("<div class=\"below\">{below}</div>") };
+    format!(
+        "<div class=\"card\"><div class=\"symbol\">{} <span>{}</span></div><div class=\"value\">{value}</div>{below}</div>\n",
+        escaped(symbol),
+        escaped(meaning)
+    )
+}

@@ -1,0 +1,131 @@
+//! What a report is made of, from the files of a run. What cannot be read is named, and the report is made of the rest.
+
+use crate::summary_file::SummaryFile;
+use crate::timeline::Timeline;
+use grainlab_recordings::{Recording, input};
+use grainlab_results::read_back::{self, InvertedPacking};
+use grainlab_results::Inference;
+use grainlab_scene::Scene;
+use std::path::{Path, PathBuf};
+
+/// A run.
+#[derive(Debug)]
+pub struct Run {
+    /// Its directory.
+    pub(crate) directory: PathBuf,
+    pub(crate) summary: SummaryFile,
+    /// Packings at the ends of phases, with what was inferred.
+    pub(crate) states: Vec<InvertedPacking>,
+    pub(crate) timeline: Timeline,
+    /// Text of the scene; empty if there is none.
+    pub(crate) scene_text: String,
+    pub(crate) scene: Option<Scene>,
+    /// Program that wrote the recording, if it says so.
+    pub(crate) recorded_by: Option<String>,
+    /// What could not be read, one line each.
+    pub(crate) missing: Vec<String>,
+}
+
+impl Run {
+    /// Reads the files of a run: a run directory, or a recording.
+    pub fn read(path: &Path) -> Self {
+        let directory = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+        let mut run = Self {
+            directory: path.to_owned(),
+            summary: SummaryFile::default(),
+            states: Vec::new(),
+            timeline: Timeline::default(),
+            scene_text: String::new(),
+            scene: None,
+            recorded_by: None,
+            missing: Vec::new(),
+        };
+        run.read_summary(&directory.join("summary.json"));
+        match Recording::open(path) {
+            Ok(recording) => run.read_recording(&recording),
+            Err(error) => run.missing.push(format!("No recording: {error}")),
+        }
+        if run.scene_text.is_empty() {
+            match input::text(&directory.join("scene.toml"), input::SETTINGS) {
+                Ok(text) => run.scene_text = text,
+                Err(error) => run.missing.push(format!("No scene: scene.toml: {error}")),
+            }
+        }
+        run.scene = Scene::parse(&run.scene_text).ok();
+        run
+    }
+
+    fn read_summary(&mut self, path: &Path) {
+        let found = input::text(path, input::TEXT)
+            .map_err(|e| e.to_string())
+            .and_then(|text| serde_json::from_str(&text).map_err(|e| e.to_string()));
+        match found {
+            Ok(summary) => self.summary = summary,
+            Err(error) => self.missing.push(format!(
+                "No summary: summary.json: {error}. How the run ended, and the messages that it lost, are not known"
+            )),
+        }
+    }
+
+    fn read_recording(&mut self, recording: &Recording) {
+        self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
+        if let Some(file) = recording.stored_files().into_iter().find(|f| f.name == "scene.toml") {
+            self.scene_text = String::from_utf8_lossy(&file.bytes).into_owned();
+        }
+        let back = read_back::read(recording);
+        self.states = back.states;
+        // The launcher writes these lines to the summary, too.
+        let known = |line: &String| self.summary.warnings.contains(line);
+        self.missing.extend(back.complaints.into_iter().filter(|line| !known(line)));
+        match Timeline::read(recording) {
+            Ok(timeline) => self.timeline = timeline,
+            Err(error) => self.missing.push(format!("Nothing against time: {error}")),
+        }
+        if self.timeline.unreadable > 0 {
+            self.missing.push(format!("{} could not be read", grainlab_console::count(self.timeline.unreadable, "message")));
+        }
+    }
+
+    /// The same for a table: without series and packings, which are large.
+    #[must_use]
+    pub fn without_series(self) -> Self {
+        Self { timeline: Timeline::default(), ..self }
+    }
+
+    /// Name of the directory.
+    pub(crate) fn name(&self) -> String {
+        let resolved = self.directory.canonicalize().unwrap_or_else(|_| self.directory.clone());
+        resolved.file_name().map_or_else(|| "run".to_owned(), |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Name of the scene.
+    pub(crate) fn scene_name(&self) -> String {
+        match (&self.scene, self.summary.scene.as_str()) {
+            (Some(scene), "") => scene.name.clone(),
+            (None, "") => "unknown scene".to_owned(),
+            (_, name) => name.to_owned(),
+        }
+    }
+
+    /// The seed.
+    pub(crate) fn seed(&self) -> Option<u64> {
+        self.summary.seed.or(self.scene.as_ref().map(|s| s.seed))
+    }
+
+    /// The last packing at the end of a phase.
+    pub(crate) fn last(&self) -> Option<&InvertedPacking> {
+        self.states.last()
+    }
+
+    /// Name of a phase, by its number from 0.
+    pub(crate) fn phase_name(&self, phase: u32) -> String {
+        let of_scene = self.scene.as_ref().and_then(|s| s.phases.get(phase as usize)).map(|p| p.name.clone());
+        let name = of_scene.or_else(|| self.timeline.names.get(&phase).cloned());
+        name.filter(|n| !n.is_empty()).unwrap_or_else(|| format!("phase {}", phase + 1))
+    }
+}
+
+/// The recommended result of a state, of the data that were inverted first.
+pub(crate) fn recommended(state: &InvertedPacking) -> Option<&Inference> {
+    grainlab_results::by_origin(&state.results).iter().find_map(|(_, results)| Inference::recommended(results))
+}

@@ -1,0 +1,50 @@
+//! `summary.json` of a run, as far as a report needs it: everything in it may be missing.
+
+use serde::Deserialize;
+
+/// How a run ended, and what became of its messages.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct SummaryFile {
+    pub(crate) scene: String,
+    pub(crate) seed: Option<u64>,
+    pub(crate) run: String,
+    pub(crate) domain: Option<u16>,
+    pub(crate) wall_seconds: Option<f64>,
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) topics: Vec<TopicCount>,
+    pub(crate) strangers: Vec<serde_json::Value>,
+    pub(crate) exchanges: Option<u64>,
+    pub(crate) exchanges_per_second: Option<f64>,
+    pub(crate) waiting_fraction: Option<f64>,
+    pub(crate) particle_steps_per_second: Option<f64>,
+    pub(crate) exit: Option<u8>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// A process of the run.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct Node {
+    pub(crate) name: String,
+    pub(crate) exit: Option<i32>,
+    pub(crate) restarts: usize,
+}
+
+/// Messages of a topic.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(crate) struct TopicCount {
+    pub(crate) name: String,
+    pub(crate) published: u64,
+    pub(crate) recorded: u64,
+    pub(crate) lost: u64,
+    pub(crate) repeated: u64,
+}
+
+impl SummaryFile {
+    /// Sum of a count over all topics.
+    pub(crate) fn total(&self, count: fn(&TopicCount) -> u64) -> u64 {
+        self.topics.iter().map(count).sum()
+    }
+}

@@ -1,0 +1,139 @@
+//! A run against time, from one pass over its recording.
+
+use crate::decimated::Decimated;
+use grainlab_core::Packing;
+use grainlab_msgs::boundary::{FabricReading, StressRequest};
+use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
+use grainlab_recordings::{ReadError, Recording, Selection};
+use grainlab_viewer::{Film, View};
+use std::collections::BTreeMap;
+
+/// Names of the components, in the order of Voigt.
+pub(crate) const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
+/// A run against simulated time, s.
+#[derive(Debug, Default)]
+pub(crate) struct Timeline {
+    /// Pa, in the order of Voigt.
+    pub(crate) stress: [Decimated; 6],
+    /// Pa.
+    pub(crate) pressure: Decimated,
+    /// Pa.
+    pub(crate) deviator: Decimated,
+    /// Logarithmic, positive in extension, in the order of Voigt.
+    pub(crate) strain: [Decimated; 6],
+    pub(crate) solid_fraction: Decimated,
+    pub(crate) coordination: Decimated,
+    pub(crate) unbalanced: Decimated,
+    /// Number and first time of each phase, in order.
+    pub(crate) phases: Vec<(u32, f64)>,
+    /// Names of phases, as the run published them.
+    pub(crate) names: BTreeMap<u32, String>,
+    /// Last time.
+    pub(crate) end: f64,
+    /// Measured packings: time, z and ε.
+    pub(crate) fabrics: Vec<Structure>,
+    /// The packings, for pictures.
+    pub(crate) film: Film,
+    /// The last packing.
+    pub(crate) last: Option<Packing>,
+    /// Messages that could not be read.
+    pub(crate) unreadable: usize,
+}
+
+/// The structure of a packing at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Structure {
+    pub(crate) time: f64,
+    pub(crate) z: f64,
+    pub(crate) eps: f64,
+    pub(crate) eps_stiffness: f64,
+}
+
+impl Timeline {
+    /// Reads a recording.
+    pub(crate) fn read(recording: &Recording) -> Result<Self, ReadError> {
+        let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE];
+        let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
+        let channels = recording.channels();
+        let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
+        let mut timeline = Self::default();
+        let mut next = 0;
+        for message in recording.messages(&Selection::topics(names))? {
+            let Some(topic) = of(&message.channel.topic) else { continue };
+            if timeline.take(topic.name, &message.payload, &mut next).is_none() {
+                timeline.unreadable += 1;
+            }
+        }
+        Ok(timeline)
+    }
+
+    /// Takes one message; `None` if it cannot be read. `next` is the number of the next request.
+    fn take(&mut self, topic: &str, payload: &[u8], next: &mut u64) -> Option<()> {
+        if topic == topics::STRESS.name {
+            let request = StressRequest::try_from(&decoded::<msg::Stress>(payload)?).ok()?;
+            // A request without an answer was published again.
+            if request.sequence >= *next {
+                *next = request.sequence + 1;
+                self.request(&request);
+            }
+        } else if topic == topics::FABRIC.name {
+            let message: msg::Fabric = decoded(payload)?;
+            let time = simulated_seconds(&message.header.stamp);
+            let FabricReading { contacts, fabric, .. } = FabricReading::try_from(&message).ok()?;
+            if self.fabrics.last().is_none_or(|s| s.time < time) {
+                self.fabrics.push(Structure {
+                    time,
+                    z: contacts.mechanical_coordination,
+                    eps: fabric.contact_anisotropy,
+                    eps_stiffness: fabric.stiffness_anisotropy(),
+                });
+            }
+        } else if topic == topics::PACKING.name {
+            let packing = Packing::try_from(&decoded::<msg::Packing>(payload)?).ok()?;
+            // A restarted simulator may have published it again.
+            if self.last.as_ref().is_none_or(|p| p.step < packing.step) {
+                self.film.push(View::new(&packing, label(&packing)));
+                self.end = self.end.max(packing.time);
+                self.last = Some(packing);
+            }
+        } else {
+            let state: msg::RunState = decoded(payload)?;
+            self.names.insert(state.phase, state.phase_name);
+        }
+        Some(())
+    }
+
+    fn request(&mut self, request: &StressRequest) {
+        let time = simulated_seconds(&request.stamp);
+        if self.phases.last().is_none_or(|(phase, _)| *phase != request.phase) {
+            self.phases.push((request.phase, time));
+        }
+        self.end = self.end.max(time);
+        let push = |series: &mut [Decimated; 6], values: [f64; 6]| {
+            series.iter_mut().zip(values).for_each(|(s, v)| s.push(time, v));
+        };
+        push(&mut self.stress, request.stress.voigt());
+        push(&mut self.strain, request.strain.voigt());
+        self.pressure.push(time, request.stress.mean());
+        self.deviator.push(time, request.stress.deviatoric_invariant());
+        self.solid_fraction.push(time, request.solid_fraction);
+        self.coordination.push(time, request.coordination);
+        self.unbalanced.push(time, request.unbalanced);
+    }
+
+    /// First time that is shown, s.
+    pub(crate) fn begin(&self) -> f64 {
+        self.phases.first().map_or(0.0, |(_, time)| *time)
+    }
+}
+
+fn decoded<T: Message>(payload: &[u8]) -> Option<T> {
+    from_cdr(payload).ok()
+}
+
+/// A state as readers see it.
+fn label(packing: &Packing) -> String {
+    let pressure = grainlab_core::stress::stress(packing).tensor.mean() / 1e3;
+    format!("{:.3} ms, p {pressure:.2} kPa, φ {:.4}", packing.time * 1e3, packing.solid_fraction())
+}

@@ -1,0 +1,47 @@
+//! The file of a report.
+
+use crate::run::Run;
+use grainlab_viewer::PictureError;
+use std::path::{Path, PathBuf};
+
+/// Name of the report in the directory of its run.
+pub const FILE: &str = "report.html";
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The picture of the packing failed.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The file cannot be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// Writes a page to a file, whole or not at all.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_page(path: &Path, text: &str) -> Result<(), ReportError> {
+    let partial = path.with_extension("html.part");
+    let written = std::fs::write(&partial, text).and_then(|()| std::fs::rename(&partial, path));
+    written.map_err(|source| {
+        let _ = std::fs::remove_file(&partial);
+        ReportError::Write { path: path.to_owned(), source }
+    })
+}
+
+/// Writes the report of a run beside its recording, and returns its path.
+///
+/// # Errors
+/// If it cannot be written. What cannot be read of the run is named in the report.
+pub fn write_report(directory: &Path) -> Result<PathBuf, ReportError> {
+    let path = directory.join(FILE);
+    write_page(&path, &Run::read(directory).html()?)?;
+    Ok(path)
+}

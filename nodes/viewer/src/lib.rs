@@ -1,0 +1,21 @@
+//! Packings as pictures: a page that shows them in three dimensions, and PNG without a display.
+//!
+//! - [`View`]: one packing as it is drawn; [`Quantity`]: what the colours show; `palette`: the colours
+//! - [`Film`]: the states of a run, few enough for a page
+//! - [`figure`], [`page`], [`HEAD`], [`SCRIPTS`]: the parts of a page; `encode`: the states as bytes
+//! - [`Picture`]: one view as pixels and as PNG; `raster`: depth buffer; `lettering`: its few texts
+
+mod encode;
+mod film;
+mod lettering;
+mod page;
+mod palette;
+mod picture;
+mod raster;
+mod view;
+
+pub use film::Film;
+pub use page::{HEAD, SCRIPTS, figure, page};
+pub use palette::Quantity;
+pub use picture::{Picture, PictureError, Size};
+pub use view::{MOST_GRAINS, View};

@@ -1,0 +1,108 @@
+//! One packing as it is drawn.
+
+use grainlab_core::{Cell, Mat3, Packing, Vec3};
+use grainlab_micromechanics::non_rattlers;
+
+/// Most grains of a picture in a page: beyond, a page is too large for a browser.
+pub const MOST_GRAINS: usize = 200_000;
+
+/// Most distant periodic image of a drawn contact, cell vectors. Only cells of one or two grains have others.
+const FARTHEST: i32 = 2;
+
+/// A packing as it is drawn: grains within the cell, each with its contacts.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Name of the state, as readers see it.
+    pub label: String,
+    /// The periodic cell.
+    pub(crate) cell: Cell,
+    /// Ids of the grains.
+    pub(crate) ids: Vec<u32>,
+    /// Positions in units of the cell vectors, from 0 to 1.
+    pub(crate) places: Vec<Vec3>,
+    /// Radii, m.
+    pub(crate) radii: Vec<f64>,
+    /// Contacts of each grain that are not with rattlers.
+    pub(crate) coordination: Vec<u32>,
+    /// Whether each grain is a rattler.
+    pub(crate) rattler: Vec<bool>,
+    /// Mean normal force of the contacts of each grain, N; 0 without contacts.
+    pub(crate) force: Vec<f64>,
+    /// The contacts, sorted by their first grain.
+    pub(crate) contacts: Vec<DrawnContact>,
+}
+
+/// A contact of grains at their places within the cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DrawnContact {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    /// Cell vectors added to the place of `j`.
+    pub(crate) image: [i32; 3],
+    /// Normal force, N.
+    pub(crate) force: f64,
+}
+
+impl View {
+    /// A packing, with the name of its state.
+    pub fn new(packing: &Packing, label: impl Into<String>) -> Self {
+        let n = packing.ids.len();
+        let fractional: Vec<Vec3> = packing.positions.iter().map(|x| packing.cell.fractional(x)).collect();
+        let carries = non_rattlers(packing);
+        let (mut coordination, mut touching, mut force) = (vec![0; n], vec![0u32; n], vec![0.0; n]);
+        let mut contacts = Vec::with_capacity(packing.contacts.len());
+        for c in &packing.contacts {
+            let (i, j) = (c.i as usize, c.j as usize);
+            for g in [i, j] {
+                touching[g] += 1;
+                force[g] += c.normal_force;
+                coordination[g] += u32::from(carries[i] && carries[j]);
+            }
+            // The image belongs to positions as held; those drawn are folded into the cell.
+            let image = std::array::from_fn(|k| {
+                i32::from(c.image[k]) + fractional[j][k].floor() as i32 - fractional[i][k].floor() as i32
+            });
+            if image.iter().all(|k| k.abs() <= FARTHEST) {
+                contacts.push(DrawnContact { i: c.i, j: c.j, image, force: c.normal_force.max(0.0) });
+            }
+        }
+        force.iter_mut().zip(&touching).for_each(|(f, n)| *f /= f64::from((*n).max(1)));
+        Self {
+            label: label.into(),
+            cell: packing.cell,
+            ids: packing.ids.clone(),
+            places: fractional.iter().map(|f| f.map(|v| (v - v.floor()).min(1.0 - f64::EPSILON))).collect(),
+            radii: packing.radii.clone(),
+            coordination,
+            rattler: carries.iter().map(|c| !c).collect(),
+            force,
+            contacts,
+        }
+    }
+
+    /// Number of grains.
+    pub fn grains(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// The cell vectors as columns, m.
+    pub(crate) fn matrix(&self) -> &Mat3 {
+        self.cell.matrix()
+    }
+
+    /// Largest radius, m.
+    pub(crate) fn largest_radius(&self) -> f64 {
+        self.radii.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Largest normal force of a contact, N.
+    pub(crate) fn largest_force(&self) -> f64 {
+        self.contacts.iter().map(|c| c.force).fold(0.0, f64::max)
+    }
+
+    /// The force that has the last colour of the ramp: three times the mean of the contacts, N.
+    pub(crate) fn force_of_full_colour(&self) -> f64 {
+        let sum: f64 = self.contacts.iter().map(|c| c.force).sum();
+        if self.contacts.is_empty() { 0.0 } else { 3.0 * sum / self.contacts.len() as f64 }
+    }
+}
