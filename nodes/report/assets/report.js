@@ -37,7 +37,7 @@
   document.addEventListener("click", (e) => {
     const kind = e.target.dataset && e.target.dataset.save;
     if (!kind) return;
-    const drawing = e.target.closest(".drawing"), name = `${drawing.id}.${kind}`;
+    const drawing = e.target.closest(".drawing"), name = `${drawing.id.replace(/^plot-/, "")}.${kind}`;
     if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
     else save(name, "image/svg+xml", standalone(drawing.querySelector("svg")));
   });

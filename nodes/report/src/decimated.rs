@@ -53,7 +53,8 @@ impl Decimated {
             return;
         }
         if self.width == 0.0 && time > self.start {
-            self.width = time - self.start;
+            // The second time is in the last bin: however long the first interval, later ones have bins of their own.
+            self.width = (time - self.start) / (BINS - 1) as f64;
         }
         while self.place(time) >= BINS {
             self.halve();
@@ -136,6 +137,13 @@ mod tests {
         let series = of([(0.0, 1.0), (f64::NAN, 2.0), (1.0, f64::INFINITY), (2.0, 3.0), (1.5, 4.0), (2.0, 5.0)].into_iter());
         assert_eq!(series.points(), [(0.0, 1.0), (2.0, 3.0), (2.0, 5.0)]);
         assert_eq!(series.count(), 3);
+    }
+
+    #[test]
+    fn a_long_first_interval_does_not_coarsen_what_follows() {
+        let dense = (0..100_000).map(|n| (1.0 + 1e-5 * f64::from(n), f64::from(n % 7)));
+        let series = of(std::iter::once((0.0, 0.0)).chain(dense));
+        assert!(series.points().len() > 500, "{}", series.points().len());
     }
 
     #[test]

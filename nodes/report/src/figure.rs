@@ -22,11 +22,11 @@ impl PageFigure<'_> {
             format!("<button type=\"button\" data-save=\"{kind}\" aria-label=\"Save {id} as {text}\">{text}</button>")
         };
         format!(
-            "<figure class=\"drawing\" id=\"{id}\">\n{svg}<figcaption>{caption}<span class=\"save\">{}{}</span></figcaption>\n\
-             <script type=\"text/csv\">{}</script>\n</figure>\n",
+            "<figure class=\"drawing\" id=\"plot-{id}\">\n{svg}<script type=\"text/csv\">{}</script>\n\
+             <figcaption>{caption}<span class=\"save\">{}{}</span></figcaption>\n</figure>\n",
+            script_text(csv),
             button("svg", "SVG"),
-            button("csv", "CSV"),
-            script_text(csv)
+            button("csv", "CSV")
         )
     }
 }

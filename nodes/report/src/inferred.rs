@@ -68,7 +68,10 @@ impl Counted {
         let digits = self.digits;
         let mut csv = String::from("model,status,inferred,low,high,counted\n");
         let mut bars = Vec::new();
-        for e in &state.results {
+        let best = recommended(state);
+        let is_best = |e: &&Inference| best.is_some_and(|b| std::ptr::eq(b, *e));
+        let others = state.results.iter().filter(|e| !is_best(e));
+        for e in best.into_iter().chain(others) {
             let Some(value) = (self.inferred)(e) else { continue };
             let by_sigma = || (self.sigma)(e).map(|s| [value - 1.96 * s, value + 1.96 * s]);
             let interval = (self.interval)(e).or_else(by_sigma);
@@ -104,7 +107,7 @@ impl Run {
             paragraph(&format!(
                 "Inferred from moduli, pressure and solid fraction, and from wave speeds if there are some; the contacts were not seen. \
                  Bars are intervals of {:.0} %, which assume the errors of the data that the inversion was given; the vertical line is the \
-                 count. Orange: a model outside of its range.",
+                 count. The model that is recommended comes first. Orange: a model outside of its range.",
                 100.0 * level
             ))
         };
@@ -114,7 +117,7 @@ impl Run {
             .flat_map(|e| e.warnings.iter().map(move |w| format!("<li>{}: {}</li>", name(e), grainlab_console::html::escaped(w))))
             .collect();
         let warnings = if warnings.is_empty() { warnings } else { format!("<details><summary>Notes of the models</summary><ul>{warnings}</ul></details>\n") };
-        format!("{about}<div class=\"grid\">\n{figures}</div>\n{warnings}")
+        format!("{about}<div class=\"grid three\">\n{figures}</div>\n{warnings}")
     }
 
     /// The measured states, one a row.

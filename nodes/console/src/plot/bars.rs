@@ -12,7 +12,7 @@ const WIDTH: f64 = 560.0;
 const SIDES: [f64; 2] = [118.0, 540.0];
 
 /// Upper end of the axis.
-const TOP: f64 = 36.0;
+const TOP: f64 = 50.0;
 
 /// Height of a value.
 const LINE: f64 = 17.0;
@@ -82,7 +82,7 @@ impl Bars {
         drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", &self.title);
         if let Some((value, name)) = &self.reference {
             let at = range.at(*value);
-            drawing.segment([at, TOP - 4.0, at, bottom], "axis");
+            drawing.segment([at, TOP - 3.0, at, bottom], "axis");
             drawing.text([at, TOP - 8.0], "middle", "class=\"faint\" font-size=\"11\"", name);
         }
         for (n, (bar, y)) in self.bars.iter().zip(heights).enumerate() {

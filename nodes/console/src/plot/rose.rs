@@ -66,7 +66,7 @@ impl Rose {
                 let ([x1, y1], [x2, y2]) = (at(from), at(to));
                 drawing.add(format_args!(
                     "<path d=\"M {x} {y} L {x1:.1} {y1:.1} A {radius:.1} {radius:.1} 0 0 1 {x2:.1} {y2:.1} Z\" \
-                     class=\"{class_of_bins}\" fill=\"currentColor\" fill-opacity=\"0.28\" stroke=\"currentColor\" stroke-width=\"0.8\"/>"
+                     class=\"{class_of_bins}\" fill=\"currentColor\" fill-opacity=\"0.3\" stroke=\"currentColor\" stroke-opacity=\"0.45\" stroke-width=\"0.6\"/>"
                 ));
             }
         }

@@ -79,14 +79,15 @@ fn row(drawing: &mut Drawing, entries: &[Entry]) {
             Entry::Shape(_, colour, _, text) => (*colour, text),
             Entry::Note(_) | Entry::Gap => continue,
         };
-        drawing.text([right, 20.0], "end", "class=\"ink\" font-size=\"11\"", text);
-        right -= LETTER * text.chars().count() as f64 + 5.0;
+        right -= LETTER * text.chars().count() as f64;
+        drawing.text([right, 20.0], "start", "class=\"ink\" font-size=\"11\"", text);
+        right -= 5.0;
         drawing.add(format_args!(
             "<path d=\"M {:.1} 16 h 12\" class=\"{}\" stroke=\"currentColor\" stroke-width=\"2.5\" fill=\"none\"/>",
             right - 12.0,
             class(colour)
         ));
-        right -= 22.0;
+        right -= 24.0;
     }
 }
 
