@@ -39,13 +39,24 @@
     if (!kind) return;
     const drawing = e.target.closest(".drawing"), name = `${drawing.id.replace(/^plot-/, "")}.${kind}`;
     if (kind === "csv") save(name, "text/csv", drawing.querySelector("script").textContent);
-    else save(name, "image/svg+xml", standalone(drawing.querySelector("svg")));
+    else save(name, "image/svg+xml", standalone([...drawing.querySelectorAll("svg")].find((svg) => svg.getClientRects().length > 0)));
   });
 
   // Values of every plot against time at the time under the pointer.
   const NS = "http://www.w3.org/2000/svg";
-  const plots = [...document.querySelectorAll("#time .drawing")].map((drawing) => {
-    const svg = drawing.querySelector("svg"), numbers = (key) => svg.dataset[key].split(" ").map(Number);
+  const grid = document.querySelector("[data-phases]"), begins = grid ? grid.dataset.phases.split(" ").map(Number) : [];
+  const placeOf = (time) => {
+    let phase = 0;
+    while (phase + 2 < begins.length && begins[phase + 1] < time) phase++;
+    return phase + (time - begins[phase]) / (begins[phase + 1] - begins[phase] || 1);
+  };
+  const timeOf = (place) => {
+    const phase = Math.min(Math.max(Math.floor(place), 0), begins.length - 2);
+    return begins[phase] + (place - phase) * (begins[phase + 1] - begins[phase]);
+  };
+  const plots = [...document.querySelectorAll("#time [data-axis]")].map((half) => {
+    const drawing = half.closest(".drawing"), isTime = half.dataset.axis === "time";
+    const svg = half.querySelector("svg"), numbers = (key) => svg.dataset[key].split(" ").map(Number);
     const [left, top, right, bottom] = numbers("frame"), [low, high] = numbers("x");
     let series = null;
     const read = () => {
@@ -69,7 +80,7 @@
     svg.append(line);
     drawing.append(readout);
     const show = (time, withText) => {
-      const x = left + ((time - low) / (high - low)) * (right - left);
+      const x = left + (((isTime ? time : placeOf(time)) - low) / (high - low)) * (right - left);
       const inside = x >= left && x <= right;
       line.style.display = inside ? "" : "none";
       readout.style.display = inside && withText ? "" : "none";
@@ -93,7 +104,8 @@
     const hide = () => { line.style.display = readout.style.display = "none"; };
     const timeAt = (e) => {
       const box = svg.getBoundingClientRect();
-      return low + ((((e.clientX - box.left) / box.width) * svg.viewBox.baseVal.width - left) / (right - left)) * (high - low);
+      const at = low + ((((e.clientX - box.left) / box.width) * svg.viewBox.baseVal.width - left) / (right - left)) * (high - low);
+      return isTime ? at : timeOf(at);
     };
     return { svg, show, hide, timeAt };
   });
@@ -101,6 +113,12 @@
     plot.svg.addEventListener("pointermove", (e) => plots.forEach((p) => p.show(plot.timeAt(e), p === plot)));
     plot.svg.addEventListener("pointerleave", () => plots.forEach((p) => p.hide()));
   });
+
+  // The horizontal axis of all plots against time.
+  document.querySelectorAll("[data-show]").forEach((button) => button.addEventListener("click", () => {
+    document.querySelectorAll("[data-show]").forEach((b) => b.setAttribute("aria-pressed", b === button));
+    grid.classList.toggle("by-time", button.dataset.show === "time");
+  }));
 
   document.addEventListener("click", (e) => {
     if (!e.target.dataset || e.target.dataset.sort === undefined) return;

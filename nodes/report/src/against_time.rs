@@ -1,7 +1,7 @@
 //! The run against time: small plots over one axis, with the phases behind.
 
-use crate::decimated::Decimated;
 use crate::figure::{PageFigure, number};
+use crate::phased::Phased;
 use crate::run::Run;
 use crate::timeline::{COMPONENTS, Structure};
 use grainlab_console::count;
@@ -23,7 +23,7 @@ struct Curve {
 }
 
 impl Curve {
-    fn line(name: &str, colour: usize, series: &Decimated, unit: f64) -> Self {
+    fn line(name: &str, colour: usize, series: &Phased, unit: f64) -> Self {
         let points = series.points().into_iter().map(|(t, v)| (t, v * unit)).collect();
         Self { name: name.to_owned(), colour, points, marked: false }
     }
@@ -56,15 +56,20 @@ impl Run {
             .map(|b| format!("<li><b>{}</b> {}</li>", escaped(&b.label), escaped(b.tooltip.split_once(": ").map_or("", |t| t.1))))
             .collect();
         format!(
-            "<p>Simulated time; the bands are the phases of the scene. Each line has the extremes of {} in at most 500 bins.</p>\n\
-             <ol class=\"phases\">{phases}</ol>\n<div class=\"grid\">\n{plots}</div>\n",
-            count(self.timeline.pressure.count(), "exchange")
+            "<p>The bands are the phases of the scene, drawn with equal widths, or in simulated time. Of {}, each line has the \
+             extremes in bins about a pixel wide.</p>\n\
+             <div class=\"choice\" role=\"group\" aria-label=\"Horizontal axis\">\
+             <button type=\"button\" data-show=\"phase\" aria-pressed=\"true\">Phases of equal width</button>\
+             <button type=\"button\" data-show=\"time\" aria-pressed=\"false\">Time</button></div>\n\
+             <ol class=\"phases\">{phases}</ol>\n<div class=\"grid\" data-phases=\"{}\">\n{plots}</div>\n",
+            count(self.timeline.pressure.count(), "exchange"),
+            self.timeline.axis().0.iter().map(|t| number(t * MS)).collect::<Vec<_>>().join(" ")
         )
     }
 
     fn plots(&self) -> Vec<Plot> {
         let t = &self.timeline;
-        let components = |series: &[Decimated; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
+        let components = |series: &[Phased; 6], symbol: &str, unit: f64, which: std::ops::Range<usize>| -> Vec<Curve> {
             which.map(|n| Curve::line(&format!("{symbol} {}", COMPONENTS[n]), n, &series[n], unit)).collect()
         };
         let mut coordination = vec![Curve::line("k", 0, &t.coordination, 1.0)];
@@ -140,27 +145,15 @@ impl Run {
     }
 
     fn drawn(&self, plot: &Plot) -> String {
-        let drawable = |v: f64| plot.scale == Scale::Linear || v > 0.0;
-        let series = |c: &Curve| Series {
-            colour: Some(c.colour),
-            marker: c.marked.then_some(Marker::Circle),
-            line: Some(if c.marked { Line::Faint } else { Line::Straight }),
-            points: c.points.iter().filter(|p| drawable(p.1)).map(|(t, v)| Point::at(t * MS, *v)).collect(),
-            ..Series::default()
+        let axis = self.timeline.axis();
+        let bands = self.bands();
+        let numbered = |(n, band): (usize, &Band)| Band { range: [n as f64, n as f64 + 1.0], ..band.clone() };
+        let by_phase = Strip {
+            figure: self.figure(plot, "phase", |t| axis.place(t)),
+            bands: bands.iter().enumerate().map(numbered).collect(),
+            by_band: true,
         };
-        // The axis is that of the run, whatever the values of this plot.
-        let ends = [self.timeline.begin(), self.timeline.end];
-        let middle = plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
-        let span = Series { points: ends.map(|t| Point::at(t * MS, middle)).into(), ..Series::default() };
-        let named = plot.curves.iter().filter(|c| !c.name.is_empty());
-        let figure = Figure {
-            title: plot.title.to_owned(),
-            subtitle: said(&plot.curves),
-            x: Axis::linear("time, ms"),
-            y: Axis { name: String::new(), scale: plot.scale },
-            series: std::iter::once(span).chain(plot.curves.iter().map(series)).collect(),
-            legend: named.map(|c| Entry::Colour(c.colour, c.name.clone())).collect(),
-        };
+        let by_time = Strip { figure: self.figure(plot, "time, ms", |t| t * MS), bands, by_band: false };
         let mut csv = String::from("series,time_s,value\n");
         for curve in &plot.curves {
             let name = if curve.name.is_empty() { plot.id } else { &curve.name };
@@ -168,7 +161,33 @@ impl Run {
                 let _ = writeln!(csv, "{name},{},{}", number(*time), number(*value));
             }
         }
-        PageFigure { id: plot.id, svg: Strip { figure, bands: self.bands() }.svg(), caption: plot.caption, csv }.html()
+        let svg = format!("<div data-axis=\"phase\">{}</div><div data-axis=\"time\">{}</div>", by_phase.svg(), by_time.svg());
+        PageFigure { id: plot.id, svg, caption: plot.caption, csv }.html()
+    }
+
+    /// A plot over a horizontal axis that follows from time.
+    fn figure(&self, plot: &Plot, name: &str, across: impl Fn(f64) -> f64) -> Figure {
+        let drawable = |v: f64| plot.scale == Scale::Linear || v > 0.0;
+        let series = |c: &Curve| Series {
+            colour: Some(c.colour),
+            marker: c.marked.then_some(Marker::Circle),
+            line: Some(if c.marked { Line::Faint } else { Line::Straight }),
+            points: c.points.iter().filter(|p| drawable(p.1)).map(|(t, v)| Point::at(across(*t), *v)).collect(),
+            ..Series::default()
+        };
+        // The axis is that of the run, whatever the values of this plot.
+        let ends = [self.timeline.begin(), self.timeline.end];
+        let middle = plot.curves.iter().flat_map(|c| &c.points).map(|p| p.1).find(|v| drawable(*v)).unwrap_or(1.0);
+        let span = Series { points: ends.map(|t| Point::at(across(t), middle)).into(), ..Series::default() };
+        let named = plot.curves.iter().filter(|c| !c.name.is_empty());
+        Figure {
+            title: plot.title.to_owned(),
+            subtitle: said(&plot.curves),
+            x: Axis::linear(name),
+            y: Axis { name: String::new(), scale: plot.scale },
+            series: std::iter::once(span).chain(plot.curves.iter().map(series)).collect(),
+            legend: named.map(|c| Entry::Colour(c.colour, c.name.clone())).collect(),
+        }
     }
 }
 

@@ -1,15 +1,14 @@
 //! A long series with few points, made while the series is read.
 
-/// Most bins. One is about a pixel of a plot.
-const BINS: usize = 500;
-
 /// A point of a series: time and value.
 type At = (f64, f64);
 
-/// A series as the extremes of bins of equal width in time, of which there are at most 500, with at most four points each:
-/// first, least, greatest and last. The width doubles when the series becomes too long for them.
-#[derive(Clone, Debug, Default)]
+/// A series as the extremes of bins of equal width in time, with at most four points each: first, least, greatest and last.
+/// The width doubles when the series becomes too long for the bins.
+#[derive(Clone, Debug)]
 pub struct Decimated {
+    /// Most bins. One is about a pixel of a plot.
+    most: usize,
     /// Time of the left end of the first bin.
     start: f64,
     /// Width of a bin; 0 until a second time is known.
@@ -39,6 +38,11 @@ impl Bin {
 }
 
 impl Decimated {
+    /// Without values, for at most this number of bins, two or more.
+    pub fn new(most: usize) -> Self {
+        Self { most: most.max(2), start: 0.0, width: 0.0, bins: Vec::new(), count: 0 }
+    }
+
     /// Adds a value. Times do not decrease; values that are not finite, and earlier times, are left out.
     pub fn push(&mut self, time: f64, value: f64) {
         let newest = self.bins.iter().rev().find_map(|b| b.as_ref()).map(|b| b.last.0);
@@ -54,9 +58,9 @@ impl Decimated {
         }
         if self.width == 0.0 && time > self.start {
             // The second time is in the last bin: however long the first interval, later ones have bins of their own.
-            self.width = (time - self.start) / (BINS - 1) as f64;
+            self.width = (time - self.start) / (self.most - 1) as f64;
         }
-        while self.place(time) >= BINS {
+        while self.place(time) >= self.most {
             self.halve();
         }
         let place = self.place(time);
@@ -107,7 +111,7 @@ mod tests {
     use super::*;
 
     fn of(values: impl Iterator<Item = At>) -> Decimated {
-        let mut series = Decimated::default();
+        let mut series = Decimated::new(500);
         values.for_each(|(t, v)| series.push(t, v));
         series
     }

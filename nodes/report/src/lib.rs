@@ -1,7 +1,7 @@
 //! Reports of runs: one HTML page for a run, with plots and its packings in three dimensions, and one for many runs.
 //!
-//! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `decimated`: against time, in one pass over the
-//!   recording; `summary_file`: how the run ended
+//! - [`Run`]: what a report is made of, from the files of a run; `timeline`, `phased`, [`Decimated`]: against time, in one pass
+//!   over the recording; `summary_file`: how the run ended
 //! - `page`: the page of a run; `against_time`, `structure`, `moduli`, `inferred`, `waves`, `health`: its sections; `figure`: a plot
 //!   that can be saved
 //! - [`overview`]: the page of many runs; [`Outliers`]: values far from those of runs alike
@@ -16,6 +16,7 @@ mod many;
 mod moduli;
 mod outliers;
 mod page;
+mod phased;
 mod run;
 mod structure;
 mod summary_file;

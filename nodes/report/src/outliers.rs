@@ -9,8 +9,8 @@ const TO_SIGMA: f64 = 1.4826;
 /// Fewest values of which some can be outliers.
 const FEWEST: usize = 5;
 
-/// Least deviation that counts, relative to the median: rounding is none.
-const ROUNDING: f64 = 1e-9;
+/// Least deviation that counts, relative to the median: what a servo leaves of a target is none.
+const LEAST: f64 = 1e-3;
 
 /// The distribution of a quantity over runs alike, by its median and its median absolute deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl Outliers {
     /// others are equal.
     pub fn score(&self, value: f64) -> f64 {
         let off = value - self.median;
-        if off.abs() <= ROUNDING * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
+        if off.abs() <= LEAST * self.median.abs() { 0.0 } else { off / (TO_SIGMA * self.deviation) }
     }
 
     /// Whether a value is an outlier: its score is beyond 3.5.

@@ -34,24 +34,19 @@ impl Run {
             directory: path.to_owned(),
             summary: SummaryFile::default(),
             states: Vec::new(),
-            timeline: Timeline::default(),
+            timeline: Timeline::of_phases(1),
             scene_text: String::new(),
             scene: None,
             recorded_by: None,
             missing: Vec::new(),
         };
         run.read_summary(&directory.join("summary.json"));
-        match Recording::open(path) {
+        let recording = Recording::open(path);
+        run.read_scene(recording.as_ref().ok(), &directory.join("scene.toml"));
+        match recording {
             Ok(recording) => run.read_recording(&recording),
             Err(error) => run.missing.push(format!("No recording: {error}")),
         }
-        if run.scene_text.is_empty() {
-            match input::text(&directory.join("scene.toml"), input::SETTINGS) {
-                Ok(text) => run.scene_text = text,
-                Err(error) => run.missing.push(format!("No scene: scene.toml: {error}")),
-            }
-        }
-        run.scene = Scene::parse(&run.scene_text).ok();
         run
     }
 
@@ -67,17 +62,26 @@ impl Run {
         }
     }
 
+    /// The scene: that stored in the recording, else the file beside it.
+    fn read_scene(&mut self, recording: Option<&Recording>, path: &Path) {
+        let stored = recording.and_then(|r| r.stored_files().into_iter().find(|f| f.name == "scene.toml"));
+        match (stored, input::text(path, input::SETTINGS)) {
+            (Some(file), _) => self.scene_text = String::from_utf8_lossy(&file.bytes).into_owned(),
+            (None, Ok(text)) => self.scene_text = text,
+            (None, Err(error)) => self.missing.push(format!("No scene: scene.toml: {error}")),
+        }
+        self.scene = Scene::parse(&self.scene_text).ok();
+    }
+
     fn read_recording(&mut self, recording: &Recording) {
         self.recorded_by = Some(recording.info().library).filter(|by| !by.is_empty());
-        if let Some(file) = recording.stored_files().into_iter().find(|f| f.name == "scene.toml") {
-            self.scene_text = String::from_utf8_lossy(&file.bytes).into_owned();
-        }
         let back = read_back::read(recording);
         self.states = back.states;
         // The launcher writes these lines to the summary, too.
         let known = |line: &String| self.summary.warnings.contains(line);
         self.missing.extend(back.complaints.into_iter().filter(|line| !known(line)));
-        match Timeline::read(recording) {
+        let phases = self.scene.as_ref().map_or(1, |s| s.phases.len());
+        match Timeline::read(recording, phases) {
             Ok(timeline) => self.timeline = timeline,
             Err(error) => self.missing.push(format!("Nothing against time: {error}")),
         }
@@ -89,7 +93,7 @@ impl Run {
     /// The same for a table: without series and packings, which are large.
     #[must_use]
     pub fn without_series(self) -> Self {
-        Self { timeline: Timeline::default(), ..self }
+        Self { timeline: Timeline::of_phases(1), ..self }
     }
 
     /// Name of the directory.

@@ -121,6 +121,6 @@ fn forces(report: &PackingReport) -> Option<String> {
         forces.participation_ratio(),
         forces.largest
     );
-    let svg = Strip { figure, bands: Vec::new() }.svg();
+    let svg = Strip { figure, ..Strip::default() }.svg();
     Some(format!("<div class=\"grid\">{}</div>\n", PageFigure { id: "force-distribution", svg, caption: &caption, csv }.html()))
 }

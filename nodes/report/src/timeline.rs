@@ -1,6 +1,6 @@
 //! A run against time, from one pass over its recording.
 
-use crate::decimated::Decimated;
+use crate::phased::{PhaseAxis, Phased};
 use grainlab_core::Packing;
 use grainlab_msgs::boundary::{FabricReading, StressRequest};
 use grainlab_msgs::{Message, Topic, from_cdr, msg, simulated_seconds, topics};
@@ -12,19 +12,19 @@ use std::collections::BTreeMap;
 pub(crate) const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
 
 /// A run against simulated time, s.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Timeline {
     /// Pa, in the order of Voigt.
-    pub(crate) stress: [Decimated; 6],
+    pub(crate) stress: [Phased; 6],
     /// Pa.
-    pub(crate) pressure: Decimated,
+    pub(crate) pressure: Phased,
     /// Pa.
-    pub(crate) deviator: Decimated,
+    pub(crate) deviator: Phased,
     /// Logarithmic, positive in extension, in the order of Voigt.
-    pub(crate) strain: [Decimated; 6],
-    pub(crate) solid_fraction: Decimated,
-    pub(crate) coordination: Decimated,
-    pub(crate) unbalanced: Decimated,
+    pub(crate) strain: [Phased; 6],
+    pub(crate) solid_fraction: Phased,
+    pub(crate) coordination: Phased,
+    pub(crate) unbalanced: Phased,
     /// Number and first time of each phase, in order.
     pub(crate) phases: Vec<(u32, f64)>,
     /// Names of phases, as the run published them.
@@ -51,13 +51,34 @@ pub(crate) struct Structure {
 }
 
 impl Timeline {
-    /// Reads a recording.
-    pub(crate) fn read(recording: &Recording) -> Result<Self, ReadError> {
+    /// Without data, for a run of this number of phases.
+    pub(crate) fn of_phases(phases: usize) -> Self {
+        let series = || Phased::of_phases(phases);
+        Self {
+            stress: std::array::from_fn(|_| series()),
+            pressure: series(),
+            deviator: series(),
+            strain: std::array::from_fn(|_| series()),
+            solid_fraction: series(),
+            coordination: series(),
+            unbalanced: series(),
+            phases: Vec::new(),
+            names: BTreeMap::new(),
+            end: 0.0,
+            fabrics: Vec::new(),
+            film: Film::default(),
+            last: None,
+            unreadable: 0,
+        }
+    }
+
+    /// Reads the recording of a run of this number of phases.
+    pub(crate) fn read(recording: &Recording, phases: usize) -> Result<Self, ReadError> {
         let wanted = [topics::STRESS, topics::FABRIC, topics::PACKING, topics::RUN_STATE];
         let of = |name: &str| Topic::by_name(name).filter(|t| wanted.iter().any(|w| w.name == t.name));
         let channels = recording.channels();
         let names = channels.iter().filter(|c| of(&c.topic).is_some()).map(|c| c.topic.clone());
-        let mut timeline = Self::default();
+        let mut timeline = Self::of_phases(phases);
         let mut next = 0;
         for message in recording.messages(&Selection::topics(names))? {
             let Some(topic) = of(&message.channel.topic) else { continue };
@@ -105,26 +126,31 @@ impl Timeline {
     }
 
     fn request(&mut self, request: &StressRequest) {
-        let time = simulated_seconds(&request.stamp);
+        let (time, phase) = (simulated_seconds(&request.stamp), request.phase);
         if self.phases.last().is_none_or(|(phase, _)| *phase != request.phase) {
             self.phases.push((request.phase, time));
         }
         self.end = self.end.max(time);
-        let push = |series: &mut [Decimated; 6], values: [f64; 6]| {
-            series.iter_mut().zip(values).for_each(|(s, v)| s.push(time, v));
+        let push = |series: &mut [Phased; 6], values: [f64; 6]| {
+            series.iter_mut().zip(values).for_each(|(s, v)| s.push(phase, time, v));
         };
         push(&mut self.stress, request.stress.voigt());
         push(&mut self.strain, request.strain.voigt());
-        self.pressure.push(time, request.stress.mean());
-        self.deviator.push(time, request.stress.deviatoric_invariant());
-        self.solid_fraction.push(time, request.solid_fraction);
-        self.coordination.push(time, request.coordination);
-        self.unbalanced.push(time, request.unbalanced);
+        self.pressure.push(phase, time, request.stress.mean());
+        self.deviator.push(phase, time, request.stress.deviatoric_invariant());
+        self.solid_fraction.push(phase, time, request.solid_fraction);
+        self.coordination.push(phase, time, request.coordination);
+        self.unbalanced.push(phase, time, request.unbalanced);
     }
 
     /// First time that is shown, s.
     pub(crate) fn begin(&self) -> f64 {
         self.phases.first().map_or(0.0, |(_, time)| *time)
+    }
+
+    /// Time as a number of phases.
+    pub(crate) fn axis(&self) -> PhaseAxis {
+        PhaseAxis(self.phases.iter().map(|(_, time)| *time).chain([self.end]).collect())
     }
 }
 

@@ -66,7 +66,7 @@ impl Run {
                 series: (0..MODES.len()).map(series).collect(),
                 legend: MODES.iter().enumerate().map(|(m, name)| Entry::Colour(m, (*name).to_owned())).collect(),
             };
-            PageFigure { id, svg: Strip { figure, bands: Vec::new() }.svg(), caption, csv: csv.clone() }.html()
+            PageFigure { id, svg: Strip { figure, ..Strip::default() }.svg(), caption, csv: csv.clone() }.html()
         };
         let by_angle = "By the angle between ray and axis; the bars are standard deviations.";
         let mut figures = plot("wave-speeds", "Wave speeds, m/s", "angle, degrees", by_angle, &|s| Some(angle(s, &axis)));

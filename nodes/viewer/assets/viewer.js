@@ -2,6 +2,7 @@
 "use strict";
 (() => {
   const MAX_RATIO = 2, SMOOTH = 2, SLOW_FRAME = 42, FAST_FRAME = 24, LOWEST_RATIO = 0.45, FEW = 1000;
+  const BEGIN = new THREE.Vector3(2.55, -2.15, 1.45);
   const begin = (root) => {
     const about = JSON.parse(document.getElementById("viewer-about").textContent);
     const stage = root.querySelector(".stage"), poster = root.querySelector(".poster");
@@ -42,7 +43,7 @@
       uSize: { value: 1 }, uPicked: { value: -1 },
     };
     const reset = () => {
-      camera.position.set(2.55, -2.15, 1.45);
+      camera.position.copy(BEGIN);
       controls.target.set(0, 0, 0);
       controls.update();
       draw();
@@ -78,7 +79,7 @@
       }
       if (now.chains) {
         const radius = about.largest_radius / scale;
-        const thickness = (force) => radius * 0.42 * Math.sqrt(Math.min(force / top(), 1.6));
+        const thickness = (force) => radius * (0.03 + 0.42 * Math.min(force / top(), 1.6));
         drawn.push(grainlabScene.chains(state, (force) => ramp(force / top()), thickness, uniforms));
       }
       drawn.forEach((mesh) => scene.add(mesh));
@@ -104,7 +105,8 @@
         const column = (c) => new THREE.Vector3(cell[c], cell[3 + c], cell[6 + c]);
         normal.crossVectors(column((k + 1) % 3), column((k + 2) % 3)).normalize();
         const at = column(k).multiplyScalar(now.cut - 0.5);
-        if (normal.dot(column(k)) < 0) normal.negate();
+        // What was nearer at the beginning is cut away.
+        if (normal.dot(BEGIN) < 0) normal.negate();
         const p = at.clone().applyMatrix4(camera.matrixWorldInverse);
         const n = normal.clone().transformDirection(camera.matrixWorldInverse);
         clip.set(n.x, n.y, n.z, n.dot(p));
@@ -172,7 +174,7 @@
         rows.push(bar("Mean normal force of the contacts of a grain", "0", `≥ ${shown(top())}`));
       }
       if (now.chains && !(now.size > 0 && now.colour === "force")) rows.push(bar("Normal force of a contact", "0", `≥ ${shown(top())}`));
-      legend.innerHTML = rows.join("");
+      legend.innerHTML = rows.map((row) => `<div>${row}</div>`).join("");
       legend.hidden = false;
       root.querySelector(".states output").textContent = about.states[now.state].label;
     };

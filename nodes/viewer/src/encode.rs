@@ -118,3 +118,59 @@ pub(crate) fn state(view: &View, all: &[&View]) -> String {
 pub(crate) fn size(view: &View) -> usize {
     (14 * view.grains() + 7 * view.contacts.len()) * 4 / 3
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+
+    /// Two grains that touch across a face of the cell; the second is held outside of it.
+    fn pair() -> Packing {
+        Packing {
+            step: 0,
+            time: 0.0,
+            cell: Cell::cube(8.0).unwrap(),
+            deformation: Mat3::identity(),
+            ids: vec![7, 3],
+            radii: vec![1.0, 0.5],
+            positions: vec![Vec3::new(0.25, 4.0, 2.0), Vec3::new(14.75, 4.0, 2.0)],
+            velocities: vec![Vec3::zeros(); 2],
+            spins: vec![Vec3::zeros(); 2],
+            contacts: vec![Contact {
+                i: 0,
+                j: 1,
+                image: [-2, 0, 0],
+                overlap: 1e-9,
+                normal: -Vec3::x(),
+                normal_force: 4.0,
+                tangential_force: Vec3::zeros(),
+                rolling_force: Vec3::zeros(),
+            }],
+            material: Material::GLASS,
+            law: Default::default(),
+            friction: 0.3,
+            time_step: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_grain_outside_of_the_cell_is_drawn_inside_with_the_contact_at_the_same_image() {
+        let view = View::new(&pair(), "");
+        let bytes = STANDARD.decode(state(&view, &[&view])).unwrap();
+        let short = |n: usize| u16::from_le_bytes([bytes[2 * n], bytes[2 * n + 1]]);
+        let places: Vec<u16> = (0..6).map(short).collect();
+        assert_eq!(places, [2048, 32768, 16384, 55296, 32768, 16384], "14.75 is 6.75 of 8");
+        assert_eq!([short(6), short(7), short(8), short(9)], [65535, 32768, 65535, 1], "radii, force, second grain");
+        assert_eq!(&bytes[20..28], &[7, 0, 0, 0, 3, 0, 0, 0], "ids");
+        // Frictionless or not, a grain with one contact is a rattler.
+        assert_eq!(&bytes[28..], &[128, 128, 1, 0, 37], "flags, counts, image (-1, 0, 0)");
+    }
+
+    #[test]
+    fn ids_that_count_up_are_left_out() {
+        let counting = Packing { ids: vec![4, 5], ..pair() };
+        let (view, other) = (View::new(&counting, ""), View::new(&pair(), ""));
+        assert_eq!(STANDARD.decode(state(&view, &[&view])).unwrap().len(), 25);
+        assert!(!has_ids(&[&view]) && has_ids(&[&view, &other]));
+    }
+}

@@ -4,7 +4,7 @@ use crate::encode::size;
 use crate::view::View;
 
 /// Most bytes of all states in a page.
-const BYTES: usize = 3_800_000;
+const BYTES: usize = 2_600_000;
 
 /// States of a run in order of time. When they become too many, every second one is left out; the last one always stays.
 #[derive(Clone, Debug)]

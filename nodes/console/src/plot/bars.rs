@@ -8,8 +8,11 @@ use crate::html::escaped;
 /// Width of the plot.
 const WIDTH: f64 = 560.0;
 
-/// Left and right ends of the axis.
-const SIDES: [f64; 2] = [118.0, 540.0];
+/// Right end of the axis.
+const RIGHT: f64 = 540.0;
+
+/// Width of a letter of a name.
+const LETTER: f64 = 7.0;
 
 /// Upper end of the axis.
 const TOP: f64 = 50.0;
@@ -51,6 +54,8 @@ pub struct Bars {
 impl Bars {
     /// The plot as SVG. Its colours are those of [`page_style`](super::page_style).
     pub fn svg(&self) -> String {
+        let longest = self.bars.iter().map(|b| b.name.chars().count()).max().unwrap_or(0);
+        let left = 24.0 + LETTER * longest as f64;
         let mut heights = Vec::with_capacity(self.bars.len());
         let mut y = TOP + 6.0;
         for (n, bar) in self.bars.iter().enumerate() {
@@ -67,12 +72,12 @@ impl Bars {
             escaped(&self.title),
             escaped(&said.join("; "))
         );
-        let frame = [SIDES[0], TOP, SIDES[1], bottom];
+        let frame = [left, TOP, RIGHT, bottom];
         let mut drawing = Drawing::blank([WIDTH, bottom + 26.0], frame, &attributes, "");
         let ends = self.bars.iter().flat_map(|b| b.interval.unwrap_or([b.value; 2]).into_iter().chain([b.value]));
         let zero = self.from_zero.then_some(0.0);
         // Room for the texts beyond the largest value.
-        let sides = [SIDES[0], SIDES[1] - 92.0];
+        let sides = [left, RIGHT - 92.0];
         let range = Range::of(ends.chain(zero).chain(self.reference.as_ref().map(|r| r.0)), Scale::Linear, sides);
         for (value, text) in range.marks() {
             let at = range.at(value);
@@ -87,19 +92,19 @@ impl Bars {
         }
         for (n, (bar, y)) in self.bars.iter().zip(heights).enumerate() {
             if n == 0 || self.bars[n - 1].name != bar.name {
-                drawing.text([SIDES[0] - 10.0, y + 9.0], "end", "class=\"ink\"", &bar.name);
+                drawing.text([left - 10.0, y + 9.0], "end", "class=\"ink\"", &bar.name);
             }
             let at = range.at(bar.value);
             let mut end = at;
             let colour = class(Some(bar.colour));
             if self.from_zero {
-                let left = range.at(0.0);
+                let zero = range.at(0.0);
                 drawing.add(format_args!(
                     "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"1.5\" class=\"{colour}\" \
                      fill=\"currentColor\"/>",
-                    left.min(at),
+                    zero.min(at),
                     y,
-                    (at - left).abs(),
+                    (at - zero).abs(),
                     LINE - 5.0
                 ));
             }

@@ -71,12 +71,18 @@ impl Drawing {
 
     /// Both axes with their names and a grid.
     pub(super) fn axes(&mut self, (x, along): (&Range, &str), (y, up): (&Range, &str)) {
-        let [left, top, right, bottom] = self.frame;
+        let [_, top, _, bottom] = self.frame;
         for (value, text) in x.marks() {
             let at = x.at(value);
             self.segment([at, top, at, bottom], "grid");
             self.text([at, bottom + 18.0], "middle", "class=\"ink\"", &text);
         }
+        self.other_axes(along, (y, up));
+    }
+
+    /// The same without the marks of the horizontal axis.
+    pub(super) fn other_axes(&mut self, along: &str, (y, up): (&Range, &str)) {
+        let [left, top, right, bottom] = self.frame;
         for (value, text) in y.marks() {
             let at = y.at(value);
             self.segment([left, at, right, at], "grid");

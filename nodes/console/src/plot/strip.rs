@@ -6,10 +6,10 @@ use super::labels::Area;
 use crate::html::escaped;
 
 /// Width and height.
-const PICTURE: [f64; 2] = [560.0, 236.0];
+const PICTURE: [f64; 2] = [500.0, 226.0];
 
 /// Left, top, right and bottom of the axes.
-const FRAME: Area = [58.0, 34.0, 546.0, 192.0];
+const FRAME: Area = [54.0, 34.0, 488.0, 184.0];
 
 /// Mean width of a letter.
 const LETTER: f64 = 6.4;
@@ -32,6 +32,8 @@ pub struct Strip {
     pub figure: Figure,
     /// Drawn behind the series.
     pub bands: Vec<Band>,
+    /// Whether the bands are the horizontal axis, which then has their labels instead of values.
+    pub by_band: bool,
 }
 
 impl Strip {
@@ -56,12 +58,17 @@ impl Strip {
                 bottom - top,
                 escaped(&band.tooltip)
             ));
+            let label_at = if self.by_band { bottom + 16.0 } else { top + 11.0 };
             if to - from > LETTER * band.label.chars().count() as f64 {
-                let at = [0.5 * (from + to), top + 11.0];
+                let at = [0.5 * (from + to), label_at];
                 drawing.text(at, "middle", "class=\"faint\" font-size=\"9\"", &band.label);
             }
         }
-        drawing.axes((&across, ""), (&up, &y.name));
+        if self.by_band {
+            drawing.other_axes("", (&up, &y.name));
+        } else {
+            drawing.axes((&across, ""), (&up, &y.name));
+        }
         drawing.text([right, bottom + 34.0], "end", "class=\"faint\" font-size=\"11\"", &x.name);
         drawing.text([8.0, 20.0], "start", "class=\"ink\" font-size=\"13\" font-weight=\"600\"", title);
         self.figure.draw(&mut drawing, [&across, &up]);
@@ -102,10 +109,10 @@ mod tests {
         let series = vec![Series { line: Some(Line::Straight), points, ..Series::default() }];
         let figure = Figure { title: "a & b".into(), x: Axis::linear("time, ms"), series, ..Figure::default() };
         let band = |range, label: &str| Band { range, label: label.into(), tooltip: String::new() };
-        let svg = Strip { figure, bands: vec![band([-9.0, 3.98], "first"), band([3.98, 4.0], "second")] }.svg();
+        let svg = Strip { figure, bands: vec![band([-9.0, 3.98], "first"), band([3.98, 4.0], "second")], by_band: false }.svg();
         assert!(svg.contains("aria-label=\"a &amp; b. \"") && svg.contains(">first<"), "{svg}");
         assert!(!svg.contains(">second<") && !svg.contains("NaN"), "{svg}");
         let left = svg.split("<rect x=\"").nth(1).unwrap();
-        assert!(left.starts_with("58.0\""), "the band begins at the frame: {left}");
+        assert!(left.starts_with("54.0\""), "the band begins at the frame: {left}");
     }
 }

@@ -1,0 +1,187 @@
+//! Reports of runs that are made here, message by message.
+
+use grainlab_core::{Cell, ComponentControl, Mat3, Material, Packing, ServoLaw, SymTensor, Vec3};
+use grainlab_msgs::boundary::{StressRequest, packing_message};
+use grainlab_msgs::{msg, stamp, to_cdr, topics};
+use grainlab_recordings::{Guid, Incoming, RunWriter, TopicSpec, WriterOptions};
+use grainlab_report::{FILE, Run, overview, write_report};
+use std::path::Path;
+
+/// Exchanges of each of the two phases.
+const EXCHANGES: u64 = 3000;
+
+/// Largest size of a page, bytes.
+const LARGEST: usize = 6_000_000;
+
+fn request(sequence: u64) -> msg::Stress {
+    // One exchange has a stress far beyond the others.
+    let stress = if sequence == 1234 { 987_654.0 } else { 10.0 * (sequence % 17) as f64 };
+    let request = StressRequest {
+        sequence,
+        step: 10 * sequence,
+        phase: (sequence / EXCHANGES) as u32,
+        stamp: stamp(1e-6 * sequence as f64),
+        stress: SymTensor::from_voigt([stress, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        asymmetry: 0.0,
+        controls: [ComponentControl::Held; 6],
+        rate: [0.0; 6],
+        rate_limit: 1.0,
+        law: ServoLaw::Scaled { response_time: 1e-5 },
+        tangent: [0.0; 6],
+        control_interval: 1e-6,
+        strain: SymTensor::from_voigt([0.0; 6]),
+        solid_fraction: 0.6,
+        coordination: 4.0,
+        unbalanced: 1e-3,
+    };
+    msg::Stress::try_from(&request).unwrap()
+}
+
+fn packing() -> Packing {
+    Packing {
+        step: 60_000,
+        time: 6e-3,
+        cell: Cell::cube(4e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: vec![0, 1],
+        radii: vec![1e-3; 2],
+        positions: vec![Vec3::new(1e-3, 1e-3, 1e-3), Vec3::new(3e-3, 3e-3, 3e-3)],
+        velocities: vec![Vec3::zeros(); 2],
+        spins: vec![Vec3::zeros(); 2],
+        contacts: Vec::new(),
+        material: Material::GLASS,
+        law: Default::default(),
+        friction: 0.3,
+        time_step: 1e-7,
+    }
+}
+
+/// A recording with stress against time and one packing, in `folder`.
+fn record(folder: &Path) {
+    let topics = [(&topics::STRESS, "/stress"), (&topics::PACKING, "/packing")];
+    let specs = topics.map(|(topic, name)| TopicSpec::of_contract(topic, name));
+    let mut run = RunWriter::create(folder, "r", &specs, WriterOptions::default()).unwrap();
+    let mut write = |topic: &str, number: u64, payload: &[u8]| {
+        let receive_time = 1 + number;
+        let sample = Incoming { guid: Guid([1; 16]), sequence: number as i64, source_time: None, receive_time, payload };
+        run.write(topic, &sample).unwrap();
+    };
+    (0..2 * EXCHANGES).for_each(|n| write("/stress", n + 1, &to_cdr(&request(n))));
+    write("/packing", 1, &to_cdr(&packing_message(&packing(), "made", Vec::new())));
+    run.finish().unwrap();
+}
+
+/// A summary with what a page shows of it.
+fn summarise(folder: &Path, exit: u8) {
+    let text = format!(
+        r#"{{"scene": "made", "seed": 4711, "wall_seconds": 12.34, "exit": {exit}, "warnings": ["a <b>warning</b>"],
+        "topics": [{{"name": "/stress", "published": 6003, "recorded": 6000, "lost": 3, "repeated": 17}}],
+        "nodes": [{{"name": "dem_simulator", "pid": 1, "exit": null, "restarts": 2}}],
+        "exchanges": 5987, "waiting_fraction": 0.125}}"#
+    );
+    std::fs::write(folder.join("summary.json"), text).unwrap();
+}
+
+/// The page with its scripts and data left out.
+fn visible(page: &str) -> String {
+    page.split("<script").map(|part| part.split_once("</script>").map_or(part, |(_, rest)| rest)).collect()
+}
+
+#[test]
+fn the_page_has_the_numbers_of_the_summary_and_its_texts_are_no_markup() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("made-4711-1");
+    record(&run);
+    summarise(&run, 3);
+    let page = Run::read(&run).html().unwrap();
+    let page = visible(&page);
+    for text in ["made", "4711", "12.3 s", "exit code 3", "6003", "6000", "5987", "12.5 %", "by a signal"] {
+        assert!(page.contains(text), "{text} is missing");
+    }
+    assert!(page.contains("a &lt;b&gt;warning&lt;/b&gt;") && !page.contains("<b>warning"));
+}
+
+#[test]
+fn an_extreme_of_one_exchange_is_in_the_data_of_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    let page = Run::read(folder.path()).html().unwrap();
+    let line = page.lines().find(|l| l.starts_with("σ xx,") && l.contains(",987.654"));
+    assert_eq!(line, Some("σ xx,0.001234,987.654"));
+    let lines = page.lines().filter(|l| l.starts_with("σ xx,")).count();
+    assert!((100..=2500).contains(&lines), "{lines} points of {} exchanges", 2 * EXCHANGES);
+}
+
+#[test]
+fn a_page_loads_nothing_and_is_of_bounded_size() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    summarise(folder.path(), 0);
+    let page = Run::read(folder.path()).html().unwrap();
+    assert!(page.len() < LARGEST, "{} bytes", page.len());
+    for loads in [" src=\"http", " href=\"http", "@import", "url(http", "<link", "<iframe"] {
+        assert!(!page.contains(loads), "{loads}");
+    }
+    assert_eq!(page.matches("<script").count(), page.matches("</script>").count());
+    let addresses = |text: &str| text.match_indices("http").filter(|(n, _)| text[*n..].starts_with("http://www.w3.org/")).count();
+    assert_eq!(page.matches("http://").count() + page.matches("https://").count(), addresses(&page), "only namespaces");
+}
+
+#[test]
+fn the_same_run_gives_the_same_page() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    let page = || Run::read(folder.path()).html().unwrap();
+    assert!(page() == page());
+}
+
+#[test]
+fn what_is_not_there_is_named_and_the_rest_is_shown() {
+    let empty = tempfile::tempdir().unwrap();
+    let page = Run::read(empty.path()).html().unwrap();
+    for text in ["No summary", "No recording", "No scene", "The end of the run is not known", "No packing was measured"] {
+        assert!(page.contains(text), "{text} is missing");
+    }
+    let broken = tempfile::tempdir().unwrap();
+    std::fs::write(broken.path().join("summary.json"), "{\"exit\": \"x").unwrap();
+    std::fs::write(broken.path().join("r_0.mcap"), b"not a recording").unwrap();
+    std::fs::write(broken.path().join("scene.toml"), "grains = \"<none>\"").unwrap();
+    let page = Run::read(broken.path()).html().unwrap();
+    assert!(page.contains("No summary") && page.contains("No recording") && page.contains("grains = &quot;&lt;none&gt;&quot;"));
+}
+
+#[test]
+fn a_recording_that_was_cut_off_is_shown_as_far_as_it_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path());
+    let file = folder.path().join("r_0.mcap");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() * 2 / 3]).unwrap();
+    let page = Run::read(folder.path()).html().unwrap();
+    assert!(page.contains("Missing or not readable"), "the damage is named");
+}
+
+#[test]
+fn a_page_is_written_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write_report(folder.path()).unwrap();
+    assert_eq!(path, folder.path().join(FILE));
+    std::fs::remove_file(&path).unwrap();
+    std::fs::create_dir(&path).unwrap();
+    assert!(write_report(folder.path()).unwrap_err().to_string().contains(FILE));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no partial file remains");
+}
+
+#[test]
+fn the_table_of_many_runs_has_a_row_for_each_and_leads_to_their_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = ["one", "two & three"].map(|name| {
+        let run = folder.path().join(name);
+        std::fs::create_dir(&run).unwrap();
+        summarise(&run, 0);
+        (Run::read(&run), format!("{}/{FILE}", name.replace(' ', "%20")))
+    });
+    let page = overview(&runs);
+    assert!(page.contains("2 runs of 1 scene") && page.contains("href=\"one/report.html\""));
+    assert!(page.contains("two &amp; three</a>") && page.contains("complete, with warnings"));
+}

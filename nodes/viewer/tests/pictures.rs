@@ -1,0 +1,133 @@
+//! Pictures of packings: what is in them, and that they are the same every time.
+
+use grainlab_core::{Cell, Contact, Mat3, Material, Packing, Vec3};
+use grainlab_viewer::{Film, Picture, Quantity, Size, View, page};
+
+/// Four grains on a line along x, each touching the next, the last one the image of the first; and one alone.
+fn chain() -> Packing {
+    let radius = 1e-3;
+    let positions: Vec<Vec3> = (0..4)
+        .map(|n| Vec3::new(2e-3 * f64::from(n) + 1e-3, 4e-3, 4e-3))
+        .chain([Vec3::new(4e-3, 4e-3, 7e-3)])
+        .collect();
+    let contact = |i: u32, j: u32, image: [i8; 3], toward: f64, force: f64| Contact {
+        i,
+        j,
+        image,
+        overlap: 1e-9,
+        normal: Vec3::new(toward, 0.0, 0.0),
+        normal_force: force,
+        tangential_force: Vec3::zeros(),
+        rolling_force: Vec3::zeros(),
+    };
+    Packing {
+        step: 1,
+        time: 0.0,
+        cell: Cell::cube(8e-3).unwrap(),
+        deformation: Mat3::identity(),
+        ids: (1..=5).collect(),
+        radii: vec![radius; 5],
+        positions,
+        velocities: vec![Vec3::zeros(); 5],
+        spins: vec![Vec3::zeros(); 5],
+        contacts: vec![
+            contact(0, 1, [0; 3], 1.0, 1.0),
+            contact(0, 3, [-1, 0, 0], -1.0, 2.0),
+            contact(1, 2, [0; 3], 1.0, 3.0),
+            contact(2, 3, [0; 3], 1.0, 4.0),
+        ],
+        material: Material::GLASS,
+        law: Default::default(),
+        friction: 0.3,
+        time_step: 0.0,
+    }
+}
+
+const SIZE: Size = Size { width: 320, height: 240 };
+
+/// Every colour of a picture with its number of pixels.
+fn colours(picture: &Picture) -> std::collections::BTreeMap<[u8; 4], usize> {
+    let mut found = std::collections::BTreeMap::new();
+    let pixels = (0..SIZE.height).flat_map(|y| (0..SIZE.width).map(move |x| (x, y)));
+    pixels.for_each(|(x, y)| *found.entry(picture.pixel(x, y).unwrap()).or_default() += 1);
+    found
+}
+
+#[test]
+fn the_same_packing_gives_the_same_bytes() {
+    let view = View::new(&chain(), "a chain");
+    let png = || Picture::with_legend(&view, Quantity::Force, SIZE).png().unwrap();
+    assert_eq!(png(), png());
+    assert!(png().starts_with(b"\x89PNG\r\n\x1a\n"));
+}
+
+#[test]
+fn grains_cover_some_of_the_picture_and_leave_the_corners_free() {
+    let picture = Picture::plain(&View::new(&chain(), ""), Quantity::Coordination, SIZE).unwrap();
+    for (x, y) in [(0, 0), (SIZE.width - 1, 0), (0, SIZE.height - 1), (SIZE.width - 1, SIZE.height - 1)] {
+        assert_eq!(picture.pixel(x, y).unwrap()[3], 0, "({x}, {y}) is transparent");
+    }
+    let opaque: usize = colours(&picture).iter().filter(|(c, _)| c[3] == 255).map(|(_, n)| n).sum();
+    let share = opaque as f64 / (SIZE.width * SIZE.height) as f64;
+    assert!((0.05..0.6).contains(&share), "{share}");
+    assert_eq!(picture.pixel(SIZE.width, 0), None);
+}
+
+#[test]
+fn a_rattler_is_grey_and_a_grain_that_carries_force_is_not() {
+    let greys = |packing: &Packing| {
+        let picture = Picture::plain(&View::new(packing, ""), Quantity::Rattlers, SIZE).unwrap();
+        let grey = |c: &[u8; 4]| c[3] == 255 && c[0] > 90 && c[0].abs_diff(c[1]) < 12 && c[2].abs_diff(c[1]) < 16;
+        colours(&picture).iter().filter(|(c, _)| grey(c)).map(|(_, n)| *n).sum::<usize>()
+    };
+    let mut loose = chain();
+    loose.contacts.clear();
+    let (one, all) = (greys(&chain()), greys(&loose));
+    assert!(all > 3 * one && one > 200, "one rattler has {one} grey pixels, five have {all}");
+}
+
+#[test]
+fn the_colour_follows_what_is_asked_for() {
+    let view = View::new(&chain(), "");
+    let of = |quantity| Picture::plain(&view, quantity, SIZE).unwrap().png().unwrap();
+    let all = Quantity::ALL.map(of);
+    assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
+}
+
+#[test]
+fn a_size_is_two_numbers_of_pixels() {
+    assert_eq!("640x480".parse::<Size>().unwrap(), Size { width: 640, height: 480 });
+    for wrong in ["640", "640x", "x480", "0x480", "640x99999", "6.4x480", "-640x480"] {
+        let error = wrong.parse::<Size>().unwrap_err().to_string();
+        assert!(error.contains("WIDTHxHEIGHT"), "{wrong}: {error}");
+    }
+}
+
+#[test]
+fn a_page_loads_nothing_and_has_every_state() {
+    let views = [View::new(&chain(), "first <state>"), View::new(&chain(), "second")];
+    let text = page("A chain", "five grains", "chain", &views.iter().collect::<Vec<_>>()).unwrap();
+    assert!(text.contains("viewer-state-0") && text.contains("viewer-state-1") && !text.contains("viewer-state-2"));
+    assert!(text.contains("first <state>") && text.contains("{\"label\":\"first <state>\""), "labels are JSON, not markup");
+    for loads in ["src=\"http", "href=\"http", "@import", "fetch(", "XMLHttpRequest", "import("] {
+        let ours = text.replace(grainlab_viewer::SCRIPTS[0], "");
+        assert!(!ours.contains(loads), "{loads}");
+    }
+    assert!(!grainlab_viewer::SCRIPTS[0].contains("https://"), "the library has no address but namespaces");
+    // Each script and style ends where it was meant to.
+    assert_eq!(text.matches("<script").count(), text.matches("</script>").count());
+}
+
+#[test]
+fn a_film_that_is_too_long_keeps_its_first_and_last_states_in_order() {
+    let name = |n: usize| format!("state {n}");
+    for count in [1, 2, 3, 10, 63, 64, 65, 100] {
+        let mut film = Film::within(4000);
+        (0..count).for_each(|n| film.push(View::new(&chain(), name(n))));
+        let labels: Vec<&str> = film.states().iter().map(|v| v.label.as_str()).collect();
+        assert_eq!((film.count(), labels[0], labels[labels.len() - 1]), (count, "state 0", name(count - 1).as_str()));
+        let numbers: Vec<usize> = labels.iter().map(|l| l[6..].parse().unwrap()).collect();
+        assert!(numbers.is_sorted_by(|a, b| a < b), "{numbers:?}");
+        assert!(labels.len() <= 32, "{count}: {}", labels.len());
+    }
+}

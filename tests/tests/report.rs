@@ -1,0 +1,114 @@
+//! The page of a run, that of many runs, and pictures without a display.
+
+use serde_json::Value;
+use system_tests::lab::{Lab, golden};
+
+/// The texts of a page: without scripts and data.
+fn visible(page: &str) -> String {
+    page.split("<script").map(|part| part.split_once("</script>").map_or(part, |(_, rest)| rest)).collect()
+}
+
+fn read(path: &std::path::Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+#[test]
+fn a_launch_writes_a_page_with_the_results_of_its_summary() {
+    let lab = Lab::new();
+    let run = lab.launch(&golden("scenes/tiny.toml"), &[]);
+    let page = read(&run.join("report.html"));
+    let summary: Value = serde_json::from_str(&read(&run.join("summary.json"))).unwrap();
+    let state = summary["states"].as_array().and_then(|s| s.last()).expect("the run has a state");
+    let number = |key: &str| state[key].as_f64().unwrap_or_else(|| panic!("{key}: {state}"));
+    let page = visible(&page);
+    let texts = [
+        format!("{:.3}", number("k")),
+        format!("{:.3}", number("z")),
+        format!("{:.4}", number("eps")),
+        format!("{:.4}", number("phi")),
+        format!("{:.2}", number("pressure_pa") / 1e3),
+        format!("{:.2}", number("g12_pa") / 1e6),
+        format!("{:.2}", number("theta_pa") / 1e6),
+        summary["exchanges"].to_string(),
+        summary["run"].as_str().unwrap().to_owned(),
+    ];
+    for text in texts {
+        assert!(page.contains(&text), "{text} is missing");
+    }
+    assert!(page.contains("Complete") && !page.contains("Missing or not readable"));
+    // The command makes the same page again.
+    let before = read(&run.join("report.html"));
+    std::fs::remove_file(run.join("report.html")).unwrap();
+    let again = lab.run(&["report", &run.to_string_lossy()]);
+    assert_eq!(again.code, Some(0), "{}", again.stderr);
+    assert!(read(&run.join("report.html")).len() == before.len());
+}
+
+#[test]
+fn the_table_of_many_runs_marks_the_one_that_differs() {
+    let lab = Lab::new();
+    let scene = golden("scenes/tiny.toml");
+    let alike = |seed: u32| lab.launch(&scene, &["--seed", &seed.to_string()]);
+    let mut runs: Vec<_> = (1..=6).map(alike).collect();
+    // The summary of a seventh run has a packing of the same scene.
+    runs.push(lab.launch(&scene, &["--seed", "7", "--set", "material.shear_modulus=58e9"]));
+    let mut arguments = vec!["report".to_owned(), "-o".to_owned(), "all.html".to_owned()];
+    arguments.extend(runs.iter().map(|r| r.display().to_string()));
+    let ended = lab.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let page = read(&lab.folder().join("all.html"));
+    let rows: Vec<&str> = page.split("<tr>").filter(|row| row.contains("report.html")).collect();
+    assert_eq!(rows.len(), runs.len());
+    let marked: Vec<usize> = rows.iter().map(|row| row.matches("class=\"n outlier\"").count()).collect();
+    assert!(marked[6] >= 2, "moduli of stiffer grains are marked: {marked:?}");
+}
+
+#[test]
+fn a_report_that_cannot_be_written_changes_neither_the_exit_code_nor_the_run() {
+    let lab = Lab::new();
+    let scene = golden("scenes/tiny.toml");
+    let run = lab.folder().join("mine");
+    // A folder in its place cannot be replaced.
+    std::fs::create_dir_all(run.join("report.html")).unwrap();
+    let arguments = ["launch", "--scene", &scene.to_string_lossy(), "--run", &run.to_string_lossy()];
+    let ended = lab.run(&arguments);
+    assert_eq!(ended.code, Some(0), "{}\n{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains("no report"), "{}", ended.stderr);
+    assert!(run.join("summary.json").exists() && !ended.stdout.contains("report.html"));
+}
+
+#[test]
+fn a_picture_is_drawn_without_a_display_and_is_the_same_every_time() {
+    let lab = Lab::new();
+    let packing = golden("packings/isotropic_2000.csv.gz");
+    let draw = |name: &str, extra: &[&str]| {
+        let packing = packing.to_string_lossy();
+        let mut arguments = vec!["view", &packing, "--png", name, "--size", "300x200"];
+        arguments.extend(extra);
+        let ended = lab.run(&arguments);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        std::fs::read(lab.folder().join(name)).unwrap()
+    };
+    let first = draw("a.png", &[]);
+    assert!(first.starts_with(b"\x89PNG") && first == draw("b.png", &[]));
+    assert_ne!(first, draw("c.png", &["--color", "force"]));
+    for (wrong, code) in [("--size=9", 2), ("--state=0", 2), ("--state=2", 1), ("--state=-2", 1)] {
+        let ended = lab.run(&["view", &packing.to_string_lossy(), "--png", "d.png", wrong]);
+        assert_eq!(ended.code, Some(code), "{wrong}: {}", ended.stderr);
+        assert!(!lab.folder().join("d.png").exists());
+    }
+}
+
+#[test]
+fn a_page_of_a_packing_from_another_program_is_written_beside_it() {
+    let lab = Lab::new();
+    let packing = lab.folder().join("mine.data.gz");
+    std::fs::copy(golden("packings/packing_2000.data.gz"), &packing).unwrap();
+    let flags = ["--shear-modulus", "29e9", "--poisson", "0.2", "--density", "2500", "--friction", "0.3"];
+    let ended = lab.run(&[&["view", &packing.to_string_lossy()], &flags[..]].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let path = lab.folder().join("mine.view.html");
+    assert_eq!(ended.stdout.trim(), path.display().to_string());
+    let page = read(&path);
+    assert!(page.len() < 6_000_000 && page.contains("2000 grains") && page.contains("viewer-state-0"));
+}
